@@ -34,7 +34,8 @@ impl Shader for Bumps {
     fn bend(&self, at: &SurfacePoint) -> DVec3 {
         let normal = self.colours.bend(at);
         let slope = |axis: usize| {
-            let along = |other| Dual { value: at.position[other], slope: if other == axis { 1.0 } else { 0.0 } };
+            let along =
+                |other| Dual { value: at.position[other], slope: if other == axis { 1.0 } else { 0.0 } };
             self.height.at(per_axis(along)).slope
         };
         let gradient = DVec3::from(per_axis(slope));

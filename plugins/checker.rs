@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 static SQUARES: Pparm<[i64; 2]> =
     Pparm::or("squares", "how many squares there are along u and along v", [8, 8]).between(1.0, 1e6);
-static ALTMATERIAL: Pparm<Arc<Material>> = Pparm::required("altmaterial", "the material of every other square");
+static ALTMATERIAL: Pparm<Arc<Material>> =
+    Pparm::required("altmaterial", "the material of every other square");
 
 const TABLE: Table = &[&SQUARES, &ALTMATERIAL];
 

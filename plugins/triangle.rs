@@ -2,8 +2,8 @@
 
 use crate::prelude::*;
 use crate::shapes::Triangle;
-use crate::shapes::uv;
 use crate::shapes::plane::{CLASSIC_METHOD, Flat, Plane};
+use crate::shapes::uv;
 
 static VERTEX1: Pparm<DVec3> = Pparm::required("vertex1", "the first vertex").unit("world coordinates");
 static VERTEX2: Pparm<DVec3> =

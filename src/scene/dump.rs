@@ -74,8 +74,7 @@ pub(crate) fn block(args: &Args, syntax: Syntax, repeated: bool) -> String {
 
 /// Returns all entities of a model in the order of its scene.
 pub(crate) fn in_order(model: &Model) -> Vec<&Record> {
-    let kinds =
-        [Kind::Camera, Kind::Material, Kind::Texture, Kind::Shader, Kind::Object, Kind::Light];
+    let kinds = [Kind::Camera, Kind::Material, Kind::Texture, Kind::Shader, Kind::Object, Kind::Light];
     let mut all: Vec<_> = kinds.into_iter().flat_map(|kind| model.entities(kind)).collect();
     all.sort_unstable_by_key(|record| record.order());
     all

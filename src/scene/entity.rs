@@ -2,8 +2,8 @@
 
 use crate::scene::counts::OneOf;
 use crate::scene::kind::Kind;
-use crate::scene::procedural;
 use crate::scene::pparm::{Attribute, Attributes, Given, Pparm, Row, Table};
+use crate::scene::procedural;
 use crate::scene::value::{Datum, Type};
 use crate::text;
 use crate::world::accuracy::Accuracy;

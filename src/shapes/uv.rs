@@ -36,9 +36,12 @@ mod tests {
 
     #[test]
     fn uv_of_a_sphere_is_longitude_and_latitude() {
-        for (at, uv) in
-            [(DVec3::Z, [0.5, 0.5]), (DVec3::X, [0.75, 0.5]), (-DVec3::X, [0.25, 0.5]), (DVec3::Y, [0.5, 1.0])]
-        {
+        for (at, uv) in [
+            (DVec3::Z, [0.5, 0.5]),
+            (DVec3::X, [0.75, 0.5]),
+            (-DVec3::X, [0.25, 0.5]),
+            (DVec3::Y, [0.5, 1.0]),
+        ] {
             assert!((on_sphere(at) - DVec2::from(uv)).length() < 1e-15, "{at}: {}", on_sphere(at));
         }
     }

@@ -10,7 +10,9 @@ use tabray::scene::{Args, Derived, Entity, Kind, Pparm, Refusal, Registry, Row, 
 use tabray::shapes::Implicit;
 use tabray::tools::contract::{self, Breach, Promise};
 use tabray::world::certify::Equation;
-use tabray::world::{Body, Bracketed, Camera, Certified, Hittable, Light, Material, Rgb, Shader, Shape, SurfacePoint};
+use tabray::world::{
+    Body, Bracketed, Camera, Certified, Hittable, Light, Material, Rgb, Shader, Shape, SurfacePoint,
+};
 
 #[test]
 fn every_plugin_keeps_its_contract() {

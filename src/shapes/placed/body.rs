@@ -16,8 +16,7 @@ impl Placed {
     /// Makes a copy of an object with this material.
     pub fn body(body: &Arc<Body>, placement: Placement, material: &Material) -> Body {
         let shape = Shape::new(Self::new(body, placement)).by::<ByPackets, ByPlacement>();
-        let is_plain =
-            body.shader.uniform(material) == Plain.uniform(material) && !body.shader.bends();
+        let is_plain = body.shader.uniform(material) == Plain.uniform(material) && !body.shader.bends();
         let shaded = |shape| Body::shaded(shape, PlacedShader::new(body, placement, None));
         let copy = if is_plain { Body::plain(shape) } else { shaded(shape) };
         let original = Arc::clone(body);

@@ -134,9 +134,8 @@ impl Draw {
 
     /// Draws a shader that others can refer to, with the texture that it may refer to.
     fn shader(&mut self, registry: &Registry, user: &Entity) -> String {
-        let is_simple = |other: &&'static Entity| {
-            other.kind() == Kind::Shader && !refers_to(other, Kind::Shader)
-        };
+        let is_simple =
+            |other: &&'static Entity| other.kind() == Kind::Shader && !refers_to(other, Kind::Shader);
         let shaders: Vec<_> = registry.iter().filter(is_simple).collect();
         let shader = self.pick(&shaders);
         let needs = |kind| refers_to(shader, kind) && !refers_to(user, kind);

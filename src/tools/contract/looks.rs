@@ -72,7 +72,9 @@ pub fn shader(shader: &dyn PacketShader, at: &SurfacePoint) -> Result<(), Fault>
     }
     let bent = shader.bend(at);
     if shader.bends() && (bent.length() - 1.0).abs() > 1e-9 {
-        return Err(Promise::NormalIsUnit.fault(found(format!("`bend` is {bent}, of length {}", bent.length()))));
+        return Err(
+            Promise::NormalIsUnit.fault(found(format!("`bend` is {bent}, of length {}", bent.length())))
+        );
     }
     let (positions, seen) = (Vectors::<LANES>::of(at.position), [*at; LANES]);
     let points = SurfacePoints { positions: positions.view(LANES), seen: &seen };
