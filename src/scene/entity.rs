@@ -3,7 +3,6 @@
 use crate::scene::counts::OneOf;
 use crate::scene::kind::Kind;
 use crate::scene::pparm::{Attribute, Attributes, Given, Pparm, Row, Table};
-use crate::scene::procedural;
 use crate::scene::value::{Datum, Type};
 use crate::text;
 use crate::world::accuracy::Accuracy;
@@ -70,7 +69,7 @@ pub static MATERIAL: Pparm<Arc<Material>> =
 const OBJECT: Table = &[&MATERIAL];
 
 /// An object whose own table has a `shader` has no other.
-static SHADER: Pparm<Option<Paint>> = Pparm::or(
+pub(crate) static SHADER: Pparm<Option<Paint>> = Pparm::or(
     "shader",
     "the shader that colours the surface in place of the material alone, defined earlier in the scene, or a type of shader",
     None,
@@ -195,7 +194,7 @@ impl Entity {
         let is_object = self.kind() == Kind::Object;
         let common = if is_object { OBJECT } else { &[] };
         let is_shader = |row: &&dyn Row| row.attribute().is_some_and(|its| its.name() == SHADER.name());
-        let has_own = || self.tables.iter().copied().flatten().any(|row| is_shader(row));
+        let has_own = || self.tables.iter().copied().flatten().any(&is_shader);
         let shader = (is_object && !has_own()).then_some(&SHADER as &'static dyn Row);
         iter::once(common).chain(self.tables.iter().copied()).flatten().copied().chain(shader)
     }
@@ -283,23 +282,6 @@ impl Args {
     #[track_caller]
     pub fn material(&self) -> Arc<Material> {
         self.get(&MATERIAL)
-    }
-
-    /// Makes the body of an object, with the look of the shader that it names.
-    ///
-    /// # Errors
-    /// If the constructor refuses the object.
-    pub(crate) fn body(&self, construct: fn(&Args) -> Result<Body, Refusal>) -> Result<Body, Refusal> {
-        let body = construct(self)?;
-        let paint = match self.find(SHADER.name()) {
-            Some(Datum::Shader { paint, .. }) => Some(paint),
-            Some(Datum::Choice(choice)) => procedural::of_type(choice.name),
-            _ => None,
-        };
-        Ok(match paint {
-            Some(paint) => body.painted(paint),
-            None => body,
-        })
     }
 
     /// Tells whether the entity refers to an object that could not be made.

@@ -3,10 +3,11 @@
 
 use crate::scene::choice::{Choice, ChoiceName, Choices};
 use crate::scene::counts::Counts;
-use crate::scene::entity::{Args, Construct, Entity};
+use crate::scene::entity::{Args, Construct, Entity, Refusal, SHADER};
 use crate::scene::kind::Kind;
+use crate::scene::pparm::Attribute;
 use crate::scene::value::{Datum, Type, Value};
-use crate::world::body::Paint;
+use crate::world::body::{Body, Paint};
 use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock};
 
@@ -26,6 +27,23 @@ pub fn of_type(name: &str) -> Option<&'static Paint> {
 /// Returns the types of shader that objects can name.
 pub(crate) fn types() -> impl Iterator<Item = &'static Entity> {
     inventory::iter::<Entity>().filter(|entity| has_defaults(entity))
+}
+
+/// Makes the body of an object, with the look of the shader that it names.
+///
+/// # Errors
+/// If the constructor refuses the object.
+pub(crate) fn body(args: &Args, construct: fn(&Args) -> Result<Body, Refusal>) -> Result<Body, Refusal> {
+    let body = construct(args)?;
+    let paint = match args.find(SHADER.name()) {
+        Some(Datum::Shader { paint, .. }) => Some(paint),
+        Some(Datum::Choice(choice)) => of_type(choice.name),
+        _ => None,
+    };
+    Ok(match paint {
+        Some(paint) => body.painted(paint),
+        None => body,
+    })
 }
 
 fn has_defaults(entity: &Entity) -> bool {

@@ -163,6 +163,17 @@ fn formulas_are_the_same_in_either_syntax() {
 }
 
 #[test]
+fn one_formula_ends_at_the_next_attribute() {
+    let shader = |text| {
+        picture(&format!(
+            "formula f {{ {text} }} sphere b {{ material black center 4 3 -3 radius 2 shader f }}"
+        ))
+    };
+    assert_eq!(shader("ambient \"x\" diffuse 2"), shader("ambient \"x\" \"x\" \"x\" diffuse 2 2 2"));
+    assert_eq!(shader("ambient 2 diffuse \"y\" specular 0"), shader("specular 0 diffuse \"y\" ambient 2"));
+}
+
+#[test]
 fn a_shader_is_named_in_each_round() {
     let rounds = "repeat i 3 { tiles t { width \"0.25*(i + 1)\" }
         pplane p { material white normal 0 1 0 point 0 \"-i\" 0 shader t } }";

@@ -53,7 +53,7 @@ impl<const COUNT: usize> FieldOf<COUNT> {
 
     /// Tells whether the formula uses the variable of this index.
     pub fn uses(&self, index: usize) -> bool {
-        self.quick.steps.iter().any(|step| *step == Step::Variable(index as u8))
+        self.quick.steps.contains(&Step::Variable(index as u8))
     }
 
     /// Tells whether intervals enclose the formula also where it takes a square root of what may be negative: in a formula

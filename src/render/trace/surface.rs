@@ -75,7 +75,8 @@ impl Surface {
     pub fn hide_from_behind(&self, toward: View, shines: &mut [u64], t_max: &mut [f64]) -> bool {
         let mut any = false;
         for lane in 0..shines.len() {
-            if !(toward.get(lane).dot(self.unbent.get(lane)) > 0.0) {
+            let faces = toward.get(lane).dot(self.unbent.get(lane)) > 0.0;
+            if !faces {
                 (shines[lane], t_max[lane]) = (0, 0.0);
             }
             any |= shines[lane] != 0;

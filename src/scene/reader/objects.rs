@@ -5,6 +5,7 @@ use super::fault::Fault;
 use super::made::{Made, made};
 use crate::scene::entity::{Args, Construct, Refusal};
 use crate::scene::model::{Item, Object};
+use crate::scene::procedural;
 use crate::scene::store::{Record, Store};
 use crate::scene::value::Datum;
 use crate::world::body::{Body, Warning};
@@ -70,7 +71,9 @@ impl Check<'_, '_> {
         for file in args.files() {
             self.report.add_file(self.setting.folder.join(file));
         }
-        let body = args.body(construct).map_err(|refusal| self.refused(&args, refusal, source)).ok()?;
+        let body = procedural::body(&args, construct)
+            .map_err(|refusal| self.refused(&args, refusal, source))
+            .ok()?;
         self.warn(&args, &body.warnings, source);
         if body.bytes > 0 {
             let setting = Arc::make_mut(&mut self.setting);
