@@ -71,7 +71,7 @@ const OBJECT: Table = &[&MATERIAL];
 /// An object whose own table has a `shader` has no other.
 pub(crate) static SHADER: Pparm<Option<Paint>> = Pparm::or(
     "shader",
-    "the shader that colours the surface in place of the material alone, defined earlier in the scene, or a type of shader",
+    "the shader that gives the look, defined earlier in the scene, or a type of shader",
     None,
 );
 

@@ -284,7 +284,7 @@ fn a_new_plugins_mistake_is_one() {
         assert!(message.contains(&format!("{name} `")) && message.contains("2 errors"), "{message}");
         mistakes += 1;
     }
-    assert_eq!(mistakes, 2, "of a shape and of a light");
+    assert_eq!(mistakes, 3, "of a shape, of a light and of a shader");
 }
 
 // A separate crate

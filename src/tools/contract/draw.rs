@@ -164,7 +164,8 @@ impl Draw {
             if chosen.is_some_and(|(_, chosen)| *chosen != attribute.name()) {
                 continue;
             }
-            let must = chosen.is_some();
+            // A shader that is given no attribute is refused.
+            let must = chosen.is_some() || entity.kind() == Kind::Shader && lines.is_empty();
             let positive = entity.kind() == Kind::Material;
             let values = match attribute.value_type() {
                 Type::Name(Kind::Shader) => self.aside(|draw| draw.values(attribute, must, positive)),
