@@ -59,12 +59,17 @@ fn turned_back<N: Scalar>(degrees: f64, x: N, y: N) -> (N, N) {
         180.0 if degrees % 90.0 == 0.0 => (-x, -y),
         270.0 if degrees % 90.0 == 0.0 => (-y, x),
         _ => {
-            let [a, b, c, d] = PI;
-            let half_turn = N::constant(a) + (N::constant(b) + (N::constant(c) + N::about(d, PI_ERROR)));
-            let (sin, cos) = (N::constant(degrees) * half_turn / N::constant(180.0)).sin_cos();
+            let (sin, cos) = radians::<N>(degrees).sin_cos();
             (cos * x + sin * y, cos * y - sin * x)
         }
     }
+}
+
+/// Returns an angle in radians that is given in degrees.
+pub(crate) fn radians<N: Scalar>(degrees: f64) -> N {
+    let [a, b, c, d] = PI;
+    let half_turn = N::constant(a) + (N::constant(b) + (N::constant(c) + N::about(d, PI_ERROR)));
+    N::constant(degrees) * half_turn / N::constant(180.0)
 }
 
 #[cfg(test)]

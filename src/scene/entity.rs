@@ -7,8 +7,9 @@ use crate::scene::value::{Datum, Type};
 use crate::text;
 use crate::world::accuracy::Accuracy;
 use crate::world::body::{AnyLight, Body};
-use crate::world::camera::Camera;
+use crate::world::film::{AnyCamera, Film};
 use crate::world::material::Material;
+use crate::world::sample::Sampler;
 use crate::world::texture::Texture;
 use std::collections::BTreeMap;
 use std::ops::Deref;
@@ -47,7 +48,7 @@ impl fmt::Debug for Entity {
 #[derive(Clone, Copy)]
 pub enum Construct {
     /// Makes a camera.
-    Camera(fn(&Args) -> Result<Camera, Refusal>),
+    Camera(fn(&Args) -> Result<AnyCamera, Refusal>),
     /// Makes a material.
     Material(fn(&Args) -> Result<Material, Refusal>),
     /// Makes a texture.
@@ -64,14 +65,32 @@ pub static MATERIAL: Pparm<Arc<Material>> =
 
 const OBJECT: Table = &[&MATERIAL];
 
+/// The size of the image, which every camera has.
+pub static PIXELDIM: Pparm<[i64; 2]> = Pparm::required("pixeldim", "the width and height of the image")
+    .alias(&["pixel_dim"])
+    .unit("pixels")
+    .between(1.0, 100_000.0)
+    .dumped("pixel_dim", " \n");
+
+static SAMPLES: Pparm<i64> = Pparm::or("samples", "the number of samples per pixel, to smooth edges", 1)
+    .between(1.0, Sampler::MOST as f64)
+    .not_dumped();
+
+static ACCURACY: Pparm<Accuracy> =
+    Pparm::or("accuracy", "how exactly hits are computed", Accuracy::Exact).not_dumped();
+
+/// What every camera has before and after its own attributes.
+const FILM: [Table; 2] = [&[&PIXELDIM], &[&SAMPLES, &ACCURACY]];
+
 impl Entity {
-    /// Describes a camera type.
+    /// Describes a camera type. The attributes of every camera are added to its table: [`PIXELDIM`] before its own, and
+    /// `samples` and `accuracy` after them.
     #[track_caller]
     pub const fn camera(
         name: &'static str,
         meaning: &'static str,
         tables: &'static [Table],
-        construct: fn(&Args) -> Result<Camera, Refusal>,
+        construct: fn(&Args) -> Result<AnyCamera, Refusal>,
     ) -> Self {
         Self::new(name, meaning, tables, Construct::Camera(construct))
     }
@@ -155,8 +174,12 @@ impl Entity {
 
     /// Returns the rows of the type's table, in the order of the dump.
     pub fn rows(&self) -> impl Iterator<Item = &'static dyn Row> + use<> {
-        let common = if self.kind() == Kind::Object { OBJECT } else { &[] };
-        iter::once(common).chain(self.tables.iter().copied()).flatten().copied()
+        let [first, last]: [Table; 2] = match self.kind() {
+            Kind::Camera => FILM,
+            Kind::Object => [OBJECT, &[]],
+            _ => [&[], &[]],
+        };
+        iter::once(first).chain(self.tables.iter().copied()).chain([last]).flatten().copied()
     }
 
     /// Returns the type's attributes, in the order of its table.
@@ -185,7 +208,7 @@ impl Entity {
 pub struct Setting {
     /// The scene's camera. Only objects and lights are certain to be constructed after it; other entities may see a
     /// default camera.
-    pub camera: Camera,
+    pub camera: Film,
     /// The folder to which the scene's file names are relative.
     pub folder: PathBuf,
     /// The scene's materials by their names; only objects and lights are certain to see all of them.
@@ -233,6 +256,22 @@ impl Args {
     /// Returns the accuracy with which the scene is traced.
     pub fn accuracy(&self) -> Accuracy {
         self.setting.camera.accuracy
+    }
+
+    /// Returns the z, in world units, beyond which the scene's camera lets planes not be there, if it has such a rule.
+    pub fn planes_end_at(&self) -> Option<f64> {
+        self.setting.camera.camera.planes_end_at()
+    }
+
+    /// Returns the film of a camera with this entity's attributes.
+    pub(crate) fn film(&self, camera: AnyCamera) -> Film {
+        Film {
+            // The attributes' rules ensure that these casts are lossless.
+            samples: self.get(&SAMPLES) as u32,
+            // The notes' command line has a default accuracy of its own.
+            accuracy: self.get_given(&ACCURACY).unwrap_or(self.accuracy()),
+            ..Film::new(camera, self.get(&PIXELDIM).map(|side| side as usize))
+        }
     }
 
     /// Returns the material of an object.

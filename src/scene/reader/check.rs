@@ -17,7 +17,7 @@ use crate::scene::store::Store;
 use crate::scene::value::Datum;
 use crate::world::accuracy::Accuracy;
 use crate::world::body::{AnyLight, NamedBody};
-use crate::world::camera::Camera;
+use crate::world::film::Film;
 use crate::world::material::Material;
 use crate::world::texture::Texture;
 use std::borrow::Cow;
@@ -91,7 +91,7 @@ pub(super) struct Check<'r, 't> {
     pub(super) store: Store,
     pub(super) places: Places,
     /// What was constructed, with the orders of the entities.
-    pub(super) camera: Option<(usize, Camera)>,
+    pub(super) camera: Option<(usize, Film)>,
     pub(super) materials: Vec<(usize, Arc<Material>)>,
     pub(super) textures: Vec<(usize, Arc<Texture>)>,
     /// The textures by the paths of their files.
@@ -115,7 +115,7 @@ impl<'r, 't> Check<'r, 't> {
         report: &'r mut Report<'t>,
         threads: &'r Threads,
     ) -> Self {
-        let camera = Camera { accuracy: accuracy.by_default, ..Camera::default() };
+        let camera = Film { accuracy: accuracy.by_default, ..Film::default() };
         let memory = accuracy.memory.unwrap_or(u64::MAX);
         let setting = Setting { camera, folder: folder.to_owned(), materials: Arc::default(), memory };
         Self {
@@ -250,7 +250,8 @@ impl Check<'_, '_> {
         let (kind, order, name) = (args.entity.kind(), args.order, Arc::from(args.name.as_str()));
         match args.entity.construct {
             Construct::Camera(construct) => {
-                if let Some(mut camera) = self.made(parsed, &args, construct) {
+                if let Some(camera) = self.made(parsed, &args, construct) {
+                    let mut camera = args.film(camera);
                     camera.accuracy = self.accuracy.unwrap_or(camera.accuracy);
                     Arc::make_mut(&mut self.setting).camera = camera.clone();
                     self.camera = Some((order, camera));

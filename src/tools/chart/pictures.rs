@@ -20,7 +20,7 @@ use crate::render::renderer::Renderer;
 use crate::render::trace::{self, Scratch, Tracer};
 use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
-use crate::world::camera::Adaptive;
+use crate::world::film::Adaptive;
 use crate::world::material::Rgb;
 use crate::world::sample::{Sample, Sampler};
 use glam::DVec2;

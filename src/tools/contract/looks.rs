@@ -12,7 +12,7 @@ use crate::scene::syntax::Syntax;
 use crate::shapes::revolution::{Finish, Revolution};
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::{LANES, Vectors};
-use crate::world::camera::Camera;
+use crate::world::film::Film;
 use crate::world::light_samples::{LightSamples, ShadingPoints};
 use crate::world::material::{Look, Material, Rgb};
 use crate::world::packets::light::PacketLight;
@@ -163,8 +163,8 @@ fn places(middle: DVec3, draw: &mut Draw) -> impl Iterator<Item = DVec3> {
 }
 
 /// Checks the rays of a camera through the corners and the centre of its image.
-pub fn camera(camera: &Camera) -> Result<(), Fault> {
-    let Camera { pixels: [width, height], samples, .. } = *camera;
+pub fn camera(camera: &Film) -> Result<(), Fault> {
+    let Film { pixels: [width, height], samples, .. } = *camera;
     if width == 0 || height == 0 || samples == 0 {
         let found = format!("{width} by {height} pixels, {samples} samples");
         return Err(Promise::CameraLooks.fault(found));
