@@ -16,6 +16,8 @@ pub trait PacketCamera: Camera {
     fn look_from(&self, cpu: Cpu, places: &Places, origins: ViewMut, dirs: ViewMut);
     /// Returns what [`Camera::line`] does.
     fn footprint(&self, at: ImagePoint<Affine>) -> Option<Line<Affine>>;
+    /// Returns what [`Camera::line`] does, rounded.
+    fn rounded_line(&self, at: ImagePoint) -> Option<Line<f64>>;
 }
 
 /// Places in an image.
@@ -40,6 +42,10 @@ impl<T: Camera> PacketCamera for T {
     }
 
     fn footprint(&self, at: ImagePoint<Affine>) -> Option<Line<Affine>> {
+        self.line(at)
+    }
+
+    fn rounded_line(&self, at: ImagePoint) -> Option<Line<f64>> {
         self.line(at)
     }
 }
