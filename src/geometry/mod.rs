@@ -15,7 +15,7 @@ pub use aabb::{Aabb, clearance};
 pub use bvh::{Bvh, Stack};
 pub use frame::Frame;
 pub use image_point::ImagePoint;
-pub use placement::Placement;
+pub use placement::{Placement, Rotation};
 pub use ray::{Bracket, MISS, Ray, RayRange, Side};
 pub use ray_packet::{Nearest, RayPacket};
 pub use sight::{Line, Sight};
