@@ -2,7 +2,7 @@
 
 use crate::geometry::image_point::ImagePoint;
 use crate::geometry::placement::radians;
-use crate::numeric::double_double::DoubleDouble;
+use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two};
 use crate::numeric::scalar::{Scalar, constants, cross, dot, per_axis};
 use glam::DVec3;
 
@@ -19,7 +19,10 @@ pub struct ViewFrame {
 struct Given {
     position: DVec3,
     target: DVec3,
+    /// A vector up, times a power of two that makes its largest component between 1/2 and 1.
     up: DVec3,
+    /// The power of two that makes the largest component of the vector to the target between 1/2 and 1.
+    scale: f64,
 }
 
 /// The least sine of the angle between the directions forward and up that make a frame.
@@ -29,7 +32,16 @@ impl ViewFrame {
     /// Returns the frame of a viewer that looks from a position toward a target. `up` is any vector that points up in
     /// the image; `None` where it is along the line of sight to within 1e-6 radians, or where that has no direction.
     pub fn new(position: DVec3, target: DVec3, up: DVec3) -> Option<Self> {
-        let (forward, given) = ((target - position).try_normalize()?, Given { position, target, up });
+        let forward = (target - position).try_normalize()?;
+        // Scaling by a power of two loses no digit, and keeps squares from overflowing.
+        let exponent = |of: DVec3| exponent_to_one(of.abs().max_element());
+        let power = exponent(up);
+        let given = Given {
+            position,
+            target,
+            up: DVec3::from(up.to_array().map(|part| times_power_of_two(part, power))),
+            scale: times_power_of_two(1.0, exponent(target - position)),
+        };
         let is_askew = forward.cross(up.try_normalize()?).length() > LEAST_SINE;
         is_askew.then(|| Self { given, axes: given.axes() })
     }
@@ -112,8 +124,8 @@ impl Given {
             let length = dot(vector, vector).sqrt();
             vector.map(|part| part / length)
         };
-        let forward =
-            unit(per_axis(|axis| N::constant(self.target[axis]) - N::constant(self.position[axis])));
+        let toward = |axis: usize| N::constant(self.target[axis]) - N::constant(self.position[axis]);
+        let forward = unit(per_axis(|axis| toward(axis).scaled(self.scale)));
         let right = unit(cross(forward, constants(self.up)));
         [right, cross(right, forward), forward]
     }

@@ -88,6 +88,9 @@ fn of_a_constructor(fault: &Fault) -> bool {
         "has no area",
         "has a formula",
         "is too small for where it is",
+        "has its `target` at its `position`",
+        "looks along its `up`",
+        "has texels as large as pixels",
     ];
     found.iter().any(|words| fault.message.contains(words))
 }

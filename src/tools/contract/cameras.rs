@@ -14,8 +14,9 @@ use glam::{DVec2, DVec3};
 const LENSES: [DVec2; 4] =
     [DVec2::ZERO, DVec2::new(1.0, 0.0), DVec2::new(-0.6, 0.8), DVec2::new(0.125, -0.5)];
 
-/// How far, in pixels, a point may be projected from where it is seen.
-const PIXELS_OFF: f64 = 1e-3;
+/// How far the ray at the place where a point is projected may lead from it: the length of the difference between unit
+/// vectors.
+const DIRECTION_OFF: f64 = 1e-6;
 
 /// More than the rounding of a direction, which is a unit vector.
 const ROUNDING: f64 = 1e-12;
@@ -76,8 +77,15 @@ fn knows(camera: &Film, at: [f64; 2]) -> Result<(), Fault> {
     for distance in [0.5, 7.0] {
         let point = ray.at(distance);
         match camera.project(point) {
-            Projected::At(seen) if seen.distance(DVec2::from(at)) > PIXELS_OFF * camera.pixels[0] as f64 => {
-                return fault(format!("{point}, which it shows, is projected at {seen}"));
+            // A view of more than all around shows some points twice.
+            Projected::At(seen) => {
+                let other = camera.ray(seen.x, seen.y);
+                let off = (point - other.origin).normalize_or_zero().distance(other.dir);
+                if off > DIRECTION_OFF {
+                    return fault(format!(
+                        "{point}, which it shows, is projected at {seen}, where the ray is {other:?}"
+                    ));
+                }
             }
             Projected::Nowhere if !camera.pixels.contains(&1) => {
                 return fault(format!("{point}, which it shows, is projected nowhere"));
