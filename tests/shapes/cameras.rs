@@ -34,10 +34,8 @@ fn look_at_shows_its_target_in_the_middle_and_up_above() {
     let film = film("look_at c { pixeldim 41 31 position 1 -2 5 target -3 4 -1 up 0.3 1 0.2 angle 60 }");
     let toward = (DVec3::new(-3.0, 4.0, -1.0) - DVec3::new(1.0, -2.0, 5.0)).normalize();
     assert!(film.ray(20.0, 15.0).dir.distance(toward) < 1e-15);
-    let up = film.ray(20.0, 30.0).dir - toward;
-    assert!(
-        up.dot(DVec3::new(0.3, 1.0, 0.2)) > 0.0 && up.dot(film.ray(40.0, 15.0).dir - toward).abs() < 0.01
-    );
+    let (up, above) = (DVec3::new(0.3, 1.0, 0.2), film.ray(20.0, 30.0).dir);
+    assert!((above - toward).dot(up) > 0.0 && above.dot(toward.cross(up)).abs() < 1e-14);
     let [left, right] = [-0.5, 40.5].map(|x| film.ray(x, 15.0).dir);
     assert!((left.angle_between(right).to_degrees() - 60.0).abs() < 1e-9);
 }
