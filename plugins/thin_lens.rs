@@ -5,11 +5,11 @@ use crate::prelude::*;
 use std::sync::Arc;
 
 static APERTURE: Pparm<f64> =
-    Pparm::required("aperture", "the diameter of the lens, which is sampled: with one sample all is sharp")
+    Pparm::required("aperture", "the diameter of the lens, through whose middle a single sample goes")
         .unit("world units")
         .must("positive", |aperture| *aperture > 0.0);
 static FOCUS: Pparm<Option<f64>> =
-    Pparm::or("focus", "the distance of the plane in which all is sharp; by default that of `target`", None)
+    Pparm::or("focus", "the distance of the plane that is sharp (by default that of `target`)", None)
         .unit("world units")
         .must("positive", |focus: &Option<f64>| focus.is_none_or(|focus| focus > 0.0));
 

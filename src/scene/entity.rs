@@ -234,16 +234,22 @@ pub struct Args {
 impl Args {
     /// Makes the arguments of an entity. `values` holds one value for each attribute of the entity type, in table
     /// order.
-    pub(crate) fn new(entity: &'static Entity, name: String, order: usize, values: Vec<Given>) -> Self {
+    pub(crate) fn new(
+        entity: &'static Entity,
+        name: String,
+        order: usize,
+        values: Vec<Given>,
+        setting: Arc<Setting>,
+    ) -> Self {
         let attributes = Attributes::new((entity.name, entity.place), entity.attributes(), values);
-        Self { entity, name, order, setting: Arc::default(), attributes }
+        Self { entity, name, order, setting, attributes }
     }
 
     /// Makes the arguments of an entity whose attributes all have their defaults, as far as they have any.
     pub(crate) fn blank(entity: &'static Entity, setting: Arc<Setting>) -> Self {
         let values =
             entity.attributes().map(|attribute| (attribute.default().unwrap_or(Datum::Absent), false));
-        Self { setting, ..Self::new(entity, String::new(), 0, values.collect()) }
+        Self::new(entity, String::new(), 0, values.collect(), setting)
     }
 
     /// Returns every attribute with its value and whether the scene gives it, in the order of the table.

@@ -1,4 +1,4 @@
-//! What a scene is made of: the traits of shapes, shaders and lights, and the types in their signatures.
+//! What a scene is made of: the traits of shapes, shaders, lights and cameras, and the types in their signatures.
 
 pub(crate) mod accuracy;
 pub(crate) mod any_shape;

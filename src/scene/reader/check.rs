@@ -228,7 +228,8 @@ impl Check<'_, '_> {
         if let Some(values) = values
             && !matches!(entity.kind(), Kind::Object | Kind::Light)
         {
-            self.construct(parsed, Args::new(entity, text.to_string(), order, values));
+            let args = Args::new(entity, text.to_string(), order, values, self.setting.clone());
+            self.construct(parsed, &args);
         }
         // If the entity is faulty, a stand-in takes its place, so that the entities that refer to it are checked too.
         if counts
@@ -245,12 +246,11 @@ impl Check<'_, '_> {
     }
 
     /// Constructs an entity that others can refer to from its checked values.
-    fn construct(&mut self, parsed: &Parsed<'_>, mut args: Args) {
-        args.setting = self.setting.clone();
+    fn construct(&mut self, parsed: &Parsed<'_>, args: &Args) {
         let (kind, order, name) = (args.entity.kind(), args.order, Arc::from(args.name.as_str()));
         match args.entity.construct {
             Construct::Camera(construct) => {
-                if let Some(camera) = self.made(parsed, &args, construct) {
+                if let Some(camera) = self.made(parsed, args, construct) {
                     let mut camera = args.film(camera);
                     camera.accuracy = self.accuracy.unwrap_or(camera.accuracy);
                     Arc::make_mut(&mut self.setting).camera = camera.clone();
@@ -258,14 +258,14 @@ impl Check<'_, '_> {
                 }
             }
             Construct::Material(construct) => {
-                if let Some(material) = self.made(parsed, &args, construct) {
+                if let Some(material) = self.made(parsed, args, construct) {
                     let material = Arc::new(material);
                     self.define(kind, &args.name, &Datum::Material { name, material: material.clone() });
                     self.materials.push((order, material));
                 }
             }
             Construct::Texture(construct) => {
-                if let Some(texture) = self.made(parsed, &args, construct) {
+                if let Some(texture) = self.made(parsed, args, construct) {
                     self.report.add_file(texture.path().to_owned());
                     // Textures with the same file share one image, so that the file is read once.
                     let texture = match self.files.entry(texture.path().to_owned()) {

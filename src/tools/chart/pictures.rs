@@ -345,7 +345,7 @@ fn colour_of(plan: &Plan, [x, y]: [usize; 2], sample: Sample, seen: Seen) -> Rgb
         Seen::Picture => sample.jitter(),
         Seen::Shadows => DVec2::ZERO,
     };
-    let sight = plan.camera.sight(x as f64 + jitter.x, y as f64 + jitter.y);
+    let sight = plan.camera.sight_of(DVec2::new(x as f64, y as f64) + jitter, Some(&sample));
     trace::colour(plan, &sight, Some(sample))
 }
 
