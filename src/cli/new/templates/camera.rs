@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 // Each attribute has a name, a meaning, a unit and a rule. One made with `required` must be given, one made with `or`
 // has a default. The parser, its messages and the reference are made from these descriptions.
-static TURNS: Pparm<f64> = Pparm::or("turns", "how much of a full turn the width of the image shows", 1.0)
-    .between(0.01, 1.0);
+static TURNS: Pparm<f64> =
+    Pparm::or("turns", "how much of a full turn the width of the image shows", 1.0).between(0.01, 1.0);
 
 const TABLE: Table = &[&TURNS];
 
