@@ -80,8 +80,7 @@ impl ViewFrame {
     /// this tangent. Before it is made a unit vector, each component is rounded about once, however much of it cancels.
     #[inline(always)]
     pub fn direction(&self, tangent: DoubleDouble, at: &ImagePoint) -> DVec3 {
-        let ([x, y, z], [right, up]) = (self.axes, at.exactly::<DoubleDouble>().from_middle());
-        let (right, up) = (tangent * right, tangent * up);
+        let ([x, y, z], [right, up]) = (self.axes, across(tangent, at));
         DVec3::from(per_axis(|axis| (z[axis] + right * x[axis] + up * y[axis]).high)).normalize()
     }
 
@@ -98,9 +97,7 @@ impl ViewFrame {
     #[inline(always)]
     pub fn beside(&self, width: f64, at: &ImagePoint) -> DVec3 {
         let ([x, y, _], from) = (self.axes, self.given.position);
-        let half = DoubleDouble::from(0.5 * width);
-        let [right, up] = at.exactly::<DoubleDouble>().from_middle();
-        let (right, up) = (half * right, half * up);
+        let [right, up] = across(DoubleDouble::from(0.5 * width), at);
         DVec3::from(per_axis(|axis| (right * x[axis] + up * y[axis] + DoubleDouble::from(from[axis])).high))
     }
 
@@ -110,6 +107,14 @@ impl ViewFrame {
         let [right, up] = at.from_middle().map(|side| side.scaled(0.5 * width));
         per_axis(|axis| N::constant(from[axis]) + right * x[axis] + up * y[axis])
     }
+}
+
+/// Returns a place in units of which half the image's width has this many, to the right and up from its middle.
+#[inline(always)]
+fn across(half: DoubleDouble, at: &ImagePoint) -> [DoubleDouble; 2] {
+    // The same for all places of an image.
+    let pixel = half / DoubleDouble::from(at.pixels[0] as f64);
+    [0, 1].map(|side| DoubleDouble::difference(2.0 * at.at[side], (at.pixels[side] - 1) as f64) * pixel)
 }
 
 /// Returns the tangent of half an angle in degrees.
