@@ -6,7 +6,7 @@ use crate::scene::pparm::{Attribute, Attributes, Given, Pparm, Row, Table};
 use crate::scene::value::{Datum, Type};
 use crate::text;
 use crate::world::accuracy::Accuracy;
-use crate::world::body::{AnyLight, Body};
+use crate::world::body::{AnyLight, Body, Paint};
 use crate::world::film::{AnyCamera, Film};
 use crate::world::material::Material;
 use crate::world::sample::Sampler;
@@ -32,8 +32,10 @@ pub struct Entity {
     pub construct: Construct,
     /// The name that the notes' dump prints.
     pub dump_name: &'static str,
+    /// The numbers that the notes give a shader on planes and on spheres.
+    pub(crate) numbers: [Option<i64>; 2],
     tables: &'static [Table],
-    place: &'static Location<'static>,
+    pub(crate) place: &'static Location<'static>,
 }
 
 inventory::collect!(Entity);
@@ -53,17 +55,26 @@ pub enum Construct {
     Material(fn(&Args) -> Result<Material, Refusal>),
     /// Makes a texture.
     Texture(fn(&Args) -> Result<Texture, Refusal>),
+    /// Makes a shader, which objects name.
+    Shader(fn(&Args) -> Result<Paint, Refusal>),
     /// Makes an object's shape and, if it has one, its shader.
     Object(fn(&Args) -> Result<Body, Refusal>),
     /// Makes a light.
     Light(fn(&Args) -> Result<AnyLight, Refusal>),
 }
 
-/// The attribute that every object has beside its own.
+/// The attributes that every object has beside its own.
 pub static MATERIAL: Pparm<Arc<Material>> =
     Pparm::required("material", "the material, defined earlier in the scene");
 
 const OBJECT: Table = &[&MATERIAL];
+
+/// An object whose own table has a `shader` has no other.
+pub(crate) static SHADER: Pparm<Option<Paint>> = Pparm::or(
+    "shader",
+    "the shader that colours the surface in place of the material alone, defined earlier in the scene, or a type of shader",
+    None,
+);
 
 /// The size of the image, which every camera has.
 pub static PIXELDIM: Pparm<[i64; 2]> = Pparm::required("pixeldim", "the width and height of the image")
@@ -117,7 +128,30 @@ impl Entity {
         Self::new(name, meaning, tables, Construct::Texture(construct))
     }
 
-    /// Describes a shape. The attribute `material` is added to its table.
+    /// Describes a type of shader.
+    #[track_caller]
+    pub const fn shader(
+        name: &'static str,
+        meaning: &'static str,
+        tables: &'static [Table],
+        construct: fn(&Args) -> Result<Paint, Refusal>,
+    ) -> Self {
+        Self::new(name, meaning, tables, Construct::Shader(construct))
+    }
+
+    /// Sets the number that the notes give a shader on planes.
+    pub const fn on_plane(mut self, number: i64) -> Self {
+        self.numbers[0] = Some(number);
+        self
+    }
+
+    /// Sets the number that the notes give a shader on spheres.
+    pub const fn on_sphere(mut self, number: i64) -> Self {
+        self.numbers[1] = Some(number);
+        self
+    }
+
+    /// Describes a shape. The attributes `material` and `shader` are added to its table.
     #[track_caller]
     pub const fn shape(
         name: &'static str,
@@ -146,7 +180,8 @@ impl Entity {
         tables: &'static [Table],
         construct: Construct,
     ) -> Self {
-        Self { name, meaning, aliases: &[], construct, dump_name: name, tables, place: Location::caller() }
+        let (aliases, numbers, place): (&[&str], _, _) = (&[], [None; 2], Location::caller());
+        Self { name, meaning, aliases, construct, dump_name: name, numbers, tables, place }
     }
 
     /// Sets other names that a scene may use.
@@ -167,6 +202,7 @@ impl Entity {
             Construct::Camera(_) => Kind::Camera,
             Construct::Material(_) => Kind::Material,
             Construct::Texture(_) => Kind::Texture,
+            Construct::Shader(_) => Kind::Shader,
             Construct::Object(_) => Kind::Object,
             Construct::Light(_) => Kind::Light,
         }
@@ -179,7 +215,10 @@ impl Entity {
             Kind::Object => [OBJECT, &[]],
             _ => [&[], &[]],
         };
-        iter::once(first).chain(self.tables.iter().copied()).chain([last]).flatten().copied()
+        let is_shader = |row: &&dyn Row| row.attribute().is_some_and(|its| its.name() == SHADER.name());
+        let has_own = || self.tables.iter().copied().flatten().any(&is_shader);
+        let shader = (self.kind() == Kind::Object && !has_own()).then_some(&SHADER as &'static dyn Row);
+        iter::once(first).chain(self.tables.iter().copied()).chain([last]).flatten().copied().chain(shader)
     }
 
     /// Returns the type's attributes, in the order of its table.

@@ -14,6 +14,7 @@ use tabray::tools::contract::{self, Breach, Promise};
 use tabray::world::certify::Equation;
 use tabray::world::{
     Body, Bracketed, Camera, Certified, Hittable, Light, Material, Origins, Projected, Rgb, Shader, Shape,
+    SurfacePoint,
 };
 
 #[test]
@@ -228,7 +229,7 @@ impl Equation for Ball {
 struct Colour(Flaw);
 
 impl Shader for Colour {
-    fn diffuse(&self, material: &Material, _at: DVec3) -> Rgb {
+    fn diffuse(&self, material: &Material, _at: &SurfacePoint) -> Rgb {
         match self.0 {
             Flaw::NanColour => Rgb::NAN,
             Flaw::NegativeColour => -material.diffuse,
