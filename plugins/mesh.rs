@@ -12,12 +12,11 @@ static SCALE: Pparm<DVec3> = Pparm::or("scale", "the scale factors along the fil
     .must("other than 0 in each dimension", |scale: &DVec3| {
         scale.to_array().iter().all(|factor| *factor != 0.0)
     });
-static ROTATION: Pparm<DVec3> = Pparm::or(
+static ROTATION: Pparm<Rotation> = Pparm::or(
     "rotation",
     "the angles by which the scaled mesh is rotated around x, then y, then z, counterclockwise",
-    DVec3::ZERO,
-)
-.unit("degrees");
+    Rotation::NONE,
+);
 static TRANSLATION: Pparm<DVec3> =
     Pparm::or("translation", "where the file's origin lies", DVec3::ZERO).unit("world coordinates");
 static SMOOTH: Pparm<i64> =
@@ -60,7 +59,7 @@ fn surface(args: &Args) -> Result<Surface, Refusal> {
             "a mesh is an OBJ, PLY or STL file, and its name is relative to the scene's folder",
         )
     })?;
-    let placement = ToWorld::new(args.get(&SCALE), args.get(&ROTATION), args.get(&TRANSLATION));
+    let placement = ToWorld::new(args.get(&SCALE), args.get(&ROTATION).degrees, args.get(&TRANSLATION));
     Surface::new(model, &placement, args.get(&SMOOTH) == 1).map_err(|unfit| match unfit {
         Unfit::TooLarge => refusal(
             "has coordinates so large that their squares overflow".to_owned(),

@@ -11,12 +11,11 @@ static OBJECT: Pparm<NamedBody> = Pparm::required(
 static SCALE: Pparm<DVec3> =
     Pparm::or("scale", "the scale factors along the object's x, y and z", DVec3::ONE)
         .must("positive in each dimension", |scale: &DVec3| scale.min_element() > 0.0);
-static ROTATION: Pparm<DVec3> = Pparm::or(
+static ROTATION: Pparm<Rotation> = Pparm::or(
     "rotation",
     "the angles by which the scaled object is rotated around x, then y, then z, counterclockwise",
-    DVec3::ZERO,
-)
-.unit("degrees");
+    Rotation::NONE,
+);
 static TRANSLATION: Pparm<DVec3> =
     Pparm::or("translation", "where the object's origin lies", DVec3::ZERO).unit("world coordinates");
 

@@ -33,7 +33,7 @@ pub fn shape(args: &Args) -> AnyShape {
 
 /// Makes the plane of an entity whose table has the rows of [`TABLE`], with hits of accuracy `A`.
 pub fn plane<A>(args: &Args) -> Plane<A> {
-    Plane::with_normal(args.get(&NORMAL), args.get(&POINT))
+    Plane::with_normal(args.get(&NORMAL), args.get(&POINT)).up_to(args.planes_end_at())
 }
 
 impl Hittable for Plane<Classic> {
@@ -147,6 +147,6 @@ impl<A> Equation for Plane<A> {
     }
 
     fn kept<N: Scalar>(&self, [_, _, z]: [N; 3]) -> N {
-        N::constant(0.01) - z
+        N::constant(self.max_z) - z
     }
 }

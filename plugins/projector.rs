@@ -17,10 +17,10 @@ inventory::submit! {
         "a light that projects a texture through a rectangle, which is itself invisible",
         &[light::TABLE, TABLE, plane::TABLE, fplane::TABLE, fplane::ROTATION, texplane::TABLE],
         |args| Ok(match args.accuracy() {
-            Accuracy::Classic => Box::new(Projector::new(args, finite_plane::<Classic>(args)?)),
-            Accuracy::Draft => Box::new(Projector::new(args, finite_plane::<Draft>(args)?)),
-            Accuracy::Exact => Box::new(Projector::new(args, finite_plane::<Exact>(args)?)),
-            Accuracy::Strict => Box::new(Projector::new(args, finite_plane::<Strict>(args)?)),
+            Accuracy::Classic => Box::new(Projector::new(args, finite_plane::<Classic>(args)?)?),
+            Accuracy::Draft => Box::new(Projector::new(args, finite_plane::<Draft>(args)?)?),
+            Accuracy::Exact => Box::new(Projector::new(args, finite_plane::<Exact>(args)?)?),
+            Accuracy::Strict => Box::new(Projector::new(args, finite_plane::<Strict>(args)?)?),
         }),
     )
     .dumped_as("light")
@@ -34,8 +34,8 @@ struct Projector<A> {
 }
 
 impl<A> Projector<A> {
-    fn new(args: &Args, window: FinitePlane<A>) -> Self {
-        Self { light: PointLight::new(args), picture: Picture::new(args, window.rectangle), window }
+    fn new(args: &Args, window: FinitePlane<A>) -> Result<Self, Refusal> {
+        Ok(Self { light: PointLight::new(args), picture: Picture::new(args, window.rectangle)?, window })
     }
 }
 

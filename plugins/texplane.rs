@@ -27,7 +27,7 @@ inventory::submit! {
         &[plane::TABLE, fplane::TABLE, fplane::ROTATION, TABLE],
         |args| {
             let rectangle = fplane::rectangle(args)?;
-            let picture = Textured(Picture::new(args, rectangle));
+            let picture = Textured(Picture::new(args, rectangle)?);
             Ok(Body::shaded(fplane::shape(args)?, picture).anchored(args.get(&plane::POINT), 1.0))
         },
     )
@@ -53,12 +53,28 @@ struct Given {
 
 impl Picture {
     /// Makes the image of an entity whose table has the rows of [`TABLE`].
-    pub fn new(args: &Args, rectangle: Rectangle) -> Self {
+    ///
+    /// # Errors
+    /// If texels are to be as large as pixels, and the camera has no image plane.
+    pub fn new(args: &Args, rectangle: Rectangle) -> Result<Self, Refusal> {
         let camera = &args.setting.camera;
-        let (screen, pixels) = (camera.screen, DVec2::from(camera.pixels.map(|side| side as f64)));
-        let texel = (args.get(&MODE) == 1).then_some(screen / pixels);
+        let pixels = DVec2::from(camera.pixels.map(|side| side as f64));
+        let is_tiled = args.get(&MODE) == 1;
+        let screen = match camera.camera.screen() {
+            Some(screen) => screen,
+            None if is_tiled => {
+                return Err(Refusal {
+                    attribute: Some("mode"),
+                    message: "has texels as large as pixels of an image plane, and the camera has none"
+                        .to_owned(),
+                    help: "`mode 0` fits the image to the rectangle; `mode 1` needs a `camera`, with its `worlddim`",
+                });
+            }
+            None => DVec2::ONE,
+        };
+        let texel = is_tiled.then_some(screen / pixels);
         let given = Given { normal: args.get(&plane::NORMAL), xdir: args.get(&fplane::XDIR), screen, pixels };
-        Self { rectangle, texture: args.get(&TEXNAME), texel, given }
+        Ok(Self { rectangle, texture: args.get(&TEXNAME), texel, given })
     }
 
     /// Returns the texel at a point of the rectangle, each channel from 0 to 1.

@@ -32,10 +32,19 @@ inventory::submit! {
 fn shape(args: &Args) -> Option<AnyShape> {
     let corners = [args.get(&VERTEX1), args.get(&VERTEX2), args.get(&VERTEX3)];
     Some(match args.accuracy() {
-        Accuracy::Classic => Shape::new(Triangle::classic(corners)?).classic().into(),
-        Accuracy::Draft => Shape::new(Triangle::<Draft>::new(corners)?).flat().certified().into(),
-        Accuracy::Exact => Shape::new(Triangle::<Exact>::new(corners)?).flat().certified().into(),
-        Accuracy::Strict => Shape::new(Triangle::<Strict>::new(corners)?).flat().certified().into(),
+        Accuracy::Classic => {
+            Shape::new(Triangle::classic(corners)?.up_to(args.planes_end_at())).classic().into()
+        }
+        Accuracy::Draft => {
+            Shape::new(Triangle::<Draft>::new(corners)?.up_to(args.planes_end_at())).flat().certified().into()
+        }
+        Accuracy::Exact => {
+            Shape::new(Triangle::<Exact>::new(corners)?.up_to(args.planes_end_at())).flat().certified().into()
+        }
+        Accuracy::Strict => Shape::new(Triangle::<Strict>::new(corners)?.up_to(args.planes_end_at()))
+            .flat()
+            .certified()
+            .into(),
     })
 }
 

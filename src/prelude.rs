@@ -15,10 +15,12 @@ pub use inventory;
 pub use crate::world::accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
 pub use crate::world::any_shape::AnyShape;
 pub use crate::world::body::{AnyShader, Body, NamedBody, Paint, Warning};
-pub use crate::world::camera::Camera;
+pub use crate::world::camera::{Camera, Origins, Projected};
+pub use crate::world::film::AnyCamera;
 pub use crate::world::hittable::{Bracketed, Certified, Hittable};
 pub use crate::world::light::Light;
 pub use crate::world::material::{Look, Material, Rgb};
+pub use crate::world::pinhole::Pinhole;
 pub use crate::world::sample::Sampler;
 pub use crate::world::shader::{Anchor, LookBounds, PointBounds, Sees, Shader, SurfacePoint};
 pub use crate::world::shape::Shape;
@@ -31,10 +33,14 @@ pub use crate::scene::choice::{Choice, ChoiceName};
 pub use crate::scene::procedural::{OnPlane, OnSphere};
 pub use crate::scene::profile::{Profile, ProfileLine};
 
-// What the traits of shapes take and return.
+// What the traits of shapes and cameras take and return.
 pub use crate::geometry::aabb::{Aabb, SLACK};
 pub use crate::geometry::frame::Frame;
+pub use crate::geometry::image_point::{ImagePoint, from_middle};
+pub use crate::geometry::placement::Rotation;
 pub use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
+pub use crate::geometry::sight::{Line, Sight};
+pub use crate::geometry::view_frame::{ViewFrame, half_tangent};
 pub use crate::numeric::double_double::DoubleDouble;
 pub use crate::numeric::dual::Dual;
 pub use crate::numeric::interval::{Interval, Wide};

@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use crate::world::accuracy::Accuracy;
-use crate::world::camera::{Adaptive, Camera};
+use crate::world::film::{Adaptive, Film};
 use crate::world::sample::Sampler;
 
 /// The numbers of samples per pixel that `--max-error` chooses from, where `--samples` does not say.
@@ -45,7 +45,7 @@ enum Samples {
 
 impl Args {
     /// Gives the camera the requested samples.
-    pub fn apply(&self, camera: &mut Camera) -> Result<(), Failure> {
+    pub fn apply(&self, camera: &mut Film) -> Result<(), Failure> {
         camera.sampler = self.sampler;
         let limits = match (self.samples, self.max_error) {
             (None, None) => return Ok(()),
@@ -72,6 +72,13 @@ impl Args {
                 "`--certain` proves the true colours, and the classic method has colours of its own"
                     .to_owned(),
                 Some("leave out `--certain`, or give `--method exact`".to_owned()),
+            ));
+        }
+        if camera.certain && !camera.is_enclosed() {
+            return Err(Failure::Usage(
+                "`--certain` proves what all rays through a pixel see, and the scene's camera does not say where they lie"
+                    .to_owned(),
+                Some("leave out `--certain`; `camera`, `look_at` and `orthographic` say it".to_owned()),
             ));
         }
         Ok(())

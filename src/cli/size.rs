@@ -1,7 +1,7 @@
 //! `--size`, `--quick` and `--crop`: the size of the image, and the part of it that is rendered.
 
 use super::failure::Failure;
-use crate::world::camera::Camera;
+use crate::world::film::Film;
 use std::ops::Range;
 
 /// The maximum width and the maximum height in pixels, as for `pixeldim`.
@@ -45,7 +45,7 @@ impl Part {
     }
 
     /// Returns the whole image of a camera.
-    pub fn whole(camera: &Camera) -> Self {
+    pub fn whole(camera: &Film) -> Self {
         let [width, height] = camera.pixels;
         Self { columns: 0..width, rows: 0..height }
     }
@@ -53,7 +53,7 @@ impl Part {
 
 impl Args {
     /// Gives the image the requested size, and returns the requested part of it.
-    pub fn apply(&self, camera: &mut Camera) -> Result<Part, Failure> {
+    pub fn apply(&self, camera: &mut Film) -> Result<Part, Failure> {
         let [width, height] = camera.pixels;
         if self.quick {
             camera.pixels = camera.pixels.map(|side| (side / 4).max(1));
@@ -79,7 +79,7 @@ impl Args {
 }
 
 /// Returns the part that the user named, if the image contains it.
-fn part(camera: &Camera, [x, y, wide, high]: [i64; 4]) -> Result<Part, Failure> {
+fn part(camera: &Film, [x, y, wide, high]: [i64; 4]) -> Result<Part, Failure> {
     let [width, height] = camera.pixels;
     let range = |from: i64, count: i64, whole: usize| {
         let (from, count) = (usize::try_from(from).ok()?, usize::try_from(count).ok()?);

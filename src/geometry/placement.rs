@@ -14,13 +14,25 @@ const PI: [f64; 4] = [
 /// A bound on what [`PI`] lacks.
 const PI_ERROR: f64 = 1e-64;
 
+/// A rotation around x, then y, then z.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Rotation {
+    /// The angles in degrees, counterclockwise as seen from the axis's end.
+    pub degrees: DVec3,
+}
+
+impl Rotation {
+    /// The rotation that turns nothing.
+    pub const NONE: Self = Self { degrees: DVec3::ZERO };
+}
+
 /// A scaling along the axes, then a rotation around x, then y, then z, and then a translation, as the scene gives them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
     /// The scale factors along the shape's own axes, all positive.
     pub scale: DVec3,
-    /// The angles of the rotations in degrees, counterclockwise as seen from the axis's end.
-    pub rotation: DVec3,
+    /// The rotation.
+    pub rotation: Rotation,
     /// The position of the shape's own origin, in world coordinates.
     pub translation: DVec3,
 }
@@ -41,9 +53,9 @@ impl Placement {
     /// Takes a vector from the world to the shape's own coordinates.
     pub fn vector<N: Scalar>(&self, vector: [N; 3]) -> [N; 3] {
         let [x, y, z] = vector;
-        let (x, y) = turned_back(self.rotation.z, x, y);
-        let (z, x) = turned_back(self.rotation.y, z, x);
-        let (y, z) = turned_back(self.rotation.x, y, z);
+        let (x, y) = turned_back(self.rotation.degrees.z, x, y);
+        let (z, x) = turned_back(self.rotation.degrees.y, z, x);
+        let (y, z) = turned_back(self.rotation.degrees.x, y, z);
         let part = |part: N, scale: f64| if scale == 1.0 { part } else { part / N::constant(scale) };
         [part(x, self.scale.x), part(y, self.scale.y), part(z, self.scale.z)]
     }
@@ -59,12 +71,17 @@ fn turned_back<N: Scalar>(degrees: f64, x: N, y: N) -> (N, N) {
         180.0 if degrees % 90.0 == 0.0 => (-x, -y),
         270.0 if degrees % 90.0 == 0.0 => (-y, x),
         _ => {
-            let [a, b, c, d] = PI;
-            let half_turn = N::constant(a) + (N::constant(b) + (N::constant(c) + N::about(d, PI_ERROR)));
-            let (sin, cos) = (N::constant(degrees) * half_turn / N::constant(180.0)).sin_cos();
+            let (sin, cos) = radians::<N>(degrees).sin_cos();
             (cos * x + sin * y, cos * y - sin * x)
         }
     }
+}
+
+/// Returns an angle in radians that is given in degrees.
+pub(crate) fn radians<N: Scalar>(degrees: f64) -> N {
+    let [a, b, c, d] = PI;
+    let half_turn = N::constant(a) + (N::constant(b) + (N::constant(c) + N::about(d, PI_ERROR)));
+    N::constant(degrees) * half_turn / N::constant(180.0)
 }
 
 #[cfg(test)]
@@ -87,7 +104,7 @@ mod tests {
         for turns in -9..=9_i32 {
             let placement = Placement {
                 scale: DVec3::new(1.0, 2.0, 4.0),
-                rotation: DVec3::new(0.0, 90.0 * f64::from(turns), 0.0),
+                rotation: Rotation { degrees: DVec3::new(0.0, 90.0 * f64::from(turns), 0.0) },
                 translation: DVec3::ZERO,
             };
             let own = placement.to_own() * DVec3::X;

@@ -1,7 +1,9 @@
 //! Rays whose digits are all known, so that something can be proven about them.
 
+use crate::geometry::image_point::ImagePoint;
 use crate::geometry::placement::Placement;
 use crate::geometry::ray::Ray;
+use crate::geometry::view_frame::{self, ViewFrame};
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::{Float, Interval};
 use crate::numeric::scalar::{Scalar, constants, per_axis};
@@ -24,13 +26,17 @@ struct Within {
     outer: Option<Arc<Within>>,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 enum Toward {
     /// A direction, of any length.
     Direction(DVec3),
     /// A point on the image plane z = 0, whose x and y are each `at / last * size`: `at` and `last` in pixels, `size`
     /// in world units.
     ImagePoint { at: DVec2, last: DVec2, size: DVec2 },
+    /// The direction forward of a frame.
+    Forward(Arc<ViewFrame>),
+    /// A place in the image of a frame, whose width is seen at this angle in degrees.
+    Ahead(Arc<(ViewFrame, f64, ImagePoint)>),
 }
 
 /// A line in any number type: the points `origin + t dir`.
@@ -72,6 +78,17 @@ impl Sight {
         Self { origin: viewpoint, toward: Toward::ImagePoint { at, last, size }, within: None }
     }
 
+    /// Returns the ray from a point straight forward in a frame.
+    pub fn forward(origin: DVec3, frame: &ViewFrame) -> Self {
+        Self { origin, toward: Toward::Forward(Arc::new(*frame)), within: None }
+    }
+
+    /// Returns the ray from a frame's viewer that is seen at a place in an image whose width is seen at an angle in
+    /// degrees, and whose pixels are square.
+    pub fn ahead(frame: &ViewFrame, angle: f64, at: ImagePoint) -> Self {
+        Self { origin: frame.position(), toward: Toward::Ahead(Arc::new((*frame, angle, at))), within: None }
+    }
+
     /// Returns a sight along a ray, taking all of its numbers for exact, including the length of its direction.
     pub fn along(ray: &Ray) -> Self {
         Self { origin: ray.origin, toward: Toward::Direction(ray.dir), within: None }
@@ -80,8 +97,7 @@ impl Sight {
     /// Returns the sight whose [`line`](Self::line) is this one's in the own coordinates of a shape that is placed. What t
     /// means does not change.
     pub fn within(&self, placement: Placement) -> Self {
-        let Self { origin, toward, .. } = *self;
-        let outer = self.within.clone();
+        let Self { origin, toward, within: outer } = self.clone();
         Self { origin, toward, within: Some(Arc::new(Within { placement, outer })) }
     }
 
@@ -92,9 +108,11 @@ impl Sight {
             let Line { origin, dir } = self.line::<f64>();
             return Ray { origin: origin.into(), dir: DVec3::from(dir).normalize() };
         }
-        let dir = match self.toward {
-            Toward::Direction(dir) => dir,
-            Toward::ImagePoint { at, last, size } => direction(self.origin, at, last, size),
+        let dir = match &self.toward {
+            Toward::Direction(dir) => *dir,
+            Toward::ImagePoint { at, last, size } => direction(self.origin, *at, *last, *size),
+            Toward::Forward(frame) => frame.forward(),
+            Toward::Ahead(ahead) => ahead.0.direction(view_frame::half_tangent(ahead.1), &ahead.2),
         };
         Ray { origin: self.origin, dir }
     }
@@ -102,8 +120,13 @@ impl Sight {
     /// Returns the line of the ray, which starts at t = 0.
     pub fn line<N: Scalar>(&self) -> Line<N> {
         let n = N::constant;
-        let dir = match self.toward {
-            Toward::Direction(dir) => constants(dir),
+        let dir = match &self.toward {
+            Toward::Direction(dir) => constants(*dir),
+            Toward::Forward(frame) => frame.exact_forward(),
+            Toward::Ahead(ahead) => {
+                let (frame, angle, at) = **ahead;
+                frame.exact_direction(angle, at.exactly())
+            }
             Toward::ImagePoint { at, last, size } => {
                 let part = |side: usize| n(at[side]) / n(last[side]) * n(size[side]) - n(self.origin[side]);
                 [part(0), part(1), n(-self.origin.z)]

@@ -7,7 +7,7 @@ use crate::render::observer::{Event, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::render::trace::{self, Bounded};
-use crate::world::camera::Camera;
+use crate::world::film::Film;
 use crate::world::material::Rgb;
 use clap::ValueEnum;
 use glam::DVec3;
@@ -224,7 +224,7 @@ fn cost(costs: &[u64], [width, height]: [usize; 2]) -> Layer {
     }
 }
 
-fn samples(pixels: &[(u32, Option<f64>)], camera: &Camera) -> Layer {
+fn samples(pixels: &[(u32, Option<f64>)], camera: &Film) -> Layer {
     let most = camera.adaptive.map_or(camera.samples, |adaptive| adaptive.most);
     let shade = |(samples, _): &(u32, Option<f64>)| {
         let part = libm::log2(f64::from(*samples)) / libm::log2(f64::from(most));
@@ -244,7 +244,7 @@ fn samples(pixels: &[(u32, Option<f64>)], camera: &Camera) -> Layer {
 }
 
 /// Shows what is proven of pixels: as grey up to the limit, and red beyond.
-fn bounds(pixels: &[Bounded], camera: &Camera) -> Layer {
+fn bounds(pixels: &[Bounded], camera: &Film) -> Layer {
     let [width, height] = camera.pixels;
     let limit = camera.adaptive.and_then(|adaptive| adaptive.error).unwrap_or(1.0);
     let worst = pixels.iter().map(|pixel| pixel.error).fold(0.0, f64::max);

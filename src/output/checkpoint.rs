@@ -11,7 +11,7 @@ use crate::scene::dump;
 use crate::scene::model::Model;
 use crate::scene::syntax::Syntax;
 use crate::text;
-use crate::world::camera::Adaptive;
+use crate::world::film::Adaptive;
 use rayon::ThreadPoolBuilder;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};

@@ -11,7 +11,7 @@ use crate::scene::model::{Item, Model, Object};
 use crate::scene::store::Record;
 use crate::text::{count, list, short};
 use crate::world::accuracy::Accuracy;
-use crate::world::camera::{Adaptive, Camera};
+use crate::world::film::{Adaptive, Film};
 use crate::world::material::Rgb;
 use crate::world::sample::Sampler;
 use crate::world::texture::Texture;
@@ -63,8 +63,8 @@ pub fn of(plan: &Plan) -> Vec<Decision> {
     all
 }
 
-fn picture(camera: &Camera) -> String {
-    let Camera { pixels: [width, height], samples, sampler, .. } = *camera;
+fn picture(camera: &Film) -> String {
+    let Film { pixels: [width, height], samples, sampler, .. } = *camera;
     let size = format!("{width} x {height} pixels");
     if let Some(Adaptive { most, error }) = camera.adaptive {
         let kind = match sampler {
@@ -256,8 +256,11 @@ fn search(model: &Model, plan: &Plan) -> String {
 
 fn small(features: &Features) -> String {
     match features.count() {
-        0 => "none: no bounds of an object are projected on less than 2 pixels".to_owned(),
-        small => format!(
+        None => format!(
+            "unknown: the camera does not say where objects are seen, so each pixel takes {FEATURE_SAMPLES} samples"
+        ),
+        Some(0) => "none: no bounds of an object are projected on less than 2 pixels".to_owned(),
+        Some(small) => format!(
             "{} with bounds on less than 2 pixels across or down: a pixel with one takes {FEATURE_SAMPLES} samples",
             count(small, "object")
         ),

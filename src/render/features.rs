@@ -4,7 +4,8 @@ use crate::geometry::aabb::Aabb;
 use crate::numeric::scalar::per_axis;
 use crate::render::tiles::TILE;
 use crate::scene::model::Object;
-use crate::world::camera::Camera;
+use crate::world::camera::Projected;
+use crate::world::film::Film;
 use glam::{DVec2, DVec3};
 use std::ops::RangeInclusive;
 
@@ -22,8 +23,9 @@ pub(crate) struct Features {
     /// For each square, from the lower left one in rows, the index of its first entry in `small`; and the end.
     starts: Vec<u32>,
     small: Vec<Small>,
-    /// The number of small objects, of which some may be in several squares.
-    count: usize,
+    /// The number of small objects, of which some may be in several squares; `None` where the camera does not say where
+    /// objects are seen, so that there may be a small one in each pixel.
+    count: Option<usize>,
 }
 
 /// The bounds of a small object as they are seen.
@@ -38,8 +40,9 @@ struct Small {
 
 impl Features {
     /// Projects the bounds of objects.
-    pub fn new(camera: &Camera, objects: &[Object]) -> Self {
+    pub fn new(camera: &Film, objects: &[Object]) -> Self {
         let squares = camera.pixels.map(|side| side.div_ceil(TILE));
+        let is_unknown = camera.project(camera.origins().middle) == Projected::Unknown;
         let small = objects.iter().filter_map(|object| Small::of(camera, &object.shape.bounds()?));
         let mut each: Vec<(u32, Small)> = Vec::new();
         let mut count = 0;
@@ -58,12 +61,20 @@ impl Features {
         let last = (squares[0] * squares[1]) as u32;
         let start = |square| each.partition_point(|(other, _)| *other < square) as u32;
         let starts = (0..=last).map(start).collect();
-        Self { squares, starts, small: each.into_iter().map(|(_, small)| small).collect(), count }
+        Self {
+            squares,
+            starts,
+            small: each.into_iter().map(|(_, small)| small).collect(),
+            count: (!is_unknown).then_some(count),
+        }
     }
 
     /// Tells whether the bounds of a small object reach into a pixel, given by column and row, and are no farther than a
     /// distance in world units.
     pub fn any_at(&self, [column, row]: [usize; 2], distance: f64) -> bool {
+        if self.count.is_none() {
+            return true;
+        }
         let square = row / TILE * self.squares[0] + column / TILE;
         let [from, to] = [self.starts[square], self.starts[square + 1]];
         let (column, row) = (column as u32, row as u32);
@@ -72,21 +83,21 @@ impl Features {
         })
     }
 
-    /// Returns the number of small objects.
-    pub fn count(&self) -> usize {
+    /// Returns the number of small objects; `None` where the camera does not say where objects are seen.
+    pub fn count(&self) -> Option<usize> {
         self.count
     }
 }
 
 impl Small {
     /// Projects bounds; `None` where they are not small, or not in the image.
-    fn of(camera: &Camera, bounds: &Aabb) -> Option<Self> {
+    fn of(camera: &Film, bounds: &Aabb) -> Option<Self> {
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for corner in 0..8 {
             let part = |axis: usize| {
                 if corner >> axis & 1 == 0 { bounds.low[axis] } else { bounds.high[axis] }
             };
-            let place = camera.project(DVec3::from_array(per_axis(part)))?;
+            let Projected::At(place) = camera.project(DVec3::from_array(per_axis(part))) else { return None };
             (low, high) = (low.min(place), high.max(place));
         }
         // So written that no NaN counts as small.
@@ -98,7 +109,6 @@ impl Small {
             is_seen.then(|| from.max(0.0) as u32..=to.min(last) as u32)
         };
         let (columns, rows) = (pixels(0).filter(|_| is_small)?, pixels(1)?);
-        let nearest = camera.viewpoint.clamp(bounds.low, bounds.high);
-        Some(Self { columns, rows, distance: nearest.distance(camera.viewpoint) })
+        Some(Self { columns, rows, distance: camera.origins().distance(bounds) })
     }
 }

@@ -13,7 +13,7 @@ use crate::render::culling;
 use crate::render::features::Features;
 use crate::render::footprint::Prover;
 use crate::scene::model::{Model, Object};
-use crate::world::camera::{Adaptive, Camera};
+use crate::world::film::{Adaptive, Film};
 
 /// The number of bounded objects from which on a BVH is faster than a list.
 pub(crate) const TREE: usize = 24;
@@ -27,7 +27,7 @@ pub struct Plan<'m> {
     pub model: &'m Model,
     /// The camera, initially the model's own. A fixed number of samples and the sampler may be changed, and the image size of a plan that was
     /// made for any ray; the rest is what the plan was made for.
-    pub camera: Camera,
+    pub camera: Film,
     /// The indices of the objects without bounds.
     pub(crate) unbounded: Vec<usize>,
     /// The indices and bounding boxes of the objects with bounds, unless they are in `tree`.

@@ -7,8 +7,9 @@ use crate::scene::value::{Datum, Type};
 use crate::text;
 use crate::world::accuracy::Accuracy;
 use crate::world::body::{AnyLight, Body, Paint};
-use crate::world::camera::Camera;
+use crate::world::film::{AnyCamera, Film};
 use crate::world::material::Material;
+use crate::world::sample::Sampler;
 use crate::world::texture::Texture;
 use std::collections::BTreeMap;
 use std::ops::Deref;
@@ -49,7 +50,7 @@ impl fmt::Debug for Entity {
 #[derive(Clone, Copy)]
 pub enum Construct {
     /// Makes a camera.
-    Camera(fn(&Args) -> Result<Camera, Refusal>),
+    Camera(fn(&Args) -> Result<AnyCamera, Refusal>),
     /// Makes a material.
     Material(fn(&Args) -> Result<Material, Refusal>),
     /// Makes a texture.
@@ -75,14 +76,32 @@ pub(crate) static SHADER: Pparm<Option<Paint>> = Pparm::or(
     None,
 );
 
+/// The size of the image, which every camera has.
+pub static PIXELDIM: Pparm<[i64; 2]> = Pparm::required("pixeldim", "the width and height of the image")
+    .alias(&["pixel_dim"])
+    .unit("pixels")
+    .between(1.0, 100_000.0)
+    .dumped("pixel_dim", " \n");
+
+static SAMPLES: Pparm<i64> = Pparm::or("samples", "the number of samples per pixel, to smooth edges", 1)
+    .between(1.0, Sampler::MOST as f64)
+    .not_dumped();
+
+static ACCURACY: Pparm<Accuracy> =
+    Pparm::or("accuracy", "how exactly hits are computed", Accuracy::Exact).not_dumped();
+
+/// What every camera has before and after its own attributes.
+const FILM: [Table; 2] = [&[&PIXELDIM], &[&SAMPLES, &ACCURACY]];
+
 impl Entity {
-    /// Describes a camera type.
+    /// Describes a camera type. The attributes of every camera are added to its table: [`PIXELDIM`] before its own, and
+    /// `samples` and `accuracy` after them.
     #[track_caller]
     pub const fn camera(
         name: &'static str,
         meaning: &'static str,
         tables: &'static [Table],
-        construct: fn(&Args) -> Result<Camera, Refusal>,
+        construct: fn(&Args) -> Result<AnyCamera, Refusal>,
     ) -> Self {
         Self::new(name, meaning, tables, Construct::Camera(construct))
     }
@@ -191,12 +210,15 @@ impl Entity {
 
     /// Returns the rows of the type's table, in the order of the dump.
     pub fn rows(&self) -> impl Iterator<Item = &'static dyn Row> + use<> {
-        let is_object = self.kind() == Kind::Object;
-        let common = if is_object { OBJECT } else { &[] };
+        let [first, last]: [Table; 2] = match self.kind() {
+            Kind::Camera => FILM,
+            Kind::Object => [OBJECT, &[]],
+            _ => [&[], &[]],
+        };
         let is_shader = |row: &&dyn Row| row.attribute().is_some_and(|its| its.name() == SHADER.name());
         let has_own = || self.tables.iter().copied().flatten().any(&is_shader);
-        let shader = (is_object && !has_own()).then_some(&SHADER as &'static dyn Row);
-        iter::once(common).chain(self.tables.iter().copied()).flatten().copied().chain(shader)
+        let shader = (self.kind() == Kind::Object && !has_own()).then_some(&SHADER as &'static dyn Row);
+        iter::once(first).chain(self.tables.iter().copied()).chain([last]).flatten().copied().chain(shader)
     }
 
     /// Returns the type's attributes, in the order of its table.
@@ -225,7 +247,7 @@ impl Entity {
 pub struct Setting {
     /// The scene's camera. Only objects and lights are certain to be constructed after it; other entities may see a
     /// default camera.
-    pub camera: Camera,
+    pub camera: Film,
     /// The folder to which the scene's file names are relative.
     pub folder: PathBuf,
     /// The scene's materials by their names; only objects and lights are certain to see all of them.
@@ -251,16 +273,22 @@ pub struct Args {
 impl Args {
     /// Makes the arguments of an entity. `values` holds one value for each attribute of the entity type, in table
     /// order.
-    pub(crate) fn new(entity: &'static Entity, name: String, order: usize, values: Vec<Given>) -> Self {
+    pub(crate) fn new(
+        entity: &'static Entity,
+        name: String,
+        order: usize,
+        values: Vec<Given>,
+        setting: Arc<Setting>,
+    ) -> Self {
         let attributes = Attributes::new((entity.name, entity.place), entity.attributes(), values);
-        Self { entity, name, order, setting: Arc::default(), attributes }
+        Self { entity, name, order, setting, attributes }
     }
 
     /// Makes the arguments of an entity whose attributes all have their defaults, as far as they have any.
     pub(crate) fn blank(entity: &'static Entity, setting: Arc<Setting>) -> Self {
         let values =
             entity.attributes().map(|attribute| (attribute.default().unwrap_or(Datum::Absent), false));
-        Self { setting, ..Self::new(entity, String::new(), 0, values.collect()) }
+        Self::new(entity, String::new(), 0, values.collect(), setting)
     }
 
     /// Returns every attribute with its value and whether the scene gives it, in the order of the table.
@@ -273,6 +301,22 @@ impl Args {
     /// Returns the accuracy with which the scene is traced.
     pub fn accuracy(&self) -> Accuracy {
         self.setting.camera.accuracy
+    }
+
+    /// Returns the z, in world units, beyond which the scene's camera lets planes not be there, if it has such a rule.
+    pub fn planes_end_at(&self) -> Option<f64> {
+        self.setting.camera.camera.planes_end_at()
+    }
+
+    /// Returns the film of a camera with this entity's attributes.
+    pub(crate) fn film(&self, camera: AnyCamera) -> Film {
+        Film {
+            // The attributes' rules ensure that these casts are lossless.
+            samples: self.get(&SAMPLES) as u32,
+            // The notes' command line has a default accuracy of its own.
+            accuracy: self.get_given(&ACCURACY).unwrap_or(self.accuracy()),
+            ..Film::new(camera, self.get(&PIXELDIM).map(|side| side as usize))
+        }
     }
 
     /// Returns the material of an object.

@@ -187,7 +187,7 @@ fn attribute_rule(attribute: &'static dyn Attribute) -> Rule {
     let names = iter::once(attribute.name()).chain(attribute.aliases().iter().copied());
     let begin = format!("({}){END}", one_of(names));
     let (end, scopes) = match attribute.value_type() {
-        Type::Whole | Type::Number => return Rule::matching(begin, Some(ATTRIBUTE)),
+        Type::Whole | Type::Number | Type::Rotation => return Rule::matching(begin, Some(ATTRIBUTE)),
         Type::Name(_) => (format!("({QUOTED}|{BARE})|(?=[{{}}])"), &[REFERENCE][..]),
         Type::Truth => {
             (format!("({QUOTED})|(yes|no){END}|({BARE})|(?=[{{}}])"), &[IN_QUOTES, CHOICE, WORD][..])

@@ -67,13 +67,16 @@ pub struct Attribute {
     pub must_be: Option<Cow<'static, str>>,
     /// The name in scenes.
     pub name: &'static str,
+    /// The least and the greatest number that makes a difference, such as an angle's within a full turn; null where there
+    /// are none.
+    pub period: Option<[f64; 2]>,
     /// The least and the greatest number that each value may be; null where there are none.
     pub range: Option<[f64; 2]>,
     /// The kind of entity that a name refers to, also in place of a choice; null for other types.
     pub refers_to: Option<Kind>,
     /// Whether a scene must give it.
     pub required: bool,
-    /// `number`, `whole number`, `word`, `file`, `name`, `choice`, `formula` or `truth`.
+    /// `number`, `whole number`, `word`, `file`, `name`, `choice`, `formula`, `truth` or `rotation`.
     #[serde(rename = "type")]
     pub value_type: &'static str,
     /// The unit of the values, or null.
@@ -159,6 +162,7 @@ impl Attribute {
         let (value_type, refers_to, choices) = match attribute.value_type() {
             Type::Whole => ("whole number", None, None),
             Type::Number => ("number", None, None),
+            Type::Rotation => ("rotation", None, None),
             Type::Word => ("word", None, None),
             Type::File => ("file", None, None),
             Type::Formula(_) => ("formula", None, None),
@@ -181,6 +185,7 @@ impl Attribute {
                 Counts::Of(_) => None,
                 Counts::List { group, least, most } => Some(ListOf { group, least, most }),
             },
+            period: attribute.value_type().period(),
             range: attribute.range(),
             variables: match attribute.value_type() {
                 Type::Formula(variables) => Some(variables),

@@ -15,6 +15,7 @@ pub(crate) mod profile;
 pub(crate) mod reader;
 pub mod reference;
 pub(crate) mod registry;
+pub(crate) mod rotation;
 pub mod schema;
 pub(crate) mod store;
 pub(crate) mod syntax;

@@ -5,7 +5,7 @@ use crate::scene::kind::Kind;
 use crate::scene::store::Record;
 use crate::world::any_shape::AnyShape;
 use crate::world::body::{AnyLight, AnyShader, NamedBody, Paint};
-use crate::world::camera::Camera;
+use crate::world::film::Film;
 use crate::world::material::{Material, Rgb};
 use crate::world::shader::SurfacePoint;
 use crate::world::texture::Texture;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// All that an image depends on.
 pub struct Model {
     /// The viewer and the image plane.
-    pub camera: Item<Camera>,
+    pub camera: Item<Film>,
     /// The materials, in the order of the scene.
     pub materials: Vec<Item<Arc<Material>>>,
     /// The textures, in the order of the scene.

@@ -81,7 +81,7 @@ impl dyn Attribute + '_ {
     pub fn takes(&self) -> String {
         match self.value_type() {
             Type::Whole => self.arity().told("whole number"),
-            Type::Number => self.arity().told("number"),
+            Type::Number | Type::Rotation => self.arity().told("number"),
             Type::Word => "a word".to_owned(),
             Type::File => "the name of a file".to_owned(),
             Type::Name(kind) => format!("the name of {}", kind.with_article()),
@@ -208,7 +208,7 @@ impl<T: Value> Attribute for Pparm<T> {
     }
 
     fn unit(&self) -> &'static str {
-        self.unit
+        if self.unit.is_empty() { T::TYPE.unit() } else { self.unit }
     }
 
     fn value_type(&self) -> Type {

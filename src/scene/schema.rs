@@ -228,7 +228,7 @@ fn body(entity: &'static Entity) -> Schema {
 fn value(attribute: &'static dyn Attribute) -> Schema {
     let one = match attribute.value_type() {
         Type::Whole => Schema::sort("integer"),
-        Type::Number => Schema::sort("number"),
+        Type::Number | Type::Rotation => Schema::sort("number"),
         Type::Truth => Schema {
             any_of: vec![
                 Schema::sort("boolean"),
@@ -256,9 +256,7 @@ fn value(attribute: &'static dyn Attribute) -> Schema {
     let [minimum, maximum] = attribute.range().map_or([None; 2], |range| range.map(Some));
     let one = Schema { minimum, maximum, ..one };
     let one = match attribute.value_type() {
-        Type::Whole | Type::Number => {
-            Schema { any_of: vec![one, Schema::sort("string")], ..Schema::default() }
-        }
+        its if its.is_numeric() => Schema { any_of: vec![one, Schema::sort("string")], ..Schema::default() },
         _ => one,
     };
     let several: Vec<_> = match attribute.arity() {

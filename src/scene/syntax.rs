@@ -45,7 +45,9 @@ impl Syntax {
     /// Shows how a scene writes an attribute, in short: `center N N N`.
     pub fn usage(self, attribute: &dyn Attribute) -> String {
         let (value, count) = match attribute.value_type() {
-            Type::Whole | Type::Number => ("N", attribute.arity().examples().first().copied().unwrap_or(1)),
+            Type::Whole | Type::Number | Type::Rotation => {
+                ("N", attribute.arity().examples().first().copied().unwrap_or(1))
+            }
             Type::Word => ("WORD", 1),
             Type::File => ("FILE", 1),
             Type::Name(_) => ("NAME", 1),

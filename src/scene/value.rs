@@ -31,6 +31,8 @@ pub enum Type {
     Formula(&'static [&'static str]),
     /// Yes or no.
     Truth,
+    /// The angles of a rotation around x, then y, then z, in degrees.
+    Rotation,
 }
 
 /// The values of one attribute, checked for type, number and rule.

@@ -55,6 +55,11 @@ impl<A: Bounded> Triangle<A> {
 }
 
 impl<A> Triangle<A> {
+    /// Returns the triangle without what lies beyond a z, in world units, if one is given.
+    pub fn up_to(self, max_z: Option<f64>) -> Self {
+        Self { plane: self.plane.up_to(max_z), ..self }
+    }
+
     /// Returns a normal whose length is twice the triangle's area.
     pub fn upright<N: Scalar>(&self) -> [N; 3] {
         let [a, b, c] = self.given_corners();

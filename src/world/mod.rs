@@ -1,4 +1,4 @@
-//! What a scene is made of: the traits of shapes, shaders and lights, and the types in their signatures.
+//! What a scene is made of: the traits of shapes, shaders, lights and cameras, and the types in their signatures.
 
 pub(crate) mod accuracy;
 pub(crate) mod any_shape;
@@ -6,12 +6,14 @@ pub(crate) mod body;
 pub(crate) mod camera;
 pub mod certify;
 pub mod coincidence;
+pub(crate) mod film;
 pub(crate) mod hittable;
 pub(crate) mod interaction;
 pub(crate) mod light;
 pub(crate) mod light_samples;
 pub(crate) mod material;
 pub(crate) mod packets;
+pub(crate) mod pinhole;
 pub(crate) mod sample;
 pub(crate) mod shader;
 pub(crate) mod shape;
@@ -20,7 +22,8 @@ pub(crate) mod texture;
 pub use accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
 pub use any_shape::AnyShape;
 pub use body::{AnyLight, AnyShader, Body, NamedBody, Paint, Warning};
-pub use camera::Camera;
+pub use camera::{Camera, Origins, Projected};
+pub use film::{AnyCamera, Film};
 pub use hittable::{Bracketed, Certified, Hittable, Searched};
 pub use light::Light;
 pub use material::{Material, Rgb};

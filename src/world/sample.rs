@@ -7,6 +7,7 @@ use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 use sobol_burley::parts;
 use std::array;
+use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
 /// How a pixel's samples are distributed.
@@ -53,6 +54,11 @@ impl Sample {
         self.draw(on_light(light))
     }
 
+    /// Returns the point of the unit disc that chooses a point of the camera's lens.
+    pub fn on_lens(&self) -> DVec2 {
+        on_disc(self.draw(ON_LENS))
+    }
+
     /// Returns two numbers from 0 to 1, different for each purpose.
     fn draw(&self, purpose: u32) -> DVec2 {
         match self.sampler {
@@ -84,6 +90,15 @@ fn on_light(light: usize) -> u32 {
     1 + light as u32
 }
 
+/// The purpose of the numbers that choose a point on the camera's lens.
+const ON_LENS: u32 = u32::MAX;
+
+/// Returns the point of the unit disc that two numbers from 0 to 1 choose: all parts of equal area are as likely.
+fn on_disc(numbers: DVec2) -> DVec2 {
+    let (sin, cos) = libm::sincos(TAU * numbers.y);
+    numbers.x.sqrt() * DVec2::new(cos, sin)
+}
+
 /// Writes the [`jitter`](Sample::jitter) of each sample, in pixels, to `x` and `y`.
 pub(crate) fn jitters(cpu: Cpu, samples: &[Sample], x: &mut [f64], y: &mut [f64]) {
     draw(cpu, samples, JITTER, x, y);
@@ -93,6 +108,21 @@ pub(crate) fn jitters(cpu: Cpu, samples: &[Sample], x: &mut [f64], y: &mut [f64]
 /// Writes what [`on_light`](Sample::on_light) returns for each sample to `x` and `y`.
 pub(crate) fn on_lights(cpu: Cpu, samples: &[Sample], light: usize, x: &mut [f64], y: &mut [f64]) {
     draw(cpu, samples, on_light(light), x, y);
+}
+
+/// Writes what [`on_lens`](Sample::on_lens) returns for each sample to `x` and `y`.
+pub(crate) fn on_lenses(cpu: Cpu, samples: &[Sample], x: &mut [f64], y: &mut [f64]) {
+    draw(cpu, samples, ON_LENS, x, y);
+    for (x, y) in x.iter_mut().zip(y) {
+        DVec2 { x: *x, y: *y } = on_disc(DVec2::new(*x, *y));
+    }
+}
+
+/// Writes the point of the lens's rim at a fraction of a turn, for each.
+pub(crate) fn on_rim(turns: impl Iterator<Item = f64>, x: &mut [f64], y: &mut [f64]) {
+    for ((turn, x), y) in turns.zip(x).zip(y) {
+        DVec2 { x: *x, y: *y } = on_disc(DVec2::new(1.0, turn));
+    }
 }
 
 /// Writes the numbers that [`Sample::draw`] returns for each sample. All samples have the sampler of the first.
@@ -161,6 +191,7 @@ mod tests {
                 .collect();
             let single = |draw: &dyn Fn(&Sample) -> DVec2| samples.iter().map(draw).collect::<Vec<_>>();
             let (places, light) = (single(&Sample::jitter), single(&|sample| sample.on_light(3)));
+            let lens = single(&Sample::on_lens);
             for cpu in Cpu::all() {
                 // Other counts than whole chunks, too.
                 for count in [samples.len(), 1, 67] {
@@ -172,6 +203,8 @@ mod tests {
                     assert!(pairs(&x, &y) == places[..count], "{sampler:?}, {cpu}");
                     on_lights(cpu, &samples[..count], 3, &mut x, &mut y);
                     assert!(pairs(&x, &y) == light[..count], "{sampler:?}, {cpu}");
+                    on_lenses(cpu, &samples[..count], &mut x, &mut y);
+                    assert!(pairs(&x, &y) == lens[..count], "{sampler:?}, {cpu}");
                 }
             }
         }

@@ -4,6 +4,7 @@
 mod common;
 
 mod bench;
+mod cameras;
 mod certain;
 mod cli;
 mod colours;

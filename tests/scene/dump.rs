@@ -88,6 +88,9 @@ fn of_a_constructor(fault: &Fault) -> bool {
         "has no area",
         "has a formula",
         "is too small for where it is",
+        "has its `target` at its `position`",
+        "looks along its `up`",
+        "has texels as large as pixels",
     ];
     found.iter().any(|words| fault.message.contains(words))
 }
@@ -153,7 +156,7 @@ fn any_values(attribute: &'static dyn Attribute) -> BoxedStrategy<String> {
             .prop_flat_map(|count| prop::collection::vec(prop_oneof![0..2i64, 1..5000i64], count))
             .prop_map(Datum::Whole)
             .boxed(),
-        Type::Number => (count, any::<bool>())
+        Type::Number | Type::Rotation => (count, any::<bool>())
             .prop_flat_map(move |(count, rises)| {
                 let numbers = prop::collection::vec(number.clone(), count);
                 numbers.prop_map(move |numbers| match attribute.arity() {

@@ -1,17 +1,20 @@
 //! The contract of each trait: every plugin keeps it, and each way to break it is found.
 
 use crate::common::{block_with, load, registry, root};
+use glam::DVec2;
 use glam::DVec3;
 use std::fs;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
-use tabray::geometry::{Aabb, Bracket, Frame, MISS, Ray, RayRange, Side};
+use tabray::geometry::{Aabb, Bracket, Frame, ImagePoint, MISS, Ray, RayRange, Side};
 use tabray::numeric::Scalar;
 use tabray::scene::{Args, Derived, Entity, Kind, Pparm, Refusal, Registry, Row, Table};
 use tabray::shapes::Implicit;
 use tabray::tools::contract::{self, Breach, Promise};
 use tabray::world::certify::Equation;
 use tabray::world::{
-    Body, Bracketed, Camera, Certified, Hittable, Light, Material, Rgb, Shader, Shape, SurfacePoint,
+    Body, Bracketed, Camera, Certified, Hittable, Light, Material, Origins, Projected, Rgb, Shader, Shape,
+    SurfacePoint,
 };
 
 #[test]
@@ -274,7 +277,7 @@ const fn shape(name: &'static str, construct: fn(&Args) -> Result<Body, Refusal>
 
 static SOUND: Entity = shape("sound", |args| ball(args, Flaw::None));
 
-static BROKEN: [(Promise, Entity); 27] = [
+static BROKEN: [(Promise, Entity); 29] = [
     (Promise::DistanceIsInItsSpan, shape("nan", |args| ball(args, Flaw::Nan))),
     (Promise::DistanceIsInItsSpan, shape("no_span", |args| ball(args, Flaw::NoSpan))),
     (Promise::DistanceIsTheSameAgain, shape("restless", |args| ball(args, Flaw::Restless))),
@@ -300,9 +303,11 @@ static BROKEN: [(Promise, Entity); 27] = [
     (Promise::TakesWhatItsTableAllows, shape("refuses", refuse)),
     (Promise::DumpLoadsAgain, Entity::light("counts", "a lamp", &[COUNTS], |_| Ok(Box::new(Lamp)))),
     (Promise::LightIsFinite, Entity::light("lamp", "a lamp", &[], |_| Ok(Box::new(Lamp)))),
+    (Promise::CameraLooks, Entity::camera("blind", "a camera", &[], |_| Ok(Arc::new(Eye(EyeFlaw::Blind))))),
+    (Promise::CameraKnows, Entity::camera("astray", "a camera", &[], |_| Ok(Arc::new(Eye(EyeFlaw::Astray))))),
     (
-        Promise::CameraLooks,
-        Entity::camera("blind", "a camera", &[], |_| Ok(Camera { pixels: [0, 1], ..Camera::default() })),
+        Promise::CameraKnows,
+        Entity::camera("crossed", "a camera", &[], |_| Ok(Arc::new(Eye(EyeFlaw::Crossed)))),
     ),
     (
         Promise::ReflectivityIsSound,
@@ -311,6 +316,36 @@ static BROKEN: [(Promise, Entity); 27] = [
         }),
     ),
 ];
+
+/// A camera with a flaw, which looks along -z.
+#[derive(Debug)]
+struct Eye(EyeFlaw);
+
+#[derive(Debug, PartialEq)]
+enum EyeFlaw {
+    /// Its rays have no direction.
+    Blind,
+    /// Its rays do not start where it says.
+    Astray,
+    /// It shows things elsewhere than it says.
+    Crossed,
+}
+
+impl Camera for Eye {
+    fn ray(&self, at: &ImagePoint, _lens: DVec2) -> Ray {
+        let [x, y] = at.from_middle();
+        let dir = if self.0 == EyeFlaw::Blind { DVec3::NAN } else { DVec3::new(x, y, -1.0).normalize() };
+        Ray { origin: DVec3::ZERO, dir }
+    }
+
+    fn origins(&self, _pixels: [usize; 2]) -> Origins {
+        Origins::at(if self.0 == EyeFlaw::Astray { DVec3::X } else { DVec3::ZERO })
+    }
+
+    fn project(&self, point: DVec3, _pixels: [usize; 2]) -> Projected {
+        if self.0 == EyeFlaw::Crossed { Projected::At(-9.0 * point.truncate()) } else { Projected::Unknown }
+    }
+}
 
 /// Returns the breaches of one entity type, in a registry with the program's own types of other kinds.
 fn breaches(entity: &'static Entity) -> Vec<Breach> {

@@ -6,6 +6,7 @@ mod common;
 mod oracle;
 
 mod arithmetic;
+mod cameras;
 mod contract;
 mod double_double;
 mod implicit;

@@ -67,9 +67,10 @@ fn plugin(name: &str) -> PathBuf {
 }
 
 /// The plugins that `tabray new plugin` writes, by their kinds, and the scenes that show them.
-const KINDS: [(&str, &str, &str); 4] = [
+const KINDS: [(&str, &str, &str); 5] = [
     ("shape", "loop", "scenes/entities/loop.ray"),
     ("light", "shade", "scenes/entities/shade.ray"),
+    ("camera", "globe", "scenes/entities/globe.ray"),
     ("shader", "rings", "scenes/entities/rings.ray"),
     ("profile", "ringed_cup", "scenes/revsurf/ringed_cup.ray"),
 ];
@@ -284,7 +285,7 @@ fn a_new_plugins_mistake_is_one() {
         assert!(message.contains(&format!("{name} `")) && message.contains("2 errors"), "{message}");
         mistakes += 1;
     }
-    assert_eq!(mistakes, 3, "of a shape, of a light and of a shader");
+    assert_eq!(mistakes, 4, "of a shape, of a light, of a shader and of a camera");
 }
 
 // A separate crate

@@ -7,7 +7,7 @@ use crate::scene::model::Model;
 use crate::text::{self, short};
 use crate::tools::chart::{self, Chart, Family, Machine, Panel, Point, Subject, Times, Wrong};
 use crate::tools::sampling::{self, LEVELS, Measured, Samples};
-use crate::world::camera::Adaptive;
+use crate::world::film::Adaptive;
 use crate::world::sample::Sampler;
 use std::fmt::Write;
 use std::fs;

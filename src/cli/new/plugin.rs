@@ -32,6 +32,8 @@ enum Kind {
     Light,
     /// A profile for surfaces of revolution
     Profile,
+    /// An entity type of cameras
+    Camera,
 }
 
 /// A file to write: its path, in which `NAME` stands for the plugin's name, and the text that it starts with.
@@ -51,6 +53,11 @@ impl Kind {
                 ("plugins/NAME.rs", include_str!("templates/light.rs")),
                 ("scenes/entities/NAME.ray", include_str!("templates/light.ray")),
                 ("scenes/wrong/NAME.ray", include_str!("templates/light-wrong.ray")),
+            ],
+            Self::Camera => &[
+                ("plugins/NAME.rs", include_str!("templates/camera.rs")),
+                ("scenes/entities/NAME.ray", include_str!("templates/camera.ray")),
+                ("scenes/wrong/NAME.ray", include_str!("templates/camera-wrong.ray")),
             ],
             Self::Shader => &[
                 ("plugins/NAME.rs", include_str!("templates/shader.rs")),

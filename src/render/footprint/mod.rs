@@ -16,6 +16,7 @@ mod scene;
 mod surface;
 
 use crate::geometry::aabb::Aabb;
+use crate::geometry::image_point::ImagePoint;
 use crate::geometry::sight::Line;
 use crate::numeric::affine::Affine;
 use crate::numeric::interval::Interval;
@@ -23,7 +24,7 @@ use crate::numeric::scalar::Scalar;
 use crate::render::bytes::shown;
 use crate::render::plan::depth::{self, Depth};
 use crate::scene::model::Model;
-use crate::world::camera::Camera;
+use crate::world::film::Film;
 use crate::world::material::Rgb;
 use rays::Tracer;
 use scene::Scene;
@@ -137,14 +138,17 @@ impl Prover {
     pub fn pixel(
         &self,
         (model, depth): (&Model, Option<&Depth>),
-        camera: &Camera,
+        camera: &Film,
         [x, y]: [usize; 2],
         error: f64,
     ) -> Proof {
         let scene = Scene { model, depth, boxes: &self.boxes, most: self.most };
         let gain = camera.gain();
         let footprint = |middle: [f64; 2], cuts: u32| {
-            let colour = Tracer::new(&scene).primary(&lines(camera, middle, 0.5_f64.powi(cuts as i32 + 1)));
+            let colour = match lines(camera, middle, 0.5_f64.powi(cuts as i32 + 1)) {
+                Some(lines) => Tracer::new(&scene).primary(&lines),
+                None => [Affine::WHOLE; 3],
+            };
             Footprint { middle, cuts, mean: colour.map(|channel| channel.mean()) }
         };
         let mut all = vec![footprint([x as f64, y as f64], 0)];
@@ -187,20 +191,11 @@ fn proof(all: &[Footprint], count: usize) -> Proof {
     }
 }
 
-/// Returns the primary rays through a square of the image, given by its middle and half its width in pixels.
-fn lines(camera: &Camera, middle: [f64; 2], half: f64) -> Line<Affine> {
-    let n = Affine::constant;
-    let origin = camera.viewpoint.to_array();
-    let part = |side: usize| {
-        let pixels = camera.pixels[side];
-        // A single pixel looks through the middle.
-        let (at, last) = match pixels {
-            1 => (n(1.0), n(2.0)),
-            _ => (Affine::variable(side, middle[side], half), n((pixels - 1) as f64)),
-        };
-        at / last * n(camera.screen[side]) - n(origin[side])
-    };
-    Line { origin: origin.map(n), dir: [part(0), part(1), n(-origin[2])] }
+/// Returns the primary rays through a square of the image, given by its middle and half its width in pixels; `None` where
+/// the camera does not say.
+fn lines(camera: &Film, middle: [f64; 2], half: f64) -> Option<Line<Affine>> {
+    let at = [0, 1].map(|side| Affine::variable(side, middle[side], half));
+    camera.camera.footprint(ImagePoint { at, pixels: camera.pixels })
 }
 
 #[cfg(test)]

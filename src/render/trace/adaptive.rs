@@ -1,6 +1,6 @@
 //! Pixels that take more samples where their colour is less certain.
 //!
-//! A pixel first takes [`Camera::samples`] samples, and then twice as many again and again, by the sampler's sequence,
+//! A pixel first takes [`Film::samples`] samples, and then twice as many again and again, by the sampler's sequence,
 //! until [`Estimate::error`] is small enough. That depends on the pixel's own samples and on probes at the corners of the
 //! pixel and of the eight around it, and so not on tiles, threads, or the part of the image that is rendered. A pixel that
 //! ends with N samples has the colour that it has in an image of N samples per pixel.
@@ -9,7 +9,7 @@
 //! corners, and the shadow of one that crosses a light separates points of the light's rim, to each of which the rays of
 //! some probe go.
 //!
-//! [`Camera::samples`]: crate::world::camera::Camera::samples
+//! [`Film::samples`]: crate::world::film::Film::samples
 
 use super::arrays::VectorList;
 use super::context::Tracer;
@@ -20,7 +20,7 @@ use super::scratch::{PrimaryScratch, Scratch};
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::render::features::FEATURE_SAMPLES;
 use crate::render::observer::{Count, TraceObserver};
-use crate::world::camera::Adaptive;
+use crate::world::film::Adaptive;
 use crate::world::sample::{self, Sample};
 use std::mem::take;
 
@@ -191,7 +191,7 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
             samples.push(Sample { sampler: camera.sampler, index: 0, pixel: rim_point(*column, *row) });
         }
         *are_probes = true;
-        group.look(tracer.cpu, camera, tracer.plan.depth.as_ref(), &mut tracer.scratch.places, len);
+        tracer.look(group, len);
         if is_unbounded {
             group.ray_budget.fill(sampled::REST);
         }
@@ -247,7 +247,7 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
             x[lane] += wanted.pixel[0];
             y[lane] += wanted.pixel[1];
         }
-        group.look(tracer.cpu, camera, tracer.plan.depth.as_ref(), places, len);
+        tracer.look(group, len);
         for (budget, wanted) in group.ray_budget.iter_mut().zip(&*batch) {
             *budget = wanted.ray_budget.unwrap_or(*budget);
         }

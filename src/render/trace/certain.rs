@@ -5,7 +5,7 @@ use super::scratch::PrimaryScratch;
 use crate::render::footprint::{Proof, Prover};
 use crate::render::observer::{Count, TraceObserver};
 use crate::render::plan::Plan;
-use crate::world::camera::Adaptive;
+use crate::world::film::Adaptive;
 use crate::world::material::Rgb;
 
 /// Returns the limit on the error of a pixel, where 1 is white.

@@ -14,6 +14,7 @@ use crate::render::frusta::{self, PART};
 use crate::render::observer::{Count, Event, Hit, Reason, TraceObserver};
 use crate::simd::cpu::kernels;
 use crate::simd::soa::{LANES, Vectors};
+use glam::DVec2;
 use std::cmp::Ordering;
 use std::mem::take;
 use std::ops::Range;
@@ -76,8 +77,9 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
     /// Returns one ray of a group, with what is known of its errors.
     fn start(&self, group: &RayGroup, lane: usize) -> Start {
         let [x, y] = &self.scratch.places;
-        let sight =
-            group.looks.then(|| self.plan.camera.sight(x[lane], y[lane])).or_else(|| group.sight.clone());
+        let lens = |side: usize| self.scratch.lens[side].get(lane).copied().unwrap_or_default();
+        let look = || self.plan.camera.sight_through(x[lane], y[lane], DVec2::new(lens(0), lens(1)));
+        let sight = group.looks.then(look).or_else(|| group.sight.clone());
         Start { ray: group.rays().get(lane), error: group.error(lane), sight }
     }
 
@@ -204,8 +206,7 @@ impl<W: TraceObserver> Closest<'_, '_, '_, W> {
     /// Tests the objects outside of the BVH, each against the sub-packets that may hit it.
     fn listed(&mut self) {
         let (cpu, plan) = (self.tracer.cpu, self.tracer.plan);
-        // Primary rays all start at the viewer.
-        let frusta = frusta::around(cpu, self.group.rays(), self.group.origin_object.is_none());
+        let frusta = frusta::around(cpu, self.group.rays(), self.group.is_from_one);
         for index in &plan.unbounded {
             let object = &self.tracer.model.objects[*index];
             if self.tracer.may_meet(self.group.left(), *index) {

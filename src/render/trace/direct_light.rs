@@ -15,8 +15,8 @@ use crate::world::material::Rgb;
 use crate::world::packets::light::PacketLight;
 use crate::world::sample;
 
-/// The number of points on the rim of a light that probes go to.
-const RIM_POINTS: f64 = 16.0;
+/// The number of points on the rim of a light, or of a lens, that probes go through.
+pub(super) const RIM_POINTS: f64 = 16.0;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Adds the contributions of all lights.

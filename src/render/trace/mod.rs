@@ -38,10 +38,11 @@ use crate::render::plan::Plan;
 use crate::render::ray_stats::Cuts;
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::View;
-use crate::world::camera;
+use crate::world::film;
 use crate::world::material::Rgb;
-use crate::world::sample::Sample;
+use crate::world::sample::{self, Sample};
 use arrays::VectorList;
+use direct_light::RIM_POINTS;
 use hit_record::HitRecord;
 use ray_group::RayGroup;
 use scratch::PrimaryScratch;
@@ -63,7 +64,7 @@ pub fn observe_pixel(plan: &Plan, x: usize, y: usize, observer: &mut impl TraceO
     let (camera, count) = (&plan.camera, samples(plan, x, y).0);
     let (mut sum, mut budget) = (Rgb::ZERO, None);
     for (place, sample) in camera.places(x, y, count) {
-        let sight = camera.sight(place.x, place.y);
+        let sight = camera.sight_of(place, sample.as_ref());
         let (colour, missing) = observed(plan, &sight, sample, budget, observer);
         sum += colour;
         if missing == f64::INFINITY && sampled::is_unbounded(plan) {
@@ -174,7 +175,6 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// together.
     pub(crate) fn pixels(&mut self, pixels: &[[usize; 2]]) -> View<'_> {
         let camera = &self.plan.camera;
-        let depth = self.plan.depth.as_ref();
         let mut primary = self.scratch.primary.take().unwrap_or_default();
         self.scratch.places.iter_mut().for_each(|places| places.resize(PACKET_SIZE, 0.0));
         let PrimaryScratch { group, seen, colours, .. } = &mut *primary;
@@ -189,8 +189,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             self.scratch.samples.clear();
             for (pixels, first) in pixels.chunks(PACKET_SIZE).zip((0..).step_by(PACKET_SIZE)) {
                 let [x, y] = &mut self.scratch.places;
-                camera::middles(self.cpu, pixels, x, y);
-                group.look(self.cpu, camera, depth, &mut self.scratch.places, pixels.len());
+                film::middles(self.cpu, pixels, x, y);
+                self.look(group, pixels.len());
                 self.colours(group, seen);
                 colours.copy_at(first, seen.view(pixels.len()));
                 if self.scratch.any_missing {
@@ -204,7 +204,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 let len = PACKET_SIZE.min(samples * pixels.len() - count);
                 let Scratch { places: [x, y], samples: drawn, .. } = &mut *self.scratch;
                 camera.scatter(self.cpu, pixels, count..count + len, drawn, [&mut x[..len], &mut y[..len]]);
-                group.look(self.cpu, camera, depth, &mut self.scratch.places, len);
+                self.look(group, len);
                 self.colours(group, seen);
                 for lane in 0..len {
                     sum += seen.get(lane);
@@ -225,6 +225,23 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.scratch.primary.insert(primary).colours.view(pixels.len())
     }
 
+    /// Makes the first `len` image positions, with their samples, the current primary rays.
+    fn look(&mut self, group: &mut RayGroup, len: usize) {
+        let (cpu, plan) = (self.cpu, self.plan);
+        let Scratch { places, lens, samples, are_probes, .. } = &mut *self.scratch;
+        lens.iter_mut().for_each(Vec::clear);
+        if plan.camera.camera.has_lens() && !samples.is_empty() {
+            lens.iter_mut().for_each(|each| each.resize(PACKET_SIZE, 0.0));
+            let [x, y] = lens.each_mut().map(|each| &mut each[..len]);
+            if *are_probes {
+                sample::on_rim(samples.iter().map(|sample| f64::from(sample.pixel) / RIM_POINTS), x, y);
+            } else {
+                sample::on_lenses(cpu, &samples[..len], x, y);
+            }
+        }
+        group.look(cpu, &plan.camera, plan.depth.as_ref(), places, lens, len);
+    }
+
     /// Reports a pixel that lacks light. `missing` bounds how much, in any channel.
     fn cut(&mut self, missing: f64) {
         if missing > 0.0 {
@@ -235,7 +252,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Computes the colours that primary rays return.
     fn colours(&mut self, group: &mut RayGroup, colours: &mut VectorList) {
         self.observer.count(Count::Rays(RayKind::Primary, group.len));
-        self.viewer = group.origin.get(0).abs().max_element();
+        self.viewer = self.plan.camera.reach();
         self.begin_missing(group.len);
         self.scratch.trails.begin(group.len);
         if W::SEES {
@@ -266,8 +283,8 @@ mod tests {
             scratch.places[0][lane] = *column as f64;
         }
         let (mut group, mut colours) = (RayGroup::default(), VectorList::default());
-        let depth = plan.depth.as_ref();
-        group.look(Cpu::best(), &plan.camera, depth, &mut scratch.places, pixels.len());
+        let (depth, Scratch { places, lens, .. }) = (plan.depth.as_ref(), &mut scratch);
+        group.look(Cpu::best(), &plan.camera, depth, places, lens, pixels.len());
         group.ray_budget[..budgets.len()].copy_from_slice(budgets);
         Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody).colours(&mut group, &mut colours);
         (0..pixels.len()).map(|lane| colours.get(lane)).collect()

@@ -10,7 +10,7 @@ use crate::render::limits::MAX_RAYS;
 use crate::render::plan::depth::{Branch, Depth};
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::LANES;
-use crate::world::camera::{self, Camera};
+use crate::world::film::Film;
 use glam::DVec3;
 use std::array;
 use std::mem::swap;
@@ -50,6 +50,8 @@ pub(super) struct RayGroup {
     pub camera: Vec<u8>,
     /// The index of the object that the rays leave.
     pub origin_object: Option<usize>,
+    /// Whether all rays start at one point: the primary rays of most cameras do.
+    pub is_from_one: bool,
     /// The side of the object that each ray leaves.
     pub sides: Vec<Side>,
     /// The cosines of the angles at which the rays' predecessors hit the origins.
@@ -68,21 +70,32 @@ impl RayGroup {
         group
     }
 
-    /// Becomes the primary rays through the first `len` image positions, in pixels from the left and from the bottom.
+    /// Becomes the primary rays through the first `len` image positions, in pixels from the left and from the bottom, and
+    /// through as many points of the lens, in its radius, if there are any.
     pub fn look(
         &mut self,
         cpu: Cpu,
-        camera: &Camera,
+        camera: &Film,
         depth: Option<&Depth>,
-        [x, y]: &mut [Vec<f64>; 2],
+        places: &mut [Vec<f64>; 2],
+        lens: &mut [Vec<f64>; 2],
         len: usize,
     ) {
-        self.begin(camera.viewpoint, len, camera.samples > 1 || camera.adaptive.is_some(), depth);
+        let origins = camera.origins();
+        self.begin(origins.middle, len, camera.samples > 1 || camera.adaptive.is_some(), depth);
+        self.is_from_one = origins.radius == 0.0;
         let count = self.padded();
-        let last = (x[len - 1], y[len - 1]);
-        x[len..count].fill(last.0);
-        y[len..count].fill(last.1);
-        camera::look(cpu, camera, &x[..count], &y[..count], self.dir.resized(count));
+        for each in places.iter_mut().chain(lens.iter_mut().filter(|each| !each.is_empty())) {
+            let last = each[len - 1];
+            each[len..count].fill(last);
+        }
+        let lens = lens.each_ref().map(|each| if each.is_empty() { &[][..] } else { &each[..count] });
+        let places = camera.places_of(places.each_ref().map(|each| &each[..count]), lens);
+        if self.is_from_one {
+            camera.camera.look(cpu, &places, self.dir.resized(count));
+        } else {
+            camera.camera.look_from(cpu, &places, self.origin.resized(count), self.dir.resized(count));
+        }
         self.looks = true;
     }
 
@@ -105,6 +118,7 @@ impl RayGroup {
             self.camera.clear();
         }
         self.origin_object = None;
+        self.is_from_one = true;
         self.errors = Errors::NONE;
     }
 
@@ -170,6 +184,7 @@ impl RayGroup {
         self.worth = from.worth;
         gather(&mut self.camera, &from.camera, lanes, count);
         self.origin_object = from.origin_object;
+        self.is_from_one = from.is_from_one;
         self.errors = from.errors;
         if self.origin_object.is_some() {
             self.gather_cosines(&from.cosines, lanes);
@@ -177,8 +192,11 @@ impl RayGroup {
             gather(&mut self.travelled, &from.travelled, lanes, count);
             gather(&mut self.sides, &from.sides, lanes, count);
         } else {
-            // All rays start at the viewer.
-            self.origin.fill(count, from.origin.get(0));
+            if from.is_from_one {
+                self.origin.fill(count, from.origin.get(0));
+            } else {
+                self.origin.gather(&from.origin, lanes, count);
+            }
             resized(&mut self.travelled, count).fill(from.travelled[0]);
         }
     }
@@ -195,6 +213,7 @@ impl RayGroup {
         self.worth = from.worth;
         gather(&mut self.camera, &from.camera, lanes, count);
         self.origin_object = Some(onward.origin_object);
+        self.is_from_one = false;
         gather(&mut self.sides, onward.sides, lanes, count);
         self.errors = onward.errors;
         self.gather_cosines(onward.cosines, lanes);
@@ -220,6 +239,7 @@ impl RayGroup {
         self.worth = from.worth;
         swap(&mut self.camera, &mut from.camera);
         self.origin_object = Some(surface.index);
+        self.is_from_one = false;
         swap(&mut self.sides, &mut surface.sides);
         swap(&mut self.cosines, &mut surface.cosines);
         self.errors = surface.errors;

@@ -23,7 +23,7 @@ pub(super) fn is_unbounded(plan: &Plan) -> bool {
 impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Computes the colours of pixels sample by sample.
     pub(super) fn one_by_one(&mut self, pixels: &[[usize; 2]], primary: &mut PrimaryScratch) {
-        let (camera, depth) = (&self.plan.camera, self.plan.depth.as_ref());
+        let camera = &self.plan.camera;
         let PrimaryScratch { group, seen, colours, .. } = primary;
         let mut colours = colours.resized(pixels.len());
         for (pixels, first) in pixels.chunks(PACKET_SIZE).zip((0..).step_by(PACKET_SIZE)) {
@@ -38,7 +38,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                     (x[lane], y[lane]) = (place.x, place.y);
                     drawn.extend(sample);
                 }
-                group.look(self.cpu, camera, depth, &mut self.scratch.places, len);
+                self.look(group, len);
                 for (budget, (_, missing)) in group.ray_budget.iter_mut().zip(&sums) {
                     *budget = if *missing == f64::INFINITY { REST } else { *budget };
                 }
@@ -66,7 +66,7 @@ mod tests {
     use crate::scene::reader;
     use crate::scene::registry::Registry;
     use crate::simd::cpu::Cpu;
-    use crate::world::camera::Adaptive;
+    use crate::world::film::Adaptive;
     use std::path::Path;
 
     /// Panes that pass on more light than they receive.

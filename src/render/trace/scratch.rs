@@ -16,10 +16,13 @@ pub(crate) struct Scratch {
     pub(super) primary: Option<Box<PrimaryScratch>>,
     /// The image positions of the current primary rays, x and y in pixels.
     pub(super) places: [Vec<f64>; 2],
+    /// The points of the camera's lens through which the current primary rays go, x and y in its radius; empty where all
+    /// go through its centre.
+    pub(super) lens: [Vec<f64>; 2],
     /// The samples of the current primary rays, where pixels have more than one.
     pub(super) samples: Vec<Sample>,
-    /// Whether the current primary rays are probes, whose rays go to the rims of lights: to the point whose number is
-    /// the pixel of their sample.
+    /// Whether the current primary rays are probes, whose rays go to the rims of lights and come through the rim of
+    /// the lens: the point whose number is the pixel of their sample.
     pub(super) are_probes: bool,
     /// What the current primary rays meet on their paths.
     pub(super) trails: Trails,

@@ -17,7 +17,7 @@ use crate::scene::store::Store;
 use crate::scene::value::Datum;
 use crate::world::accuracy::Accuracy;
 use crate::world::body::{AnyLight, NamedBody, Paint};
-use crate::world::camera::Camera;
+use crate::world::film::Film;
 use crate::world::material::Material;
 use crate::world::texture::Texture;
 use std::borrow::Cow;
@@ -91,7 +91,7 @@ pub(super) struct Check<'r, 't> {
     pub(super) store: Store,
     pub(super) places: Places,
     /// What was constructed, with the orders of the entities.
-    pub(super) camera: Option<(usize, Camera)>,
+    pub(super) camera: Option<(usize, Film)>,
     pub(super) materials: Vec<(usize, Arc<Material>)>,
     pub(super) textures: Vec<(usize, Arc<Texture>)>,
     /// The textures by the paths of their files.
@@ -116,7 +116,7 @@ impl<'r, 't> Check<'r, 't> {
         report: &'r mut Report<'t>,
         threads: &'r Threads,
     ) -> Self {
-        let camera = Camera { accuracy: accuracy.by_default, ..Camera::default() };
+        let camera = Film { accuracy: accuracy.by_default, ..Film::default() };
         let memory = accuracy.memory.unwrap_or(u64::MAX);
         let setting = Setting { camera, folder: folder.to_owned(), materials: Arc::default(), memory };
         Self {
@@ -233,7 +233,8 @@ impl Check<'_, '_> {
         if let Some(values) = values
             && !matches!(entity.kind(), Kind::Object | Kind::Light)
         {
-            self.construct(parsed, Args::new(entity, text.to_string(), order, values));
+            let args = Args::new(entity, text.to_string(), order, values, self.setting.clone());
+            self.construct(parsed, &args);
         }
         // If the entity is faulty, a stand-in takes its place, so that the entities that refer to it are checked too.
         if counts
@@ -250,26 +251,26 @@ impl Check<'_, '_> {
     }
 
     /// Constructs an entity that others can refer to from its checked values.
-    fn construct(&mut self, parsed: &Parsed<'_>, mut args: Args) {
-        args.setting = self.setting.clone();
+    fn construct(&mut self, parsed: &Parsed<'_>, args: &Args) {
         let (kind, order, name) = (args.entity.kind(), args.order, Arc::from(args.name.as_str()));
         match args.entity.construct {
             Construct::Camera(construct) => {
-                if let Some(mut camera) = self.made(parsed, &args, construct) {
+                if let Some(camera) = self.made(parsed, args, construct) {
+                    let mut camera = args.film(camera);
                     camera.accuracy = self.accuracy.unwrap_or(camera.accuracy);
                     Arc::make_mut(&mut self.setting).camera = camera.clone();
                     self.camera = Some((order, camera));
                 }
             }
             Construct::Material(construct) => {
-                if let Some(material) = self.made(parsed, &args, construct) {
+                if let Some(material) = self.made(parsed, args, construct) {
                     let material = Arc::new(material);
                     self.define(kind, &args.name, &Datum::Material { name, material: material.clone() });
                     self.materials.push((order, material));
                 }
             }
             Construct::Texture(construct) => {
-                if let Some(texture) = self.made(parsed, &args, construct) {
+                if let Some(texture) = self.made(parsed, args, construct) {
                     self.report.add_file(texture.path().to_owned());
                     // Textures with the same file share one image, so that the file is read once.
                     let texture = match self.files.entry(texture.path().to_owned()) {
@@ -281,7 +282,7 @@ impl Check<'_, '_> {
                 }
             }
             Construct::Shader(construct) => {
-                if let Some(paint) = self.made(parsed, &args, construct) {
+                if let Some(paint) = self.made(parsed, args, construct) {
                     self.define(kind, &args.name, &Datum::Shader { name, paint: paint.clone() });
                     self.shaders.push((order, paint));
                 }

@@ -134,16 +134,20 @@ impl<'a> Numbers<'a> {
     /// Returns a word of an attribute's values with numbers in place of formulas and names.
     pub fn word(&mut self, word: Word<'a>, value_type: Option<Type>, report: &mut Report<'_>) -> Word<'a> {
         match value_type {
-            Some(Type::Number | Type::Whole)
-                if word.form == Form::Text && word.text.parse::<f64>().is_err() =>
+            Some(value_type)
+                if value_type.is_numeric()
+                    && word.form == Form::Text
+                    && word.text.parse::<f64>().is_err() =>
             {
                 match self.number(&word, report) {
                     Some(number) => Word { text: shortest(number).into(), form: Form::Number, ..word },
                     None => Word { form: Form::Faulty, ..word },
                 }
             }
-            Some(Type::Number | Type::Whole)
-                if word.form == Form::Any && self.by_name.contains_key(&*word.text) =>
+            Some(value_type)
+                if value_type.is_numeric()
+                    && word.form == Form::Any
+                    && self.by_name.contains_key(&*word.text) =>
             {
                 let fault = Fault::error(word.place.clone(), format!("`{}` is not in quotes", word.text));
                 report.add(fault.help(format!("a formula goes in quotes: `\"{}\"`", word.text)));

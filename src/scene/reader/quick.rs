@@ -125,7 +125,7 @@ impl<'r> Quick<'r> {
                 return None;
             }
             match (known.value_type, words) {
-                (Type::Number, words) => {
+                (Type::Number | Type::Rotation, words) => {
                     if let Datum::Numbers(numbers) = &mut self.numbers {
                         read(numbers, words, values::number)?;
                     }

@@ -15,7 +15,7 @@ use std::sync::Arc;
 pub fn read(value_type: Type, words: &[Word<'_>]) -> Result<Datum, Vec<Fault>> {
     match value_type {
         Type::Whole => all(words, whole).map(Datum::Whole),
-        Type::Number => all(words, number).map(Datum::Numbers),
+        Type::Number | Type::Rotation => all(words, number).map(Datum::Numbers),
         Type::Word | Type::File | Type::Name(_) => words.first().ok_or_else(Vec::new).and_then(text),
         Type::Formula(variables) => {
             let mut formulas = Vec::with_capacity(words.len());

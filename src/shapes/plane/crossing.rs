@@ -1,7 +1,7 @@
 //! The distance of a ray's intersection with a plane, by the methods of each accuracy.
 
 use super::products::{DRAFT_ERROR, quotient};
-use super::surface::{MAX_Z, Plane};
+use super::surface::Plane;
 use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::geometry::ray_packet::RayPacket;
 use crate::numeric::double_double::exact::exact_sum;
@@ -16,8 +16,10 @@ impl<A> Plane<A> {
     #[inline(never)]
     fn is_before_image_plane(&self, ray: &Ray) -> bool {
         let (away, toward) = self.exact_products(ray);
-        let (one, other) =
-            (DoubleDouble::difference(ray.origin.z, MAX_Z) * toward, away * DoubleDouble::from(ray.dir.z));
+        let (one, other) = (
+            DoubleDouble::difference(ray.origin.z, self.max_z) * toward,
+            away * DoubleDouble::from(ray.dir.z),
+        );
         let beyond = (one + other).high * toward.high.signum();
         // Double-double products and sums are off by 2^-103 of their terms; an intersection as near as that is on the
         // image plane itself.
@@ -175,12 +177,12 @@ impl<A: Bounded> Plane<A> {
         // Units of 2^-53: a plain dot product is off by 5 of terms that add up to at most 1.3 times it, so that the
         // distance is off by 14; the product and the sum here are off by 1 each.
         let error = match A::ACCURACY {
-            Accuracy::Draft => DRAFT_ERROR * (distance * ray.dir.z).abs() + f64::EPSILON * MAX_Z,
-            _ => 8.0 * f64::EPSILON * ((distance * ray.dir.z).abs() + MAX_Z),
+            Accuracy::Draft => DRAFT_ERROR * (distance * ray.dir.z).abs() + f64::EPSILON * self.max_z,
+            _ => 8.0 * f64::EPSILON * ((distance * ray.dir.z).abs() + self.max_z),
         };
         let origin_side = range.origin_side.is_some();
-        let kept = if (z > MAX_Z) | origin_side { MISS } else { range.keep(distance) };
-        let is_doubtful = ((z - MAX_Z).abs() <= error) & (distance < MISS);
+        let kept = if (z > self.max_z) | origin_side { MISS } else { range.keep(distance) };
+        let is_doubtful = ((z - self.max_z).abs() <= error) & (distance < MISS);
         if (is_doubtful | distance.is_nan()) & !origin_side { f64::NAN } else { kept }
     }
 }
@@ -200,7 +202,7 @@ impl Plane<Classic> {
     /// plane, and for a ray that leaves the plane.
     #[inline(always)]
     pub fn keep(&self, distance: f64, ray: &Ray, range: &RayRange) -> f64 {
-        let is_cut_off = (ray.at(distance).z > MAX_Z) | range.origin_side.is_some();
+        let is_cut_off = (ray.at(distance).z > self.max_z) | range.origin_side.is_some();
         if is_cut_off { MISS } else { range.keep(distance) }
     }
 }

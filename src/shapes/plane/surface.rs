@@ -8,9 +8,8 @@ use crate::numeric::scalar::{Scalar, per_axis};
 use glam::DVec3;
 use std::marker::PhantomData;
 
-/// The z, in world units, beyond which planes are cut off: the viewer's side of the image plane (the course notes'
-/// "wrong side").
-pub(super) const MAX_Z: f64 = 0.01;
+/// A z beyond all hits, in world units, whose products with differences of coordinates are finite.
+const NO_END: f64 = 1e200;
 
 /// The course notes' method, in a few words.
 pub const CLASSIC_METHOD: &str = "the notes' formula";
@@ -26,6 +25,9 @@ pub struct Plane<A> {
     pub point: DVec3,
     /// Whether the normal is along an axis: dot products with it have one term then, and nothing cancels.
     pub is_upright: bool,
+    /// The z, in world units, beyond which the plane is not there: the viewer's side of the image plane (the course
+    /// notes' "wrong side").
+    pub max_z: f64,
     accuracy: PhantomData<A>,
 }
 
@@ -52,7 +54,12 @@ impl<A> Plane<A> {
     /// known.
     pub fn new(normal: DVec3, upright: [DoubleDouble; 3], point: DVec3) -> Self {
         let is_upright = upright.iter().filter(|part| part.high == 0.0).count() == 2;
-        Self { normal, upright, point, is_upright, accuracy: PhantomData }
+        Self { normal, upright, point, is_upright, max_z: NO_END, accuracy: PhantomData }
+    }
+
+    /// Returns the plane without what lies beyond a z, in world units, if one is given.
+    pub fn up_to(self, max_z: Option<f64>) -> Self {
+        Self { max_z: max_z.unwrap_or(NO_END), ..self }
     }
 
     /// Returns the normal that the scene gives, times a power of two, without rounding.
@@ -122,8 +129,8 @@ impl<A> Plane<A> {
         let z_error = error + 4.0 * f64::EPSILON * ray.origin.z.abs();
         // If the error is infinite or the distance is NaN, all of these are false but `is_parallel`: neither a hit nor
         // a miss is certain.
-        let is_missed = is_parallel | (high <= range.near) | (z - z_error > MAX_Z);
-        let is_there = (low > range.near) & (z + z_error < MAX_Z);
+        let is_missed = is_parallel | (high <= range.near) | (z - z_error > self.max_z);
+        let is_there = (low > range.near) & (z + z_error < self.max_z);
         Bracket {
             near: if is_missed { MISS } else { larger(low, range.near) },
             far: if is_there { high } else { MISS },

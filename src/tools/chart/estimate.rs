@@ -18,7 +18,7 @@ use crate::scene::choice::Choice;
 use crate::scene::model::Model;
 use crate::tools::bench::clock;
 use crate::world::accuracy::Accuracy;
-use crate::world::camera::Camera;
+use crate::world::film::Film;
 use crate::world::material::Rgb;
 use crate::world::sample::Sampler;
 use std::io;
@@ -172,7 +172,7 @@ pub fn estimates(load: Load, goal: Goal, progress: &mut dyn Progress) -> io::Res
 /// Those of [`estimates`].
 pub(super) fn panel(load: Load, progress: &mut dyn Progress) -> io::Result<Panel> {
     let model = load(None)?;
-    let Camera { samples, pixels: [width, height], .. } = model.camera.value;
+    let Film { samples, pixels: [width, height], .. } = model.camera.value;
     // No choice but one without an error meets this, so that all numbers of samples are measured.
     let estimates = estimates(load, Goal::Error { most: 0.0, worst: false }, progress)?;
     let all = (width * height) as f64;

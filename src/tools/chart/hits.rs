@@ -101,7 +101,7 @@ pub fn panel(study: &Study, set: &Set, progress: &mut dyn Progress) -> ControlFl
             break;
         }
     }
-    let screen = strict.camera.value.screen.max_element();
+    let screen = strict.camera.value.camera.screen().map_or(1.0, |screen| screen.max_element());
     let mut errors = Vec::new();
     for candidate in &candidates {
         errors.push(tally(candidate, set, &truths, screen));

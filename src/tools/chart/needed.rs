@@ -13,7 +13,7 @@ use crate::render::trace::{Scratch, Tracer};
 use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
 use crate::tools::bench::clock;
-use crate::world::camera::Adaptive;
+use crate::world::film::Adaptive;
 use crate::world::material::Rgb;
 use crate::world::sample::Sampler;
 use std::hint::black_box;

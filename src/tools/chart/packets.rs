@@ -6,7 +6,7 @@ use crate::geometry::sight::Sight;
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::{LANES, Vectors};
 use crate::world::any_shape::AnyShape;
-use crate::world::camera::Camera;
+use crate::world::film::Film;
 
 /// Rays that are tested against one object.
 pub struct Packet {
@@ -21,7 +21,7 @@ pub struct Packet {
 impl Packet {
     /// Makes as many packets as needed for the rays through these points of an image, in pixels from the left and from
     /// the bottom.
-    pub fn of(object: usize, camera: &Camera, places: &[[f64; 2]]) -> impl Iterator<Item = Self> {
+    pub fn of(object: usize, camera: &Film, places: &[[f64; 2]]) -> impl Iterator<Item = Self> {
         places.chunks(PACKET_SIZE).map(move |places| {
             let (origin, dir) = (Vectors::ZERO, Vectors::ZERO);
             let sights = places.iter().map(|[x, y]| camera.sight(*x, *y)).collect();

@@ -20,7 +20,7 @@ use crate::render::renderer::Renderer;
 use crate::render::trace::{self, Scratch, Tracer};
 use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
-use crate::world::camera::Adaptive;
+use crate::world::film::Adaptive;
 use crate::world::material::Rgb;
 use crate::world::sample::{Sample, Sampler};
 use glam::DVec2;
@@ -345,7 +345,7 @@ fn colour_of(plan: &Plan, [x, y]: [usize; 2], sample: Sample, seen: Seen) -> Rgb
         Seen::Picture => sample.jitter(),
         Seen::Shadows => DVec2::ZERO,
     };
-    let sight = plan.camera.sight(x as f64 + jitter.x, y as f64 + jitter.y);
+    let sight = plan.camera.sight_of(DVec2::new(x as f64, y as f64) + jitter, Some(&sample));
     trace::colour(plan, &sight, Some(sample))
 }
 

@@ -120,7 +120,7 @@ impl<'p, 'm> Prover<'p, 'm> {
         let mut sum = [Interval::constant(0.0); 3];
         let mut is_spent = false;
         for (place, sample) in camera.places(x, y, camera.samples) {
-            let sight: Sight = camera.sight(place.x, place.y);
+            let sight: Sight = camera.sight_of(place, sample.as_ref());
             let mut tracer = Tracer::new(&self.scene, sample);
             let colour = tracer.primary::<F>(&sight.line());
             is_spent |= tracer.is_spent();

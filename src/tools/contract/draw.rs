@@ -187,7 +187,7 @@ impl Draw {
         let word = |word: &str| Some(vec![word.to_owned()]);
         let datum = |draw: &mut Self| match attribute.value_type() {
             Type::Whole => Datum::Whole((0..count).map(|_| draw.whole()).collect()),
-            Type::Number => {
+            Type::Number | Type::Rotation => {
                 let sign = |number: f64| if positive { number.abs() } else { number };
                 Datum::Numbers((0..count).map(|_| sign(draw.number())).collect())
             }

@@ -1,4 +1,4 @@
-//! The contracts of everything that is not a shape: shaders, lights, cameras, materials, profiles and dumps.
+//! The contracts of everything that is neither a shape nor a camera: shaders, lights, materials, profiles and dumps.
 
 use super::draw::Draw;
 use super::promise::{Fault, Promise};
@@ -13,7 +13,6 @@ use crate::shapes::revolution::{Finish, Revolution};
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::{LANES, Vectors};
 use crate::world::body::Paint;
-use crate::world::camera::Camera;
 use crate::world::light_samples::{LightSamples, ShadingPoints};
 use crate::world::material::{Look, Material, Rgb};
 use crate::world::packets::light::PacketLight;
@@ -175,23 +174,6 @@ fn places(middle: DVec3, draw: &mut Draw) -> impl Iterator<Item = DVec3> {
         .into_iter()
         .chain(axes)
         .chain((0..PLACES).map(move |_| middle + draw.direction() * 10.0 * draw.part()))
-}
-
-/// Checks the rays of a camera through the corners and the centre of its image.
-pub fn camera(camera: &Camera) -> Result<(), Fault> {
-    let Camera { pixels: [width, height], samples, .. } = *camera;
-    if width == 0 || height == 0 || samples == 0 {
-        let found = format!("{width} by {height} pixels, {samples} samples");
-        return Err(Promise::CameraLooks.fault(found));
-    }
-    for (x, y) in [(0, 0), (width - 1, 0), (0, height - 1), (width - 1, height - 1), (width / 2, height / 2)]
-    {
-        let ray = camera.ray(x as f64, y as f64);
-        if !ray.origin.is_finite() || !ray.dir.is_normalized() {
-            return Err(Promise::CameraLooks.fault(format!("pixel {x} {y} is seen along {ray:?}")));
-        }
-    }
-    Ok(())
 }
 
 /// Checks that a material consists of finite numbers.

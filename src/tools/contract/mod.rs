@@ -4,6 +4,7 @@
 //! linked in is tried, with values that its table allows and with rays at what its constructor makes of them. A crate
 //! with plugins needs one line in a test for that: [`assert_kept`].
 
+mod cameras;
 mod draw;
 mod looks;
 mod promise;
@@ -97,7 +98,7 @@ pub fn breaches_in(model: &Model) -> Vec<Breach> {
         found.extend(looks::light(&*light.value, &mut draw).err().map(|fault| (light.args.entity(), fault)));
     }
     let camera = &model.camera;
-    found.extend(looks::camera(&camera.value).err().map(|fault| (camera.args.entity(), fault)));
+    found.extend(cameras::camera(&camera.value).err().map(|fault| (camera.args.entity(), fault)));
     found
         .into_iter()
         .map(|(entity, fault)| breach(entity, fault, dump::scene(model, Syntax::Notes)))
@@ -131,7 +132,7 @@ fn of_entity(registry: &Registry, entity: &'static Entity, scenes: &SceneFolder)
         };
         models += 1;
         let tried = match entity.kind() {
-            Kind::Camera => looks::camera(&model.camera.value),
+            Kind::Camera => cameras::camera(&model.camera.value),
             Kind::Material => model.materials.iter().try_for_each(|item| looks::material(&item.value)),
             Kind::Texture => Ok(()),
             Kind::Shader => model.shaders.iter().try_for_each(|item| looks::paint(&item.value, &mut draw)),

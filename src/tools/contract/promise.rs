@@ -41,15 +41,17 @@ pub enum Promise {
     ReflectivityIsSound,
     /// A light's location, size and emission are finite.
     LightIsFinite,
-    /// A camera's directions are unit vectors.
+    /// A camera's directions are unit vectors, the same each time and in packets.
     CameraLooks,
+    /// What a camera says of its rays is so.
+    CameraKnows,
     /// A profile's radius is finite, and somewhere above 0.
     ProfileIsFinite,
 }
 
 impl Promise {
     /// All promises, the gravest first.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 21] = [
         Self::TakesWhatItsTableAllows,
         Self::DumpLoadsAgain,
         Self::DistanceIsInItsSpan,
@@ -69,6 +71,7 @@ impl Promise {
         Self::ReflectivityIsSound,
         Self::LightIsFinite,
         Self::CameraLooks,
+        Self::CameraKnows,
         Self::ProfileIsFinite,
     ];
 
@@ -116,6 +119,9 @@ impl Promise {
             }
             Self::LightIsFinite => "return `None` where no light goes, including the light's own location",
             Self::CameraLooks => "state rules for the attributes from which the camera is made",
+            Self::CameraKnows => {
+                "make `origins`, `project`, `corners`, `sight` and `line` agree with `ray`; if in doubt, leave them out, all but `origins`"
+            }
             Self::ProfileIsFinite => {
                 "give a formula that is finite at every height from 0 to 4 and above 0 at some of them"
             }
@@ -151,6 +157,7 @@ impl fmt::Display for Promise {
             }
             Self::LightIsFinite => "a light's location, size and emission are finite",
             Self::CameraLooks => "a camera has pixels, samples and rays with unit directions",
+            Self::CameraKnows => "what a camera says of its rays is so",
             Self::ProfileIsFinite => "a profile is finite from 0 to 4, and above 0 somewhere",
         })
     }

@@ -264,9 +264,9 @@ impl Scene<'_> {
 
 /// Bounds how much each light changes any pixel, in levels of 255; infinite where nothing bounds it.
 pub(crate) fn most_levels(model: &Model) -> Vec<f64> {
-    let viewer = model.camera.value.viewpoint;
+    let viewer = model.camera.value.origins();
     // No path is shorter than the distance of the nearest object.
-    let near =
-        model.objects.iter().map(|object| depth::clearance(object, viewer)).fold(f64::INFINITY, f64::min);
+    let clearance = |object| (depth::clearance(object, viewer.middle) - viewer.radius).max(0.0);
+    let near = model.objects.iter().map(clearance).fold(f64::INFINITY, f64::min);
     (0..model.lights.len()).map(|light| 255.0 * depth::most_of_light(model, light) / near).collect()
 }

@@ -64,6 +64,8 @@ fn left_out(text: &str) -> [usize; 2] {
 const CAMERA: &str = "camera eye { pixeldim 12 9 worlddim 8 6 viewpoint 4 3 7 }
     material matt { ambient 1 1 1 diffuse 2 2 2 } material mirror { specular 0.5 }
     material glass { diffuse 1 2 1 transparency 0.5 }";
+/// A viewer elsewhere, who looks elsewhere.
+const FREE: &str = "look_at eye { pixeldim 12 9 position -6 12 -9 target 3 1 2 up 0.2 1 0 angle 70 }";
 const FLOOR: &str = "plane floor { material matt normal 0 1 0 point 0 0 0 }";
 const LAMP: &str = "light lamp { location 4 9 2 emissivity 5 5 5 }";
 
@@ -197,4 +199,26 @@ fn no_ray_meets_what_is_left_out_of_scenes_made_at_random() {
         sum = [sum[0] + left_out[0], sum[1] + left_out[1]];
     }
     assert!(sum[0] > 300 && sum[1] > 30, "{sum:?} of 300 scenes");
+}
+
+#[test]
+fn no_ray_of_another_viewer_meets_what_is_left_out_of_scenes_made_at_random() {
+    let (mut state, mut sum) = (19, [0; 2]);
+    let notes = CAMERA.lines().next().expect("a camera");
+    for _ in 0..100 {
+        let left_out = left_out(&scene(&mut state).replace(notes, FREE));
+        sum = [sum[0] + left_out[0], sum[1] + left_out[1]];
+    }
+    assert!(sum[0] > 100 && sum[1] > 10, "{sum:?} of 100 scenes");
+}
+
+#[test]
+fn nothing_is_left_out_where_rays_do_not_start_at_one_point() {
+    let notes = CAMERA.lines().next().expect("a camera");
+    let behind = "sphere behind { material matt center 4 3 30 radius 1 }";
+    for camera in ["orthographic eye { width 8", "thin_lens eye { aperture 1", "fisheye eye { angle 200"] {
+        let camera = format!("{camera} pixeldim 12 9 position 4 3 7 target 4 3 0 }}");
+        let scene = format!("{CAMERA} {FLOOR} {LAMP} {behind}").replace(notes, &camera);
+        assert_eq!(left_out(&scene), [0, 0], "{camera}");
+    }
 }

@@ -4,7 +4,7 @@ use super::hull::Hull;
 use crate::geometry::aabb::Aabb;
 use crate::numeric::scalar::per_axis;
 use crate::scene::model::Object;
-use crate::world::camera::Camera;
+use crate::world::film::Film;
 use glam::DVec3;
 
 /// Rays that all lead away from one point, between four directions.
@@ -19,22 +19,12 @@ pub(super) struct View {
 }
 
 impl View {
-    /// Returns the primary rays of an image, with all samples of its pixels; `None` where they are not within half of
-    /// space.
-    pub fn of(camera: &Camera, margin: f64) -> Option<Self> {
-        let apex = camera.viewpoint;
-        let size = camera.screen;
-        // Half a pixel on each side. A single pixel looks through the middle.
-        let [x, y] = [0, 1].map(|axis| match camera.pixels[axis] {
-            0 | 1 => [0.5 - margin, 0.5 + margin],
-            pixels => {
-                let half = 0.5 / (pixels - 1) as f64 + margin;
-                [-half, 1.0 + half]
-            }
-        });
-        let corner = |x: f64, y: f64| (DVec3::new(x * size.x, y * size.y, 0.0) - apex).normalize();
-        let dirs = [corner(x[0], y[0]), corner(x[1], y[0]), corner(x[1], y[1]), corner(x[0], y[1])];
-        let is_sound = apex.is_finite() && dirs.iter().all(|dir| dir.is_finite() && dir.z < -1e-6);
+    /// Returns the primary rays of an image, with all samples of its pixels; `None` where they do not start at one point,
+    /// or are not known to be within half of space.
+    pub fn of(camera: &Film, margin: f64) -> Option<Self> {
+        let apex = camera.origins().middle;
+        let dirs = camera.camera.corners(camera.pixels, margin)?;
+        let is_sound = apex.is_finite() && dirs.iter().all(|dir| dir.is_finite());
         is_sound.then(|| Self { apex, dirs, hull: Hull::new(vec![apex], dirs.to_vec(), margin), margin })
     }
 

@@ -1,0 +1,48 @@
+//! Places in an image.
+
+use crate::numeric::scalar::Scalar;
+use glam::DVec2;
+
+/// A place in an image, in any number type: how far from the left and from the bottom it lies.
+#[derive(Clone, Copy, Debug)]
+pub struct ImagePoint<N = f64> {
+    /// The distances in pixels from the centre of the lower left pixel, to the right and up.
+    pub at: [N; 2],
+    /// The image's width and height in pixels.
+    pub pixels: [usize; 2],
+}
+
+impl<N: Scalar> ImagePoint<N> {
+    /// Returns the place as fractions of the distances between the centres of the outermost pixels, as the notes count
+    /// them. A single pixel has only its middle.
+    pub fn fraction(&self) -> [N; 2] {
+        [0, 1].map(|side| match self.pixels[side] {
+            1 => N::constant(0.5),
+            pixels => self.at[side] / N::constant((pixels - 1) as f64),
+        })
+    }
+
+    /// Returns the place in units of half the image's width, to the right and up from the image's middle. The left and
+    /// the right edge of the image, which are half a pixel beyond the centres of the outermost pixels, lie at -1 and 1.
+    #[inline(always)]
+    pub fn from_middle(&self) -> [N; 2] {
+        let twice = |side: usize| self.at[side] + self.at[side] - N::constant((self.pixels[side] - 1) as f64);
+        let width = N::constant(self.pixels[0] as f64);
+        [twice(0) / width, twice(1) / width]
+    }
+}
+
+impl ImagePoint {
+    /// Returns the place in another number type.
+    #[inline(always)]
+    pub fn exactly<N: Scalar>(&self) -> ImagePoint<N> {
+        ImagePoint { at: [N::constant(self.at[0]), N::constant(self.at[1])], pixels: self.pixels }
+    }
+}
+
+/// Returns the place, in pixels from the centre of the lower left pixel, that [`ImagePoint::from_middle`] takes to this
+/// one.
+pub fn from_middle(place: DVec2, pixels: [usize; 2]) -> DVec2 {
+    let [width, height] = pixels.map(|side| side as f64);
+    0.5 * (place * width + DVec2::new(width - 1.0, height - 1.0))
+}

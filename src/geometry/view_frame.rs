@@ -1,0 +1,137 @@
+//! How a viewer stands: where, toward what, and which way is up.
+
+use crate::geometry::image_point::ImagePoint;
+use crate::geometry::placement::radians;
+use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two};
+use crate::numeric::scalar::{Scalar, constants, cross, dot, per_axis};
+use glam::DVec3;
+
+/// A viewer's position and the perpendicular directions to its right, up and forward.
+#[derive(Clone, Copy, Debug)]
+pub struct ViewFrame {
+    given: Given,
+    /// The unit vectors to the right, up and forward.
+    axes: [[DoubleDouble; 3]; 3],
+}
+
+/// The numbers of the scene that a frame follows from, all in world coordinates.
+#[derive(Clone, Copy, Debug)]
+struct Given {
+    position: DVec3,
+    target: DVec3,
+    /// A vector up, times a power of two that makes its largest component between 1/2 and 1.
+    up: DVec3,
+    /// The power of two that makes the largest component of the vector to the target between 1/2 and 1.
+    scale: f64,
+}
+
+/// The least sine of the angle between the directions forward and up that make a frame.
+const LEAST_SINE: f64 = 1e-6;
+
+impl ViewFrame {
+    /// Returns the frame of a viewer that looks from a position toward a target. `up` is any vector that points up in
+    /// the image; `None` where it is along the line of sight to within 1e-6 radians, or where that has no direction.
+    pub fn new(position: DVec3, target: DVec3, up: DVec3) -> Option<Self> {
+        let forward = (target - position).try_normalize()?;
+        // Scaling by a power of two loses no digit, and keeps squares from overflowing.
+        let exponent = |of: DVec3| exponent_to_one(of.abs().max_element());
+        let power = exponent(up);
+        let given = Given {
+            position,
+            target,
+            up: DVec3::from(up.to_array().map(|part| times_power_of_two(part, power))),
+            scale: times_power_of_two(1.0, exponent(target - position)),
+        };
+        let is_askew = forward.cross(up.try_normalize()?).length() > LEAST_SINE;
+        is_askew.then(|| Self { given, axes: given.axes() })
+    }
+
+    /// Returns the viewer's position, in world coordinates.
+    pub fn position(&self) -> DVec3 {
+        self.given.position
+    }
+
+    /// Returns the distance from the viewer to the target, in world units.
+    pub fn distance(&self) -> f64 {
+        self.given.position.distance(self.given.target)
+    }
+
+    /// Returns the unit vectors to the right, up and forward, rounded.
+    pub fn axes(&self) -> [DVec3; 3] {
+        self.axes.map(|axis| DVec3::from(axis.map(|part| part.high)))
+    }
+
+    /// Returns a point's distances to the right, up and forward from the viewer, in world units.
+    pub fn coordinates(&self, point: DVec3) -> DVec3 {
+        DVec3::from(self.axes().map(|axis| axis.dot(point - self.given.position)))
+    }
+
+    /// Returns the unit vector forward, rounded.
+    pub fn forward(&self) -> DVec3 {
+        self.axes()[2].normalize()
+    }
+
+    /// Returns the unit vector forward, in any number type.
+    pub fn exact_forward<N: Scalar>(&self) -> [N; 3] {
+        self.given.axes()[2]
+    }
+
+    /// Returns the unit vector toward a place in an image with square pixels, of whose width half is seen at an angle with
+    /// this tangent. Before it is made a unit vector, each component is rounded about once, however much of it cancels.
+    #[inline(always)]
+    pub fn direction(&self, tangent: DoubleDouble, at: &ImagePoint) -> DVec3 {
+        let ([x, y, z], [right, up]) = (self.axes, across(tangent, at));
+        DVec3::from(per_axis(|axis| (z[axis] + right * x[axis] + up * y[axis]).high)).normalize()
+    }
+
+    /// Returns a vector toward a place in an image with square pixels whose width is seen at an angle in degrees, in any
+    /// number type.
+    pub fn exact_direction<N: Scalar>(&self, angle: f64, at: ImagePoint<N>) -> [N; 3] {
+        let ([x, y, z], tangent) = (self.given.axes::<N>(), half_tangent::<N>(angle));
+        let [right, up] = at.from_middle().map(|side| tangent * side);
+        per_axis(|axis| z[axis] + right * x[axis] + up * y[axis])
+    }
+
+    /// Returns the point that is seen at a place in an image with square pixels, which is as wide as this in world units
+    /// and has the viewer in its middle. Each coordinate is rounded about once.
+    #[inline(always)]
+    pub fn beside(&self, width: f64, at: &ImagePoint) -> DVec3 {
+        let ([x, y, _], from) = (self.axes, self.given.position);
+        let [right, up] = across(DoubleDouble::from(0.5 * width), at);
+        DVec3::from(per_axis(|axis| (right * x[axis] + up * y[axis] + DoubleDouble::from(from[axis])).high))
+    }
+
+    /// Returns what [`beside`](Self::beside) does, in any number type.
+    pub fn exact_beside<N: Scalar>(&self, width: f64, at: ImagePoint<N>) -> [N; 3] {
+        let ([x, y, _], from) = (self.given.axes::<N>(), self.given.position);
+        let [right, up] = at.from_middle().map(|side| side.scaled(0.5 * width));
+        per_axis(|axis| N::constant(from[axis]) + right * x[axis] + up * y[axis])
+    }
+}
+
+/// Returns a place in units of which half the image's width has this many, to the right and up from its middle.
+#[inline(always)]
+fn across(half: DoubleDouble, at: &ImagePoint) -> [DoubleDouble; 2] {
+    // The same for all places of an image.
+    let pixel = half / DoubleDouble::from(at.pixels[0] as f64);
+    [0, 1].map(|side| DoubleDouble::difference(2.0 * at.at[side], (at.pixels[side] - 1) as f64) * pixel)
+}
+
+/// Returns the tangent of half an angle in degrees.
+pub fn half_tangent<N: Scalar>(angle: f64) -> N {
+    radians::<N>(0.5 * angle).tan()
+}
+
+impl Given {
+    /// Returns the unit vectors to the right, up and forward.
+    fn axes<N: Scalar>(&self) -> [[N; 3]; 3] {
+        let unit = |vector: [N; 3]| {
+            let length = dot(vector, vector).sqrt();
+            vector.map(|part| part / length)
+        };
+        let toward = |axis: usize| N::constant(self.target[axis]) - N::constant(self.position[axis]);
+        let forward = unit(per_axis(|axis| toward(axis).scaled(self.scale)));
+        let right = unit(cross(forward, constants(self.up)));
+        [right, cross(right, forward), forward]
+    }
+}

@@ -1,0 +1,203 @@
+//! The film: what a camera's image is recorded on, and from a pixel to its primary rays.
+
+use crate::geometry::image_point::ImagePoint;
+use crate::geometry::ray::Ray;
+use crate::geometry::sight::Sight;
+use crate::numeric::affine::Affine;
+use crate::simd::cpu::{Cpu, kernels};
+use crate::world::accuracy::Accuracy;
+use crate::world::camera::{Origins, Projected};
+use crate::world::packets::camera::{PacketCamera, Places};
+use crate::world::pinhole::Pinhole;
+use crate::world::sample::{self, Sample, Sampler};
+use glam::{DVec2, DVec3};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Any [`Camera`](crate::world::camera::Camera): `Arc::new(camera)` makes one.
+pub type AnyCamera = Arc<dyn PacketCamera>;
+
+/// What every camera has: the image's size, its samples and its exposure; and how the camera projects onto it.
+#[derive(Clone, Debug)]
+pub struct Film {
+    /// The camera itself: which ray is seen at each place of the image.
+    pub camera: AnyCamera,
+    /// The image's width and height in pixels.
+    pub pixels: [usize; 2],
+    /// The number of primary rays per pixel, from 1 to [`Sampler::MOST`].
+    pub samples: u32,
+    /// When a pixel takes more primary rays than `samples`; `None` where all take the same number.
+    pub adaptive: Option<Adaptive>,
+    /// Whether pixels whose colours are proven to be within the error that adaptive sampling allows take no primary rays.
+    pub certain: bool,
+    /// How the rays are placed within a pixel, if there is more than one.
+    pub sampler: Sampler,
+    /// What the samplers' sequences are scrambled with beside the pixel: 0 in a render, and another number where the
+    /// same image is wanted with independent samples.
+    pub scramble: u32,
+    /// The exposure in stops: colours are multiplied by 2 to this power.
+    pub exposure: f64,
+    /// How exactly hits are found.
+    pub accuracy: Accuracy,
+}
+
+/// The film of the notes' camera, without pixels.
+impl Default for Film {
+    fn default() -> Self {
+        Self::new(Arc::new(Pinhole::default()), [0; 2])
+    }
+}
+
+/// How many primary rays a pixel takes, where pixels differ in that: [`Film::samples`], and then twice as many again
+/// and again, each time by the sampler's sequence, until its estimated error is small enough.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Adaptive {
+    /// The maximum number of primary rays per pixel: [`Film::samples`] times a power of two.
+    pub most: u32,
+    /// The error of a pixel's colour, where 1 is white, that is to be estimated at last; `None` where the samples are to
+    /// lower the error of the whole image.
+    pub error: Option<f64>,
+}
+
+impl Film {
+    /// Makes the film of a camera, with one sample for each pixel.
+    pub fn new(camera: AnyCamera, pixels: [usize; 2]) -> Self {
+        Self {
+            camera,
+            pixels,
+            samples: 1,
+            adaptive: None,
+            certain: false,
+            sampler: Sampler::default(),
+            scramble: 0,
+            exposure: 0.0,
+            accuracy: Accuracy::default(),
+        }
+    }
+
+    /// Returns the factor of all colours.
+    pub(crate) fn gain(&self) -> f64 {
+        libm::exp2(self.exposure)
+    }
+
+    /// Returns what the sequence of a pixel's samples depends on. The pixel may lie outside of the image.
+    #[inline]
+    pub(crate) fn seed(&self, x: i64, y: i64) -> u32 {
+        (y * self.pixels[0] as i64 + x) as u32 ^ self.scramble
+    }
+
+    /// Returns the image positions of the first `count` of a pixel's primary rays, in pixels as [`ray`](Self::ray) takes
+    /// them, each with its random numbers. If all pixels have a single ray, it goes through the centre and needs none.
+    pub(crate) fn places(
+        &self,
+        x: usize,
+        y: usize,
+        count: u32,
+    ) -> impl Iterator<Item = (DVec2, Option<Sample>)> + use<> {
+        let (sampler, is_single) = (self.sampler, self.samples == 1 && self.adaptive.is_none());
+        let (pixel, middle) = (self.seed(x as i64, y as i64), DVec2::new(x as f64, y as f64));
+        (0..count).map(move |index| {
+            if is_single {
+                return (middle, None);
+            }
+            let sample = Sample { sampler, index, pixel };
+            (middle + sample.jitter(), Some(sample))
+        })
+    }
+
+    /// Lists the samples of pixels, given by column and row, and writes the image positions of their rays as
+    /// [`places`](Self::places) returns them. `range` counts the samples from the first one of the first pixel.
+    pub(crate) fn scatter(
+        &self,
+        cpu: Cpu,
+        pixels: &[[usize; 2]],
+        range: Range<usize>,
+        list: &mut Vec<Sample>,
+        [x, y]: [&mut [f64]; 2],
+    ) {
+        let (sampler, samples) = (self.sampler, self.samples as usize);
+        // Each pixel of the range, with its part of the range.
+        let runs = (range.start / samples..range.end.div_ceil(samples)).map(|pixel| {
+            let all = pixel * samples..(pixel + 1) * samples;
+            (pixels[pixel], range.start.max(all.start)..range.end.min(all.end), all.start)
+        });
+        list.clear();
+        for ([column, row], run, first) in runs.clone() {
+            let pixel = self.seed(column as i64, row as i64);
+            list.extend(run.map(|at| Sample { sampler, index: (at - first) as u32, pixel }));
+        }
+        sample::jitters(cpu, list, x, y);
+        for ([column, row], run, _) in runs {
+            let run = run.start - range.start..run.end - range.start;
+            x[run.clone()].iter_mut().for_each(|x| *x += column as f64);
+            y[run].iter_mut().for_each(|y| *y += row as f64);
+        }
+    }
+
+    /// Returns the place in the image at a distance from the centre of the lower left pixel, in pixels.
+    #[inline(always)]
+    fn point(&self, x: f64, y: f64) -> ImagePoint {
+        ImagePoint { at: [x, y], pixels: self.pixels }
+    }
+
+    /// Returns the ray that is seen at an image position, through the centre of the lens, if the camera has one. `x`
+    /// counts pixels from the left and `y` from the bottom.
+    pub fn ray(&self, x: f64, y: f64) -> Ray {
+        self.camera.ray(&self.point(x, y), DVec2::ZERO)
+    }
+
+    /// Returns the ray at an image position, as [`ray`](Self::ray) has it, before anything is rounded.
+    pub fn sight(&self, x: f64, y: f64) -> Sight {
+        self.sight_through(x, y, DVec2::ZERO)
+    }
+
+    /// Returns the ray at an image position, in pixels, through a point of the lens, in its radius, before anything is
+    /// rounded.
+    pub(crate) fn sight_through(&self, x: f64, y: f64, lens: DVec2) -> Sight {
+        self.camera.sight(&self.point(x, y), lens)
+    }
+
+    /// Returns the ray of a sample at an image position, in pixels, before anything is rounded.
+    pub(crate) fn sight_of(&self, place: DVec2, sample: Option<&Sample>) -> Sight {
+        let sample = sample.filter(|_| self.camera.has_lens());
+        self.sight_through(place.x, place.y, sample.map_or(DVec2::ZERO, Sample::on_lens))
+    }
+
+    /// Returns where a point in world coordinates is seen.
+    pub(crate) fn project(&self, point: DVec3) -> Projected {
+        self.camera.project(point, self.pixels)
+    }
+
+    /// Returns a ball that holds the origins of all primary rays.
+    pub(crate) fn origins(&self) -> Origins {
+        self.camera.origins(self.pixels)
+    }
+
+    /// Returns the largest magnitude of a coordinate of any primary ray's origin, in world units.
+    pub(crate) fn reach(&self) -> f64 {
+        let Origins { middle, radius } = self.origins();
+        middle.abs().max_element() + radius
+    }
+
+    /// Tells whether proofs about all rays through a pixel are possible.
+    pub(crate) fn is_enclosed(&self) -> bool {
+        let [x, y] = [0, 1].map(|side| Affine::variable(side, 0.0, 0.5));
+        self.camera.footprint(ImagePoint { at: [x, y], pixels: self.pixels }).is_some()
+    }
+
+    /// Returns places in the image for the camera, each with its point of the lens, in its radius, if any.
+    pub(crate) fn places_of<'p>(&self, [x, y]: [&'p [f64]; 2], lens: [&'p [f64]; 2]) -> Places<'p> {
+        Places { pixels: self.pixels, x, y, lens }
+    }
+}
+
+kernels! {
+    /// Writes the image positions of pixel centres, given by column and row.
+    pub(crate) fn middles(pixels: &[[usize; 2]], x: &mut [f64], y: &mut [f64]) {
+        let (x, y) = (&mut x[..pixels.len()], &mut y[..pixels.len()]);
+        for (lane, [column, row]) in pixels.iter().enumerate() {
+            // Signed integers are converted in one instruction, unsigned ones are not.
+            (x[lane], y[lane]) = (*column as i64 as f64, *row as i64 as f64);
+        }
+    }
+}
