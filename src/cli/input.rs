@@ -90,7 +90,7 @@ pub fn read(path: &Path) -> Result<(String, Vec<u8>), Failure> {
         Ok(bytes) => Ok((name, bytes)),
         Err(error) => {
             let near = text::nearest_file(path).filter(|_| error.kind() == io::ErrorKind::NotFound);
-            Err(Failure::Usage(
+            Err(Failure::Unread(
                 format!("cannot read `{name}`: {}", text::reason(&error)),
                 near.map(|near| format!("did you mean `{}`?", path.with_file_name(near).display())),
             ))
