@@ -11,6 +11,7 @@ mod foreign;
 mod guesses;
 mod keyword;
 mod languages;
+mod levels;
 mod listed;
 mod machine;
 mod made;
@@ -31,6 +32,7 @@ mod threads;
 mod tokens;
 mod toml;
 mod toml_faults;
+mod unseen;
 mod values;
 
 pub use check::Chosen;
@@ -205,6 +207,7 @@ fn finish(
     }
     match model {
         Some(model) if !report.is_fatal() => {
+            unseen::warning(&model).into_iter().for_each(|warning| report.add(warning));
             Ok(Loaded { model, warnings: report.into_owned(), building, places })
         }
         _ => Err(report.into_owned()),
