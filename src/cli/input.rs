@@ -9,6 +9,7 @@ use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
 use crate::text;
 use crate::world::accuracy::Accuracy;
+use sha2::{Digest, Sha256};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
@@ -60,6 +61,12 @@ impl Source {
         let model = if syntax == Some(Syntax::Toml) { MODEL_IN_TOML } else { MODEL };
         memory::room(model.saturating_mul(bytes.len()), &format!("the model of `{name}`"))?;
         Ok(Self { name, folder: path.parent().unwrap_or(path).to_owned(), bytes, sets: sets.values.clone() })
+    }
+
+    /// Returns the SHA-256 of the text, as `sha256sum` prints it.
+    pub fn hash(&self) -> String {
+        let hash = Sha256::digest(&self.bytes);
+        hash.iter().fold("sha256:".to_owned(), |text, byte| format!("{text}{byte:02x}"))
     }
 
     /// Makes a model, with the given accuracy or with the scene's own, and its warnings.

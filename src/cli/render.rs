@@ -1,5 +1,6 @@
 //! `tabray render`: renders a scene's image.
 
+use super::course::Differences;
 use super::failure::Failure;
 use super::input::Source;
 use super::job::Job;
@@ -8,7 +9,7 @@ use super::resume::Begun;
 use super::stats::{self, Stats};
 use super::stop::{self, Stop};
 use super::{
-    aov, cpu, debug, full_range, input, keep, messages, method, output, progress, samples, set, several, size,
+    aov, cpu, debug, full_range, input, keep, made, messages, method, output, progress, samples, set, several, size,
 };
 use crate::output::deflate::Compression;
 use crate::output::full_range::FullRange;
@@ -99,6 +100,8 @@ fn one(registry: &Registry, args: &Args, (scene, path): (&Path, PathBuf), stop: 
     args.samples.apply(camera)?;
     camera.exposure = args.exposure;
     let part = args.size.apply(camera)?;
+    let made = made::texts(&source, &args.set, &model.camera.value, &part);
+    let differences = Differences::of(registry, &source, &model);
     output::is_no_source(&path, scene, &model)?;
     let output = Output::open(&path)?;
     let main = if full_range.is_some() { path.with_extension("png") } else { path.clone() };
@@ -126,6 +129,7 @@ fn one(registry: &Registry, args: &Args, (scene, path): (&Path, PathBuf), stop: 
             renderer: &renderer,
             format,
             path: &path,
+            made: &made,
             at_once: args.stop.band(part.columns.len())?,
             stop,
             stats: args.stats.wants_any().then_some(&stats),
@@ -136,6 +140,7 @@ fn one(registry: &Registry, args: &Args, (scene, path): (&Path, PathBuf), stop: 
             let seconds = start.elapsed().as_secs_f64();
             let which = progress::count();
             messages::note(&format!("{which}wrote {} ({width} x {height} pixels, {seconds:.2} s)", path.display()));
+            differences.tell();
         }
     }
     stats.writing = whole.elapsed().saturating_sub(stats.rendering.get());
