@@ -34,7 +34,8 @@ pub fn matches(mut command: Command) -> Result<ArgMatches, Failure> {
         ErrorKind::UnknownArgument => {
             let near = given(ContextKind::InvalidArg).and_then(|option| {
                 let name = option.strip_prefix("--")?.split('=').next()?.to_owned();
-                let mut known: Vec<_> = chosen(&command, &words).get_arguments().filter_map(|arg| arg.get_long()).collect();
+                let mut known: Vec<_> =
+                    chosen(&command, &words).get_arguments().filter_map(|arg| arg.get_long()).collect();
                 // The first of several that are equally near is taken.
                 known.dedup();
                 nearest(&name, known).map(|near| format!("--{near}"))
@@ -53,7 +54,8 @@ pub fn matches(mut command: Command) -> Result<ArgMatches, Failure> {
 /// Tells whether a word in the place of a command names a scene.
 fn is_scene(word: &str) -> bool {
     let extension = Path::new(word).extension().and_then(|extension| extension.to_str());
-    extension.is_some_and(|extension| ["ray", "toml"].iter().any(|known| extension.eq_ignore_ascii_case(known)))
+    extension
+        .is_some_and(|extension| ["ray", "toml"].iter().any(|known| extension.eq_ignore_ascii_case(known)))
         || Syntax::of_name(word).is_some() && Path::new(word).is_file()
 }
 

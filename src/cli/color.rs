@@ -29,7 +29,8 @@ pub fn choose(color: Color) {
 pub fn choose_early(words: &[OsString]) {
     let words: Vec<_> = words.iter().filter_map(|word| word.to_str()).collect();
     let has = |choice: &str| {
-        words.contains(&format!("--color={choice}").as_str()) || words.windows(2).any(|pair| pair == ["--color", choice])
+        words.contains(&format!("--color={choice}").as_str())
+            || words.windows(2).any(|pair| pair == ["--color", choice])
     };
     if has("never") {
         choose(Color::Never);

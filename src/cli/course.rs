@@ -32,8 +32,7 @@ impl Differences {
         }
         let Ok(exact) = source.load(registry, Some(Accuracy::Exact)) else { return differences };
         for (classic, exact) in model.objects.iter().zip(&exact.model.objects) {
-            let differs =
-                |side: Side| classic.shape.can_hit_itself(side) != exact.shape.can_hit_itself(side);
+            let differs = |side: Side| classic.shape.can_hit_itself(side) != exact.shape.can_hit_itself(side);
             let name = format!("{} `{}`", classic.args.entity().name, classic.args.name());
             if differs(Side::Outside) {
                 differences.lost.push(name);
@@ -73,8 +72,9 @@ impl Differences {
 /// Tells whether rays start inside of a closed object: light passes through it, or the viewer is within its bounds.
 fn shows_inside(object: &Object, model: &Model) -> bool {
     let viewer = model.camera.value.viewpoint;
-    let is_around = object.shape.bounds().is_some_and(|bounds| {
-        bounds.low.cmple(viewer).all() && viewer.cmple(bounds.high).all()
-    });
+    let is_around = object
+        .shape
+        .bounds()
+        .is_some_and(|bounds| bounds.low.cmple(viewer).all() && viewer.cmple(bounds.high).all());
     object.material.transparency != 0.0 || is_around
 }

@@ -30,7 +30,8 @@ fn options(camera: &Camera, part: &Part) -> String {
         None => words += &format!(" --samples {}", camera.samples),
         Some(Adaptive { most, error }) => {
             words += &format!(" --samples {}..{most}", camera.samples);
-            words += &error.map_or(String::new(), |error| format!(" --max-error {}", text::short(255.0 * error)));
+            words +=
+                &error.map_or(String::new(), |error| format!(" --max-error {}", text::short(255.0 * error)));
         }
     }
     if camera.certain {

@@ -72,7 +72,8 @@ impl Progress {
 
     /// Counts steps as done.
     pub fn advance(&self, steps: usize) {
-        if self.bar.is_hidden() && !messages::is_quiet() && self.start.elapsed() > Duration::from_millis(500) {
+        if self.bar.is_hidden() && !messages::is_quiet() && self.start.elapsed() > Duration::from_millis(500)
+        {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
             *SHOWN.lock().unwrap_or_else(PoisonError::into_inner) = Some(self.bar.clone());
         }

@@ -9,7 +9,8 @@ use super::resume::Begun;
 use super::stats::{self, Stats};
 use super::stop::{self, Stop};
 use super::{
-    aov, cpu, debug, full_range, input, keep, made, messages, method, output, progress, samples, set, several, size,
+    aov, cpu, debug, full_range, input, keep, made, messages, method, output, progress, samples, set,
+    several, size,
 };
 use crate::output::deflate::Compression;
 use crate::output::full_range::FullRange;
@@ -84,7 +85,12 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
 }
 
 /// Renders one scene to a path.
-fn one(registry: &Registry, args: &Args, (scene, path): (&Path, PathBuf), stop: &Stop) -> Result<(), Failure> {
+fn one(
+    registry: &Registry,
+    args: &Args,
+    (scene, path): (&Path, PathBuf),
+    stop: &Stop,
+) -> Result<(), Failure> {
     let full_range = FullRange::of(&path).filter(|_| args.format.is_none());
     // Images beside one of full range are PNGs.
     let format = if full_range.is_some() { Format::Png(args.compress) } else { format(args, &path)? };
@@ -139,7 +145,10 @@ fn one(registry: &Registry, args: &Args, (scene, path): (&Path, PathBuf), stop: 
             let [width, height] = part.size();
             let seconds = start.elapsed().as_secs_f64();
             let which = progress::count();
-            messages::note(&format!("{which}wrote {} ({width} x {height} pixels, {seconds:.2} s)", path.display()));
+            messages::note(&format!(
+                "{which}wrote {} ({width} x {height} pixels, {seconds:.2} s)",
+                path.display()
+            ));
             differences.tell();
         }
     }

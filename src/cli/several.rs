@@ -24,7 +24,8 @@ pub fn is_folder(output: Option<&Path>, scenes: usize) -> bool {
 pub fn targets(scenes: &[PathBuf], output: Option<&Path>, extension: &str) -> Result<Vec<PathBuf>, Failure> {
     let usage = |message: String, help: &str| Failure::Usage(message, Some(help.to_owned()));
     if let Some(file) = output.filter(|path| is_file_name(path)) {
-        let message = format!("`{}` is not a folder for the images of {} scenes", file.display(), scenes.len());
+        let message =
+            format!("`{}` is not a folder for the images of {} scenes", file.display(), scenes.len());
         return Err(usage(message, "name a folder with `-o DIR`; the images have the names of their scenes"));
     }
     let mut of: HashMap<PathBuf, &Path> = HashMap::new();
@@ -50,7 +51,8 @@ pub fn targets(scenes: &[PathBuf], output: Option<&Path>, extension: &str) -> Re
 fn is_file_name(path: &Path) -> bool {
     let name = path.as_os_str().to_string_lossy();
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-    let is_image = extension.is_some_and(|extension| ["png", "ppm", "exr", "pfm"].contains(&extension.as_str()));
+    let is_image =
+        extension.is_some_and(|extension| ["png", "ppm", "exr", "pfm"].contains(&extension.as_str()));
     name == "-" || path.is_file() || (is_image && !path.is_dir() && !name.ends_with(path::is_separator))
 }
 
@@ -77,7 +79,8 @@ pub fn each(scenes: &[PathBuf], mut one: impl FnMut(usize) -> Result<(), Failure
     let named = list(failed.iter().take(NAMED).map(String::as_str));
     let more = failed.len().saturating_sub(NAMED);
     let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-    let message = format!("{} of {} could not be rendered: {named}{more}", failed.len(), text::count(all, "scene"));
+    let message =
+        format!("{} of {} could not be rendered: {named}{more}", failed.len(), text::count(all, "scene"));
     super::messages::error(&message, None);
     Err(Failure::Several(worst))
 }

@@ -133,7 +133,15 @@ impl Comparison {
         }
         let channels = 3.0 * f64::from(old.width()) * f64::from(old.height());
         let rms = (squares as f64 / channels).sqrt();
-        Some(Self { size: old.dimensions().into(), tolerance, differing, largest, rms, first, worst: worst.map(|(.., pixel)| pixel) })
+        Some(Self {
+            size: old.dimensions().into(),
+            tolerance,
+            differing,
+            largest,
+            rms,
+            first,
+            worst: worst.map(|(.., pixel)| pixel),
+        })
     }
 
     /// Returns the number of pixels.

@@ -67,7 +67,9 @@ impl Format {
     ) -> io::Result<()> {
         match self {
             Self::Ppm => write_ppm(&mut out, width, height, rows),
-            Self::Png(compression) => write_png(&mut out, [width, height], texts, (compression, renderer), rows),
+            Self::Png(compression) => {
+                write_png(&mut out, [width, height], texts, (compression, renderer), rows)
+            }
         }
     }
 

@@ -60,7 +60,10 @@ fn like(folder: &Path, written: &Path) -> Option<String> {
         let path = Path::new(name);
         let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
         IMAGES.iter().any(|image| extension.eq_ignore_ascii_case(image))
-            && path.file_stem().and_then(|stem| stem.to_str()).is_some_and(|own| own.eq_ignore_ascii_case(stem))
+            && path
+                .file_stem()
+                .and_then(|stem| stem.to_str())
+                .is_some_and(|own| own.eq_ignore_ascii_case(stem))
     };
     names.filter(is_like).min()
 }

@@ -95,7 +95,7 @@ impl Check<'_, '_> {
                     )),
             );
         }
-        if let Some(levels) = self.levels.take() {
+        if let Some(levels) = self.levels.take().filter(|_| !self.report.is_fatal()) {
             self.report.add_gathered(levels);
         }
         let Self { camera, materials, textures, objects, patterns, lights, places, .. } = self;

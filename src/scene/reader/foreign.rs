@@ -2,7 +2,6 @@
 //! `#8080ff`. Where a scene has errors, each of these is reported once, with what would be right, and the scene is read
 //! again without them, so that none of the errors that follow from them is reported.
 
-use super::Loaded;
 use super::fault::{Fault, Severity};
 use super::report::Report;
 use super::tokens::{Token, TokenForm, Tokens};
@@ -36,7 +35,7 @@ struct Cleaned {
 pub fn explained(
     report: Report<'static>,
     text: &str,
-    again: impl FnOnce(&str) -> Result<Loaded, Report<'static>>,
+    again: impl FnOnce(&str) -> Report<'static>,
 ) -> Report<'static> {
     let mut cleaned = Cleaned { bytes: text.as_bytes().to_vec(), found: BTreeMap::new() };
     cleaned.colours();
@@ -46,10 +45,7 @@ pub fn explained(
         return report;
     };
     let errors = report.count(Severity::Error);
-    let mut better = match again(&clean) {
-        Ok(loaded) => loaded.warnings,
-        Err(report) => report,
-    };
+    let mut better = again(&clean);
     if better.count(Severity::Error) >= errors {
         return report;
     }
@@ -124,9 +120,11 @@ impl Cleaned {
                         let place = at..at + 1 + digits.len();
                         let stand_in = format!("{:<1$}", "1 1 1", place.len().max(5));
                         // A short colour needs the white space after it.
-                        if self.bytes.get(place.end..at + stand_in.len()).is_some_and(|rest| {
-                            rest.iter().all(u8::is_ascii_whitespace)
-                        }) {
+                        if self
+                            .bytes
+                            .get(place.end..at + stand_in.len())
+                            .is_some_and(|rest| rest.iter().all(u8::is_ascii_whitespace))
+                        {
                             self.bytes[at..at + stand_in.len()].copy_from_slice(stand_in.as_bytes());
                             let shown = |level: u8| {
                                 let text = format!("{:.3}", f64::from(level) / 255.0);
@@ -154,7 +152,9 @@ impl Cleaned {
             let line = text[at..].find('\n').map_or(text.len(), |length| at + length);
             let before = text[..open].chars().next_back();
             let is_first = before.is_none_or(|before| before.is_whitespace() || "{}=".contains(before));
-            let Some(close) = text[at..line].find(['”', '“', '’']).map(|found| at + found) else { continue };
+            let Some(close) = text[at..line].find(['”', '“', '’']).map(|found| at + found) else {
+                continue;
+            };
             let last = text[close..].chars().next().map_or(1, char::len_utf8);
             if !is_first || text[at..close].contains('"') {
                 continue;
@@ -249,12 +249,15 @@ fn marks(word: &str, is_within: bool) -> Option<Vec<usize>> {
     let is_number = |piece: &str| piece.parse::<f64>().is_ok();
     let pieces: Vec<_> = word.split(is_mark).filter(|piece| !piece.is_empty()).collect();
     // What has no brackets may be two numbers, or one with a decimal comma.
-    let is_decimal = !is_within && matches!(word.split_once(','), Some((one, other))
+    let is_decimal = !is_within
+        && matches!(word.split_once(','), Some((one, other))
         if [one, other].iter().all(|digits| digits.trim_start_matches(['+', '-']).bytes().all(|b| b.is_ascii_digit())
             && digits.ends_with(|c: char| c.is_ascii_digit())));
     if is_decimal {
         None
-    } else if pieces.iter().all(|piece| is_number(piece)) || pieces.iter().skip(1).any(|piece| is_number(piece)) {
+    } else if pieces.iter().all(|piece| is_number(piece))
+        || pieces.iter().skip(1).any(|piece| is_number(piece))
+    {
         all(&is_mark)
     } else if word.contains('=') {
         all(&|c| c == '=' || c == ';')

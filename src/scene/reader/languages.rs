@@ -11,8 +11,18 @@ use std::collections::HashSet;
 /// Words with which a statement of POV-Ray's language begins, and which scenes have no use for. Those with a `#` begin
 /// a line.
 const POV: [&str; 12] = [
-    "#declare", "#include", "#local", "#macro", "#version", "finish", "global_settings", "light_source", "phong",
-    "pigment", "rgb", "rgbt",
+    "#declare",
+    "#include",
+    "#local",
+    "#macro",
+    "#version",
+    "finish",
+    "global_settings",
+    "light_source",
+    "phong",
+    "pigment",
+    "rgb",
+    "rgbt",
 ];
 
 /// The number of different words that tell POV-Ray's language for certain: some of them may be those of a scene.

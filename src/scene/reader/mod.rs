@@ -103,7 +103,10 @@ pub fn read_by(
     let read = |text: &str| read_text(registry, (name, folder), text, syntax, accuracy);
     read(text).map_err(|report| match languages::recognised(registry, report, name, text, syntax) {
         Ok(report) => report,
-        Err(report) if syntax == Syntax::Notes => foreign::explained(report, text, read),
+        Err(report) if syntax == Syntax::Notes => {
+            let again = |text: &str| read(text).map_or_else(|report| report, |loaded| loaded.warnings);
+            foreign::explained(report, text, again)
+        }
         Err(report) => report,
     })
 }

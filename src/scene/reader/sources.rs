@@ -157,10 +157,12 @@ impl<'t> Sources<'t> {
             .checked_sub(bytes.len() as u64)
             .ok_or_else(|| (format!("`{file}` is too large to be included"), None))?;
         let text = String::from_utf8(bytes).map_err(|error| error.into_bytes());
-        let text = match text.map(|text| if text.contains('\0') { Err(text.into_bytes()) } else { Ok(text) }) {
+        let text = match text.map(|text| if text.contains('\0') { Err(text.into_bytes()) } else { Ok(text) })
+        {
             Ok(Ok(text)) => text,
             Ok(Err(bytes)) | Err(bytes) => {
-                let what = utf_16(&bytes).map_or("not a text".to_owned(), |name| format!("encoded in {name}"));
+                let what =
+                    utf_16(&bytes).map_or("not a text".to_owned(), |name| format!("encoded in {name}"));
                 return Err((
                     format!("`{file}` is {what}"),
                     Some("a scene is plain text, in UTF-8".to_owned()),

@@ -56,17 +56,21 @@ fn advice(chart: &Chart) -> Vec<String> {
     let again = chart.is_noisy() || chart.is_busy();
     let again = again.then(|| "measure again on a machine with nothing else to do: see below".to_owned());
     let accuracy = of(Subject::Methods).and_then(accuracy);
-    let samples = of(Subject::Samples).map(|panel| match panel.points.iter().find(|point| looks_right(point)) {
-        Some(point) if point.is_default => {
-            format!("keep the samples per pixel, {}: 99 % of the pixels look right", point.samples)
-        }
-        Some(point) => {
-            let sampler = if point.family == Family::Random { " --sampler random" } else { "" };
-            let count = point.samples;
-            format!("take `--samples {count}{sampler}`, with which 99 % of the pixels look right")
-        }
-        None => "take more samples per pixel than were measured: with none do 99 % of the pixels look right".to_owned(),
-    });
+    let samples =
+        of(Subject::Samples).map(|panel| match panel.points.iter().find(|point| looks_right(point)) {
+            Some(point) if point.is_default => {
+                format!("keep the samples per pixel, {}: 99 % of the pixels look right", point.samples)
+            }
+            Some(point) => {
+                let sampler = if point.family == Family::Random { " --sampler random" } else { "" };
+                let count = point.samples;
+                format!("take `--samples {count}{sampler}`, with which 99 % of the pixels look right")
+            }
+            None => {
+                "take more samples per pixel than were measured: with none do 99 % of the pixels look right"
+                    .to_owned()
+            }
+        });
     again.into_iter().chain(accuracy).chain(samples).collect()
 }
 
@@ -74,16 +78,17 @@ fn advice(chart: &Chart) -> Vec<String> {
 fn accuracy(panel: &Panel) -> Option<String> {
     let default = panel.points.iter().find(|point| point.is_default)?;
     let options: Vec<_> = Accuracy::all().iter().map(|accuracy| accuracy.option().name).collect();
-    let is_same = |point: &&Point| {
-        options.contains(&point.name.as_str()) && matches!(point.changed, Some([0, _]))
-    };
-    let fastest =
-        panel.points.iter().filter(is_same).min_by(|a, b| a.times.least.total_cmp(&b.times.least));
+    let is_same =
+        |point: &&Point| options.contains(&point.name.as_str()) && matches!(point.changed, Some([0, _]));
+    let fastest = panel.points.iter().filter(is_same).min_by(|a, b| a.times.least.total_cmp(&b.times.least));
     Some(match fastest {
         Some(fastest) if default.times.least > SAME_TIME * fastest.times.least => {
             let option = if fastest.name == "classic" { "--method" } else { "--accuracy" };
             let (own, other) = (time(panel, default), time(panel, fastest));
-            format!("take `{option} {}`: it shows the same image in {other} per pixel in place of {own}", fastest.name)
+            format!(
+                "take `{option} {}`: it shows the same image in {other} per pixel in place of {own}",
+                fastest.name
+            )
         }
         _ => format!("keep the accuracy, {}: no faster one shows the same image", default.name),
     })
