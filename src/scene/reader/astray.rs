@@ -16,15 +16,11 @@ pub fn image(folder: &Path, written: &str) -> Option<String> {
     let name = written.file_name()?;
     let own = written.parent().unwrap_or(Path::new(""));
     let same = |place: &Path| like(&folder.join(place), written).map(|name| place.join(name));
-    let found = same(own).map(|path| path.file_name().map(PathBuf::from).unwrap_or_default());
-    if let Some(found) = found {
-        return found.to_str().map(str::to_owned);
-    }
     let places = places(folder, own);
-    let exact = places.iter().map(|place| place.join(name)).find(|path| folder.join(path).is_file());
-    let found = exact.or_else(|| places.iter().find_map(|place| same(place)));
-    let found = found.map(|path| path.display().to_string());
-    found.or_else(|| nearest_file(&folder.join(written)))
+    let exact = || places.iter().map(|place| place.join(name)).find(|path| folder.join(path).is_file());
+    let found = same(own).or_else(exact).or_else(|| places.iter().find_map(|place| same(place)));
+    let found = found.or_else(|| nearest_file(&folder.join(written)).map(|near| own.join(near)));
+    found.map(|path| path.display().to_string())
 }
 
 /// Returns the folders around one that a scene names, relative to the scene's folder.

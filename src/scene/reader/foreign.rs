@@ -114,7 +114,8 @@ impl Cleaned {
             for word in line.split_ascii_whitespace() {
                 let at = start + (word.as_ptr() as usize - line.as_ptr() as usize);
                 let digits = word.strip_prefix('#').map(|rest| rest.trim_end_matches(['}', ';']));
-                let is_name = before.starts_with(|c: char| c.is_ascii_alphabetic()) && !before.contains('"');
+                let is_name = before == "="
+                    || before.starts_with(|c: char| c.is_ascii_alphabetic()) && !before.contains('"');
                 match digits.and_then(|digits| Some((digits, colour(digits)?))) {
                     Some((digits, [red, green, blue])) if is_name => {
                         let place = at..at + 1 + digits.len();
@@ -182,7 +183,7 @@ impl Cleaned {
             let is_name = tokens.ahead[0].is_some_and(|next| next.form == TokenForm::Open);
             let is_open = run.as_ref().is_some_and(|run| {
                 let inner = &text[run.clone()];
-                inner.contains(['<', '(', '[']) && !inner.ends_with(['>', ')', ']'])
+                inner.ends_with(',') || inner.contains(['<', '(', '[']) && !inner.ends_with(['>', ')', ']'])
             });
             let marked = (token.form == TokenForm::Word && !is_name).then(|| marks(word, is_open)).flatten();
             let Some(marks) = marked else {
@@ -212,8 +213,15 @@ impl Cleaned {
             };
             self.find(way, at..at + 1, String::new);
         }
-        let Some(values) = values else { return self.end_of_run(text, run) };
         let word = text[token.place()].trim_end_matches(';');
+        let Some(values) = values else {
+            if let Some(run) =
+                run.as_mut().filter(|run| text[..run.end].ends_with(',') && !word.contains('='))
+            {
+                run.end = token.start + word.len();
+            }
+            return self.end_of_run(text, run);
+        };
         // What stands before an opening bracket is an attribute: `ambient(1,1,1)`.
         let opens = word.find(['<', '(', '[']).map(|at| token.start + at);
         let start = opens.map_or(token.start, |opens| opens.min(values.start));
