@@ -66,7 +66,8 @@ fn several_scenes_are_rendered_beside_each_other_and_counted() {
     let (status, _, err) = outcome(tabray(&folder).args(["render", "a.ray", "b.ray", "-o", "new/images"]));
     assert_eq!(status, 0, "{err}");
     assert_eq!(names_in(&folder.path().join("new/images")), ["a.png", "b.png"]);
-    let (status, _, err) = outcome(tabray(&folder).args(["render", "a.ray", "-o", "one/", "--format", "ppm"]));
+    let (status, _, err) =
+        outcome(tabray(&folder).args(["render", "a.ray", "-o", "one/", "--format", "ppm"]));
     assert_eq!(status, 0, "{err}");
     assert!(err.starts_with("[1/1] wrote one/a.ppm ("), "{err}");
 }
@@ -119,7 +120,10 @@ fn colours_of_messages_can_be_forced_and_forbidden() {
     assert!(told("always", &["check", "faulty.ray"]).contains("\x1b["));
     assert!(!told("never", &["check", "faulty.ray"]).contains("\x1b["));
     assert!(!told("auto", &["check", "faulty.ray"]).contains("\x1b["));
-    assert!(told("always", &["a.ray"]).contains("\x1b["), "a command line that cannot be parsed has colours too");
+    assert!(
+        told("always", &["a.ray"]).contains("\x1b["),
+        "a command line that cannot be parsed has colours too"
+    );
 }
 
 #[test]
@@ -138,7 +142,7 @@ fn an_image_carries_what_made_it() {
     assert!(carried[1].1.starts_with("sha256:") && carried[1].1.len() == 7 + 64);
     assert_eq!(carried[2].1, "--size 160x120 --samples 1 --accuracy exact");
     // The same things have the same bytes, however they are computed.
-    assert!(first == render(&["--threads", "3"]) && first == render(&["--cpu", "scalar"]));
+    assert!(first == render(&["--threads", "3"]) && first == render(&["--cpu", "baseline"]));
     let pixels = |bytes: &[u8]| image::load_from_memory(bytes).expect("a PNG").into_rgb8();
     let other = render(&["--accuracy", "strict"]);
     assert!(first != other && pixels(&first) == pixels(&other));
@@ -153,7 +157,7 @@ fn the_options_that_an_image_carries_make_it_again() {
     let path = folder.path().join("a.png");
     for options in [
         &["--samples", "4..16", "--crop", "10,20,60,50", "--exposure", "-0.5"][..],
-        &["--samples", "9", "--sampler", "random", "--method", "classic", "--quick"],
+        &["--samples", "9", "--sampler", "random", "--method", "classic", "--size", "40x30"],
         &["--set", "near.radius=1.5", "--set", "red.ambient=0 \"3 * 2\" 0", "--size", "80"],
         &["--max-error", "4"],
     ] {
@@ -163,7 +167,8 @@ fn the_options_that_an_image_carries_make_it_again() {
         let carried = texts(&path).pop().expect("the options").1;
         let program = assert_cmd::cargo::cargo_bin!("tabray").display();
         let line = format!("{program} render a.ray {carried}");
-        let again = Command::new("sh").args(["-c", &line]).current_dir(folder.path()).output().expect("sh runs");
+        let again =
+            Command::new("sh").args(["-c", &line]).current_dir(folder.path()).output().expect("sh runs");
         assert!(again.status.success(), "{line}: {}", String::from_utf8_lossy(&again.stderr));
         assert!(first == fs::read(&path).expect("the image"), "{line}");
     }
@@ -181,10 +186,14 @@ fn the_older_program_is_given_the_values_that_are_set() {
     assert_eq!(run(&["render", "a.ray", "-o", "one.png"]).0, 0);
     assert_eq!(run(&["render", "a.ray", "-o", "two.png", "--set", "near.radius=2"]).0, 0);
     let page = ["diff", "one.png", "two.png", "-o", "page.html", "--scene", "a.ray"];
-    let (status, out, err) = run(&[&page[..], &["--set", "near.radius=2", "--before", "./old-tabray"]].concat());
+    let (status, out, err) =
+        run(&[&page[..], &["--set", "near.radius=2", "--before", "./old-tabray"]].concat());
     assert_eq!(status, 1, "{err}");
     let told = String::from_utf8_lossy(&out).into_owned();
     assert!(told.contains("\nfirst at ") && told.lines().count() <= 3, "{told}");
     let html = fs::read_to_string(folder.path().join("page.html")).expect("the page");
-    assert!(html.contains("called with probe a.ray --set near.radius=2 "), "the page has the old explanation");
+    assert!(
+        html.contains("called with probe a.ray --set near.radius=2 "),
+        "the page has the old explanation"
+    );
 }

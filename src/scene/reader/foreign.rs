@@ -146,29 +146,34 @@ impl Cleaned {
     /// Puts straight quotes in the place of curly ones that begin and end words.
     fn quotes(&mut self) {
         let text = self.text();
+        let mut start = 0;
+        for line in text.split_inclusive('\n') {
+            self.quotes_of(line, start);
+            start += line.len();
+        }
+    }
+
+    fn quotes_of(&mut self, line: &str, start: usize) {
+        let length = |at: usize| line[at..].chars().next().map_or(1, char::len_utf8);
         let mut at = 0;
-        while let Some(open) = text[at..].find(['“', '„', '”', '‘']).map(|found| at + found) {
-            let first = text[open..].chars().next().map_or(1, char::len_utf8);
-            at = open + first;
-            let line = text[at..].find('\n').map_or(text.len(), |length| at + length);
-            let before = text[..open].chars().next_back();
-            let is_first = before.is_none_or(|before| before.is_whitespace() || "{}=".contains(before));
-            let Some(close) = text[at..line].find(['”', '“', '’']).map(|found| at + found) else {
-                continue;
-            };
-            let last = text[close..].chars().next().map_or(1, char::len_utf8);
-            if !is_first || text[at..close].contains('"') {
+        while let Some(open) = line[at..].find(['“', '„', '”', '‘']).map(|found| at + found) {
+            let before = line[..open].chars().next_back();
+            at = open + length(open);
+            if !before.is_none_or(|before| before.is_whitespace() || "{}=".contains(before)) {
                 continue;
             }
-            let mut put = |place: Range<usize>, quote: usize| {
-                self.bytes[place.clone()].fill(b' ');
-                self.bytes[quote] = b'"';
-            };
-            put(open..at, at - 1);
-            put(close..close + last, close);
-            let right = || format!("\"{}\"", &text[at..close]);
-            self.find(Way::Quotes, open..close + last, right);
-            at = close + last;
+            let Some(close) = line[at..].find(['”', '“', '’']).map(|found| at + found) else { return };
+            let (first, end) = (at, close + length(close));
+            at = end;
+            if line[first..close].contains('"') {
+                continue;
+            }
+            // Each straight quote stands beside its word, in the last or the first byte of the curly one.
+            self.bytes[start + open..start + first].fill(b' ');
+            self.bytes[start + close..start + end].fill(b' ');
+            self.bytes[start + first - 1] = b'"';
+            self.bytes[start + close] = b'"';
+            self.find(Way::Quotes, start + open..start + end, || format!("\"{}\"", &line[first..close]));
         }
     }
 
@@ -289,5 +294,52 @@ fn colour(digits: &str) -> Option<[u8; 3]> {
         }
         6 => Some([level(0)?, level(2)?, level(4)?]),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::{Duration, Instant};
+
+    fn cleaned(text: &str) -> String {
+        let mut cleaned = Cleaned { bytes: text.as_bytes().to_vec(), found: BTreeMap::new() };
+        cleaned.colours();
+        cleaned.quotes();
+        cleaned.marks();
+        assert_eq!(cleaned.bytes.len(), text.len());
+        cleaned.text()
+    }
+
+    #[test]
+    fn only_what_is_no_part_of_a_name_is_left_out() {
+        for (text, clean) in [
+            ("center <4, 3,-4> radius (1)", "center  4  3 -4  radius  1 "),
+            ("ambient(1,1,1);", "ambient 1 1 1  "),
+            ("radius=2 material=red;", "radius 2 material red "),
+            ("material “a b” { }", "material   \"a b\"   { }"),
+            ("ambient #ff0000 }", "ambient 1 1 1   }"),
+            ("ambient #f00 }", "ambient 1 1 1}"),
+        ] {
+            assert_eq!(cleaned(text), clean, "{text}");
+        }
+        for text in [
+            "material a<b> { ambient 1 1 1 }",
+            "center 0,5 1 2",
+            "sphere (left) { material wall,red radius 1 } # (1, 2); #ff0000",
+            "profile \"2 + sin(y)\" text \"“a” = (1, 2);\"",
+            "radius 2 #fff comment",
+        ] {
+            assert_eq!(cleaned(text), text);
+        }
+    }
+
+    #[test]
+    fn long_texts_of_one_sign_take_no_time() {
+        let start = Instant::now();
+        for sign in ["„ ", "“", "<1 ", "(", ", ", "1, ", "=", "; ", "#fff ", "a=\"", "‘a"] {
+            cleaned(&sign.repeat(200_000));
+        }
+        assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
     }
 }

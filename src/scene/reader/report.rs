@@ -111,6 +111,10 @@ impl<'t> Report<'t> {
     pub(super) fn shows_in_place(&mut self, own: &str) {
         let mut text = own.to_owned();
         text += self.text.get(own.len()..).unwrap_or_default();
+        // There, a place may begin or end within a letter that several others stand for here.
+        for fault in &mut self.faults {
+            fault.tidy(&text);
+        }
         self.text = text.into();
     }
 
