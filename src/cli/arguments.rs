@@ -5,7 +5,7 @@ use super::{color, program};
 use crate::scene::syntax::Syntax;
 use crate::text::{nearest, quoted};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use clap::{ArgMatches, Command};
+use clap::{Arg, ArgMatches, Command};
 use std::env;
 use std::ffi::OsString;
 use std::path::Path;
@@ -23,30 +23,34 @@ pub fn matches(mut command: Command) -> Result<ArgMatches, Failure> {
         Some(ContextValue::String(word)) => Some(word.clone()),
         _ => None,
     };
-    match error.kind() {
-        ErrorKind::InvalidSubcommand => {
-            if let Some(scene) = given(ContextKind::InvalidSubcommand).filter(|word| is_scene(word)) {
-                let line = format!("{} render {}", program::name(), quoted(scene.as_ref()));
-                let message = format!("`{scene}` is a scene, not a command");
-                return Err(Failure::Usage(message, Some(format!("`{line}` renders it"))));
-            }
-        }
-        ErrorKind::UnknownArgument => {
-            let near = given(ContextKind::InvalidArg).and_then(|option| {
-                let name = option.strip_prefix("--")?.split('=').next()?.to_owned();
-                let mut known: Vec<_> =
-                    chosen(&command, &words).get_arguments().filter_map(|arg| arg.get_long()).collect();
-                // The first of several that are equally near is taken.
-                known.dedup();
-                nearest(&name, known).map(|near| format!("--{near}"))
-            });
-            if let Some(near) = near {
-                error.insert(ContextKind::SuggestedArg, ContextValue::String(near));
-                // It shows the option that clap would guess.
-                error.remove(ContextKind::Usage);
-            }
-        }
-        _ => {}
+    let without_command = chosen(&command, &words).get_name() == command.get_name();
+    let scene = match error.kind() {
+        ErrorKind::InvalidSubcommand => given(ContextKind::InvalidSubcommand),
+        // An option of `render`, before the scene.
+        ErrorKind::UnknownArgument if without_command => words
+            .iter()
+            .skip(1)
+            .filter_map(|word| word.to_str())
+            .find(|word| is_scene(word))
+            .map(str::to_owned),
+        _ => None,
+    };
+    if let Some(scene) = scene.filter(|word| is_scene(word)) {
+        let line = format!("{} render {}", program::name(), quoted(scene.as_ref()));
+        let message = format!("`{scene}` is a scene, not a command");
+        return Err(Failure::Usage(message, Some(format!("`{line}` renders it"))));
+    }
+    let near = given(ContextKind::InvalidArg).filter(|_| error.kind() == ErrorKind::UnknownArgument);
+    let near = near.and_then(|option| {
+        let name = option.strip_prefix("--")?.split('=').next()?;
+        // Of options that are equally near, the first in the help is taken.
+        let known = chosen(&command, &words).get_arguments().filter_map(Arg::get_long);
+        nearest(name, known).map(|near| format!("--{near}"))
+    });
+    if let Some(near) = near {
+        error.insert(ContextKind::SuggestedArg, ContextValue::String(near));
+        // It shows the option that clap would guess.
+        error.remove(ContextKind::Usage);
     }
     error.exit()
 }

@@ -49,6 +49,8 @@ fn a_scene_in_the_place_of_a_command_is_told_from_a_misspelt_command() {
         assert!(err.contains(&format!("`{word}` is a scene, not a command")), "{err}");
         assert!(err.contains(&format!("`tabray render {word}` renders it")), "{err}");
     }
+    let (_, _, err) = outcome(tabray(&folder).args(["--samples", "4", "a.ray"]));
+    assert!(err.contains("`tabray render a.ray` renders it"), "{err}");
     let (_, _, err) = outcome(tabray(&folder).arg("redner"));
     assert!(err.contains("a similar subcommand exists: 'render'"), "{err}");
 }
