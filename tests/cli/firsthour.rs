@@ -199,3 +199,17 @@ fn the_older_program_is_given_the_values_that_are_set() {
         "the page has the old explanation"
     );
 }
+
+#[test]
+fn a_chart_writes_the_file_that_is_named_and_begins_with_what_to_do() {
+    let folder = workplace();
+    let text = fs::read_to_string(folder.path().join("a.ray")).expect("a scene").replace("160 120", "8 6");
+    fs::write(folder.path().join("tiny.ray"), text).expect("a file");
+    let before = names_in(folder.path());
+    let (status, out, err) =
+        outcome(tabray(&folder).args(["chart", "tiny.ray", "-o", "a.svg", "--time-limit", "1h"]));
+    assert_eq!((status, err.lines().last()), (0, Some("wrote a.svg")), "{err}");
+    assert!(String::from_utf8_lossy(&out).starts_with("What to do:\n  "));
+    assert!(fs::read_to_string(folder.path().join("a.svg")).expect("the chart").contains("<svg"));
+    assert_eq!(names_in(folder.path()).len(), before.len() + 1);
+}

@@ -9,6 +9,9 @@ use std::fmt::Write;
 /// The distance in Oklab from which the eye can tell colours apart, in hundredths of that from black to white.
 const VISIBLE: f64 = 2.0;
 
+/// The ratio of times from which on another accuracy than the default is worth taking.
+const GAIN: f64 = 0.8;
+
 /// Returns what to do, and the verdict on each panel: the front, the position of the default, and what to choose.
 pub fn words(chart: &Chart) -> String {
     let mut text = String::new();
@@ -53,9 +56,10 @@ pub fn words(chart: &Chart) -> String {
 /// Says what to do, in the order of importance.
 fn advice(chart: &Chart) -> Vec<String> {
     let of = |subject: Subject| chart.panels.iter().find(|panel| panel.subject == subject);
-    let again = chart.is_noisy() || chart.is_busy();
-    let again = again.then(|| "measure again on a machine with nothing else to do: see below".to_owned());
-    let accuracy = of(Subject::Methods).and_then(accuracy);
+    let is_doubtful = chart.is_noisy() || chart.is_busy();
+    let again =
+        is_doubtful.then(|| "measure again on a machine with nothing else to do: see below".to_owned());
+    let accuracy = of(Subject::Methods).filter(|_| !is_doubtful).and_then(accuracy);
     let samples =
         of(Subject::Samples).map(|panel| match panel.points.iter().find(|point| looks_right(point)) {
             Some(point) if point.is_default => {
@@ -82,7 +86,7 @@ fn accuracy(panel: &Panel) -> Option<String> {
         |point: &&Point| options.contains(&point.name.as_str()) && matches!(point.changed, Some([0, _]));
     let fastest = panel.points.iter().filter(is_same).min_by(|a, b| a.times.least.total_cmp(&b.times.least));
     Some(match fastest {
-        Some(fastest) if default.times.least > SAME_TIME * fastest.times.least => {
+        Some(fastest) if fastest.times.least <= GAIN * default.times.least => {
             let option = if fastest.name == "classic" { "--method" } else { "--accuracy" };
             let (own, other) = (time(panel, default), time(panel, fastest));
             format!(
@@ -90,7 +94,7 @@ fn accuracy(panel: &Panel) -> Option<String> {
                 fastest.name
             )
         }
-        _ => format!("keep the accuracy, {}: no faster one shows the same image", default.name),
+        _ => format!("keep the accuracy, {}: none that is clearly faster shows the same image", default.name),
     })
 }
 
