@@ -8,7 +8,8 @@ use crate::scene::registry::Registry;
 use crate::text;
 use crate::world::accuracy::Accuracy;
 
-/// The maximum number of objects of a scene that is compared: the course's scenes have few, and each is made twice.
+/// The maximum number of objects of a scene that is compared: the course's scenes have few, and none of them from a
+/// file; each is made twice.
 const MOST: usize = 1000;
 
 /// The maximum number of objects that are named.
@@ -27,7 +28,11 @@ impl Differences {
     /// Compares the objects of a scene that is rendered with the course's methods to those of the default.
     pub fn of(registry: &Registry, source: &Source, model: &Model) -> Self {
         let mut differences = Self::default();
-        if model.camera.value.accuracy != Accuracy::Classic || model.objects.len() > MOST {
+        let is_large = || {
+            model.objects.len() > MOST
+                || model.objects.iter().any(|object| object.args.entity().reads_files())
+        };
+        if model.camera.value.accuracy != Accuracy::Classic || messages::is_quiet() || is_large() {
             return differences;
         }
         let Ok(exact) = source.load(registry, Some(Accuracy::Exact)) else { return differences };
