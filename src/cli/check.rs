@@ -1,6 +1,6 @@
 //! `tabray check`: reports the faults of scenes.
 
-use super::failure::{Failure, status, tell_as};
+use super::failure::{Failure, status, tell};
 use super::{input, messages, set};
 use crate::scene::registry::Registry;
 use std::path::PathBuf;
@@ -25,7 +25,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             // The scene may be sound: the machine is at fault.
             Err(failure @ Failure::Failed(_)) => return Err(failure),
             Err(failure) => {
-                tell_as(&failure);
+                tell(&failure);
                 worst = worst.max(status(&failure));
             }
         }

@@ -60,11 +60,6 @@ pub fn tell(failure: &Failure) -> ExitCode {
     told(failure).into()
 }
 
-/// Prints why a part of a command failed, which goes on.
-pub fn tell_as(failure: &Failure) {
-    told(failure);
-}
-
 /// Prints why a command failed, and ends the program, whatever its other threads are doing.
 pub fn end(failure: &Failure) -> ! {
     progress::clear();

@@ -1,6 +1,6 @@
 //! Several scenes for one command: the names of their images, what is said about all of them, and the exit status.
 
-use super::failure::{Failure, status, tell_as};
+use super::failure::{Failure, status, tell};
 use super::input;
 use super::output;
 use super::progress;
@@ -12,7 +12,7 @@ use std::time::Instant;
 /// The maximum number of scenes that the summary names.
 const NAMED: usize = 10;
 
-/// Returns whether an output is a folder for the images of scenes, rather than the image of one.
+/// Tells whether an output is a folder for the images of scenes, rather than the image of one.
 pub fn is_folder(output: Option<&Path>, scenes: usize) -> bool {
     output.is_some_and(|path| {
         let ends = path.as_os_str().to_string_lossy().ends_with(path::is_separator);
@@ -64,7 +64,7 @@ pub fn each(scenes: &[PathBuf], mut one: impl FnMut(usize) -> Result<(), Failure
     for (index, scene) in scenes.iter().enumerate() {
         progress::begin(index, scenes.len());
         if let Err(failure) = one(index) {
-            tell_as(&failure);
+            tell(&failure);
             worst = worst.max(status(&failure));
             failed.push(scene.display().to_string());
         }

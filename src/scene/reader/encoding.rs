@@ -41,8 +41,15 @@ pub fn decode<'b>(name: &str, bytes: &'b [u8]) -> Result<&'b str, Report<'static
     Err(report)
 }
 
+/// Returns the encoding that a text in another one than UTF-8 probably has.
+pub fn other(bytes: &[u8]) -> Option<&'static str> {
+    let bad = std::str::from_utf8(bytes).err().map(|error| error.valid_up_to());
+    let in_one_byte = || windows_1252(bytes, bad?).map(|(encoding, _)| encoding);
+    utf_16(bytes).or_else(in_one_byte)
+}
+
 /// Returns the encoding of a text in UTF-16: one that begins with its mark, or in which nearly every other byte is zero.
-pub fn utf_16(bytes: &[u8]) -> Option<&'static str> {
+fn utf_16(bytes: &[u8]) -> Option<&'static str> {
     match bytes {
         [0xff, 0xfe, rest @ ..] if rest.len() % 2 == 0 => return Some("UTF-16"),
         [0xfe, 0xff, rest @ ..] if rest.len() % 2 == 0 => return Some("UTF-16"),
