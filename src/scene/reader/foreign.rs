@@ -58,33 +58,30 @@ pub fn explained(
 
 impl Way {
     fn fault(self, Found { right, places }: &Found) -> Fault {
-        let write = || format!("write `{right}`");
-        let (message, label, help) = match self {
+        let (message, help) = match self {
             Self::Colour => (
-                "a `#` begins a comment, not a colour".to_owned(),
-                write(),
+                "a `#` begins a comment, not a colour",
                 "a colour is red, green and blue, and 1 is the brightest that an image can show",
             ),
             Self::Quotes => (
-                "curly quotes are letters like others".to_owned(),
-                write(),
+                "curly quotes are letters like others",
                 "a word with white space stands in straight quotes, which word processors replace by curly ones",
             ),
-            Self::Brackets => (
-                "values are not written with brackets or commas".to_owned(),
-                write(),
-                "separate values by white space",
-            ),
+            Self::Brackets => {
+                ("values are not written with brackets or commas", "separate values by white space")
+            }
             Self::Equals => (
-                "there is no `=` between an attribute and its values".to_owned(),
-                "leave it out".to_owned(),
+                "there is no `=` between an attribute and its values",
                 "write `NAME VALUES`; in a file whose name ends in .toml, a scene is TOML, and has `=`",
             ),
             Self::Semicolon => (
-                "there is no `;` after an attribute".to_owned(),
-                "leave it out".to_owned(),
+                "there is no `;` after an attribute",
                 "an attribute ends where the next one begins, and an entity with its `}`",
             ),
+        };
+        let label = match self {
+            Self::Equals | Self::Semicolon => "leave it out".to_owned(),
+            Self::Colour | Self::Quotes | Self::Brackets => format!("write `{right}`"),
         };
         let mut fault = Fault::error(places.first().cloned(), message).label(label).help(help);
         places.iter().skip(1).for_each(|place| fault.stand_for(Some(place.clone())));
