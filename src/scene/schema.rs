@@ -238,7 +238,7 @@ fn any_of(names: &[&'static str]) -> Schema {
 
 /// Returns the schema of all entities of one type, by name.
 fn kind(entity: &'static Entity) -> Schema {
-    let is_single = matches!(entity.kind(), Kind::Camera | Kind::Material | Kind::Texture);
+    let is_single = matches!(entity.kind(), Kind::Camera | Kind::Material | Kind::Texture | Kind::Shader);
     let one = body(entity);
     let named = if is_single {
         one
@@ -303,12 +303,24 @@ fn value(attribute: &'static dyn Attribute) -> Schema {
                 [true, false].map(Constant::Truth).into_iter().chain(words).collect(),
             )
         }
+        // Of several formulas, some are mere numbers.
+        Type::Formula(_) if attribute.arity().most() > 1 => number("number"),
         Type::Word | Type::File | Type::Name(_) | Type::Formula(_) => Schema::sort("string"),
-        Type::Choice(all) => {
-            let all = all.all();
+        Type::Choice(known) => {
+            let all = known.all();
             let names = all.iter().map(|choice| Constant::Text(choice.name.to_owned()));
             let numbers = all.iter().filter_map(|choice| choice.number).map(Constant::Whole);
-            choices(["string", "integer"], names.chain(numbers).collect())
+            let sorts = ["string", "integer"];
+            match known.kind {
+                // Any name of an entity, or a number of the list.
+                Some(_) => Schema {
+                    condition: Some(Box::new(Schema::sort("integer"))),
+                    then: Some(Box::new(Schema { choices: Some(numbers.collect()), ..Schema::default() })),
+                    sort: Some(Sort::Any(sorts.to_vec())),
+                    ..Schema::default()
+                },
+                None => choices(sorts, names.chain(numbers).collect()),
+            }
         }
     };
     let [minimum, maximum] = attribute.range().map_or([None; 2], |range| range.map(Some));
@@ -382,9 +394,11 @@ impl Constant {
             },
             Datum::Word(word) => Self::Text(word.clone()),
             Datum::Formula(formula) => Self::Text(formula.to_string()),
-            Datum::Material { name, .. } | Datum::Texture { name, .. } | Datum::Object { name, .. } => {
-                Self::Text(name.to_string())
-            }
+            Datum::Formulas(_) => return None,
+            Datum::Material { name, .. }
+            | Datum::Texture { name, .. }
+            | Datum::Shader { name, .. }
+            | Datum::Object { name, .. } => Self::Text(name.to_string()),
             Datum::Choice(choice) => {
                 choice.number.map_or_else(|| Self::Text(choice.name.to_owned()), Self::Whole)
             }
