@@ -35,8 +35,12 @@ pub fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Opti
             }
             left = left.checked_sub(count * letters)?;
             let distance = strsim::damerau_levenshtein(&lower, candidate);
-            // Of words that are equally far, the one that has more letters in the same places.
-            let unlike = || 1.0 - strsim::jaro(&lower, candidate);
+            // Of words that are equally far, one to which something was added, and then the one that has more letters in
+            // the same places.
+            let unlike = || match lower.starts_with(candidate) || lower.ends_with(candidate) {
+                true => 0.0,
+                false => 1.0 - strsim::jaro(&lower, candidate),
+            };
             (distance <= max_distance).then(|| (distance, unlike(), candidate))
         })
         .min_by(|one, other| one.0.cmp(&other.0).then(one.1.total_cmp(&other.1)))
@@ -206,5 +210,6 @@ mod tests {
     #[test]
     fn the_nearest_of_words_that_are_equally_far_has_more_letters_in_the_same_places() {
         assert_eq!(nearest("plain", ["place", "plane"]), Some("plane"));
+        assert_eq!(nearest("texmode", ["texname", "mode"]), Some("mode"));
     }
 }

@@ -100,6 +100,34 @@ fn the_courses_pictures_come_out_the_same() {
 }
 
 #[test]
+fn a_course_scene_gives_the_courses_picture_in_one_command_that_says_where_the_default_differs() {
+    let Some(folder) = course() else { return };
+    let target = tempfile::TempDir::new().expect("a folder");
+    for (scene, least, difference) in [
+        ("fplane/fplane1", 100.0, None),
+        ("proj/proj3", 100.0, None),
+        ("revsurf/revsurff", 100.0, Some("silhouettes that the course's method loses")),
+        ("trans/translucent", 62.19, Some("far walls, which the course's method never meets")),
+    ] {
+        let path = folder.join(scene);
+        let image = target.path().join("course.png");
+        let run = cargo_bin_cmd!("tabray")
+            .arg("render")
+            .arg(path.with_extension("txt"))
+            .args(["--method", "classic", "-o"])
+            .arg(&image)
+            .assert()
+            .success();
+        let actual = image::open(&image).expect("an image").into_rgb8();
+        assert!(percent_near(&actual, &expected(&path)) >= least, "{scene}");
+        let told = String::from_utf8_lossy(&run.get_output().stderr).into_owned();
+        let says = told.lines().find(|line| line.starts_with("this is the course's own method"));
+        assert_eq!(says.is_some(), difference.is_some(), "{scene}: {told}");
+        assert!(difference.is_none_or(|difference| told.contains(difference)), "{scene}: {told}");
+    }
+}
+
+#[test]
 fn the_courses_cone_is_all_explained_by_its_wrong_slope() {
     let Some(folder) = course() else { return };
     let path = folder.join("revsurf/revsurfa");

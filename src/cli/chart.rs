@@ -13,7 +13,7 @@ use crate::tools::chart::{self, Chart};
 use crate::world::accuracy::Accuracy;
 use std::io::{self, Write};
 use std::panic;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::PoisonError;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
@@ -30,8 +30,8 @@ pub struct Args {
     #[command(flatten)]
     set: set::Args,
     /// Directory for the chart (SCENE.svg and SCENE.png), its numbers (SCENE.csv and SCENE.json) and the verdict in
-    /// words (SCENE.txt); by default the working directory
-    #[arg(short, long, value_name = "DIR", default_value = ".", hide_default_value = true)]
+    /// words (SCENE.txt), by default the working directory; or one of these files, such as `a.svg`, of any name
+    #[arg(short, long, value_name = "DIR|FILE", default_value = ".", hide_default_value = true)]
     output: PathBuf,
     /// The time that the chart may take, such as 90s or 5m, instead of 2 minutes; what is not measured by then is left
     /// out
@@ -57,12 +57,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         Some(stem) if !input::is_standard(&args.scene) => stem.to_string_lossy().into_owned(),
         _ => "stdin".to_owned(),
     };
-    let folder = &args.output;
-    output::folder(folder)?;
-    let files = ["svg", "png", "csv", "json", "txt"].map(|extension| {
-        let path = folder.join(format!("{name}.{extension}"));
-        Output::open(&path).map(|output| (path, output))
-    });
+    let files = files(&args.output, &name)?;
     interrupt::catch(Manner::NotesFirst(NOTHING))?;
     let (kept, units) = (work.kept(), work.units());
     let end = |chart: Chart| {
@@ -95,7 +90,29 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     })
 }
 
-type Files = [Result<(PathBuf, Output), Failure>; 5];
+/// The extensions of the files of a chart.
+const EXTENSIONS: [&str; 5] = ["svg", "png", "csv", "json", "txt"];
+
+/// The files to write, each with its path; `None` for those that are not wanted.
+type Files = [Option<(PathBuf, Output)>; 5];
+
+/// Opens the files of a chart: all of them in a folder, or the one that is named.
+fn files(output: &Path, name: &str) -> Result<Files, Failure> {
+    let open = |path: PathBuf| Output::open(&path).map(|output| Some((path, output)));
+    let extension = output.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+    let named = EXTENSIONS.iter().position(|known| extension.eq_ignore_ascii_case(known));
+    let mut files = [const { None }; 5];
+    match named.filter(|_| !output.is_dir()) {
+        Some(one) => files[one] = open(output.to_owned())?,
+        None => {
+            output::folder(output)?;
+            for (file, extension) in files.iter_mut().zip(EXTENSIONS) {
+                *file = open(output.join(format!("{name}.{extension}")))?;
+            }
+        }
+    }
+    Ok(files)
+}
 
 /// Writes a chart and prints its verdict.
 fn end(chart: &Chart, files: Files, is_late: bool) -> Result<(), Failure> {
@@ -108,7 +125,7 @@ fn end(chart: &Chart, files: Files, is_late: bool) -> Result<(), Failure> {
     }
     let words = chart::words(chart);
     for (file, bytes) in files.into_iter().zip(contents(chart, &words)?) {
-        let (path, output) = file?;
+        let Some((path, output)) = file else { continue };
         output::put(&path, output, |out| out.write_all(&bytes))?;
     }
     print(&words)?;

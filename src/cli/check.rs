@@ -1,6 +1,6 @@
 //! `tabray check`: reports the faults of scenes.
 
-use super::failure::{Failure, tell};
+use super::failure::{Failure, status, tell};
 use super::{input, messages, set};
 use crate::scene::registry::Registry;
 use std::path::PathBuf;
@@ -18,7 +18,7 @@ pub struct Args {
 }
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
-    let mut sound = true;
+    let mut worst = 0;
     for scene in &args.scenes {
         match input::load(registry, scene, &args.set, None) {
             Ok(_) => messages::note(&format!("{}: no errors", scene.display())),
@@ -26,9 +26,9 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             Err(failure @ Failure::Failed(_)) => return Err(failure),
             Err(failure) => {
                 tell(&failure);
-                sound = false;
+                worst = worst.max(status(&failure));
             }
         }
     }
-    if sound { Ok(()) } else { Err(Failure::Told) }
+    if worst == 0 { Ok(()) } else { Err(Failure::Several(worst)) }
 }

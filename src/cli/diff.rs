@@ -5,7 +5,7 @@ use super::failure::{Failure, print, tell};
 use super::picture::Picture;
 use super::report::{Change, Item, Page};
 use super::{input, set};
-use crate::output::compare::{Comparison, FullRangeComparison};
+use crate::output::compare::{Comparison, FullRangeComparison, Pixel};
 use crate::scene::registry::Registry;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -13,8 +13,8 @@ use std::process::ExitCode;
 /// Compare two images
 ///
 /// Prints how many pixels differ, the largest difference of any channel, in levels from 0 to 255, the root mean square
-/// (RMS) of the differences of all channels, and the first pixel that differs, row by row from the top, each row from
-/// the left. As everywhere, a pixel's column counts from 0 at the left and its row from 0 at the bottom.
+/// (RMS) of the differences of all channels, the first pixel that differs, row by row from the top, each row from the
+/// left, and the one that differs most. As everywhere, a pixel's column counts from 0 at the left and its row from 0 at the bottom.
 #[derive(clap::Args)]
 #[command(after_help = EXIT_STATUS)]
 pub struct Args {
@@ -28,7 +28,7 @@ pub struct Args {
     /// Write a page that shows both images and their difference: one self-contained .html file
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// The scene of the images, from which the page explains the first pixel that differs
+    /// The scene of the images, from which the page explains the pixel that differs most
     #[arg(long, requires = "output")]
     scene: Option<PathBuf>,
     #[command(flatten)]
@@ -87,13 +87,16 @@ fn compare(registry: &Registry, args: &Args) -> Result<bool, Failure> {
         }
     };
     let comparison = Comparison::new(&old, &new, args.tolerance).ok_or_else(other_size)?;
-    let first = comparison.first;
-    let place = first.map(|pixel| format!("first at {pixel}\n")).unwrap_or_default();
-    print(&format!("{comparison}\n{place}"))?;
+    let (first, worst) = (comparison.first, comparison.worst);
+    let line = |what: &str, pixel: Option<Pixel>| pixel.map(|pixel| format!("{what} at {pixel}\n"));
+    let most = worst.filter(|_| worst != first);
+    let places = [line("first", first), line("most", most)].map(Option::unwrap_or_default).concat();
+    print(&format!("{comparison}\n{places}"))?;
     let same = comparison.differing == 0;
     if let Some(page) = page {
-        let place = args.scene.as_deref().zip(model).zip(first);
-        let place = place.map(|((scene, model), pixel)| Place { scene, model, size: comparison.size, pixel });
+        let place = args.scene.as_deref().zip(model).zip(worst);
+        let (size, set) = (comparison.size, &args.set);
+        let place = place.map(|((scene, model), pixel)| Place { scene, set, model, size, pixel });
         let explanations = place.map(|place| place.explained(args.before.as_deref())).unwrap_or_default();
         let name = names.join(" and ");
         let change = Change::Picture { old: Some(old), new, names, comparison: Some(comparison) };

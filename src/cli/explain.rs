@@ -1,5 +1,6 @@
 //! Explanations of an image's pixel by `probe`, for reports: from this program, and from an older one.
 
+use super::set;
 use crate::output::compare::Pixel;
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
@@ -21,6 +22,8 @@ pub struct Explanation {
 pub struct Place<'p> {
     /// The scene's file.
     pub scene: &'p Path,
+    /// The values that are set beside its text.
+    pub set: &'p set::Args,
     /// The scene as it is now.
     pub model: Model,
     /// The width and the height of the image in pixels; it may be smaller than the scene says.
@@ -60,6 +63,7 @@ impl Place<'_> {
         let output = Command::new(program)
             .arg("probe")
             .arg(self.scene)
+            .args(self.set.values.iter().flat_map(|value| ["--set", value]))
             .args([self.pixel.x.to_string(), self.pixel.y.to_string()])
             .stdin(Stdio::null())
             .output()

@@ -20,12 +20,16 @@ pub enum Failure {
     Usage(String, Option<String>),
     /// The system or another program caused the failure.
     Failed(String),
+    /// A file that the command names cannot be read; with what was probably meant.
+    Unread(String, Option<String>),
     /// The user interrupted the command; with what is left of its work.
     Interrupted(&'static str),
     /// The command stopped with a part of its work done, and the user was told already.
     Stopped,
     /// Faults were printed already.
     Told,
+    /// Some of several scenes failed, which was printed already; with the worst exit status of them.
+    Several(u8),
 }
 
 impl From<io::Error> for Failure {
@@ -93,18 +97,24 @@ pub fn exit() -> ! {
 fn told(failure: &Failure) -> u8 {
     match failure {
         Failure::Scene(report) => messages::report(report),
-        Failure::Usage(message, help) => messages::error(message, help.as_deref()),
+        Failure::Usage(message, help) | Failure::Unread(message, help) => {
+            messages::error(message, help.as_deref());
+        }
         Failure::Failed(message) => messages::error(message, None),
         Failure::Interrupted(what) => messages::note(&format!("interrupted: {what}")),
-        Failure::Stopped | Failure::Told => {}
+        Failure::Stopped | Failure::Told | Failure::Several(_) => {}
+    }
+    if let (Failure::Interrupted(_) | Failure::Stopped, Some([done, all])) = (failure, progress::overall()) {
+        messages::note(&format!("{done} of {all} scenes are rendered"));
     }
     status(failure)
 }
 
 /// Returns the exit status of a failure.
-fn status(failure: &Failure) -> u8 {
+pub fn status(failure: &Failure) -> u8 {
     match failure {
-        Failure::Failed(_) => 1,
+        Failure::Several(worst) => *worst,
+        Failure::Failed(_) | Failure::Unread(..) => 1,
         Failure::Scene(_) | Failure::Usage(..) | Failure::Told => 2,
         Failure::Interrupted(_) | Failure::Stopped => 130,
     }

@@ -9,6 +9,7 @@ use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
 use crate::text;
 use crate::world::accuracy::Accuracy;
+use sha2::{Digest, Sha256};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
@@ -62,6 +63,12 @@ impl Source {
         Ok(Self { name, folder: path.parent().unwrap_or(path).to_owned(), bytes, sets: sets.values.clone() })
     }
 
+    /// Returns the SHA-256 of the text, as `sha256sum` prints it.
+    pub fn hash(&self) -> String {
+        let hash = Sha256::digest(&self.bytes);
+        hash.iter().fold("sha256:".to_owned(), |text, byte| format!("{text}{byte:02x}"))
+    }
+
     /// Makes a model, with the given accuracy or with the scene's own, and its warnings.
     pub fn load(&self, registry: &Registry, accuracy: Option<Accuracy>) -> Result<Loaded, Report> {
         self.load_by(registry, Chosen { above_all: accuracy, ..Chosen::default() })
@@ -90,7 +97,7 @@ pub fn read(path: &Path) -> Result<(String, Vec<u8>), Failure> {
         Ok(bytes) => Ok((name, bytes)),
         Err(error) => {
             let near = text::nearest_file(path).filter(|_| error.kind() == io::ErrorKind::NotFound);
-            Err(Failure::Usage(
+            Err(Failure::Unread(
                 format!("cannot read `{name}`: {}", text::reason(&error)),
                 near.map(|near| format!("did you mean `{}`?", path.with_file_name(near).display())),
             ))

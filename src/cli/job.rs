@@ -35,6 +35,8 @@ pub struct Job<'a> {
     pub format: Format,
     /// The path of the image.
     pub path: &'a Path,
+    /// What the image was made of and with, for a PNG.
+    pub made: &'a [(&'static str, String)],
     /// The maximum number of pixels in memory at one time.
     pub at_once: usize,
     pub stop: &'a Stop,
@@ -115,7 +117,7 @@ impl Job<'_> {
         });
         // Pieces that are compressed together are in memory together.
         let renderer = (self.at_once == BAND).then_some(self.renderer);
-        let written = self.format.write_on(renderer, &mut out, self.part.size(), bands);
+        let written = self.format.write_on(renderer, self.made, &mut out, self.part.size(), bands);
         match (broken, written) {
             (Some(failure), _) => Err(failure),
             (None, Err(error)) if is_cut && error.kind() == io::ErrorKind::Other => {

@@ -18,15 +18,21 @@ pub enum Form {
     Json,
 }
 
-static FORM: OnceLock<Form> = OnceLock::new();
+/// The form of messages, and whether only errors and warnings are printed.
+static CHOSEN: OnceLock<(Form, bool)> = OnceLock::new();
 
-/// Sets the form of all later messages.
-pub fn choose(form: Form) {
-    FORM.get_or_init(|| form);
+/// Sets the form of all later messages, and whether there are only errors and warnings.
+pub fn choose(form: Form, is_quiet: bool) {
+    CHOSEN.get_or_init(|| (form, is_quiet));
 }
 
 fn form() -> Form {
-    FORM.get().copied().unwrap_or_default()
+    CHOSEN.get().copied().unwrap_or_default().0
+}
+
+/// Tells whether only errors and warnings are printed.
+pub fn is_quiet() -> bool {
+    CHOSEN.get().copied().unwrap_or_default().1
 }
 
 /// Prints the faults of a scene.
@@ -62,6 +68,9 @@ fn titled(word: &str, level: Level, message: &str, help: Option<&str>) {
 
 /// Prints a note: that something went well, or how it ended.
 pub fn note(message: &str) {
+    if is_quiet() {
+        return;
+    }
     say(&match form() {
         Form::Human | Form::Short => format!("{message}\n"),
         Form::Json => json("note", message, None, message),

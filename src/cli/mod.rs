@@ -1,12 +1,15 @@
 //! The command line: one file per subcommand, and the code that they share.
 
 mod aov;
+mod arguments;
 mod bench;
 mod chart;
 mod check;
 mod choose;
+mod color;
 mod completions;
 mod convert;
+mod course;
 mod cpu;
 mod crash;
 mod debug;
@@ -23,6 +26,7 @@ mod interrupt;
 mod job;
 mod keep;
 mod list;
+mod made;
 mod man;
 mod measuring;
 mod memory;
@@ -44,6 +48,7 @@ mod samples;
 mod schema;
 mod serve;
 mod set;
+mod several;
 mod size;
 mod stats;
 mod stop;
@@ -72,6 +77,12 @@ struct Cli {
     /// The format of messages
     #[arg(long, global = true, value_name = "FORM", default_value = "human")]
     message_format: messages::Form,
+    /// Print only errors and warnings
+    #[arg(short, long, global = true)]
+    quiet: bool,
+    /// Whether messages have colours
+    #[arg(long, global = true, value_name = "WHEN", default_value = "auto")]
+    color: color::Color,
 }
 
 #[derive(Subcommand)]
@@ -122,8 +133,13 @@ pub fn run() -> ExitCode {
 }
 
 fn chosen() -> ExitCode {
-    let cli = Cli::from_arg_matches(&command().get_matches()).unwrap_or_else(|error| error.exit());
-    messages::choose(cli.message_format);
+    let matches = match arguments::matches(command()) {
+        Ok(matches) => matches,
+        Err(failure) => return tell(&failure),
+    };
+    let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    color::choose(cli.color);
+    messages::choose(cli.message_format, cli.quiet);
     let outcome = match Registry::get() {
         Ok(registry) => match cli.command {
             Some(Command::Render(args)) => render::run(registry, args),

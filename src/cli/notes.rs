@@ -34,6 +34,7 @@ pub fn run(registry: &Registry) -> Result<(), Failure> {
         renderer: &Renderer::new(0)?,
         format: Format::Ppm,
         path: standard,
+        made: &[],
         at_once: BAND,
         stop: &Stop::default(),
         stats: None,

@@ -1,12 +1,17 @@
 //! `tabray render`: renders a scene's image.
 
+use super::course::Differences;
 use super::failure::Failure;
 use super::input::Source;
 use super::job::Job;
 use super::output::{Output, named};
 use super::resume::Begun;
 use super::stats::{self, Stats};
-use super::{aov, cpu, debug, full_range, input, keep, messages, method, output, samples, set, size, stop};
+use super::stop::{self, Stop};
+use super::{
+    aov, cpu, debug, full_range, input, keep, made, messages, method, output, progress, samples, set,
+    several, size,
+};
 use crate::output::deflate::Compression;
 use crate::output::full_range::FullRange;
 use crate::output::picture::Format;
@@ -17,17 +22,19 @@ use crate::world::accuracy::Accuracy;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Render a scene
+/// Render scenes
 #[derive(clap::Args)]
 pub struct Args {
-    /// The scene; `-` reads it from standard input
-    scene: PathBuf,
+    /// The scenes; `-` reads one from standard input
+    #[arg(required = true, value_name = "SCENE")]
+    scenes: Vec<PathBuf>,
     #[command(flatten)]
     set: set::Args,
     /// The image to write: a .png or .ppm file, or an .exr or .pfm file for colours that are not clamped or rounded, or
     /// `-` for standard output (a PPM unless --format says otherwise); by default the scene's name with .png in the
-    /// working directory
-    #[arg(short, long, value_name = "FILE")]
+    /// working directory. For several scenes it is a folder, which is made if there is none; for one scene too, if it
+    /// ends with `/`
+    #[arg(short, long, value_name = "FILE|DIR")]
     output: Option<PathBuf>,
     /// The image format, whatever the file's extension
     #[arg(long)]
@@ -62,15 +69,35 @@ pub struct Args {
 }
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
-    let path = target(&args)?;
+    let output = args.output.as_deref();
+    if let ([scene], false) = (&args.scenes[..], several::is_folder(output, args.scenes.len())) {
+        let path = target(&args, scene)?;
+        let stop = args.stop.watch()?;
+        return one(registry, &args, (scene, path), &stop);
+    }
+    let extension = if args.format == Some(Format::Ppm) { "ppm" } else { "png" };
+    let targets = several::targets(&args.scenes, output, extension)?;
+    let stop = args.stop.watch()?;
+    several::each(&args.scenes, |index| {
+        stop.ends_from_here()?;
+        one(registry, &args, (&args.scenes[index], targets[index].clone()), &stop)
+    })
+}
+
+/// Renders one scene to a path.
+fn one(
+    registry: &Registry,
+    args: &Args,
+    (scene, path): (&Path, PathBuf),
+    stop: &Stop,
+) -> Result<(), Failure> {
     let full_range = FullRange::of(&path).filter(|_| args.format.is_none());
     // Images beside one of full range are PNGs.
-    let format = if full_range.is_some() { Format::Png(args.compress) } else { format(&args, &path)? };
-    let stop = args.stop.watch()?;
+    let format = if full_range.is_some() { Format::Png(args.compress) } else { format(args, &path)? };
     let cpu = args.cpu.cpu()?;
     let start = Instant::now();
     let accuracy = args.method.accuracy()?;
-    let source = Source::read(&args.scene, &args.set)?;
+    let source = Source::read(scene, &args.set)?;
     let memory = args.stop.left();
     let chosen = |accuracy| Chosen { above_all: accuracy, memory, ..Chosen::default() };
     let Loaded { mut model, building, .. } = input::told(source.load_by(registry, chosen(accuracy)))?;
@@ -79,10 +106,12 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     args.samples.apply(camera)?;
     camera.exposure = args.exposure;
     let part = args.size.apply(camera)?;
-    output::is_no_source(&path, &args.scene, &model)?;
+    let made = made::texts(&source, &args.set, &model.camera.value, &part);
+    let differences = Differences::of(registry, &source, &model);
+    output::is_no_source(&path, scene, &model)?;
     let output = Output::open(&path)?;
     let main = if full_range.is_some() { path.with_extension("png") } else { path.clone() };
-    let beside = aov::open((&args.scene, &model), &args.aov, &main, &output)?;
+    let beside = aov::open((scene, &model), &args.aov, &main, &output)?;
     // The text of a large scene takes as much memory as its model.
     let source = (!beside.is_empty()).then_some(source);
     if full_range.is_some() && args.stop.resume {
@@ -98,7 +127,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let whole = Instant::now();
     if let Some(format) = full_range {
         args.stop.fits(full_range::PIXEL * part.columns.len() * part.rows.len())?;
-        full_range::render((&plan, &part), (&renderer, &stop), (format, &path), output, &stats)?;
+        full_range::render((&plan, &part), (&renderer, stop), (format, &path), output, &stats)?;
     } else {
         let job = Job {
             plan: &plan,
@@ -106,15 +135,21 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             renderer: &renderer,
             format,
             path: &path,
+            made: &made,
             at_once: args.stop.band(part.columns.len())?,
-            stop: &stop,
+            stop,
             stats: args.stats.wants_any().then_some(&stats),
         };
         job.run(output, begun)?;
         if path != Path::new("-") {
             let [width, height] = part.size();
             let seconds = start.elapsed().as_secs_f64();
-            messages::note(&format!("wrote {} ({width} x {height} pixels, {seconds:.2} s)", path.display()));
+            let which = progress::count();
+            messages::note(&format!(
+                "{which}wrote {} ({width} x {height} pixels, {seconds:.2} s)",
+                path.display()
+            ));
+            differences.tell();
         }
     }
     stats.writing = whole.elapsed().saturating_sub(stats.rendering.get());
@@ -133,10 +168,10 @@ fn exposure(text: &str) -> Result<f64, String> {
     stops.ok_or_else(|| "give stops as `1.5` or `-2`, from -32 to 32".to_owned())
 }
 
-fn target(args: &Args) -> Result<PathBuf, Failure> {
-    match (&args.output, args.scene.file_name()) {
+fn target(args: &Args, scene: &Path) -> Result<PathBuf, Failure> {
+    match (&args.output, scene.file_name()) {
         (Some(path), _) => Ok(path.clone()),
-        (None, Some(name)) if !input::is_standard(&args.scene) => {
+        (None, Some(name)) if !input::is_standard(scene) => {
             let extension = if args.format == Some(Format::Ppm) { "ppm" } else { "png" };
             Ok(Path::new(name).with_extension(extension))
         }

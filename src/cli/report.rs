@@ -4,7 +4,7 @@ use super::explain::Explanation;
 use super::failure::Failure;
 use super::messages;
 use super::output::Output;
-use crate::output::compare::Comparison;
+use crate::output::compare::{Comparison, Pixel};
 use crate::text;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -27,7 +27,7 @@ pub struct Item {
     pub name: String,
     /// The old and the new content.
     pub change: Change,
-    /// Explanations of the first pixel that differs.
+    /// Explanations of the pixel that differs most.
     pub explanations: Vec<Explanation>,
     /// How to accept or reject the change, where the user is to decide.
     pub decision: Option<Decision>,
@@ -129,7 +129,7 @@ struct Shown<'d> {
     /// How to decide about the item; left out where there is nothing to decide.
     #[serde(skip_serializing_if = "Option::is_none")]
     decision: Option<&'d Decision>,
-    /// Explanations of the first pixel that differs: titles and texts.
+    /// Explanations of the pixel that differs most: titles and texts.
     explanations: Vec<(&'d str, &'d str)>,
     /// The name.
     name: &'d str,
@@ -147,7 +147,9 @@ enum Sides<'d> {
     /// An image.
     Picture {
         /// The first pixel that differs, or null.
-        first: Option<First>,
+        first: Option<Found>,
+        /// The pixel that differs most, or null.
+        worst: Option<Found>,
         /// The names of the old and the new image.
         names: &'d [String; 2],
         /// The new image, as a data URI.
@@ -168,9 +170,9 @@ enum Sides<'d> {
 /// the new text, from 1, or null; and the line itself.
 type Line = (char, Option<usize>, Option<usize>, String);
 
-/// The first pixel that differs.
+/// A pixel that differs.
 #[derive(Serialize)]
-struct First {
+struct Found {
     /// The pixel's colours before and after, in words.
     text: String,
     /// The column, from 0 at the left.
@@ -183,9 +185,12 @@ impl<'d> Shown<'d> {
     fn of(item: &'d Item) -> io::Result<Self> {
         let sides = match &item.change {
             Change::Picture { old, new, names, comparison } => {
-                let first = comparison.as_ref().and_then(|comparison| comparison.first);
+                let found = |pixel: Option<Pixel>| {
+                    pixel.map(|pixel| Found { text: pixel.to_string(), x: pixel.x, y: pixel.y })
+                };
                 Sides::Picture {
-                    first: first.map(|pixel| First { text: pixel.to_string(), x: pixel.x, y: pixel.y }),
+                    first: found(comparison.as_ref().and_then(|comparison| comparison.first)),
+                    worst: found(comparison.as_ref().and_then(|comparison| comparison.worst)),
                     names,
                     new: data_uri(new)?,
                     old: old.as_ref().map(data_uri).transpose()?,

@@ -90,7 +90,7 @@ fn samples(text: &str) -> Result<Samples, String> {
     let Some((least, most)) = text.split_once("..") else {
         return number(text)
             .map(Samples::Fixed)
-            .ok_or_else(|| format!("give a number from 1 to {}, or two as `4..64`", Sampler::MOST));
+            .ok_or_else(|| format!("give a whole number from 1 to {}, or two as `4..64`", Sampler::MOST));
     };
     match (number(least), number(most)) {
         (Some(least), Some(most)) if least < most && least.is_power_of_two() && most.is_power_of_two() => {

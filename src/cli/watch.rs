@@ -194,7 +194,7 @@ impl Watched<'_> {
     fn read(&mut self, board: &Board, frames: &Sender<Arc<Frame>>, files: &mut Files) -> Result<(), Failure> {
         let (name, bytes) = match input::read(&self.path) {
             Ok(read) => read,
-            Err(Failure::Usage(message, _)) => {
+            Err(Failure::Usage(message, _) | Failure::Unread(message, _)) => {
                 let name = self.path.display().to_string();
                 let report = &format!("error: {message}");
                 board.fault(events::fault(&Fault { lines: &[], name: &name, report, text: None }));

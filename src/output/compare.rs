@@ -20,6 +20,9 @@ pub struct Comparison {
     pub rms: f64,
     /// The first pixel that differs by more than the tolerance, row by row from the top, each row from the left.
     pub first: Option<Pixel>,
+    /// The pixel with the largest difference of a channel, if it differs by more than the tolerance: of several, the one
+    /// whose channels differ by more together, and of these the first.
+    pub worst: Option<Pixel>,
 }
 
 /// The difference of two images of the same size, of which one at least has numbers of full range. Differences are in
@@ -112,6 +115,7 @@ impl Comparison {
             return None;
         }
         let (mut differing, mut largest, mut squares, mut first) = (0, 0, 0, None);
+        let mut worst: Option<(u8, u16, Pixel)> = None;
         for ((x, from_top, a), b) in old.enumerate_pixels().zip(new.pixels()) {
             let apart = per_axis(|channel| a[channel].abs_diff(b[channel]));
             let max = apart.into_iter().max().unwrap_or(0);
@@ -119,12 +123,25 @@ impl Comparison {
             squares += apart.map(|levels| u64::from(levels).pow(2)).iter().sum::<u64>();
             if max > tolerance {
                 differing += 1;
-                first.get_or_insert(Pixel { x, y: old.height() - 1 - from_top, old: a.0, new: b.0 });
+                let pixel = Pixel { x, y: old.height() - 1 - from_top, old: a.0, new: b.0 };
+                first.get_or_insert(pixel);
+                let sum = apart.map(u16::from).iter().sum();
+                if worst.is_none_or(|(most, all, _)| (most, all) < (max, sum)) {
+                    worst = Some((max, sum, pixel));
+                }
             }
         }
         let channels = 3.0 * f64::from(old.width()) * f64::from(old.height());
         let rms = (squares as f64 / channels).sqrt();
-        Some(Self { size: old.dimensions().into(), tolerance, differing, largest, rms, first })
+        Some(Self {
+            size: old.dimensions().into(),
+            tolerance,
+            differing,
+            largest,
+            rms,
+            first,
+            worst: worst.map(|(.., pixel)| pixel),
+        })
     }
 
     /// Returns the number of pixels.

@@ -49,24 +49,27 @@ impl Format {
         size: [usize; 2],
         rows: impl IntoIterator<Item = io::Result<Vec<u8>>>,
     ) -> io::Result<()> {
-        self.write_on(None, out, size, rows)
+        self.write_on(None, &[], out, size, rows)
     }
 
     /// Writes a whole image as [`write`](Self::write) does, and compresses it on a renderer's threads, if there is one.
-    /// The bytes do not depend on it.
+    /// The bytes do not depend on it. A PNG gets texts, each with its keyword.
     ///
     /// # Errors
     /// Those of [`write`](Self::write).
     pub fn write_on(
         self,
         renderer: Option<&Renderer>,
+        texts: &[(&str, String)],
         mut out: impl Write,
         [width, height]: [usize; 2],
         rows: impl IntoIterator<Item = io::Result<Vec<u8>>>,
     ) -> io::Result<()> {
         match self {
             Self::Ppm => write_ppm(&mut out, width, height, rows),
-            Self::Png(compression) => write_png(&mut out, width, height, (compression, renderer), rows),
+            Self::Png(compression) => {
+                write_png(&mut out, [width, height], texts, (compression, renderer), rows)
+            }
         }
     }
 
@@ -144,8 +147,8 @@ pub(crate) const AS_SHOWN: png::SrgbRenderingIntent = png::SrgbRenderingIntent::
 
 fn write_png(
     out: &mut dyn Write,
-    width: usize,
-    height: usize,
+    [width, height]: [usize; 2],
+    texts: &[(&str, String)],
     (compression, renderer): (Compression, Option<&Renderer>),
     rows: impl IntoIterator<Item = io::Result<Vec<u8>>>,
 ) -> io::Result<()> {
@@ -154,6 +157,13 @@ fn write_png(
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_source_srgb(AS_SHOWN);
+    for (keyword, text) in texts {
+        let (keyword, text) = (String::from(*keyword), text.clone());
+        match text.is_ascii() {
+            true => encoder.add_text_chunk(keyword, text)?,
+            false => encoder.add_itxt_chunk(keyword, text)?,
+        }
+    }
     let mut writer = encoder.write_header()?;
     let put = |bytes: &[u8]| writer.write_chunk(png::chunk::IDAT, bytes).map_err(io::Error::from);
     Packing::new([width, height], compression, renderer).run(rows, put)?;
@@ -177,7 +187,7 @@ mod tests {
                 for (rows, renderer) in [height, height - 1, 7].into_iter().zip(&renderers) {
                     let (mut png, bands) =
                         (Vec::new(), pixels.chunks(3 * width * rows).map(|band| Ok(band.to_vec())));
-                    let written = format.write_on(renderer.as_ref(), &mut png, [width, height], bands);
+                    let written = format.write_on(renderer.as_ref(), &[], &mut png, [width, height], bands);
                     written.expect("memory takes it");
                     files.push(png);
                 }

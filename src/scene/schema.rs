@@ -27,18 +27,25 @@ pub struct Schema {
     /// Schemas that must all match.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub all_of: Vec<Schema>,
-    /// Schemas of which at least one must match.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub any_of: Vec<Schema>,
     /// The value if none is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub default: Option<Constant>,
     /// The description that editors show.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
+    /// What must match where `condition` does not.
+    #[serde(rename = "else", skip_serializing_if = "Option::is_none")]
+    pub otherwise: Option<Box<Schema>>,
     /// All allowed values.
     #[serde(rename = "enum", skip_serializing_if = "Option::is_none")]
     pub choices: Option<Vec<Constant>>,
+    /// The number that all numbers must be above.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub exclusive_minimum: Option<f64>,
+    /// What decides whether `then` or `otherwise` must match. Where these name the fault, editors show it once, in its
+    /// place; of alternatives (`anyOf`, `oneOf`), they show that none matches, for all of an entity.
+    #[serde(rename = "if", skip_serializing_if = "Option::is_none")]
+    pub condition: Option<Box<Schema>>,
     /// The schema of each value of an array.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub items: Option<Box<Schema>>,
@@ -60,21 +67,35 @@ pub struct Schema {
     /// The minimum number of fields of an object.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub min_properties: Option<usize>,
-    /// Schemas of which exactly one must match.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub one_of: Vec<Schema>,
+    /// What must not match.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub not: Option<Box<Schema>>,
     /// The schemas of an object's fields.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub properties: Option<BTreeMap<&'static str, Schema>>,
     /// The fields that an object must have.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub required: Option<Vec<&'static str>>,
+    /// What must match where `condition` does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub then: Option<Box<Schema>>,
     /// The title that editors show.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub title: Option<&'static str>,
-    /// The type of the value: `object`, `array`, `string`, `number`, `integer` or `boolean`.
+    /// The types that the value may have: `object`, `array`, `string`, `number`, `integer` or `boolean`. The other
+    /// keywords hold for values of the types that they are about.
     #[serde(rename = "type", skip_serializing_if = "Option::is_none")]
-    pub sort: Option<&'static str>,
+    pub sort: Option<Sort>,
+}
+
+/// The types of a value.
+#[derive(Clone, Serialize)]
+#[serde(untagged)]
+pub enum Sort {
+    /// One type.
+    One(&'static str),
+    /// One of several.
+    Any(Vec<&'static str>),
 }
 
 /// What fields may hold that a schema does not name.
@@ -108,17 +129,21 @@ pub enum Constant {
 /// Returns the schema of scenes. Rules that the language states in words appear only in the descriptions.
 pub fn of(registry: &Registry) -> Schema {
     let names = |entity: &'static Entity| iter::once(entity.name).chain(entity.aliases.iter().copied());
-    let cameras = registry.iter().filter(|entity| entity.kind() == Kind::Camera).flat_map(names);
+    let cameras: Vec<_> =
+        registry.iter().filter(|entity| entity.kind() == Kind::Camera).flat_map(names).collect();
     let kinds = registry.iter().flat_map(|entity| names(entity).map(move |name| (name, kind(entity))));
     let mut properties: BTreeMap<_, _> = kinds.collect();
     properties.extend(computed(properties.keys().copied().collect()));
-    // The camera may be in a file that is included.
-    let camera = Schema { one_of: cameras.map(requiring).collect(), ..Schema::default() };
     Schema {
         language: Some("https://json-schema.org/draft/2020-12/schema"),
         title: Some("a tabray scene"),
         additional_properties: Some(Others::Any(false)),
-        any_of: vec![camera, requiring("include")],
+        // The camera may be in a file that is included.
+        all_of: vec![Schema {
+            condition: Some(Box::new(requiring("include"))),
+            otherwise: Some(Box::new(one_of(&cameras))),
+            ..Schema::default()
+        }],
         properties: Some(properties),
         ..Schema::sort("object")
     }
@@ -128,10 +153,9 @@ pub fn of(registry: &Registry) -> Schema {
 /// numbers.
 fn computed(mut kinds: Vec<&'static str>) -> [(&'static str, Schema); 3] {
     let each = |schema| Some(Others::Each(Box::new(schema)));
-    let any_of = |any_of| Schema { any_of, ..Schema::default() };
     let described = |text: &str, schema| Schema { description: Some(text.to_owned()), ..schema };
     let numbers = Schema { additional_properties: each(number("number")), ..Schema::sort("object") };
-    let files = any_of(vec![Schema::sort("string"), Schema::sort("string").array(1, None)]);
+    let files = Schema::sort("string").or_several();
     kinds.extend(["let", "repeat"]);
     let elsewhere = |name| {
         let reference = Some(format!("#/properties/{name}"));
@@ -144,8 +168,7 @@ fn computed(mut kinds: Vec<&'static str>) -> [(&'static str, Schema); 3] {
         required: Some(vec!["count"]),
         ..Schema::sort("object")
     };
-    let rounds = any_of(vec![round.clone(), round.array(1, None)]);
-    let repeats = Schema { additional_properties: each(rounds), ..Schema::sort("object") };
+    let repeats = Schema { additional_properties: each(round.or_several()), ..Schema::sort("object") };
     [
         ("let", described("named numbers, which formulas can use", numbers)),
         ("include", described("files that are read as if they stood here", files)),
@@ -155,12 +178,22 @@ fn computed(mut kinds: Vec<&'static str>) -> [(&'static str, Schema); 3] {
 
 /// Returns the schema of a number of this type, or a formula in place of it.
 fn number(sort: &'static str) -> Schema {
-    Schema { any_of: vec![Schema::sort(sort), Schema::sort("string")], ..Schema::default() }
+    Schema { sort: Some(Sort::Any(vec![sort, "string"])), ..Schema::default() }
 }
 
 impl Schema {
     fn sort(name: &'static str) -> Self {
-        Self { sort: Some(name), ..Self::default() }
+        Self { sort: Some(Sort::One(name)), ..Self::default() }
+    }
+
+    /// Returns the schema of a value that matches this schema, or of an array of such values.
+    fn or_several(self) -> Self {
+        let sort = match &self.sort {
+            Some(Sort::One(sort)) => Some(Sort::Any(vec![sort, "array"])),
+            Some(Sort::Any(sorts)) => Some(Sort::Any(sorts.iter().copied().chain(["array"]).collect())),
+            None => None,
+        };
+        Self { items: Some(Box::new(self.clone())), min_items: Some(1), sort, ..self }
     }
 
     /// Returns the schema of an array of values that match this schema, with `min` to `max` values.
@@ -174,6 +207,35 @@ fn requiring(name: &'static str) -> Schema {
     Schema { required: Some(vec![name]), ..Schema::default() }
 }
 
+/// Returns the schema of an object with exactly one of these fields.
+fn one_of(names: &[&'static str]) -> Schema {
+    let Some((first, rest)) = names.split_first() else { return Schema::default() };
+    if rest.is_empty() {
+        return requiring(first);
+    }
+    let nothing = Schema { not: Some(Box::default()), ..Schema::default() };
+    let without = rest.iter().map(|name| (*name, nothing.clone())).collect();
+    Schema {
+        condition: Some(Box::new(requiring(first))),
+        then: Some(Box::new(Schema { properties: Some(without), ..Schema::default() })),
+        otherwise: Some(Box::new(one_of(rest))),
+        ..Schema::default()
+    }
+}
+
+/// Returns the schema of an object with at least one of these fields.
+fn any_of(names: &[&'static str]) -> Schema {
+    match names {
+        [] => Schema::default(),
+        [name] => requiring(name),
+        [name, rest @ ..] => Schema {
+            condition: Some(Box::new(requiring(name))),
+            otherwise: Some(Box::new(any_of(rest))),
+            ..Schema::default()
+        },
+    }
+}
+
 /// Returns the schema of all entities of one type, by name.
 fn kind(entity: &'static Entity) -> Schema {
     let is_single = matches!(entity.kind(), Kind::Camera | Kind::Material | Kind::Texture | Kind::Shader);
@@ -182,7 +244,7 @@ fn kind(entity: &'static Entity) -> Schema {
         one
     } else {
         // Objects may share a name, and so may lights.
-        Schema { any_of: vec![one.clone(), one.array(1, None)], ..Schema::default() }
+        one.or_several()
     };
     Schema {
         description: Some(format!("{}: {}", entity.kind(), entity.meaning)),
@@ -203,16 +265,16 @@ fn body(entity: &'static Entity) -> Schema {
         if attribute.default().is_none() && names.len() == 1 {
             required.push(attribute.name());
         } else if attribute.default().is_none() {
-            let any_of = names.into_iter().map(requiring).collect();
-            all_of.push(Schema { any_of, ..Schema::default() });
+            all_of.push(any_of(&names));
         }
     }
     for group in entity.groups() {
         let names = |attribute: &&dyn Attribute| group.names.contains(&attribute.name());
         let of_group = entity.attributes().filter(names);
-        let all = of_group
-            .flat_map(|attribute| iter::once(attribute.name()).chain(attribute.aliases().iter().copied()));
-        all_of.push(Schema { one_of: all.map(requiring).collect(), ..Schema::default() });
+        let all: Vec<_> = of_group
+            .flat_map(|attribute| iter::once(attribute.name()).chain(attribute.aliases().iter().copied()))
+            .collect();
+        all_of.push(one_of(&all));
     }
     Schema {
         additional_properties: Some(Others::Any(false)),
@@ -226,48 +288,85 @@ fn body(entity: &'static Entity) -> Schema {
 
 /// Returns the schema of the values of one attribute.
 fn value(attribute: &'static dyn Attribute) -> Schema {
+    let choices = |sorts: [&'static str; 2], choices| Schema {
+        choices: Some(choices),
+        sort: Some(Sort::Any(sorts.to_vec())),
+        ..Schema::default()
+    };
     let one = match attribute.value_type() {
-        Type::Whole => Schema::sort("integer"),
-        Type::Number | Type::Rotation => Schema::sort("number"),
-        Type::Truth => Schema {
-            any_of: vec![
-                Schema::sort("boolean"),
-                Schema {
-                    choices: Some(["yes", "no"].map(|word| Constant::Text(word.to_owned())).into()),
-                    ..Schema::default()
-                },
-            ],
-            ..Schema::default()
-        },
+        Type::Whole => number("integer"),
+        Type::Number | Type::Rotation => number("number"),
+        Type::Truth => {
+            let words = ["yes", "no"].map(|word| Constant::Text(word.to_owned()));
+            choices(
+                ["boolean", "string"],
+                [true, false].map(Constant::Truth).into_iter().chain(words).collect(),
+            )
+        }
         // Of several formulas, some are mere numbers.
         Type::Formula(_) if attribute.arity().most() > 1 => number("number"),
         Type::Word | Type::File | Type::Name(_) | Type::Formula(_) => Schema::sort("string"),
-        Type::Choice(choices) => {
-            let all = choices.all();
+        Type::Choice(known) => {
+            let all = known.all();
             let names = all.iter().map(|choice| Constant::Text(choice.name.to_owned()));
             let numbers = all.iter().filter_map(|choice| choice.number).map(Constant::Whole);
-            let known = Schema { choices: Some(names.chain(numbers).collect()), ..Schema::default() };
-            match choices.kind {
-                Some(_) => Schema { any_of: vec![known, Schema::sort("string")], ..Schema::default() },
-                None => known,
+            let sorts = ["string", "integer"];
+            match known.kind {
+                // Any name of an entity, or a number of the list.
+                Some(_) => Schema {
+                    condition: Some(Box::new(Schema::sort("integer"))),
+                    then: Some(Box::new(Schema { choices: Some(numbers.collect()), ..Schema::default() })),
+                    sort: Some(Sort::Any(sorts.to_vec())),
+                    ..Schema::default()
+                },
+                None => choices(sorts, names.chain(numbers).collect()),
             }
         }
     };
     let [minimum, maximum] = attribute.range().map_or([None; 2], |range| range.map(Some));
-    let one = Schema { minimum, maximum, ..one };
-    let one = match attribute.value_type() {
-        its if its.is_numeric() => Schema { any_of: vec![one, Schema::sort("string")], ..Schema::default() },
-        _ => one,
+    let least = if minimum.is_none() && maximum.is_none() { least(attribute) } else { [None; 2] };
+    let one = Schema { minimum: minimum.or(least[0]), exclusive_minimum: least[1], maximum, ..one };
+    let (counts, [least, most]) = match attribute.arity() {
+        Counts::Of(counts) => (
+            counts.to_vec(),
+            [counts.iter().min(), counts.iter().max()].map(|count| count.copied().unwrap_or(1)),
+        ),
+        Counts::List { group, least, most } => (Vec::new(), [group * least, group * most]),
     };
-    let several: Vec<_> = match attribute.arity() {
-        Counts::Of(counts) => counts.iter().map(|count| one.clone().array(*count, Some(*count))).collect(),
-        Counts::List { group, least, most } => vec![one.clone().array(group * least, Some(group * most))],
+    // A choice is one of its values, which are no arrays.
+    let any = match (attribute.arity().allow(1), one.choices.is_some()) {
+        (true, true) => one,
+        (true, false) => Schema { min_items: Some(least), max_items: Some(most), ..one.or_several() },
+        (false, _) => one.array(least, Some(most)),
     };
-    let is_alone = attribute.arity().allow(1).then(|| one.clone());
-    let mut forms: Vec<_> = is_alone.into_iter().chain(several).collect();
-    let any = if forms.len() == 1 { forms.remove(0) } else { Schema { any_of: forms, ..Schema::default() } };
+    // An array may not have more values than one allowed number and fewer than the next.
+    let gaps = counts.windows(2).filter(|pair| pair[1] > pair[0] + 1).map(|pair| Schema {
+        condition: Some(Box::new(Schema { min_items: Some(pair[0] + 1), ..Schema::sort("array") })),
+        then: Some(Box::new(Schema { min_items: Some(pair[1]), ..Schema::default() })),
+        ..Schema::default()
+    });
+    let any = Schema { all_of: gaps.collect(), ..any };
     let default = attribute.default().as_ref().and_then(Constant::of);
     Schema { description: Some(description(attribute)), default, ..any }
+}
+
+/// Returns the least number of an attribute of one number whose rule has words and no range, and the number that it must
+/// be above: 0 for one of them, or no number.
+fn least(attribute: &dyn Attribute) -> [Option<f64>; 2] {
+    let allows = |number: i64| {
+        attribute.allows(&match attribute.value_type() {
+            Type::Whole => Datum::Whole(vec![number]),
+            _ => Datum::Numbers(vec![number as f64]),
+        })
+    };
+    let is_number = matches!(attribute.value_type(), Type::Whole | Type::Number);
+    match attribute.arity() {
+        Counts::Of([1]) if is_number && allows(1) && !allows(-1) => match allows(0) {
+            true => [Some(0.0), None],
+            false => [None, Some(0.0)],
+        },
+        _ => [None; 2],
+    }
 }
 
 fn description(attribute: &dyn Attribute) -> String {

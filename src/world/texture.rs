@@ -88,10 +88,9 @@ impl Texture {
         picture.map_or(0, |picture| picture.as_raw().len() as u64)
     }
 
-    /// A file whose name is like that of this one, if this one does not exist.
-    pub fn near(&self) -> Option<String> {
-        let is_missing = fs::metadata(&self.path).is_err_and(|error| error.kind() == io::ErrorKind::NotFound);
-        if is_missing { text::nearest_file(&self.path) } else { None }
+    /// Tells whether there is nothing at the path.
+    pub fn is_missing(&self) -> bool {
+        fs::metadata(&self.path).is_err_and(|error| error.kind() == io::ErrorKind::NotFound)
     }
 
     /// Returns the width and height in texels; 0 and 0 where the image cannot be read.

@@ -128,10 +128,10 @@ fn a_scene_that_cannot_be_read_is_named_with_the_reason() {
     let (status, _, err) = outcome(tabray(&folder).args(["render", "no-such-scene.ray"]));
     assert_eq!(
         (status, err.as_str()),
-        (2, "error: cannot read `no-such-scene.ray`: no such file or directory\n")
+        (1, "error: cannot read `no-such-scene.ray`: no such file or directory\n")
     );
     let (status, _, err) = outcome(tabray(&folder).args(["dump", "."]));
-    assert_eq!((status, err.as_str()), (2, "error: cannot read `.`: is a directory\n"));
+    assert_eq!((status, err.as_str()), (1, "error: cannot read `.`: is a directory\n"));
 }
 
 #[cfg(unix)]

@@ -94,7 +94,7 @@ fn bash_completes_commands_options_and_entity_types() {
         String::from_utf8(output.stdout).expect("text").trim().to_owned()
     };
     assert_eq!(completed(&["rend"]), "render");
-    assert_eq!(completed(&["render", "--qu"]), "--quick");
+    assert_eq!(completed(&["render", "--quic"]), "--quick");
     assert_eq!(completed(&["list", "tiled"]), "tiled_plane");
 }
 

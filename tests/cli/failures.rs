@@ -247,7 +247,7 @@ fn folders_and_files_without_permission_are_named() {
         (1, &["convert", "ball.ray", "ball.toml"], "cannot write `ball.toml`: permission denied"),
         (1, &["man", "pages"], "cannot create the folder `pages`: permission denied"),
         (1, &["chart", "ball.ray", "-o", "charts"], "cannot create the folder `charts`: permission denied"),
-        (2, &["check", "secret.ray"], "cannot read `secret.ray`: permission denied"),
+        (1, &["check", "secret.ray"], "cannot read `secret.ray`: permission denied"),
         (2, &["review", "closed"], "cannot read `closed`: permission denied"),
         (1, &["review", "--reject", "snapshots"], "cannot remove `snapshots/a.snap.new`: permission denied"),
         (1, &["watch", "closed/ball.ray"], "cannot watch the folder `CLOSED`: permission denied"),

@@ -10,6 +10,7 @@ mod cli;
 mod colours;
 mod discovery;
 mod failures;
+mod firsthour;
 mod full_range;
 mod limits;
 mod messages;

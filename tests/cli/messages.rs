@@ -90,7 +90,7 @@ fn all_that_is_said_with_json_is_json() {
         (0, "note", vec!["verify", scene, "-o", "a.png"]),
         (0, "note", vec!["new", "scene", "a"]),
         (2, "error", vec!["list", "spere"]),
-        (2, "error", vec!["dump", "no-such-scene.ray"]),
+        (1, "error", vec!["dump", "no-such-scene.ray"]),
         (1, "error", vec!["render", scene, "-o", "no/such/folder/a.png"]),
         (2, "error", vec!["render", scene, "--crop", "0,0,900,1"]),
         (2, "error", vec!["probe", scene, "900", "0"]),

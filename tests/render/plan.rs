@@ -286,7 +286,7 @@ fn plan_prints_every_decision_and_the_instructions() {
     let (_, classic, _) = outcome(&["plan", &file("gallery/marbles.ray"), "--method", "classic"]);
     assert!(classic.contains("none has bounds"), "{classic}");
     assert_eq!(outcome(&["plan", &file("wrong/zero-radius.ray")]).0, 2);
-    assert_eq!(outcome(&["plan", "no-such-scene.ray"]).0, 2);
+    assert_eq!(outcome(&["plan", "no-such-scene.ray"]).0, 1);
 }
 
 #[test]

@@ -173,6 +173,7 @@ fn files_that_cannot_be_included_are_refused() {
     write("b.inc", "include a.inc");
     write("colours.inc", "");
     write("bytes.inc", "\u{0}");
+    std::fs::write(folder.path().join("latin.inc"), b"# f\xfcr alle\n").expect("a file");
     for index in 0..20 {
         write(&format!("deep{index}.inc"), &format!("include deep{}.inc", index + 1));
     }
@@ -187,6 +188,7 @@ fn files_that_cannot_be_included_are_refused() {
         ("colors.inc", "did you mean `colours.inc`?"),
         ("no/such.inc", "cannot read `no/such.inc`"),
         ("bytes.inc", "`bytes.inc` is not a text"),
+        ("latin.inc", "`latin.inc` is probably encoded in Latin-1"),
         ("deep0.inc", "is one file too many"),
         ("wide0.inc", "is one file too many"),
         ("/dev/zero", "it is a pipe or a device, not a file"),

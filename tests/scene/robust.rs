@@ -263,3 +263,23 @@ fn light_on_a_surface_and_extreme_sizes_give_bytes() {
     );
     common::render(&model);
 }
+
+#[test]
+fn a_fault_within_curly_quotes_is_shown_in_whole_letters() {
+    let head = "camera eye { pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 }\nmaterial red { ambient 1 1 1 }\n";
+    for rest in [
+        "sphere “ball ” { }",
+        "sphere “plane ” { material red  center 4 3 -4  raduis 1 }\n“plane ” wall { }",
+        "sphere a { material “x y”  center “4 3 ” -4  radius 1 }\nsphere „b“ {",
+    ] {
+        let text = format!("{head}{rest}");
+        let read = scene::read(registry(), "any", Path::new(""), text.as_bytes(), None);
+        let report = read.err().expect("faults");
+        for shown in [report.to_string(), report.short(), report.json()] {
+            assert!(shown.contains("curly quotes are letters like others"), "{shown}");
+        }
+        for fault in report.faults() {
+            assert!(fault.place.as_ref().is_none_or(|place| text.get(place.clone()).is_some()), "{fault:?}");
+        }
+    }
+}

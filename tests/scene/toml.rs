@@ -95,7 +95,8 @@ fn the_schema_refuses_what_is_wrong_by_its_form() {
         let text = fs::read_to_string(&path).expect("a scene");
         // A text that is not TOML does not reach the schema.
         let Some(scene) = in_json(&text) else {
-            assert!(["toml-syntax", "toml-twice", "toml-not-toml"].contains(&name.as_str()), "{name}");
+            let other = ["toml-syntax", "toml-twice", "toml-not-toml", "toml-in-name-only"];
+            assert!(other.contains(&name.as_str()), "{name}");
             continue;
         };
         // A schema cannot tell what a name refers to, and does not restrict its characters.
@@ -104,6 +105,41 @@ fn the_schema_refuses_what_is_wrong_by_its_form() {
         refused.push(name);
     }
     assert!(refused.len() > 5, "{refused:?}");
+}
+
+#[test]
+fn the_schema_gives_one_error_for_one_fault_in_its_place() {
+    let schema = jsonschema::validator_for(&schema()).expect("a schema");
+    let scene = "[camera.eye]\npixeldim = [160, 120]\nworlddim = [8, 6]\nviewpoint = [4, 3, 6]\n\
+        [material.grey]\nambient = [2, 2, 2]\nspecular = [0.1, 0.2, 0.3]\ntransparency = 0.5\n\
+        [sphere.ball]\nmaterial = \"grey\"\ncenter = [4, \"1 + 2\", -4]\nradius = 1\n\
+        [revsurf.vase]\nmaterial = \"grey\"\nsurfer = 2\ndirection = [0, 1, 0]\nbase = [4, 0, -4]\nheight = 6\n";
+    for (right, wrong, place) in [
+        ("[160, 120]", "[160, 120.5]", "/camera/eye/pixeldim/1"),
+        ("[160, 120]", "[160, 120, 9]", "/camera/eye/pixeldim"),
+        ("transparency = 0.5", "transparency = 2", "/material/grey/transparency"),
+        ("[0.1, 0.2, 0.3]", "[0.1, 0.2]", "/material/grey/specular"),
+        ("[0.1, 0.2, 0.3]", "[0.1, true, 0.2]", "/material/grey/specular/1"),
+        ("radius = 1", "radius = -1", "/sphere/ball/radius"),
+        ("radius = 1", "radius = 0", "/sphere/ball/radius"),
+        ("radius = 1", "radius = true", "/sphere/ball/radius"),
+        ("radius = 1", "raduis = 1\nradius = 1", "/sphere/ball"),
+        ("radius = 1", "", "/sphere/ball"),
+        ("surfer = 2", "", "/revsurf/vase"),
+        ("surfer = 2", "surfer = 2\nprofile = \"2\"", "/revsurf/vase/profile"),
+        ("[camera.eye]", "[camera]", ""),
+    ] {
+        assert!(scene.contains(right), "{right}");
+        let value = in_json(&scene.replace(right, wrong)).expect("TOML");
+        let faults: Vec<_> =
+            schema.iter_errors(&value).map(|error| error.instance_path().to_string()).collect();
+        if !place.is_empty() {
+            assert_eq!(faults, [place], "{wrong}");
+        }
+        assert!(!faults.is_empty(), "{wrong}");
+    }
+    let value = in_json(scene).expect("TOML");
+    assert!(schema.is_valid(&value));
 }
 
 /// Returns the faulty scenes in TOML.

@@ -157,6 +157,7 @@ fn a_chart_has_all_its_files_and_its_errors_are_the_same_twice() {
         }
         let words = std::fs::read_to_string(folder.path().join("edge.txt")).expect("the verdict");
         assert_eq!(String::from_utf8_lossy(&output.stdout), words);
+        assert!(words.starts_with("What to do:\n  "), "{words}");
         let csv = std::fs::read_to_string(folder.path().join("edge.csv")).expect("the numbers");
         assert_eq!(csv.lines().count(), 1 + errors(folder.path()).len());
     }

@@ -39,10 +39,13 @@ fn item(registry: &Registry, snapshot: &Pending, before: Option<&Path>) -> Resul
     let change = change(snapshot)?;
     let explanations = match (&change, scene(path)) {
         (
-            Change::Picture { comparison: Some(Comparison { first: Some(pixel), size, .. }), .. },
+            Change::Picture { comparison: Some(Comparison { worst: Some(pixel), size, .. }), .. },
             Some(scene),
         ) => match input::load(registry, &scene, &set::Args::default(), None) {
-            Ok(model) => Place { scene: &scene, model, size: *size, pixel: *pixel }.explained(before),
+            Ok(model) => {
+                let set = &set::Args::default();
+                Place { scene: &scene, set, model, size: *size, pixel: *pixel }.explained(before)
+            }
             Err(failure) => {
                 tell(&failure);
                 Vec::new()

@@ -14,7 +14,7 @@ use std::path::PathBuf;
 /// Review the snapshots that failing tests left
 ///
 /// For each snapshot, the page shows the old image, the new image and their difference, or the changed lines of a text,
-/// and the command that accepts it. The first pixel that differs is explained as by `tabray probe`, for the scene as it
+/// and the command that accepts it. The pixel that differs most is explained as by `tabray probe`, for the scene as it
 /// is now and, with `--before`, by the program that made the old image.
 #[derive(clap::Args)]
 pub struct Args {

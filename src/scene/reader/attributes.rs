@@ -36,15 +36,12 @@ impl Against<'_, '_> {
         let attributes: Vec<_> = entity.attributes().collect();
         let mut given = vec![None; attributes.len()];
         let mut sound = !parsed.is_damaged;
-        let mut meant = Vec::new();
+        let mut unknown = Vec::new();
         for pair in parsed.attributes() {
             let (word, _) = pair;
             let known = find_attribute(entity, &word.text);
             match known.and_then(|known| attributes.iter().position(|a| a.name() == known.name())) {
-                None => {
-                    sound = false;
-                    meant.extend(self.unknown_attribute(&title, word));
-                }
+                None => unknown.push(pair),
                 Some(at) => {
                     let before: Option<(&Word<'_>, _)> = given[at].replace(pair);
                     if let Some((first, _)) = before {
@@ -57,6 +54,8 @@ impl Against<'_, '_> {
                 }
             }
         }
+        sound &= unknown.is_empty();
+        let meant = self.unknown_attributes(&title, &attributes, &given, &unknown);
         let one_of_each = self.groups(&title, &attributes, &given, &meant, parsed);
         sound &= one_of_each;
         let mut missing = Vec::new();
@@ -134,17 +133,47 @@ impl Against<'_, '_> {
         sound
     }
 
-    /// Reports an attribute that the type does not have, and returns the one that was probably meant, if any.
-    fn unknown_attribute(&mut self, title: &str, word: &Word<'_>) -> Option<&'static str> {
+    /// Reports attributes that the type does not have, and returns those that were probably meant.
+    fn unknown_attributes(
+        &mut self,
+        title: &str,
+        attributes: &[&'static dyn Attribute],
+        given: &[Option<(&Word<'_>, &[Word<'_>])>],
+        unknown: &[(&Word<'_>, &[Word<'_>])],
+    ) -> Vec<&'static str> {
+        let guesses = self.report.guesses();
+        let near = |word: &Word<'_>| near_attribute(self.entity, &word.text, guesses).map(|near| near.name());
+        let mut near: Vec<_> = unknown.iter().map(|(word, _)| *word).map(near).collect();
+        let missing = attributes.iter().zip(given).filter(|(attribute, given)| {
+            given.is_none() && attribute.default().is_none() && !near.contains(&Some(attribute.name()))
+        });
+        let missing: Vec<_> = missing.map(|(attribute, _)| *attribute).collect();
+        // As many are unknown as are missing, of as many numbers each: other programs call them so.
+        let strange: Vec<_> = (0..unknown.len()).filter(|index| near[*index].is_none()).collect();
+        let fits = |(index, attribute): (&usize, &&dyn Attribute)| {
+            let values = unknown[*index].1;
+            matches!(attribute.value_type(), Type::Number | Type::Whole)
+                && attribute.arity().allow(values.len())
+                && values.iter().all(|word| word.text.parse::<f64>().is_ok())
+        };
+        if strange.len() == missing.len() && strange.iter().zip(&missing).all(fits) {
+            strange.iter().zip(&missing).for_each(|(index, attribute)| near[*index] = Some(attribute.name()));
+        }
+        for ((word, _), near) in unknown.iter().zip(&near) {
+            self.unknown_attribute(title, word, *near);
+        }
+        near.into_iter().flatten().collect()
+    }
+
+    /// Reports an attribute that the type does not have, with the one that was probably meant, if any.
+    fn unknown_attribute(&mut self, title: &str, word: &Word<'_>, near: Option<&str>) {
         let entity = self.entity;
-        let near = near_attribute(entity, &word.text, self.report.guesses()).map(|near| near.name());
         let mut fault = Fault::error(word.place.clone(), format!("{title} has no attribute `{}`", word.text));
         if let Some(near) = near {
             fault = fault.label(format!("did you mean `{near}`?"));
         }
         let names = list(entity.attributes().map(|attribute| attribute.name()));
         self.report.add(fault.help(format!("a {} takes {names}", entity.name)));
-        near
     }
 
     /// Checks the values of one attribute for type, number and rule.

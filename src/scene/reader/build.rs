@@ -95,6 +95,9 @@ impl Check<'_, '_> {
                     )),
             );
         }
+        if let Some(levels) = self.levels.take().filter(|_| !self.report.is_fatal()) {
+            self.report.add_gathered(levels);
+        }
         let Self { camera, materials, textures, shaders, objects, patterns, lights, places, .. } = self;
         let model = camera.map(|camera| Model {
             camera: item(store, camera),

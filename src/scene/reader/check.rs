@@ -3,6 +3,7 @@
 use super::attributes::{Against, whole};
 use super::fault::{Fault, Place, Places};
 use super::guesses::find_attribute;
+use super::levels;
 use super::names::{Missing, Names, stand_in};
 use super::notes;
 use super::parsed::{Parsed, Word};
@@ -103,6 +104,8 @@ pub(super) struct Check<'r, 't> {
     /// The objects that other entities refer to.
     pub(super) patterns: Vec<Item<NamedBody>>,
     pub(super) lights: Vec<Item<AnyLight>>,
+    /// The warning of colours from 0 to 255, if there is one.
+    pub(super) levels: Option<Fault>,
     quick: Quick<'r>,
     pub(super) threads: &'r Threads,
 }
@@ -138,6 +141,7 @@ impl<'r, 't> Check<'r, 't> {
             objects: Vec::new(),
             patterns: Vec::new(),
             lights: Vec::new(),
+            levels: None,
             quick: Quick::new(registry),
             threads,
         }
@@ -264,6 +268,7 @@ impl Check<'_, '_> {
             }
             Construct::Material(construct) => {
                 if let Some(material) = self.made(parsed, args, construct) {
+                    self.warn_of_levels(parsed, args);
                     let material = Arc::new(material);
                     self.define(kind, &args.name, &Datum::Material { name, material: material.clone() });
                     self.materials.push((order, material));
@@ -288,6 +293,16 @@ impl Check<'_, '_> {
                 }
             }
             Construct::Object(_) | Construct::Light(_) => {}
+        }
+    }
+
+    /// Warns of the colours of a material if they are from 0 to 255; one warning stands for all materials.
+    fn warn_of_levels(&mut self, parsed: &Parsed<'_>, args: &Args) {
+        let Some((attribute, fault)) = levels::warning(args) else { return };
+        let place = place_of(args.entity, parsed, Some(attribute));
+        match &mut self.levels {
+            Some(first) => first.stand_for(place),
+            None => self.levels = Some(Fault { place, ..fault }),
         }
     }
 

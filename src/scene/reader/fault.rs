@@ -127,13 +127,17 @@ impl Fault {
     /// it ends.
     pub(super) fn tidy(&mut self, text: &str) {
         let also = self.also.iter_mut().map(|(place, label)| (place, label));
-        for (place, label) in also.chain([(&mut self.place, &mut self.label)]) {
-            *label = text::abridged(label).into_owned();
+        let whole = |place: &mut Place| {
             if let Some(place) = place {
                 let (one, other) = (text::boundary(text, place.start), text::boundary(text, place.end));
                 *place = one.min(other)..one.max(other);
             }
+        };
+        for (place, label) in also.chain([(&mut self.place, &mut self.label)]) {
+            *label = text::abridged(label).into_owned();
+            whole(place);
         }
+        self.alike.1.iter_mut().for_each(whole);
         self.help = self.help.as_deref().map(|help| text::abridged(help).into_owned());
         self.message = text::abridged(&self.message).replace(char::is_control, "\u{fffd}");
     }

@@ -1,12 +1,17 @@
 //! From a scene's text to a [`Model`], or to a report of all its faults.
 
+mod astray;
 mod attributes;
 mod build;
 mod check;
+mod encoding;
 mod excerpt;
 mod fault;
+mod foreign;
 mod guesses;
 mod keyword;
+mod languages;
+mod levels;
 mod listed;
 mod machine;
 mod made;
@@ -27,6 +32,7 @@ mod threads;
 mod tokens;
 mod toml;
 mod toml_faults;
+mod unseen;
 mod values;
 
 pub use check::Chosen;
@@ -40,6 +46,7 @@ use crate::scene::syntax::Syntax;
 use crate::world::accuracy::Accuracy;
 use build::Checked;
 use check::Source;
+use encoding::decode;
 use sources::Sources;
 use std::ops::Range;
 use std::path::Path;
@@ -93,6 +100,25 @@ pub fn read_by(
         Some(Syntax::Toml) => Syntax::Toml,
         _ => Syntax::of_text(text),
     };
+    let read = |text: &str| read_text(registry, (name, folder), text, syntax, accuracy);
+    read(text).map_err(|report| match languages::recognised(registry, report, name, text, syntax) {
+        Ok(report) => report,
+        Err(report) if syntax == Syntax::Notes => {
+            let again = |text: &str| read(text).map_or_else(|report| report, |loaded| loaded.warnings);
+            foreign::explained(report, text, again)
+        }
+        Err(report) => report,
+    })
+}
+
+/// Reads a scene's text.
+fn read_text(
+    registry: &Registry,
+    (name, folder): (&str, &Path),
+    text: &str,
+    syntax: Syntax,
+    accuracy: Chosen<'_>,
+) -> Result<Loaded, Report> {
     // The memory for making a model, in bytes per byte of its text.
     let weight = if syntax == Syntax::Toml { 48 } else { 8 };
     let room = accuracy.memory.map_or(u64::MAX, |memory| memory / weight);
@@ -184,30 +210,9 @@ fn finish(
     }
     match model {
         Some(model) if !report.is_fatal() => {
+            unseen::warning(&model).into_iter().for_each(|warning| report.add(warning));
             Ok(Loaded { model, warnings: report.into_owned(), building, places })
         }
         _ => Err(report.into_owned()),
     }
-}
-
-/// Decodes a file's bytes as UTF-8 text.
-///
-/// # Errors
-/// The first place that is not UTF-8 text.
-fn decode<'b>(name: &str, bytes: &'b [u8]) -> Result<&'b str, Report> {
-    let nul = if bytes.contains(&0) { bytes.iter().position(|byte| *byte == 0) } else { None };
-    let not_utf8 = std::str::from_utf8(bytes).err().map(|error| error.valid_up_to());
-    let (place, message) = match (nul, not_utf8) {
-        (Some(nul), bad) if bad.is_none_or(|bad| nul < bad) => (nul..nul + 1, "unexpected NUL byte"),
-        (_, Some(bad)) => (bad..bad + char::REPLACEMENT_CHARACTER.len_utf8(), "invalid UTF-8"),
-        _ => {
-            let text = std::str::from_utf8(bytes).unwrap_or_default();
-            return Ok(text.strip_prefix('\u{feff}').unwrap_or(text));
-        }
-    };
-    // Up to the fault, the lossy text has the same bytes.
-    let mut report = Report::new(name, String::from_utf8_lossy(bytes).into_owned(), Syntax::default());
-    let help = "a scene is plain text, a sequence of entities `TYPE NAME { ATTRIBUTES }`";
-    report.add(Fault::error(Some(place), message).help(help));
-    Err(report)
 }

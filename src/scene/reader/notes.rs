@@ -57,17 +57,21 @@ pub fn again<'a>(registry: &Registry, text: &'a str, at: usize) -> Option<Parsed
 /// Tells whether any part of a text is an entity.
 fn looks_like_a_scene(registry: &Registry, text: &str) -> bool {
     let mut nowhere = Report::default();
+    let parser = Parser::new(registry, text, 0, &mut nowhere);
+    parser.begins_entity() || parser.keyword().is_some() || has_entities(registry, text).is_some()
+}
+
+/// Returns the place of the type of the first whole entity in a text, if it has one.
+pub fn has_entities(registry: &Registry, text: &str) -> Option<Range<usize>> {
+    let mut nowhere = Report::default();
     let mut parser = Parser::new(registry, text, 0, &mut nowhere);
-    if parser.begins_entity() || parser.keyword().is_some() {
-        return true;
-    }
-    while parser.token().is_some() {
+    while let Some(token) = parser.token() {
         if parser.is_entity_type() && parser.has_form() {
-            return true;
+            return Some(token.place());
         }
         parser.step();
     }
-    false
+    None
 }
 
 /// The parser of a scene in the notes' syntax.

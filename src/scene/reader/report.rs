@@ -100,6 +100,24 @@ impl<'t> Report<'t> {
         }
     }
 
+    /// Adds a fault that stands for others like it.
+    pub(super) fn add_gathered(&mut self, mut fault: Fault) {
+        self.notes.counts[fault.severity as usize] += 1 + fault.alike.0;
+        fault.tidy(&self.text);
+        self.insert(fault);
+    }
+
+    /// Shows the faults in a text in which every letter stands where it stands in the scene's own.
+    pub(super) fn shows_in_place(&mut self, own: &str) {
+        let mut text = own.to_owned();
+        text += self.text.get(own.len()..).unwrap_or_default();
+        // There, a place may begin or end within a letter that several others stand for here.
+        for fault in &mut self.faults {
+            fault.tidy(&text);
+        }
+        self.text = text.into();
+    }
+
     /// Tells whether a fault was found before, in another round of a text that is repeated.
     fn is_again(&self, fault: &Fault) -> bool {
         let is_repeated = |at: &usize| self.notes.repeated.iter().any(|range| range.contains(at));

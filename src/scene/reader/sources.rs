@@ -1,6 +1,7 @@
 //! The texts that a scene is read from: its own, those of the files that it includes, and the options that set values.
 //! They stand one after the other in one text, so that a place is a range of it.
 
+use super::encoding;
 use super::fault::Fault;
 use super::parts::Part;
 use super::report::Report;
@@ -155,15 +156,15 @@ impl<'t> Sources<'t> {
         *room = room
             .checked_sub(bytes.len() as u64)
             .ok_or_else(|| (format!("`{file}` is too large to be included"), None))?;
-        let text = String::from_utf8(bytes).ok().filter(|text| !text.contains('\0'));
+        let text = std::str::from_utf8(&bytes).ok().filter(|text| !text.contains('\0'));
         let Some(text) = text else {
-            return Err((
-                format!("`{file}` is not a text"),
-                Some("a scene is plain text, in UTF-8".to_owned()),
-            ));
+            let other = encoding::other(&bytes).map(|name| format!("probably encoded in {name}"));
+            let what = other.unwrap_or_else(|| "not a text".to_owned());
+            let help = "a scene is plain text, in UTF-8";
+            return Err((format!("`{file}` is {what}"), Some(help.to_owned())));
         };
         let name = Path::new(&self.parts[includer].name).with_file_name(file).display().to_string();
-        self.add(name, text.strip_prefix('\u{feff}').unwrap_or(&text));
+        self.add(name, text.strip_prefix('\u{feff}').unwrap_or(text));
         readings.push(Reading { path, includer: Some(includer) });
         Ok(self.parts.len() - 1)
     }

@@ -1,5 +1,6 @@
 //! Reads the images of textures.
 
+use super::astray;
 use super::check::{Check, Source, place_of};
 use super::fault::{Fault, Severity};
 use crate::scene::store::Store;
@@ -32,12 +33,18 @@ impl Check<'_, '_> {
             if let Err(reason) = read {
                 let place = self.places.get(*order);
                 let is_told = self.report.tells(Severity::Error, &place);
-                let near = if is_told { texture.near() } else { None };
+                let mut files = args.values().filter(|(_, datum)| matches!(datum, Datum::Word(_)));
+                let file = files.next();
+                let near = match file.as_ref().map(|(_, datum)| datum) {
+                    Some(Datum::Word(written)) if is_told && texture.is_missing() => {
+                        astray::image(&self.setting.folder, written)
+                    }
+                    _ => None,
+                };
                 let reason =
                     near.map_or(reason.to_owned(), |near| format!("it does not exist, but `{near}` does"));
                 let message = format!("the file of texture `{}` cannot be read: {reason}", args.name);
-                let mut files = args.values().filter(|(_, datum)| matches!(datum, Datum::Word(_)));
-                let file = files.next().map(|(file, _)| file.name());
+                let file = file.map(|(file, _)| file.name());
                 let parsed = source.entity(self.registry, *order, &place);
                 let place = parsed.and_then(|parsed| place_of(args.entity, &parsed, file));
                 self.report.add(

@@ -5,7 +5,7 @@ use super::parsed::{Form, Word};
 use crate::numeric::formula::Formula;
 use crate::scene::choice::Choices;
 use crate::scene::value::{Datum, Type};
-use crate::text::nearest;
+use crate::text::{self, nearest};
 use std::sync::Arc;
 
 /// Reads words as values of a type.
@@ -99,7 +99,28 @@ fn all<T>(words: &[Word<'_>], read: fn(&str) -> Result<T, Complaint>) -> Result<
             }
         }
     }
-    if faults.is_empty() { Ok(values) } else { Err(faults) }
+    if faults.is_empty() { Ok(values) } else { Err(one_for_all(faults)) }
+}
+
+/// Returns one fault in place of several, if the words have the same.
+fn one_for_all(mut faults: Vec<Fault>) -> Vec<Fault> {
+    let [first, .., last] = &faults[..] else { return faults };
+    let parts = |fault: &Fault| {
+        let (word, what) = fault.message.rsplit_once("` is ")?;
+        Some((format!("{word}`"), what.to_owned(), fault.help.clone()))
+    };
+    let Some(parts) = faults.iter().map(parts).collect::<Option<Vec<_>>>() else { return faults };
+    if parts.iter().any(|(_, what, help)| (what, help) != (&parts[0].1, &parts[0].2)) {
+        return faults;
+    }
+    let words: Vec<_> = parts.iter().map(|(word, ..)| word.as_str()).collect();
+    let what = &parts[0].1;
+    let what = what.strip_prefix("not a ").map_or(what.clone(), |noun| format!("not {noun}s"));
+    let message = format!("{} are {what}", text::and(&words));
+    let place = first.place.as_ref().zip(last.place.as_ref()).map(|(first, last)| first.start..last.end);
+    faults.truncate(1);
+    (faults[0].message, faults[0].place) = (message, place);
+    faults
 }
 
 /// Reads a whole number.

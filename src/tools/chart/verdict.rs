@@ -2,14 +2,23 @@
 
 use super::data::{Chart, Family, Panel, Point, Subject};
 use super::front::{self, SAME_TIME};
+use crate::scene::choice::Choice;
+use crate::world::accuracy::Accuracy;
 use std::fmt::Write;
 
 /// The distance in Oklab from which the eye can tell colours apart, in hundredths of that from black to white.
 const VISIBLE: f64 = 2.0;
 
-/// Returns the verdict on each panel: the front, the position of the default, and what to choose.
+/// The ratio of times from which on another accuracy than the default is worth taking.
+const GAIN: f64 = 0.8;
+
+/// Returns what to do, and the verdict on each panel: the front, the position of the default, and what to choose.
 pub fn words(chart: &Chart) -> String {
     let mut text = String::new();
+    let todo = advice(chart);
+    if !todo.is_empty() {
+        let _ = writeln!(text, "What to do:\n  {}\n", todo.join("\n  "));
+    }
     for panel in &chart.panels {
         let _ = writeln!(text, "{} ({})", panel.title, panel.note);
         let lines = match panel.subject {
@@ -42,6 +51,56 @@ pub fn words(chart: &Chart) -> String {
         text += "Not all was measured: this is what had been measured by then.\n";
     }
     text
+}
+
+/// Says what to do, in the order of importance.
+fn advice(chart: &Chart) -> Vec<String> {
+    let of = |subject: Subject| chart.panels.iter().find(|panel| panel.subject == subject);
+    let is_doubtful = chart.is_noisy() || chart.is_busy();
+    let again =
+        is_doubtful.then(|| "measure again on a machine with nothing else to do: see below".to_owned());
+    let accuracy = of(Subject::Methods).filter(|_| !is_doubtful).and_then(accuracy);
+    let samples =
+        of(Subject::Samples).map(|panel| match panel.points.iter().find(|point| looks_right(point)) {
+            Some(point) if point.is_default => {
+                format!("keep the samples per pixel, {}: 99 % of the pixels look right", point.samples)
+            }
+            Some(point) => {
+                let sampler = if point.family == Family::Random { " --sampler random" } else { "" };
+                let count = point.samples;
+                format!("take `--samples {count}{sampler}`, with which 99 % of the pixels look right")
+            }
+            None => {
+                "take more samples per pixel than were measured: with none do 99 % of the pixels look right"
+                    .to_owned()
+            }
+        });
+    again.into_iter().chain(accuracy).chain(samples).collect()
+}
+
+/// Says which accuracy to choose: the fastest that changes no pixel, or the default where that is as fast.
+fn accuracy(panel: &Panel) -> Option<String> {
+    let default = panel.points.iter().find(|point| point.is_default)?;
+    let options: Vec<_> = Accuracy::all().iter().map(|accuracy| accuracy.option().name).collect();
+    let is_same =
+        |point: &&Point| options.contains(&point.name.as_str()) && matches!(point.changed, Some([0, _]));
+    let fastest = panel.points.iter().filter(is_same).min_by(|a, b| a.times.least.total_cmp(&b.times.least));
+    Some(match fastest {
+        Some(fastest) if fastest.times.least <= GAIN * default.times.least => {
+            let option = if fastest.name == "classic" { "--method" } else { "--accuracy" };
+            let (own, other) = (time(panel, default), time(panel, fastest));
+            format!(
+                "take `{option} {}`: it shows the same image in {other} per pixel in place of {own}",
+                fastest.name
+            )
+        }
+        _ => format!("keep the accuracy, {}: none that is clearly faster shows the same image", default.name),
+    })
+}
+
+/// Tells whether the eye can tell at most one in a hundred pixels from the right ones.
+fn looks_right(point: &Point) -> bool {
+    point.visible.is_some_and(|part| part <= VISIBLE)
 }
 
 fn distances(panel: &Panel) -> Vec<String> {
@@ -124,8 +183,7 @@ fn samples(panel: &Panel) -> Vec<String> {
             None => lines.push(format!("sobol does not reach the error of {}", last.name)),
         }
     }
-    let fits = |point: &&Point| point.visible.is_some_and(|part| part <= VISIBLE);
-    lines.push(match panel.points.iter().find(fits) {
+    lines.push(match panel.points.iter().find(|point| looks_right(point)) {
         Some(first) => {
             format!(
                 "99 % of the pixels look right (within {VISIBLE} of 100 in Oklab): {}, {}",

@@ -16,6 +16,21 @@ fn a_difference_is_counted_measured_and_located() {
 }
 
 #[test]
+fn the_pixel_that_differs_most_is_located_beside_the_first() {
+    let folder = with_pictures();
+    let [mut picture, _] = pictures();
+    let old = picture.clone();
+    picture.put_pixel(1, 0, image::Rgb(old.get_pixel(1, 0).0.map(|byte| byte ^ 3)));
+    picture.put_pixel(2, 1, image::Rgb(old.get_pixel(2, 1).0.map(|byte| byte ^ 64)));
+    picture.save(folder.path().join("both.png")).expect("room for a picture");
+    let (status, out, _) = tabray(folder.path(), &["diff", "old.png", "both.png"]);
+    let lines: Vec<_> = out.lines().collect();
+    assert_eq!((status, lines.len()), (1, 3), "{out}");
+    assert!(lines[1].starts_with("first at 1 from the left and 2 from the bottom: "), "{out}");
+    assert!(lines[2].starts_with("most at 2 from the left and 1 from the bottom: "), "{out}");
+}
+
+#[test]
 fn pictures_are_the_same_within_the_tolerance() {
     let folder = with_pictures();
     let status = |args: &[&str]| tabray(folder.path(), &[&["diff"], args].concat()).0;

@@ -1,0 +1,73 @@
+//! Parses the command line, and says what was probably meant where that fails.
+
+use super::failure::Failure;
+use super::{color, program};
+use crate::scene::syntax::Syntax;
+use crate::text::{nearest, quoted};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Arg, ArgMatches, Command};
+use std::env;
+use std::ffi::OsString;
+use std::path::Path;
+
+/// Parses the program's arguments. What is wrong with them is printed, and ends the program; so do `--help` and
+/// `--version`.
+pub fn matches(mut command: Command) -> Result<ArgMatches, Failure> {
+    let words: Vec<OsString> = env::args_os().collect();
+    color::choose_early(&words);
+    let mut error = match command.try_get_matches_from_mut(&words) {
+        Ok(matches) => return Ok(matches),
+        Err(error) => error,
+    };
+    let given = |kind| match error.get(kind) {
+        Some(ContextValue::String(word)) => Some(word.clone()),
+        _ => None,
+    };
+    let without_command = chosen(&command, &words).get_name() == command.get_name();
+    let scene = match error.kind() {
+        ErrorKind::InvalidSubcommand => given(ContextKind::InvalidSubcommand),
+        // An option of `render`, before the scene.
+        ErrorKind::UnknownArgument if without_command => words
+            .iter()
+            .skip(1)
+            .filter_map(|word| word.to_str())
+            .find(|word| is_scene(word))
+            .map(str::to_owned),
+        _ => None,
+    };
+    if let Some(scene) = scene.filter(|word| is_scene(word)) {
+        let line = format!("{} render {}", program::name(), quoted(scene.as_ref()));
+        let message = format!("`{scene}` is a scene, not a command");
+        return Err(Failure::Usage(message, Some(format!("`{line}` renders it"))));
+    }
+    let near = given(ContextKind::InvalidArg).filter(|_| error.kind() == ErrorKind::UnknownArgument);
+    let near = near.and_then(|option| {
+        let name = option.strip_prefix("--")?.split('=').next()?;
+        // Of options that are equally near, the first in the help is taken.
+        let known = chosen(&command, &words).get_arguments().filter_map(Arg::get_long);
+        nearest(name, known).map(|near| format!("--{near}"))
+    });
+    if let Some(near) = near {
+        error.insert(ContextKind::SuggestedArg, ContextValue::String(near));
+        // It shows the option that clap would guess.
+        error.remove(ContextKind::Usage);
+    }
+    error.exit()
+}
+
+/// Tells whether a word in the place of a command names a scene.
+fn is_scene(word: &str) -> bool {
+    let extension = Path::new(word).extension().and_then(|extension| extension.to_str());
+    extension
+        .is_some_and(|extension| ["ray", "toml"].iter().any(|known| extension.eq_ignore_ascii_case(known)))
+        || Syntax::of_name(word).is_some() && Path::new(word).is_file()
+}
+
+/// Returns the command that the words choose.
+fn chosen<'c>(command: &'c Command, words: &[OsString]) -> &'c Command {
+    let mut chosen = command;
+    for word in words.iter().skip(1).filter_map(|word| word.to_str()) {
+        chosen = chosen.find_subcommand(word).unwrap_or(chosen);
+    }
+    chosen
+}

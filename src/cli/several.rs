@@ -1,0 +1,86 @@
+//! Several scenes for one command: the names of their images, what is said about all of them, and the exit status.
+
+use super::failure::{Failure, status, tell};
+use super::input;
+use super::output;
+use super::progress;
+use crate::text::{self, list};
+use std::collections::HashMap;
+use std::path::{self, Path, PathBuf};
+use std::time::Instant;
+
+/// The maximum number of scenes that the summary names.
+const NAMED: usize = 10;
+
+/// Tells whether an output is a folder for the images of scenes, rather than the image of one.
+pub fn is_folder(output: Option<&Path>, scenes: usize) -> bool {
+    output.is_some_and(|path| {
+        let ends = path.as_os_str().to_string_lossy().ends_with(path::is_separator);
+        scenes > 1 || ends || (path.is_dir() && path.extension().is_none())
+    })
+}
+
+/// Returns the path of each scene's image in a folder, which is made where it does not exist.
+pub fn targets(scenes: &[PathBuf], output: Option<&Path>, extension: &str) -> Result<Vec<PathBuf>, Failure> {
+    let usage = |message: String, help: &str| Failure::Usage(message, Some(help.to_owned()));
+    if let Some(file) = output.filter(|path| is_file_name(path)) {
+        let message =
+            format!("`{}` is not a folder for the images of {} scenes", file.display(), scenes.len());
+        return Err(usage(message, "name a folder with `-o DIR`; the images have the names of their scenes"));
+    }
+    let mut of: HashMap<PathBuf, &Path> = HashMap::new();
+    let mut targets = Vec::new();
+    for scene in scenes {
+        let name = scene.file_name().filter(|_| !input::is_standard(scene)).ok_or_else(|| {
+            let message = "a scene from standard input has no name to give its image".to_owned();
+            usage(message, "render it alone, and name a file with `-o FILE`")
+        })?;
+        let target = output.unwrap_or(Path::new("")).join(Path::new(name).with_extension(extension));
+        if let Some(other) = of.insert(target.clone(), scene) {
+            let (one, other, target) = (other.display(), scene.display(), target.display());
+            let message = format!("`{one}` and `{other}` would have the same image, `{target}`");
+            return Err(usage(message, "render them one after the other, into folders of their own"));
+        }
+        targets.push(target);
+    }
+    output.map_or(Ok(()), output::folder)?;
+    Ok(targets)
+}
+
+/// Tells whether a path is not meant as a folder: it is a file, or it is named like an image.
+fn is_file_name(path: &Path) -> bool {
+    let name = path.as_os_str().to_string_lossy();
+    let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+    let is_image =
+        extension.is_some_and(|extension| ["png", "ppm", "exr", "pfm"].contains(&extension.as_str()));
+    name == "-" || path.is_file() || (is_image && !path.is_dir() && !name.ends_with(path::is_separator))
+}
+
+/// Does something with each scene, goes on after a failure, and says at the end how many have failed. The exit status
+/// is the worst of all.
+pub fn each(scenes: &[PathBuf], mut one: impl FnMut(usize) -> Result<(), Failure>) -> Result<(), Failure> {
+    let start = Instant::now();
+    let (mut worst, mut failed) = (0, Vec::new());
+    for (index, scene) in scenes.iter().enumerate() {
+        progress::begin(index, scenes.len());
+        if let Err(failure) = one(index) {
+            tell(&failure);
+            worst = worst.max(status(&failure));
+            failed.push(scene.display().to_string());
+        }
+    }
+    progress::is_over();
+    let all = scenes.len();
+    if failed.is_empty() {
+        let seconds = start.elapsed().as_secs_f64();
+        super::messages::note(&format!("rendered {} in {seconds:.2} s", text::count(all, "scene")));
+        return Ok(());
+    }
+    let named = list(failed.iter().take(NAMED).map(String::as_str));
+    let more = failed.len().saturating_sub(NAMED);
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    let message =
+        format!("{} of {} could not be rendered: {named}{more}", failed.len(), text::count(all, "scene"));
+    super::messages::error(&message, None);
+    Err(Failure::Several(worst))
+}

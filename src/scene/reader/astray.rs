@@ -1,0 +1,65 @@
+//! Guesses which file was meant by a name that leads nowhere: one with another extension, or one folder off.
+
+use crate::text::nearest_file;
+use std::path::{Component, Path, PathBuf};
+
+/// The extensions of images that textures can be.
+const IMAGES: [&str; 5] = ["ppm", "png", "pgm", "pbm", "pnm"];
+
+/// The maximum number of folders that are searched, and of files in each.
+const FOLDERS: usize = 64;
+const FILES: usize = 4096;
+
+/// Returns the name of the image that was probably meant by one that a scene in `folder` has and that does not exist.
+pub fn image(folder: &Path, written: &str) -> Option<String> {
+    let written = Path::new(written);
+    let name = written.file_name()?;
+    let own = written.parent().unwrap_or(Path::new(""));
+    let same = |place: &Path| like(&folder.join(place), written).map(|name| place.join(name));
+    let places = places(folder, own);
+    let exact = || places.iter().map(|place| place.join(name)).find(|path| folder.join(path).is_file());
+    let found = same(own).or_else(exact).or_else(|| places.iter().find_map(|place| same(place)));
+    let found = found.or_else(|| nearest_file(&folder.join(written)).map(|near| own.join(near)));
+    found.map(|path| path.display().to_string())
+}
+
+/// Returns the folders around one that a scene names, relative to the scene's folder.
+fn places(folder: &Path, own: &Path) -> Vec<PathBuf> {
+    let up = Path::new("..");
+    let mut places = vec![up.join(own)];
+    let mut rest = own.components();
+    if rest.next().is_some_and(|first| matches!(first, Component::ParentDir | Component::Normal(_))) {
+        places.push(rest.as_path().to_owned());
+        // Without any of its `..`, and beside the scene.
+        let is_up = |part: &Component<'_>| *part == Component::ParentDir;
+        places.push(own.components().filter(|part| !is_up(part)).collect());
+    }
+    places.extend([PathBuf::new(), up.to_owned()]);
+    for within in [Path::new(""), up] {
+        let entries = folder.join(within).read_dir().into_iter().flatten().take(FILES);
+        let folders = entries.filter_map(Result::ok).filter(|entry| entry.path().is_dir());
+        let mut folders: Vec<_> = folders.map(|folder| within.join(folder.file_name())).collect();
+        // A folder lists its entries in any order.
+        folders.sort_unstable();
+        places.extend(folders);
+    }
+    places.truncate(FOLDERS);
+    places
+}
+
+/// Returns the name of an image in a folder that has the same name but for its extension and for capital letters.
+fn like(folder: &Path, written: &Path) -> Option<String> {
+    let stem = written.file_stem()?.to_str()?;
+    let entries = if folder.as_os_str().is_empty() { Path::new(".") } else { folder }.read_dir().ok()?;
+    let names = entries.take(FILES).filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let is_like = |name: &String| {
+        let path = Path::new(name);
+        let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+        IMAGES.iter().any(|image| extension.eq_ignore_ascii_case(image))
+            && path
+                .file_stem()
+                .and_then(|stem| stem.to_str())
+                .is_some_and(|own| own.eq_ignore_ascii_case(stem))
+    };
+    names.filter(is_like).min()
+}

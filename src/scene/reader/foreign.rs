@@ -1,0 +1,342 @@
+//! What scenes have that were written as other programs read them: brackets, commas, `=`, `;`, curly quotes, colours as
+//! `#8080ff`. Where a scene has errors, each of these is reported once, with what would be right, and the scene is read
+//! again without them, so that none of the errors that follow from them is reported.
+
+use super::fault::{Fault, Severity};
+use super::report::Report;
+use super::tokens::{Token, TokenForm, Tokens};
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// A way of writing that scenes do not have.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Way {
+    Colour,
+    Quotes,
+    Brackets,
+    Equals,
+    Semicolon,
+}
+
+/// Where a text has it first, what would be right there, and all its places.
+struct Found {
+    right: String,
+    places: Vec<Range<usize>>,
+}
+
+/// A text without what scenes do not have: each letter of it stands where it stood.
+struct Cleaned {
+    bytes: Vec<u8>,
+    found: BTreeMap<Way, Found>,
+}
+
+/// Returns the report on a scene with errors: the same, or if the text has fewer errors without what other programs
+/// would read, the report of reading it `again` without that, and what it was.
+pub fn explained(
+    report: Report<'static>,
+    text: &str,
+    again: impl FnOnce(&str) -> Report<'static>,
+) -> Report<'static> {
+    let mut cleaned = Cleaned { bytes: text.as_bytes().to_vec(), found: BTreeMap::new() };
+    cleaned.colours();
+    cleaned.quotes();
+    cleaned.marks();
+    let Some(clean) = String::from_utf8(cleaned.bytes).ok().filter(|_| !cleaned.found.is_empty()) else {
+        return report;
+    };
+    let errors = report.count(Severity::Error);
+    let mut better = again(&clean);
+    if better.count(Severity::Error) >= errors {
+        return report;
+    }
+    better.shows_in_place(text);
+    for (way, found) in cleaned.found {
+        better.add_gathered(way.fault(&found));
+    }
+    better
+}
+
+impl Way {
+    fn fault(self, Found { right, places }: &Found) -> Fault {
+        let (message, help) = match self {
+            Self::Colour => (
+                "a `#` begins a comment, not a colour",
+                "a colour is red, green and blue, and 1 is the brightest that an image can show",
+            ),
+            Self::Quotes => (
+                "curly quotes are letters like others",
+                "a word with white space stands in straight quotes, which word processors replace by curly ones",
+            ),
+            Self::Brackets => {
+                ("values are not written with brackets or commas", "separate values by white space")
+            }
+            Self::Equals => (
+                "there is no `=` between an attribute and its values",
+                "write `NAME VALUES`; in a file whose name ends in .toml, a scene is TOML, and has `=`",
+            ),
+            Self::Semicolon => (
+                "there is no `;` after an attribute",
+                "an attribute ends where the next one begins, and an entity with its `}`",
+            ),
+        };
+        let label = match self {
+            Self::Equals | Self::Semicolon => "leave it out".to_owned(),
+            Self::Colour | Self::Quotes | Self::Brackets => format!("write `{right}`"),
+        };
+        let mut fault = Fault::error(places.first().cloned(), message).label(label).help(help);
+        places.iter().skip(1).for_each(|place| fault.stand_for(Some(place.clone())));
+        fault
+    }
+}
+
+impl Cleaned {
+    fn find(&mut self, way: Way, place: Range<usize>, right: impl FnOnce() -> String) {
+        match self.found.get_mut(&way) {
+            Some(found) => found.places.push(place),
+            None => drop(self.found.insert(way, Found { right: right(), places: vec![place] })),
+        }
+    }
+
+    fn text(&self) -> String {
+        // Only whole characters are replaced, by others.
+        String::from_utf8_lossy(&self.bytes).into_owned()
+    }
+
+    /// Puts three numbers in the place of each colour such as `#8080ff` that follows a word on its line.
+    fn colours(&mut self) {
+        let text = self.text();
+        let mut start = 0;
+        for line in text.split_inclusive('\n') {
+            let mut before = "";
+            for word in line.split_ascii_whitespace() {
+                let at = start + (word.as_ptr() as usize - line.as_ptr() as usize);
+                let digits = word.strip_prefix('#').map(|rest| rest.trim_end_matches(['}', ';']));
+                let is_name = before == "="
+                    || before.starts_with(|c: char| c.is_ascii_alphabetic()) && !before.contains('"');
+                match digits.and_then(|digits| Some((digits, colour(digits)?))) {
+                    Some((digits, [red, green, blue])) if is_name => {
+                        let place = at..at + 1 + digits.len();
+                        let stand_in = format!("{:<1$}", "1 1 1", place.len().max(5));
+                        // A short colour needs the white space after it.
+                        if self
+                            .bytes
+                            .get(place.end..at + stand_in.len())
+                            .is_some_and(|rest| rest.iter().all(u8::is_ascii_whitespace))
+                        {
+                            self.bytes[at..at + stand_in.len()].copy_from_slice(stand_in.as_bytes());
+                            let shown = |level: u8| {
+                                let text = format!("{:.3}", f64::from(level) / 255.0);
+                                text.trim_end_matches('0').trim_end_matches('.').to_owned()
+                            };
+                            self.find(Way::Colour, place, || [red, green, blue].map(shown).join(" "));
+                        }
+                    }
+                    _ if word.starts_with('#') => break,
+                    _ => {}
+                }
+                before = word;
+            }
+            start += line.len();
+        }
+    }
+
+    /// Puts straight quotes in the place of curly ones that begin and end words.
+    fn quotes(&mut self) {
+        let text = self.text();
+        let mut start = 0;
+        for line in text.split_inclusive('\n') {
+            self.quotes_of(line, start);
+            start += line.len();
+        }
+    }
+
+    fn quotes_of(&mut self, line: &str, start: usize) {
+        let length = |at: usize| line[at..].chars().next().map_or(1, char::len_utf8);
+        let mut at = 0;
+        while let Some(open) = line[at..].find(['“', '„', '”', '‘']).map(|found| at + found) {
+            let before = line[..open].chars().next_back();
+            at = open + length(open);
+            if !before.is_none_or(|before| before.is_whitespace() || "{}=".contains(before)) {
+                continue;
+            }
+            let Some(close) = line[at..].find(['”', '“', '’']).map(|found| at + found) else { return };
+            let (first, end) = (at, close + length(close));
+            at = end;
+            if line[first..close].contains('"') {
+                continue;
+            }
+            // Each straight quote stands beside its word, in the last or the first byte of the curly one.
+            self.bytes[start + open..start + first].fill(b' ');
+            self.bytes[start + close..start + end].fill(b' ');
+            self.bytes[start + first - 1] = b'"';
+            self.bytes[start + close] = b'"';
+            self.find(Way::Quotes, start + open..start + end, || format!("\"{}\"", &line[first..close]));
+        }
+    }
+
+    /// Puts white space in the place of brackets, commas, `=` and `;` around values.
+    fn marks(&mut self) {
+        let text = self.text();
+        let nowhere = &mut Report::default();
+        let mut tokens = Tokens::of(&text, nowhere);
+        let mut run: Option<Range<usize>> = None;
+        while let Some(token) = tokens.step(nowhere) {
+            let word = tokens.raw(token);
+            let is_name = tokens.ahead[0].is_some_and(|next| next.form == TokenForm::Open);
+            let is_open = run.as_ref().is_some_and(|run| {
+                let inner = &text[run.clone()];
+                inner.ends_with(',') || inner.contains(['<', '(', '[']) && !inner.ends_with(['>', ')', ']'])
+            });
+            let marked = (token.form == TokenForm::Word && !is_name).then(|| marks(word, is_open)).flatten();
+            let Some(marks) = marked else {
+                // Within brackets, a value may have no marks.
+                match &mut run {
+                    Some(run) if is_open && token.form == TokenForm::Word => run.end = token.end,
+                    _ => self.end_of_run(&text, &mut run),
+                }
+                continue;
+            };
+            self.one(&text, token, &marks, &mut run);
+        }
+        self.end_of_run(&text, &mut run);
+    }
+
+    fn one(&mut self, text: &str, token: Token, marks: &[usize], run: &mut Option<Range<usize>>) {
+        let mut values: Option<Range<usize>> = None;
+        for at in marks.iter().map(|at| token.start + at) {
+            self.bytes[at] = b' ';
+            let way = match text.as_bytes()[at] {
+                b'=' => Way::Equals,
+                b';' => Way::Semicolon,
+                _ => {
+                    values = Some(values.map_or(at, |values| values.start)..at + 1);
+                    continue;
+                }
+            };
+            self.find(way, at..at + 1, String::new);
+        }
+        let word = text[token.place()].trim_end_matches(';');
+        let Some(values) = values else {
+            if let Some(run) =
+                run.as_mut().filter(|run| text[..run.end].ends_with(',') && !word.contains('='))
+            {
+                run.end = token.start + word.len();
+            }
+            return self.end_of_run(text, run);
+        };
+        // What stands before an opening bracket is an attribute: `ambient(1,1,1)`.
+        let opens = word.find(['<', '(', '[']).map(|at| token.start + at);
+        let start = opens.map_or(token.start, |opens| opens.min(values.start));
+        let place = start..token.start + word.len();
+        let is_over = run.as_ref().is_some_and(|run| text[run.clone()].ends_with(['>', ')', ']']));
+        match run {
+            Some(run) if !is_over && opens.is_none() => run.end = place.end,
+            _ => {
+                self.end_of_run(text, run);
+                *run = Some(place);
+            }
+        }
+    }
+
+    fn end_of_run(&mut self, text: &str, run: &mut Option<Range<usize>>) {
+        let Some(place) = run.take() else { return };
+        let right = text[place.clone()].replace(|c: char| "<>()[],;=".contains(c), " ");
+        let right = right.split_whitespace().collect::<Vec<_>>().join(" ");
+        self.find(Way::Brackets, place, || right);
+    }
+}
+
+/// Returns the positions of a word's marks, where they are not part of a name.
+fn marks(word: &str, is_within: bool) -> Option<Vec<usize>> {
+    let is_mark = |c: char| "<>()[],;=".contains(c);
+    if !word.contains(is_mark) {
+        return None;
+    }
+    let all = |of: &dyn Fn(char) -> bool| {
+        let marks = word.char_indices().filter(|(_, c)| of(*c));
+        Some(marks.map(|(at, _)| at).collect::<Vec<_>>())
+    };
+    let is_number = |piece: &str| piece.parse::<f64>().is_ok();
+    let pieces: Vec<_> = word.split(is_mark).filter(|piece| !piece.is_empty()).collect();
+    // What has no brackets may be two numbers, or one with a decimal comma.
+    let is_decimal = !is_within
+        && matches!(word.split_once(','), Some((one, other))
+        if [one, other].iter().all(|digits| digits.trim_start_matches(['+', '-']).bytes().all(|b| b.is_ascii_digit())
+            && digits.ends_with(|c: char| c.is_ascii_digit())));
+    if is_decimal {
+        None
+    } else if pieces.iter().all(|piece| is_number(piece))
+        || pieces.iter().skip(1).any(|piece| is_number(piece))
+    {
+        all(&is_mark)
+    } else if word.contains('=') {
+        all(&|c| c == '=' || c == ';')
+    } else if word.ends_with([';', ',']) {
+        Some((word.trim_end_matches([';', ',']).len()..word.len()).collect())
+    } else {
+        None
+    }
+}
+
+/// Returns the levels of a colour of three or six hexadecimal digits.
+fn colour(digits: &str) -> Option<[u8; 3]> {
+    if !digits.bytes().all(|digit| digit.is_ascii_hexdigit()) {
+        return None;
+    }
+    let level = |at: usize| u8::from_str_radix(&digits[at..at + 2], 16).ok();
+    match digits.len() {
+        3 => {
+            let level = |at: usize| u8::from_str_radix(&digits[at..=at], 16).ok().map(|level| 17 * level);
+            Some([level(0)?, level(1)?, level(2)?])
+        }
+        6 => Some([level(0)?, level(2)?, level(4)?]),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::{Duration, Instant};
+
+    fn cleaned(text: &str) -> String {
+        let mut cleaned = Cleaned { bytes: text.as_bytes().to_vec(), found: BTreeMap::new() };
+        cleaned.colours();
+        cleaned.quotes();
+        cleaned.marks();
+        assert_eq!(cleaned.bytes.len(), text.len());
+        cleaned.text()
+    }
+
+    #[test]
+    fn only_what_is_no_part_of_a_name_is_left_out() {
+        for (text, clean) in [
+            ("center <4, 3,-4> radius (1)", "center  4  3 -4  radius  1 "),
+            ("ambient(1,1,1);", "ambient 1 1 1  "),
+            ("radius=2 material=red;", "radius 2 material red "),
+            ("material “a b” { }", "material   \"a b\"   { }"),
+            ("ambient #ff0000 }", "ambient 1 1 1   }"),
+            ("ambient #f00 }", "ambient 1 1 1}"),
+        ] {
+            assert_eq!(cleaned(text), clean, "{text}");
+        }
+        for text in [
+            "material a<b> { ambient 1 1 1 }",
+            "center 0,5 1 2",
+            "sphere (left) { material wall,red radius 1 } # (1, 2); #ff0000",
+            "profile \"2 + sin(y)\" text \"“a” = (1, 2);\"",
+            "radius 2 #fff comment",
+        ] {
+            assert_eq!(cleaned(text), text);
+        }
+    }
+
+    #[test]
+    fn long_texts_of_one_sign_take_no_time() {
+        let start = Instant::now();
+        for sign in ["„ ", "“", "<1 ", "(", ", ", "1, ", "=", "; ", "#fff ", "a=\"", "‘a"] {
+            cleaned(&sign.repeat(200_000));
+        }
+        assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
+    }
+}

@@ -1,0 +1,103 @@
+//! Recognises texts in other languages, which are not read as scenes.
+
+use super::fault::Fault;
+use super::notes::has_entities;
+use super::report::Report;
+use super::tokens::{Token, Tokens};
+use crate::scene::registry::Registry;
+use crate::scene::syntax::Syntax;
+use std::collections::HashSet;
+
+/// Words with which a statement of POV-Ray's language begins, and which scenes have no use for. Those with a `#` begin
+/// a line.
+const POV: [&str; 12] = [
+    "#declare",
+    "#include",
+    "#local",
+    "#macro",
+    "#version",
+    "finish",
+    "global_settings",
+    "light_source",
+    "phong",
+    "pigment",
+    "rgb",
+    "rgbt",
+];
+
+/// The number of different words that tell POV-Ray's language for certain: some of them may be those of a scene.
+const ENOUGH: usize = 2;
+
+/// Returns the report on a text that is not read as a scene: the one given, or that it is one in another language.
+pub fn recognised(
+    registry: &Registry,
+    report: Report<'static>,
+    name: &str,
+    text: &str,
+    syntax: Syntax,
+) -> Result<Report<'static>, Report<'static>> {
+    let fault = match syntax {
+        Syntax::Toml => of_notes(registry, name, text),
+        Syntax::Notes => of_pov(text, name).or_else(|| of_numbers(registry, text)),
+    };
+    let Some(fault) = fault else { return Err(report) };
+    let mut report = Report::new(name, text.to_owned(), syntax);
+    report.add(fault);
+    Ok(report)
+}
+
+/// Recognises a text in the notes' syntax.
+fn of_notes(registry: &Registry, name: &str, text: &str) -> Option<Fault> {
+    let is_named = Syntax::of_name(name) == Some(Syntax::Toml);
+    let first = has_entities(registry, text).filter(|_| is_named)?;
+    Some(
+        Fault::error(Some(first), "this is a scene as .ray files have it, not one in TOML")
+            .label("in TOML, an entity is a table, `[TYPE.NAME]`")
+            .help("give the file a name that ends in .ray; `tabray convert A.ray A.toml` writes it in TOML"),
+    )
+}
+
+/// Recognises a scene of POV-Ray.
+fn of_pov(text: &str, name: &str) -> Option<Fault> {
+    let mut found = HashSet::new();
+    let mut first = None;
+    let mut at = 0;
+    for line in text.split_inclusive('\n') {
+        let start = at + (line.len() - line.trim_start().len());
+        at += line.len();
+        let code = line.split("//").next().unwrap_or_default();
+        for word in code.split(|c: char| !(c.is_alphanumeric() || c == '_' || c == '#')) {
+            if POV.contains(&word) && (!word.starts_with('#') || line.trim_start().starts_with(word)) {
+                found.insert(word);
+                first.get_or_insert(start..start + line.trim().len());
+            }
+        }
+    }
+    // Entities of scenes have names, and values no brackets.
+    let is_bracketed = text.contains('<') && text.contains('>');
+    let is_told = found.len() >= ENOUGH || name.ends_with(".pov");
+    first.filter(|_| is_bracketed && is_told && !found.is_empty()).map(|place| {
+        Fault::error(Some(place), "this is a scene of POV-Ray, whose language is another one").help(
+            "`tabray new scene NAME` writes a scene to start from; `tabray list` lists the types of entities",
+        )
+    })
+}
+
+/// Recognises a scene of numbers, which stand for what other scenes say in words.
+fn of_numbers(registry: &Registry, text: &str) -> Option<Fault> {
+    let nowhere = &mut Report::default();
+    let mut tokens = Tokens::of(text, nowhere);
+    let is_number = |word: &str| word.parse::<f64>().is_ok();
+    let first: Token = tokens.ahead[0].filter(|first| is_number(tokens.raw(*first)))?;
+    let (mut words, mut numbers) = (0, 0);
+    while let Some(token) = tokens.step(nowhere) {
+        words += 1;
+        numbers += usize::from(is_number(tokens.raw(token)));
+    }
+    let is_told = numbers > 3 && 2 * numbers > words && has_entities(registry, text).is_none();
+    is_told.then(|| {
+        Fault::error(Some(first.place()), "this is a scene of numbers: entities and attributes have no names")
+            .label("this number stands for a type, or for a value")
+            .help(registry.first_steps(Syntax::Notes))
+    })
+}

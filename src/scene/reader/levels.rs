@@ -1,0 +1,28 @@
+//! Recognises colours that are meant to be from 0 to 255.
+
+use super::fault::Fault;
+use crate::scene::entity::Args;
+use crate::scene::value::Datum;
+use crate::text::short;
+
+/// The least brightest channel of such a colour. Scenes have colours of up to some tens, where objects are far away.
+const LEAST: f64 = 100.0;
+
+/// Returns a warning if a material's colour has the numbers of levels from 0 to 255, and the attribute that has them.
+pub fn warning(material: &Args) -> Option<(&'static str, Fault)> {
+    let is_level = |number: &f64| number.fract() == 0.0 && (0.0..=255.0).contains(number);
+    material.values().find_map(|(attribute, datum)| match datum {
+        Datum::Numbers(numbers)
+            if numbers.len() == 3
+                && numbers.iter().all(is_level)
+                && numbers.iter().any(|number| *number >= LEAST) =>
+        {
+            let right: Vec<_> = numbers.iter().map(|number| short(number / 255.0)).collect();
+            let fault = Fault::warning(None, "a colour is not given from 0 to 255")
+                .label(format!("write `{}`", right.join(" ")))
+                .help("1 is the brightest that an image can show, and such a material will look white");
+            Some((attribute.name(), fault))
+        }
+        _ => None,
+    })
+}

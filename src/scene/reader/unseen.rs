@@ -1,0 +1,82 @@
+//! Warns of images that are black for certain, with the reason.
+
+use super::fault::Fault;
+use crate::geometry::aabb::Aabb;
+use crate::scene::model::{Model, Object};
+use crate::text::shortest;
+use crate::world::material::Rgb;
+use glam::DVec3;
+
+/// How much wider than it is the image is taken to be, as a fraction of it.
+const MARGIN: f64 = 0.01;
+
+/// Returns a warning if nothing in a scene can be seen.
+pub fn warning(model: &Model) -> Option<Fault> {
+    let camera = &model.camera.value;
+    let black = |why: &str, help: String| {
+        Some(Fault::warning(None, format!("the image will be black: {why}")).help(help))
+    };
+    if model.objects.is_empty() {
+        return black("the scene has no objects", "`tabray list` lists the types of objects".to_owned());
+    }
+    if model.lights.is_empty() && model.objects.iter().all(is_dark) {
+        return black(
+            "the scene has no light, and no material has `ambient`",
+            "add a light, or give the materials `ambient`, a colour that needs no light".to_owned(),
+        );
+    }
+    // Of rays that start at different points, nothing is said.
+    let Some(corners) = camera.camera.corners(camera.pixels, MARGIN) else { return None };
+    let viewer = camera.origins().middle;
+    let place = |at: DVec3| at.to_array().map(shortest).join(" ");
+    let ahead: DVec3 = corners.iter().sum();
+    if all_are(model, |bounds| is_behind(viewer, ahead, bounds)) {
+        return black(
+            "all objects are behind the viewer",
+            match camera.camera.screen() {
+                Some(_) => format!(
+                    "the viewer at {} looks along -z: what can be seen has a z below {}",
+                    place(viewer),
+                    shortest(viewer.z)
+                ),
+                None => format!("the viewer at {} looks the other way", place(viewer)),
+            },
+        );
+    }
+    let is_aside = |bounds: &Aabb| {
+        (0..4).any(|edge| {
+            let normal = corners[edge].cross(corners[(edge + 1) % 4]);
+            is_behind(viewer, normal * normal.dot(ahead).signum(), bounds)
+        })
+    };
+    if all_are(model, is_aside) {
+        return black(
+            "all objects are outside of the picture",
+            match camera.camera.screen() {
+                Some(screen) => format!(
+                    "the viewer at {} looks through the rectangle from 0 0 0 to {}",
+                    place(viewer),
+                    place(screen.extend(0.0))
+                ),
+                None => format!("the viewer at {} looks past them", place(viewer)),
+            },
+        );
+    }
+    None
+}
+
+/// Tells whether an object is black where no light is.
+fn is_dark(object: &Object) -> bool {
+    object.shader.brightest(&object.material).is_some_and(|look| look.ambient == Rgb::ZERO)
+}
+
+/// Tells whether all objects have bounds of which this is so. At the first other one, no more are asked for.
+fn all_are(model: &Model, is_so: impl Fn(&Aabb) -> bool) -> bool {
+    model.objects.iter().all(|object| object.shape.bounds().is_some_and(|bounds| is_so(&bounds)))
+}
+
+/// Tells whether all of a box lies behind the plane through a point with this normal.
+fn is_behind(viewer: DVec3, normal: DVec3, bounds: &Aabb) -> bool {
+    let nearest = DVec3::select(normal.cmpgt(DVec3::ZERO), bounds.high, bounds.low);
+    normal.dot(nearest - viewer) < 0.0
+}
