@@ -4,11 +4,13 @@ use crate::prelude::*;
 
 static PIXELDIM: Pparm<[i64; 2]> = Pparm::required("pixeldim", "the width and height of the image")
     .alias(&["pixel_dim"])
+    .each(&["width", "height"])
     .unit("pixels")
     .between(1.0, 100_000.0)
     .dumped("pixel_dim", " \n");
 static WORLDDIM: Pparm<DVec2> = Pparm::required("worlddim", "the width and height of the image plane")
     .alias(&["world_dim"])
+    .each(&["width", "height"])
     .unit("world units")
     .must("positive in each dimension", |size: &DVec2| size.min_element() > 0.0)
     .dumped("world_dim", " \n");
