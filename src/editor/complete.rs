@@ -1,11 +1,11 @@
 //! Completion: what can be written at a position.
 
+use super::hover::about;
 use super::names::{Names, Sort};
 use super::project::Group;
 use super::snippet::Snippet;
 use super::types::{Wanted, truths, wanted};
 use super::view::{Attribute, Entity, Form, Item, View};
-use super::hover::about;
 use crate::numeric::formula::functions;
 use crate::scene::kind::Kind;
 use crate::scene::reader::keyword::Keyword;
@@ -80,7 +80,9 @@ fn in_comment(view: &View, at: usize) -> bool {
     for letter in text[line..at].chars() {
         match letter {
             '"' if before != '\\' => is_quoted = !is_quoted,
-            '#' if !is_quoted && (view.syntax == Syntax::Toml || before.is_whitespace() || "{}".contains(before)) => {
+            '#' if !is_quoted
+                && (view.syntax == Syntax::Toml || before.is_whitespace() || "{}".contains(before)) =>
+            {
                 return true;
             }
             _ => {}
@@ -110,7 +112,9 @@ impl At<'_> {
             c.is_whitespace() || c == '{' || c == '}' || in_toml
         };
         let before = &self.view.text.as_str()[..self.at];
-        let start = before.rfind(is_end).map_or(0, |end| end + before[end..].chars().next().map_or(1, char::len_utf8));
+        let start = before
+            .rfind(is_end)
+            .map_or(0, |end| end + before[end..].chars().next().map_or(1, char::len_utf8));
         start..self.at
     }
 
@@ -118,13 +122,23 @@ impl At<'_> {
         match self.view.at(self.at) {
             Some(Item::Entity(entity)) if self.is_in(&entity.body) => self.in_entity(entity),
             // After the type comes a name that nobody knows.
-            Some(Item::Entity(entity)) if self.at > entity.kind.end && self.at < entity.body.start => Vec::new(),
-            Some(Item::Let(number)) if number.value.is_some_and(|word| word.has(self.at)) => self.in_formula(&[]),
+            Some(Item::Entity(entity)) if self.at > entity.kind.end && self.at < entity.body.start => {
+                Vec::new()
+            }
+            Some(Item::Let(number)) if number.value.is_some_and(|word| word.has(self.at)) => {
+                self.in_formula(&[])
+            }
             Some(Item::Let(number)) if number.name.is_some_and(|word| word.has(self.at)) => Vec::new(),
-            Some(Item::Repeat(repeat)) if repeat.count.is_some_and(|word| word.has(self.at)) => self.in_formula(&[]),
+            Some(Item::Repeat(repeat)) if repeat.count.is_some_and(|word| word.has(self.at)) => {
+                self.in_formula(&[])
+            }
             Some(Item::Repeat(repeat)) if repeat.name.is_some_and(|word| word.has(self.at)) => Vec::new(),
-            Some(Item::Include(include)) if include.files.iter().any(|word| word.has(self.at)) => self.files(),
-            Some(Item::Include(include)) if self.at > include.place.end && include.files.is_empty() => self.files(),
+            Some(Item::Include(include)) if include.files.iter().any(|word| word.has(self.at)) => {
+                self.files()
+            }
+            Some(Item::Include(include)) if self.at > include.place.end && include.files.is_empty() => {
+                self.files()
+            }
             Some(Item::Repeat(repeat)) if self.is_in(&repeat.body) => self.types(false),
             _ if self.follows(Keyword::Include) => self.files(),
             _ => self.types(true),
@@ -163,7 +177,11 @@ impl At<'_> {
         };
         match self.view.at(self.at) {
             Some(Item::Entity(entity)) if self.is_in(&entity.body) => {
-                if attribute_at(entity).is_some() { self.value(entity) } else { self.attributes(entity) }
+                if attribute_at(entity).is_some() {
+                    self.value(entity)
+                } else {
+                    self.attributes(entity)
+                }
             }
             Some(Item::Include(_)) => self.files(),
             Some(Item::Let(_)) => self.in_formula(&[]),
@@ -208,7 +226,9 @@ impl At<'_> {
             .filter(|group| group.names.iter().any(|name| is_given(name)))
             .flat_map(|group| group.names.iter().copied())
             .collect();
-        let free = known.attributes().filter(|attribute| !is_given(attribute.name()) && !excluded.contains(&attribute.name()));
+        let free = known
+            .attributes()
+            .filter(|attribute| !is_given(attribute.name()) && !excluded.contains(&attribute.name()));
         free.map(|attribute| {
             let mut snippet = Snippet::new(self.view, &names);
             snippet.attribute(entity, attribute, 0);
@@ -230,8 +250,13 @@ impl At<'_> {
         let Some(known) = attribute.known else { return Vec::new() };
         let word = attribute.values.iter().find(|word| word.has(self.at));
         let is_quoted = word.is_some_and(|word| word.form != Form::Bare && word.inner().start <= self.at);
-        let place = word.map_or_else(|| self.prefix(), |word| if is_quoted { word.inner() } else { word.place() });
-        let place = if is_quoted || self.at_quote() { place.start.min(self.at)..place.end.max(self.at) } else { place };
+        let place =
+            word.map_or_else(|| self.prefix(), |word| if is_quoted { word.inner() } else { word.place() });
+        let place = if is_quoted || self.at_quote() {
+            place.start.min(self.at)..place.end.max(self.at)
+        } else {
+            place
+        };
         let is_quoted = is_quoted || self.at_quote();
         // A word is written in quotes if they are not there yet.
         let written = |name: &str| match self.view.syntax {
@@ -257,7 +282,9 @@ impl At<'_> {
                 })
                 .collect()
             }
-            Wanted::Truth => truths(self.view).iter().map(|truth| plain(truth, What::Choice, &place)).collect(),
+            Wanted::Truth => {
+                truths(self.view).iter().map(|truth| plain(truth, What::Choice, &place)).collect()
+            }
             Wanted::File => self.files(),
             Wanted::Numbers if is_quoted => self.in_formula(&[]),
             Wanted::Formula(variables) if is_quoted => self.in_formula(variables),
@@ -276,7 +303,8 @@ impl At<'_> {
         for (index, (_, view)) in self.group.iter().enumerate().rev() {
             let all = Names::of(view);
             let usable = all.definitions.iter().filter(|definition| {
-                let is_visible = definition.scope.as_ref().is_none_or(|scope| index == 0 && scope.contains(&self.at));
+                let is_visible =
+                    definition.scope.as_ref().is_none_or(|scope| index == 0 && scope.contains(&self.at));
                 let is_before = index > 0 || definition.whole.end <= self.at;
                 definition.name.sort == Sort::Entity(kind) && is_before && is_visible
             });
@@ -291,11 +319,13 @@ impl At<'_> {
         let start = before.rfind(|c: char| !c.is_alphanumeric() && c != '_');
         let start = start.map_or(0, |end| end + before[end..].chars().next().map_or(1, char::len_utf8));
         let place = start..self.at;
-        let mut all: Vec<_> = variables.iter().chain(&["pi"]).map(|name| plain(name, What::Number, &place)).collect();
+        let mut all: Vec<_> =
+            variables.iter().chain(&["pi"]).map(|name| plain(name, What::Number, &place)).collect();
         for (index, (_, view)) in self.group.iter().enumerate() {
             let names = Names::of(view);
             let usable = names.definitions.iter().filter(|definition| {
-                let is_visible = definition.scope.as_ref().is_none_or(|scope| index == 0 && scope.contains(&self.at));
+                let is_visible =
+                    definition.scope.as_ref().is_none_or(|scope| index == 0 && scope.contains(&self.at));
                 definition.name.sort == Sort::Number && is_visible
             });
             all.extend(usable.map(|definition| Completion {
@@ -304,7 +334,11 @@ impl At<'_> {
             }));
         }
         all.extend(functions().map(|(name, count)| Completion {
-            snippet: if count == 1 { format!("{name}(${{1:x}})") } else { format!("{name}(${{1:x}}, ${{2:y}})") },
+            snippet: if count == 1 {
+                format!("{name}(${{1:x}})")
+            } else {
+                format!("{name}(${{1:x}}, ${{2:y}})")
+            },
             has_places: true,
             ..plain(name, What::Function, &place)
         }));
@@ -353,14 +387,18 @@ impl At<'_> {
         let keywords = keywords.iter().filter(|(word, _)| {
             !word.is_empty() && (is_outside || Keyword::of(word) != Some(Keyword::Include))
         });
-        all.extend(keywords.map(|(word, snippet)| Completion {
-            snippet: (*snippet).to_owned(),
-            has_places: true,
-            about: Keyword::of(word).map_or("", |keyword| match self.view.syntax {
-                Syntax::Notes => keyword.usage(),
-                Syntax::Toml => keyword.usage_in_toml(),
-            }).to_owned(),
-            ..plain(word, What::Keyword, &place)
+        all.extend(keywords.map(|(word, snippet)| {
+            Completion {
+                snippet: (*snippet).to_owned(),
+                has_places: true,
+                about: Keyword::of(word)
+                    .map_or("", |keyword| match self.view.syntax {
+                        Syntax::Notes => keyword.usage(),
+                        Syntax::Toml => keyword.usage_in_toml(),
+                    })
+                    .to_owned(),
+                ..plain(word, What::Keyword, &place)
+            }
         }));
         all
     }
@@ -370,9 +408,11 @@ impl At<'_> {
         let text = self.view.text.as_str();
         let start = text[..self.at].rfind(|c: char| c.is_whitespace() || c == '"' || c == '\'' || c == '{');
         let typed = &text[start.map_or(0, |end| end + 1)..self.at];
-        let (folder, prefix) = typed.rsplit_once('/').map_or(("", typed), |(folder, prefix)| (folder, prefix));
+        let (folder, prefix) =
+            typed.rsplit_once('/').map_or(("", typed), |(folder, prefix)| (folder, prefix));
         let place = self.at - prefix.len()..self.at;
-        let folder = if typed.starts_with('/') { Path::new("/").join(folder) } else { self.folder.join(folder) };
+        let folder =
+            if typed.starts_with('/') { Path::new("/").join(folder) } else { self.folder.join(folder) };
         let entries = folder.read_dir().ok().into_iter().flatten().filter_map(Result::ok).take(MOST_FILES);
         let mut names: Vec<_> = entries
             .filter_map(|entry| Some((entry.file_name().into_string().ok()?, entry.path().is_dir())))

@@ -2,13 +2,17 @@
 //! the comments, and what stands on one line stay.
 
 use super::format_toml;
-use super::view::{Break, Entity, Item, Repeat, View, Word};
+use super::view::{Attribute, Break, Entity, Item, Repeat, View, Word};
 use crate::scene::syntax::Syntax;
 use std::fmt::Write;
+use std::ops::Range;
 
 /// The widths of the widest type or name, and of the widest attribute with its values, to which others are aligned.
 const WIDEST: usize = 24;
 const WIDEST_CELL: usize = 48;
+
+/// The most values of a row in which all stand equally far apart.
+const SHORT_ROW: usize = 4;
 
 /// Returns the first reason why a text cannot be formatted.
 pub fn problem(view: &View) -> Option<&Break> {
@@ -111,7 +115,8 @@ impl Writer<'_> {
     /// Keeps one of several blank lines, but none after a brace.
     fn blank(&mut self, newlines: usize) {
         let is_open = |line: &Line| matches!(&line.what, What::Plain(text) if text.ends_with('{'));
-        let follows = self.lines.last().is_some_and(|line| !is_open(line) && !matches!(line.what, What::Blank));
+        let follows =
+            self.lines.last().is_some_and(|line| !is_open(line) && !matches!(line.what, What::Blank));
         if newlines > 1 && follows {
             self.push(0, What::Blank);
         }
@@ -131,7 +136,8 @@ impl Writer<'_> {
                     self.words([number.name, number.value].into_iter().flatten(), indent);
                 }
                 Item::Include(include) => {
-                    let files: String = include.files.iter().map(|file| format!(" {}", self.raw(*file))).collect();
+                    let files: String =
+                        include.files.iter().map(|file| format!(" {}", self.raw(*file))).collect();
                     self.push(indent, What::Plain(format!("include{files}")));
                     self.words(include.files.iter().copied(), indent);
                 }
@@ -157,10 +163,16 @@ impl Writer<'_> {
 
     /// Writes an entity on one line.
     fn short(&mut self, entity: &Entity, indent: usize) {
-        let title = [Some(entity.kind), entity.name].map(|word| word.map(|word| self.raw(word)).unwrap_or_default());
+        let title =
+            [Some(entity.kind), entity.name].map(|word| word.map(|word| self.raw(word)).unwrap_or_default());
         let attributes = entity.attributes.iter().map(|attribute| {
-            let values: Vec<_> = attribute.values.iter().map(|word| self.raw(*word)).collect();
-            [self.raw(attribute.name), values.join(" ")]
+            let mut values = String::new();
+            for (index, word) in attribute.values.iter().enumerate() {
+                let before = index.checked_sub(1).map(|before| attribute.values[before].end);
+                values += before.map_or("", |end| self.between(attribute, end..word.start));
+                values += &self.raw(*word);
+            }
+            [self.raw(attribute.name), values]
         });
         let attributes = attributes.collect();
         self.push(indent, What::Entity(title, attributes));
@@ -168,7 +180,8 @@ impl Writer<'_> {
 
     /// Writes an entity on several lines.
     fn entity(&mut self, entity: &Entity, indent: usize) {
-        let title = [Some(entity.kind), entity.name].map(|word| word.map(|word| self.raw(word)).unwrap_or_default());
+        let title =
+            [Some(entity.kind), entity.name].map(|word| word.map(|word| self.raw(word)).unwrap_or_default());
         self.push(indent, What::Plain(title.join(" ").trim_end().to_owned()));
         self.at = entity.kind.end;
         self.words(entity.name.into_iter(), indent);
@@ -182,7 +195,7 @@ impl Writer<'_> {
             self.at = attribute.name.end;
             for word in &attribute.values {
                 let is_below = self.view.slice(self.at..word.start).contains('\n');
-                let lines = self.lines.len();
+                let (lines, gap) = (self.lines.len(), self.at..word.start);
                 self.gap(word.start, indent + 1);
                 let is_first = matches!(self.lines.last(), Some(Line { what: What::Attribute([_, values]), comment, .. })
                     if values.is_empty() && comment.is_empty());
@@ -190,10 +203,9 @@ impl Writer<'_> {
                 if self.lines.len() > lines || is_below && !is_first {
                     self.push(indent + 1, What::Attribute([String::new(), String::new()]));
                 }
-                let raw = self.raw(*word);
+                let raw = self.between(attribute, gap).to_owned() + &self.raw(*word);
                 if let Some(Line { what: What::Attribute([_, values]), .. }) = self.lines.last_mut() {
-                    *values += if values.is_empty() { "" } else { " " };
-                    *values += &raw;
+                    *values += if values.is_empty() { raw.trim_start() } else { &raw };
                 }
                 self.at = word.end;
             }
@@ -216,6 +228,12 @@ impl Writer<'_> {
         self.no_blank();
         self.push(indent, What::Plain("}".to_owned()));
         self.at = repeat.place.end;
+    }
+
+    /// Returns what stands between two values on a line. The groups of a long row may be apart.
+    fn between(&self, attribute: &Attribute, gap: Range<usize>) -> &'static str {
+        let is_long = attribute.known.is_some_and(|known| known.arity().most() > SHORT_ROW);
+        if is_long && gap.len() > 1 { "  " } else { " " }
     }
 
     fn no_blank(&mut self) {

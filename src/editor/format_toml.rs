@@ -134,7 +134,8 @@ fn written(lines: Vec<Line>) -> String {
         let width = widths.map(|key| key.chars().count()).filter(|width| *width <= WIDEST).max().unwrap_or(0);
         for line in run {
             let start = line.key.as_ref().map(|key| format!("{key:width$} = ")).unwrap_or_default();
-            let comment = [" ", ""][usize::from(start.is_empty() && line.text.is_empty())].to_owned() + &line.comment;
+            let comment =
+                [" ", ""][usize::from(start.is_empty() && line.text.is_empty())].to_owned() + &line.comment;
             let whole = format!("{start}{}{comment}", line.text);
             text += whole.trim_end();
             text.push('\n');

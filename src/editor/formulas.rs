@@ -44,7 +44,8 @@ mod tests {
 
     #[test]
     fn names_are_told_from_numbers_functions_and_variables() {
-        let named = |formula: &'static str| -> Vec<_> { names(formula).into_iter().map(|at| &formula[at]).collect() };
+        let named =
+            |formula: &'static str| -> Vec<_> { names(formula).into_iter().map(|at| &formula[at]).collect() };
         assert_eq!(named("4 + 2*cos(turn)/beads - 1e5 + 2e-3*x_1"), ["turn", "beads", "x_1"]);
         assert_eq!(named("2x + pi*sin(y) + 1.5E+7"), [""; 0]);
         assert_eq!(named("r(ä) + ((a"), ["r", "ä", "a"]);

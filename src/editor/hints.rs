@@ -26,10 +26,11 @@ pub fn hints(view: &View, range: &Range<usize>) -> Vec<Hint> {
             if attribute.values.len() < 2 || !known.arity().allow(attribute.values.len()) {
                 continue;
             }
-            let named = attribute.values.iter().enumerate().map(|(index, word)| Hint {
-                at: word.start,
-                name: value_name(known, index),
-            });
+            let named = attribute
+                .values
+                .iter()
+                .enumerate()
+                .map(|(index, word)| Hint { at: word.start, name: value_name(known, index) });
             hints.extend(named.filter(|hint| !hint.name.is_empty() && range.contains(&hint.at)));
         }
     });

@@ -45,26 +45,47 @@ fn in_entity(view: &View, entity: &Entity, at: usize) -> Option<Hover> {
     })?;
     let known_attribute = attribute.known?;
     if word == attribute.name {
-        let text = format!("**{}** of {}: {}", known_attribute.name(), known.name, about(view.syntax, known_attribute));
+        let text = format!(
+            "**{}** of {}: {}",
+            known_attribute.name(),
+            known.name,
+            about(view.syntax, known_attribute)
+        );
         return Some(Hover { text, place: word.place() });
     }
     value(view, entity, attribute, known_attribute, word)
 }
 
 /// Describes a value that is no name.
-fn value(view: &View, entity: &Entity, attribute: &Attribute, known: &dyn pparm::Attribute, word: Word) -> Option<Hover> {
+fn value(
+    view: &View,
+    entity: &Entity,
+    attribute: &Attribute,
+    known: &dyn pparm::Attribute,
+    word: Word,
+) -> Option<Hover> {
     let said = view.word(word);
     let text = match wanted(entity, known) {
         Wanted::Choice(choices) => {
             let chosen = said.parse().ok().and_then(|number| choices.numbered(number));
             let chosen = chosen.or_else(|| choices.named(&said))?;
             let number = chosen.number.map(|number| format!(" ({number})")).unwrap_or_default();
-            format!("**{}**{number}, {} {}: {}", chosen.name, crate::text::article(choices.what), choices.what, chosen.meaning)
+            format!(
+                "**{}**{number}, {} {}: {}",
+                chosen.name,
+                crate::text::article(choices.what),
+                choices.what,
+                chosen.meaning
+            )
         }
         Wanted::Numbers if word.form == super::view::Form::Bare => {
             let index = attribute.values.iter().position(|value| *value == word)?;
             let name = value_name(known, index);
-            let name = if name.is_empty() || known.arity().most() == 1 { String::new() } else { format!("**{name}** of ") };
+            let name = if name.is_empty() || known.arity().most() == 1 {
+                String::new()
+            } else {
+                format!("**{name}** of ")
+            };
             format!("{name}**{}**: {}", known.name(), about(view.syntax, known))
         }
         _ => return None,
@@ -87,7 +108,12 @@ fn name(group: &Group, view: &View, at: usize) -> Option<Hover> {
     }
     let language = if view.syntax == Syntax::Toml { "toml" } else { "tabray" };
     let file = if *path == group[0].0 { String::new() } else { format!(" of `{}`", path.display()) };
-    let text = format!("{} `{}`{file}\n\n```{language}\n{}\n```", told(name.sort), definition.name.text, lines.join("\n"));
+    let text = format!(
+        "{} `{}`{file}\n\n```{language}\n{}\n```",
+        told(name.sort),
+        definition.name.text,
+        lines.join("\n")
+    );
     Some(Hover { text, place: name.place.clone() })
 }
 
@@ -95,7 +121,9 @@ fn name(group: &Group, view: &View, at: usize) -> Option<Hover> {
 fn keyword(view: &View, at: usize) -> Option<Hover> {
     let text = view.text.as_str();
     let is_part = |c: char| c.is_ascii_alphabetic();
-    let start = text[..at].rfind(|c| !is_part(c)).map_or(0, |end| end + text[end..].chars().next().map_or(1, char::len_utf8));
+    let start = text[..at]
+        .rfind(|c| !is_part(c))
+        .map_or(0, |end| end + text[end..].chars().next().map_or(1, char::len_utf8));
     let end = text[at..].find(|c| !is_part(c)).map_or(text.len(), |length| at + length);
     let keyword = Keyword::of(&text[start..end])?;
     let usage = match view.syntax {
@@ -117,7 +145,8 @@ fn about_type(syntax: Syntax, known: &'static entity::Entity) -> String {
         text += &format!("- `{}`: {}{default}\n", attribute.name(), attribute.meaning());
     }
     for group in known.groups() {
-        text += &format!("\nExactly one of {} is given: {}.\n", list(group.names.iter().copied()), group.meaning);
+        text +=
+            &format!("\nExactly one of {} is given: {}.\n", list(group.names.iter().copied()), group.meaning);
     }
     text
 }

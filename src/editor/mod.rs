@@ -17,6 +17,8 @@ mod project;
 mod read;
 mod signature;
 mod snippet;
+#[cfg(test)]
+mod tests;
 mod text;
 mod toml;
 mod types;

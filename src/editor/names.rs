@@ -102,7 +102,14 @@ impl Names {
             Item::Repeat(repeat) => {
                 if let Some(word) = repeat.name {
                     let title = repeat.place.start..repeat.body.start;
-                    define(Sort::Number, word, &repeat.again, title, Some(repeat.body.clone()), outer.len() + 1);
+                    define(
+                        Sort::Number,
+                        word,
+                        &repeat.again,
+                        title,
+                        Some(repeat.body.clone()),
+                        outer.len() + 1,
+                    );
                 }
                 self.formula(view, repeat.count);
             }

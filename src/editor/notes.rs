@@ -22,7 +22,8 @@ const MOST_GUESSES: usize = 1000;
 pub fn read(registry: &Registry, text: &str) -> (Vec<Item>, Vec<Break>) {
     let mut report = Report::default();
     let tokens = Tokens::of(text, &mut report);
-    let mut reader = Reader { registry, tokens, report, before: 0, breaks: Vec::new(), guesses: HashMap::new() };
+    let mut reader =
+        Reader { registry, tokens, report, before: 0, breaks: Vec::new(), guesses: HashMap::new() };
     let items = reader.items(0);
     let (report, mut breaks) = (reader.report, reader.breaks);
     breaks.extend(report.faults().iter().map(|fault| {
@@ -140,7 +141,14 @@ impl<'a> Reader<'a> {
             Keyword::Repeat => {
                 self.wrong(first.place(), "this `repeat` is incomplete, or too deep in others");
                 let body = place.end..place.end;
-                Item::Repeat(Repeat { name, again: Vec::new(), count: second, items: Vec::new(), place, body })
+                Item::Repeat(Repeat {
+                    name,
+                    again: Vec::new(),
+                    count: second,
+                    items: Vec::new(),
+                    place,
+                    body,
+                })
             }
         })
     }
@@ -235,7 +243,9 @@ impl<'a> Reader<'a> {
             }
             _ => {
                 looks_like_number(raw)
-                    || already < max && !is_attribute && !entity.is_some_and(|entity| self.is_misspelt(entity, raw))
+                    || already < max
+                        && !is_attribute
+                        && !entity.is_some_and(|entity| self.is_misspelt(entity, raw))
             }
         }
     }

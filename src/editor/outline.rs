@@ -41,7 +41,8 @@ fn symbol(view: &View, item: &Item) -> Symbol {
     let name_place = name.map_or(place.start..place.start, |name| name.place());
     let said = name.map(|name| view.word(name).into_owned()).filter(|name| !name.is_empty());
     // In TOML the entries of what is repeated reach beyond its title.
-    let end = inner.iter().map(|inner: &Symbol| inner.place.end).fold(place.end.max(name_place.end), usize::max);
+    let end =
+        inner.iter().map(|inner: &Symbol| inner.place.end).fold(place.end.max(name_place.end), usize::max);
     Symbol {
         name: said.unwrap_or_else(|| detail.clone()),
         detail,

@@ -21,7 +21,8 @@ pub struct Signature {
 /// Returns what the attribute at a position takes.
 pub fn signature(view: &View, at: usize) -> Option<Signature> {
     let entity = view.entity_at(at)?;
-    let is_before = |attribute: &&super::view::Attribute| attribute.values_from.is_some_and(|from| from < at + 1);
+    let is_before =
+        |attribute: &&super::view::Attribute| attribute.values_from.is_some_and(|from| from < at + 1);
     let attribute = entity.attributes.iter().rfind(is_before)?;
     let known = attribute.known?;
     let is_below = view.slice(attribute.end.min(at)..at).contains('\n');
@@ -37,7 +38,12 @@ pub fn signature(view: &View, at: usize) -> Option<Signature> {
         let name = match value_name(known, index) {
             name if count > 1 && !name.is_empty() => name.replace(' ', "-"),
             _ if count > 1 => format!("N{}", index + 1),
-            _ => view.syntax.usage(known).split_once([' ', '=']).map_or("N", |(_, usage)| usage.trim_start_matches(['=', ' '])).to_owned(),
+            _ => view
+                .syntax
+                .usage(known)
+                .split_once([' ', '='])
+                .map_or("N", |(_, usage)| usage.trim_start_matches(['=', ' ']))
+                .to_owned(),
         };
         label.push(' ');
         let start = label.encode_utf16().count() as u32;

@@ -37,7 +37,11 @@ impl<'v> Snippet<'v> {
         }
         self.places += 1;
         let escaped = |name: &String| {
-            name.replace('\\', "\\\\").replace('$', "\\$").replace('}', "\\}").replace(',', "\\,").replace('|', "\\|")
+            name.replace('\\', "\\\\")
+                .replace('$', "\\$")
+                .replace('}', "\\}")
+                .replace(',', "\\,")
+                .replace('|', "\\|")
         };
         let all: Vec<_> = all.iter().take(MOST).map(escaped).collect();
         self.text += &format!("${{{}|{}|}}", self.places, all.join(","));
@@ -102,9 +106,12 @@ impl<'v> Snippet<'v> {
 
     /// Adds an entity with the attributes that a scene must give. In TOML a bracket may be there already.
     pub fn entity(&mut self, known: &'static entity::Entity, has_bracket: bool) {
-        let mut wanted: Vec<_> = known.attributes().filter(|attribute| attribute.default().is_none()).collect();
+        let mut wanted: Vec<_> =
+            known.attributes().filter(|attribute| attribute.default().is_none()).collect();
         for group in known.groups() {
-            wanted.extend(known.attributes().filter(|attribute| group.names.first() == Some(&attribute.name())));
+            wanted.extend(
+                known.attributes().filter(|attribute| group.names.first() == Some(&attribute.name())),
+            );
         }
         let width = wanted.iter().map(|attribute| attribute.name().len()).max().unwrap_or(0);
         let (start, end, indent) = match self.view.syntax {

@@ -91,7 +91,9 @@ mod tests {
     #[test]
     fn units_of_utf_16_are_counted() {
         let text = Text::new("a\u{1f600}b\r\nß\rc\n");
-        for (at, line, character) in [(0, 0, 0), (1, 0, 1), (5, 0, 3), (6, 0, 4), (8, 1, 0), (10, 1, 1), (11, 2, 0), (13, 3, 0)] {
+        for (at, line, character) in
+            [(0, 0, 0), (1, 0, 1), (5, 0, 3), (6, 0, 4), (8, 1, 0), (10, 1, 1), (11, 2, 0), (13, 3, 0)]
+        {
             assert_eq!(text.position(at), Position { line, character }, "{at}");
             assert_eq!(text.offset(Position { line, character }), at);
         }

@@ -121,7 +121,8 @@ impl Reader<'_> {
                 }
                 EventKind::InlineTableOpen => {
                     let key = take(&mut leaf).key;
-                    let path: Path = table.iter().chain(outer.iter().flatten()).chain(&key).copied().collect();
+                    let path: Path =
+                        table.iter().chain(outer.iter().flatten()).chain(&key).copied().collect();
                     let start = key.first().map_or(span.start(), |first| first.start);
                     self.open(&path, start..span.end(), true);
                     outer.push(key);
@@ -212,7 +213,14 @@ fn repeated<'i>(
         None => {
             let (place, body) = (title.clone(), title.end..title.end);
             let (items_in, again) = (Vec::new(), Vec::new());
-            items.push(Item::Repeat(Repeat { name: Some(name), again, count: None, items: items_in, place, body }));
+            items.push(Item::Repeat(Repeat {
+                name: Some(name),
+                again,
+                count: None,
+                items: items_in,
+                place,
+                body,
+            }));
             items.len() - 1
         }
     };
@@ -250,7 +258,9 @@ fn open(
             // `[sphere` is half written; `[sphere]` has its names below it.
             items.push(Item::Entity(entity(registry, text, *kind, None, title)));
         }
-        (None, [kind, name, ..]) => items.push(Item::Entity(entity(registry, text, *kind, Some(*name), title))),
+        (None, [kind, name, ..]) => {
+            items.push(Item::Entity(entity(registry, text, *kind, Some(*name), title)))
+        }
         _ => {}
     }
 }
@@ -268,7 +278,14 @@ fn entity(registry: &Registry, text: &str, kind: Word, name: Option<Word>, title
 }
 
 /// Adds a value where its key says.
-fn value(registry: &Registry, text: &str, items: &mut Vec<Item>, path: &[Word], leaf: &Leaf, place: &Range<usize>) {
+fn value(
+    registry: &Registry,
+    text: &str,
+    items: &mut Vec<Item>,
+    path: &[Word],
+    leaf: &Leaf,
+    place: &Range<usize>,
+) {
     match (Keyword::of(says(text, path[0])), path) {
         (Some(Keyword::Repeat), [_, name, rest @ ..]) if !rest.is_empty() => {
             let repeat = repeated(text, items, *name, place, false);

@@ -288,7 +288,8 @@ impl<'r> Server<'r> {
         let place = self.asked_range(asked);
         let colour = asked.question.color;
         let text = editor::presented(&asked.view, &place, [colour.red, colour.green, colour.blue]);
-        let edit = json!({ "range": span([asked.question.range.start, asked.question.range.end]), "newText": text });
+        let edit =
+            json!({ "range": span([asked.question.range.start, asked.question.range.end]), "newText": text });
         Ok(json!([{ "label": text, "textEdit": edit }]))
     }
 

@@ -65,7 +65,13 @@ impl Faults {
 
     /// Returns the faults in a file, those of all scenes that include it.
     pub fn in_file(&self, path: &Path) -> Vec<Diagnosis> {
-        self.state().scenes.values().flat_map(|scene| &scene.faults).filter(|fault| fault.path == path).cloned().collect()
+        self.state()
+            .scenes
+            .values()
+            .flat_map(|scene| &scene.faults)
+            .filter(|fault| fault.path == path)
+            .cloned()
+            .collect()
     }
 
     /// Reads scenes and tells the editor their faults until there is no more to do.
@@ -79,7 +85,8 @@ impl Faults {
             // While somebody types on, only the last text is read.
             let until = Instant::now() + took.min(SETTLED);
             while !state.is_over
-                && let Some(left) = until.checked_duration_since(Instant::now()).filter(|left| !left.is_zero())
+                && let Some(left) =
+                    until.checked_duration_since(Instant::now()).filter(|left| !left.is_zero())
             {
                 state = self.changed.wait_timeout(state, left).unwrap_or_else(PoisonError::into_inner).0;
             }
@@ -119,7 +126,9 @@ impl Faults {
             false => state.scenes.remove(&path),
         };
         touched.extend(before.into_iter().flat_map(|scene| scene.faults).map(|fault| fault.path));
-        addresses.extend(state.scenes.iter().map(|(path, scene)| (path.clone(), (scene.uri.clone(), scene.version))));
+        addresses.extend(
+            state.scenes.iter().map(|(path, scene)| (path.clone(), (scene.uri.clone(), scene.version))),
+        );
         let all: Vec<_> = state.scenes.values().flat_map(|scene| &scene.faults).collect();
         touched
             .into_iter()

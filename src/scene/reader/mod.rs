@@ -31,9 +31,9 @@ mod toml_faults;
 mod values;
 
 pub use check::Chosen;
-pub(crate) use notes::looks_like_number;
 pub use fault::{Fault, Place, Places, Severity};
 pub use machine::Message;
+pub(crate) use notes::looks_like_number;
 pub use parsed::Parsed;
 
 use crate::scene::model::Model;
