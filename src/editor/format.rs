@@ -195,12 +195,12 @@ impl Writer<'_> {
             self.at = attribute.name.end;
             for word in &attribute.values {
                 let is_below = self.view.slice(self.at..word.start).contains('\n');
-                let (lines, gap) = (self.lines.len(), self.at..word.start);
+                let gap = self.at..word.start;
                 self.gap(word.start, indent + 1);
-                let is_first = matches!(self.lines.last(), Some(Line { what: What::Attribute([_, values]), comment, .. })
-                    if values.is_empty() && comment.is_empty());
                 self.no_blank();
-                if self.lines.len() > lines || is_below && !is_first {
+                let goes_on = matches!(self.lines.last(), Some(Line { what: What::Attribute([_, values]), comment, .. })
+                    if comment.is_empty() && (values.is_empty() || !is_below));
+                if !goes_on {
                     self.push(indent + 1, What::Attribute([String::new(), String::new()]));
                 }
                 let raw = self.between(attribute, gap).to_owned() + &self.raw(*word);
@@ -275,13 +275,13 @@ fn written(lines: &[Line]) -> String {
 
 /// Tells whether lines have common columns.
 fn goes_with(first: &Line, line: &Line) -> bool {
-    first.indent == line.indent
-        && match (&first.what, &line.what) {
-            (What::Entity(..), What::Entity(..)) | (What::Let(_), What::Let(_)) => true,
-            // Comments and blank lines between attributes do not end the columns.
-            (What::Attribute(_), What::Attribute(_) | What::Comment) => true,
-            _ => false,
-        }
+    match (&first.what, &line.what) {
+        (What::Entity(..), What::Entity(..)) | (What::Let(_), What::Let(_)) => first.indent == line.indent,
+        // Comments and blank lines between attributes do not end the columns.
+        (What::Attribute(_), What::Attribute(_) | What::Comment) => first.indent == line.indent,
+        (What::Attribute(_), What::Blank) => true,
+        _ => false,
+    }
 }
 
 fn lets(run: &[Line]) -> Vec<String> {

@@ -59,13 +59,18 @@ impl Text {
         let at = boundary(&self.text, at);
         let line = self.line_of(at);
         let before = &self.text[self.starts[line]..at];
-        Position { line: line as u32, character: before.chars().map(char::len_utf16).sum::<usize>() as u32 }
+        // A line may be as long as the text.
+        let units = if before.is_ascii() { before.len() } else { before.chars().map(char::len_utf16).sum() };
+        Position { line: line as u32, character: units as u32 }
     }
 
     /// Returns the byte at a position. One after the end of a line is the end, and one within a character its beginning.
     pub fn offset(&self, position: Position) -> usize {
         let line = self.line(position.line as usize);
         let mut left = position.character as usize;
+        if self.text.as_bytes()[line.clone()].iter().take(left).all(u8::is_ascii) {
+            return (line.start + left).min(line.end);
+        }
         for (at, letter) in self.text[line.clone()].char_indices() {
             let Some(rest) = left.checked_sub(letter.len_utf16()) else { return line.start + at };
             if left == 0 {

@@ -13,6 +13,9 @@ use toml_parser::{ParseError, Source, Span};
 /// How deep arrays and tables may be nested.
 const DEEPEST: u32 = 64;
 
+/// The most parts of a key. Longer ones are skipped.
+const MOST_PARTS: usize = 128;
+
 /// How many of the last items are searched for one that goes on.
 const NEAR: usize = 64;
 
@@ -159,6 +162,9 @@ impl Reader<'_> {
 
     /// Begins what a title names, unless it goes on.
     fn open(&mut self, path: &[Word], title: Range<usize>, is_new: bool) {
+        if path.len() > MOST_PARTS {
+            return;
+        }
         let (text, registry) = (self.text, self.registry);
         open(registry, text, &mut self.items, path, &title, is_new);
     }
@@ -167,6 +173,9 @@ impl Reader<'_> {
     fn leaf(&mut self, table: &[Word], outer: &[Path], leaf: Leaf) {
         let Some(first) = leaf.key.first().map(|first| first.start) else { return };
         let path: Path = table.iter().chain(outer.iter().flatten()).chain(&leaf.key).copied().collect();
+        if path.len() > MOST_PARTS {
+            return;
+        }
         let place = first..leaf.end.max(leaf.from.unwrap_or(0));
         let (keyword, values) = (Keyword::of(self.says(path[0])), leaf.values.clone());
         match (keyword, &path[..]) {
@@ -226,7 +235,9 @@ fn repeated<'i>(
     };
     match &mut items[at] {
         Item::Repeat(repeat) => {
-            if found.is_some() {
+            let is_there = |known: &Word| known.start == name.start;
+            // The words of a title are the same for each value below it.
+            if found.is_some() && !repeat.name.iter().chain(repeat.again.last()).any(is_there) {
                 repeat.again.push(name);
             }
             repeat.place.end = repeat.place.end.max(title.end);

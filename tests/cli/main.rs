@@ -8,6 +8,7 @@ mod certain;
 mod cli;
 mod colours;
 mod discovery;
+mod editor;
 mod failures;
 mod full_range;
 mod limits;
