@@ -29,7 +29,7 @@ pub fn formatted(view: &View) -> Option<String> {
         Syntax::Toml => format_toml::formatted(view.text.as_str()),
     };
     let is_dos = view.text.as_str().contains("\r\n");
-    Some(if is_dos { text.replace('\n', "\r\n") } else { text })
+    Some(if is_dos { text.replace("\r\n", "\n").replace('\n', "\r\n") } else { text })
 }
 
 /// A line of the result.

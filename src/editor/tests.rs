@@ -213,6 +213,12 @@ fn ask(path: &Path, text: &Text, at: usize) {
     outline(&view).iter().for_each(|symbol| within(symbol, &check));
     folds(&view).iter().for_each(|fold| assert!(fold.lines[0] < fold.lines[1]));
     if let Some(new) = formatted(&view) {
+        let letters = |text: &str| {
+            let mut letters: Vec<_> = text.chars().filter(|letter| !letter.is_whitespace()).collect();
+            letters.sort_unstable();
+            letters
+        };
+        assert_eq!(letters(&new), letters(text.as_str()), "{:?}", text.as_str());
         let again = read(registry(), &path.to_string_lossy(), Text::new(new.as_str()));
         assert_eq!(formatted(&again), Some(new), "{:?}", text.as_str());
     }

@@ -28,7 +28,7 @@ pub fn events(text: &str) -> (Vec<Event>, Vec<Break>) {
         let mut guard = RecursionGuard::new(&mut receiver, DEEPEST);
         parse_document(&tokens, &mut guard, &mut errors);
     }
-    let place = |error: &ParseError| error.unexpected().or(error.context()).map_or(0..0, |span| range(span));
+    let place = |error: &ParseError| error.unexpected().or(error.context()).map_or(0..0, range);
     (events, errors.iter().map(|error| (place(error), error.description().to_owned())).collect())
 }
 
