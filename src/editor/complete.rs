@@ -407,7 +407,8 @@ impl At<'_> {
     fn files(&self) -> Vec<Completion> {
         let text = self.view.text.as_str();
         let start = text[..self.at].rfind(|c: char| c.is_whitespace() || c == '"' || c == '\'' || c == '{');
-        let typed = &text[start.map_or(0, |end| end + 1)..self.at];
+        let after = |end: usize| end + text[end..].chars().next().map_or(1, char::len_utf8);
+        let typed = &text[start.map_or(0, after)..self.at];
         let (folder, prefix) =
             typed.rsplit_once('/').map_or(("", typed), |(folder, prefix)| (folder, prefix));
         let place = self.at - prefix.len()..self.at;

@@ -287,11 +287,11 @@ fn a_text_that_is_edited_at_random_has_answers() {
 #[test]
 fn what_is_nested_deeply_has_answers() {
     for (name, text) in [
-        ("a.ray", "repeat i 2 { ".repeat(20_000)),
-        ("a.ray", "sphere { ".repeat(20_000)),
-        ("a.toml", format!("a = {}", "[".repeat(50_000))),
-        ("a.toml", format!("[sphere.b]\nx = {}", "{ a = ".repeat(20_000))),
-        ("a.toml", format!("[repeat{}]\n", ".i.repeat".repeat(20_000))),
+        ("a.ray", "repeat i 2 { ".repeat(5_000)),
+        ("a.ray", "sphere { ".repeat(5_000)),
+        ("a.toml", format!("a = {}", "[".repeat(10_000))),
+        ("a.toml", format!("[sphere.b]\nx = {}", "{ a = ".repeat(5_000))),
+        ("a.toml", format!("[repeat{}]\n", ".i.repeat".repeat(5_000))),
     ] {
         ask(Path::new(name), &Text::new(text), 17);
     }
