@@ -6,6 +6,7 @@ use crate::shapes::outline;
 static CENTER: Pparm<DVec3> =
     Pparm::required("center", "the position of the centre").alias(&["centre"]).unit("world coordinates");
 static SIZE: Pparm<DVec3> = Pparm::required("size", "the width, height and depth")
+    .each(&["width", "height", "depth"])
     .unit("world units")
     .must("positive in each dimension", |size: &DVec3| size.min_element() > 0.0);
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 static WORLDDIM: Pparm<DVec2> = Pparm::required("worlddim", "the width and height of the image plane")
     .alias(&["world_dim"])
+    .each(&["width", "height"])
     .unit("world units")
     .must("positive in each dimension", |size: &DVec2| size.min_element() > 0.0)
     .dumped("world_dim", " \n");

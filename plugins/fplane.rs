@@ -6,6 +6,7 @@ use crate::shapes::rectangle::{self, FinitePlane, Rectangle};
 
 pub static DIMENSIONS: Pparm<DVec2> =
     Pparm::required("dimensions", "the size along `xdir` and perpendicular to it")
+        .each(&["along", "across"])
         .unit("world units")
         .must("positive in each dimension", |size: &DVec2| size.min_element() > 0.0)
         .dumped("dimensions", "\n");

@@ -15,6 +15,7 @@ static BOX: Pparm<[f64; 6]> = Pparm::required(
     "the box that clips the surface, as its low and its high corner relative to `center`; where it clips, the surface is \
      open, and its inside is seen",
 )
+.each(&["low x", "low y", "low z", "high x", "high y", "high z"])
 .unit("world units")
 .must("a low corner and a high corner above it", |[a, b, c, x, y, z]: &[f64; 6]| a < x && b < y && c < z);
 

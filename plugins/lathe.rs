@@ -10,6 +10,7 @@ static POINTS: Pparm<Points> = Pparm::required(
     "points",
     "points of the profile, from the bottom up: the height of each above `base` and its distance from the axis",
 )
+.each(&["height", "radius"])
 .unit("world units")
 .must("points whose heights begin at 0 and rise", |points: &Points| {
     points.0[0].x == 0.0 && points.0.is_sorted_by(|low, high| low.x < high.x)

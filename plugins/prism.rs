@@ -5,6 +5,7 @@ use crate::shapes::outline;
 
 static POINTS: Pparm<List<DVec2, 3, 256>> =
     Pparm::required("points", "the corners of the polygon: the x and the z of each, relative to `base`")
+        .each(&["x", "z"])
         .unit("world coordinates")
         .must("a polygon whose edges do not meet", |points: &List<DVec2, 3, 256>| {
             outline::is_simple(&points.0)

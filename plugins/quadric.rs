@@ -7,6 +7,7 @@ static COEFFICIENTS: Pparm<[f64; 10]> = Pparm::required(
     "coefficients",
     "the coefficients A to J of Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J",
 )
+.each(&["A", "B", "C", "D", "E", "F", "G", "H", "I", "J"])
 .must("nonzero in at least one of A to I", |c: &[f64; 10]| c[..9].iter().any(|one| *one != 0.0));
 static CENTER: Pparm<DVec3> = Pparm::or("center", "the origin of the equation's coordinates", DVec3::ZERO)
     .alias(&["centre"])
@@ -16,6 +17,7 @@ static BOX: Pparm<[f64; 6]> = Pparm::or(
     "the box that clips it, as its low and its high corner relative to `center`",
     [-1e9, -1e9, -1e9, 1e9, 1e9, 1e9],
 )
+.each(&["low x", "low y", "low z", "high x", "high y", "high z"])
 .not_dumped();
 
 const TABLE: Table = &[&COEFFICIENTS, &CENTER, &BOX];

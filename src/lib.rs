@@ -13,6 +13,7 @@
 pub use glam;
 
 pub mod cli;
+mod editor;
 mod files;
 pub mod geometry;
 mod heap;

@@ -8,7 +8,7 @@ pub use crate::scene::counts::OneOf;
 pub use crate::scene::entity::{Args, Entity, Refusal};
 pub use crate::scene::list::List;
 pub use crate::scene::pparm::{Attributes, Derived, LEAST_LENGTH, Pparm, Row, Table};
-pub use crate::scene::value::{Datum, PerChannel, Value};
+pub use crate::scene::value::{COLOUR, Datum, PerChannel, Value};
 pub use inventory;
 
 // What a constructor returns: a camera, a material, a texture, a shader, an object or a light.

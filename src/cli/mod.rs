@@ -17,6 +17,7 @@ mod diff;
 mod dump;
 mod explain;
 mod failure;
+mod fmt;
 mod full_range;
 #[doc(hidden)]
 pub mod fuzz;
@@ -26,6 +27,7 @@ mod interrupt;
 mod job;
 mod keep;
 mod list;
+mod lsp;
 mod made;
 mod man;
 mod measuring;
@@ -91,6 +93,7 @@ enum Command {
     Dump(dump::Args),
     Convert(convert::Args),
     Check(check::Args),
+    Fmt(fmt::Args),
     Plan(plan::Args),
     Probe(probe::Args),
     Verify(verify::Args),
@@ -104,6 +107,7 @@ enum Command {
     New(new::Args),
     Schema(schema::Args),
     Grammar(grammar::Args),
+    Lsp(lsp::Args),
     Completions(completions::Args),
     Man(man::Args),
 }
@@ -146,6 +150,7 @@ fn chosen() -> ExitCode {
             Some(Command::Dump(args)) => dump::run(registry, args),
             Some(Command::Convert(args)) => convert::run(registry, args),
             Some(Command::Check(args)) => check::run(registry, args),
+            Some(Command::Fmt(args)) => fmt::run(registry, &args),
             Some(Command::Plan(args)) => plan::run(registry, args),
             Some(Command::Probe(args)) => probe::run(registry, args),
             Some(Command::Verify(args)) => verify::run(registry, args),
@@ -159,6 +164,7 @@ fn chosen() -> ExitCode {
             Some(Command::New(args)) => new::run(registry, &args),
             Some(Command::Schema(_)) => schema::run(registry),
             Some(Command::Grammar(_)) => grammar::run(registry),
+            Some(Command::Lsp(_)) => lsp::run(registry),
             Some(Command::Completions(args)) => completions::run(registry, &args, command()),
             Some(Command::Man(args)) => man::run(registry, &args, command()),
             None if io::stdin().is_terminal() => {

@@ -79,6 +79,7 @@ pub(crate) static SHADER: Pparm<Option<Paint>> = Pparm::or(
 /// The size of the image, which every camera has.
 pub static PIXELDIM: Pparm<[i64; 2]> = Pparm::required("pixeldim", "the width and height of the image")
     .alias(&["pixel_dim"])
+    .each(&["width", "height"])
     .unit("pixels")
     .between(1.0, 100_000.0)
     .dumped("pixel_dim", " \n");

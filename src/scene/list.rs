@@ -9,6 +9,7 @@ pub struct List<T, const LEAST: usize, const MOST: usize>(pub Vec<T>);
 
 impl<T: Value, const LEAST: usize, const MOST: usize> Value for List<T, LEAST, MOST> {
     const TYPE: Type = T::TYPE;
+    const EACH: &[&str] = T::EACH;
     const ARITY: Counts = match T::ARITY {
         Counts::Of([group]) => Counts::List { group: *group, least: LEAST, most: MOST },
         _ => panic!("each value of a list takes the same number of numbers"),

@@ -33,4 +33,4 @@ pub use reader::{Fault, Loaded, Parsed, Place, Report, Severity, build, read};
 pub use registry::Registry;
 pub use store::Record;
 pub use syntax::Syntax;
-pub use value::{Datum, Type};
+pub use value::{COLOUR, Datum, Type};

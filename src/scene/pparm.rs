@@ -41,6 +41,8 @@ pub trait Attribute: Sync {
     fn aliases(&self) -> &'static [&'static str];
     /// Returns the meaning, in a few words.
     fn meaning(&self) -> &'static str;
+    /// Returns the names of the values of a row, or of those of each group of a list; empty where they have none.
+    fn each(&self) -> &'static [&'static str];
     /// Returns the unit of the values, or an empty string where they have none.
     fn unit(&self) -> &'static str;
     /// Returns the type of the values.
@@ -111,6 +113,7 @@ pub struct Pparm<T: Value> {
     name: &'static str,
     aliases: &'static [&'static str],
     meaning: &'static str,
+    each: &'static [&'static str],
     unit: &'static str,
     default: Option<T>,
     rule: &'static str,
@@ -138,6 +141,7 @@ impl<T: Value> Pparm<T> {
             name,
             aliases: &[],
             meaning,
+            each: T::EACH,
             unit: "",
             default,
             rule: "",
@@ -152,6 +156,13 @@ impl<T: Value> Pparm<T> {
     /// Sets other names that a scene may use.
     pub const fn alias(mut self, aliases: &'static [&'static str]) -> Self {
         self.aliases = aliases;
+        self
+    }
+
+    /// Sets the names of the values of a row, where they are not those of its type: [`COLOUR`](crate::scene::COLOUR)
+    /// for a colour.
+    pub const fn each(mut self, names: &'static [&'static str]) -> Self {
+        self.each = names;
         self
     }
 
@@ -205,6 +216,10 @@ impl<T: Value> Attribute for Pparm<T> {
 
     fn meaning(&self) -> &'static str {
         self.meaning
+    }
+
+    fn each(&self) -> &'static [&'static str] {
+        self.each
     }
 
     fn unit(&self) -> &'static str {

@@ -9,6 +9,7 @@ use glam::DVec3;
 impl Value for Rotation {
     const TYPE: Type = Type::Rotation;
     const ARITY: Counts = Counts::Of(&[3]);
+    const EACH: &[&str] = DVec3::EACH;
 
     fn to_datum(&self) -> Datum {
         self.degrees.to_datum()

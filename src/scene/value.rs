@@ -12,6 +12,9 @@ use glam::{DVec2, DVec3};
 use std::path::PathBuf;
 use std::sync::Arc;
 
+/// The names of the values of a colour. Editors show a swatch for an attribute whose values have these names.
+pub const COLOUR: &[&str] = &["red", "green", "blue"];
+
 /// The type of an attribute's values.
 #[derive(Clone, Copy, Debug)]
 pub enum Type {
@@ -128,6 +131,8 @@ pub trait Value: Clone + Send + Sync + 'static {
     const TYPE: Type;
     /// The numbers of values from which a Rust value can be read.
     const ARITY: Counts;
+    /// The names of its values in a row; empty where they have none.
+    const EACH: &[&str] = &[];
     /// Converts a default to a datum.
     fn to_datum(&self) -> Datum;
     /// Converts a datum to a value, or returns `None` where the datum's type or its number of values does not fit.
@@ -161,6 +166,7 @@ impl Value for DVec2 {
 }
 
 impl Value for DVec3 {
+    const EACH: &[&str] = &["x", "y", "z"];
     const TYPE: Type = Type::Number;
     const ARITY: Counts = Counts::Of(&[3]);
 
@@ -178,6 +184,7 @@ impl Value for DVec3 {
 pub struct PerChannel(pub Rgb);
 
 impl Value for PerChannel {
+    const EACH: &[&str] = COLOUR;
     const TYPE: Type = Type::Number;
     const ARITY: Counts = Counts::Of(&[1, 3]);
 
@@ -348,6 +355,7 @@ pub(crate) fn yes_or_no(truth: bool) -> &'static str {
 impl<T: Value> Value for Option<T> {
     const TYPE: Type = T::TYPE;
     const ARITY: Counts = T::ARITY;
+    const EACH: &[&str] = T::EACH;
 
     fn to_datum(&self) -> Datum {
         self.as_ref().map_or(Datum::Absent, T::to_datum)

@@ -9,6 +9,7 @@ mod certain;
 mod cli;
 mod colours;
 mod discovery;
+mod editor;
 mod failures;
 mod firsthour;
 mod full_range;

@@ -5,6 +5,7 @@ mod parser;
 mod spline;
 mod step;
 
+pub(crate) use parser::functions;
 pub use parser::{FormulaFault, Named, is_taken};
 
 use crate::numeric::dual::Dual;

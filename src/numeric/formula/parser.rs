@@ -38,6 +38,11 @@ const FUNCTIONS: [(&str, Function, usize); 10] = [
     ("max", Function::Max, 2),
 ];
 
+/// Returns the names of the functions of formulas, each with the number of its arguments.
+pub fn functions() -> impl Iterator<Item = (&'static str, usize)> {
+    FUNCTIONS.iter().map(|(name, _, count)| (*name, *count))
+}
+
 /// Returns whether a name means something in every formula, so that a scene cannot give it to a number.
 pub fn is_taken(name: &str) -> bool {
     ["x", "y", "z", "pi"].contains(&name) || FUNCTIONS.iter().any(|(function, ..)| *function == name)

@@ -170,7 +170,7 @@ impl Against<'_, '_> {
         let entity = self.entity;
         let mut fault = Fault::error(word.place.clone(), format!("{title} has no attribute `{}`", word.text));
         if let Some(near) = near {
-            fault = fault.label(format!("did you mean `{near}`?"));
+            fault = fault.label(format!("did you mean `{near}`?")).meant(Some(near));
         }
         let names = list(entity.attributes().map(|attribute| attribute.name()));
         self.report.add(fault.help(format!("a {} takes {names}", entity.name)));

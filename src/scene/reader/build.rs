@@ -75,8 +75,12 @@ impl Check<'_, '_> {
                 near.and_then(|near| self.registry.find(near)).is_some_and(|e| e.kind() == Kind::Camera);
             let known = list(self.registry.iter().map(|entity| entity.name));
             let fault = Fault::error(place, format!("there is no entity type `{name}`"));
-            self.report
-                .add(fault.label(suggestion(near, count)).help(format!("the entity types are {known}")));
+            self.report.add(
+                fault
+                    .label(suggestion(near, count))
+                    .meant(near)
+                    .help(format!("the entity types are {known}")),
+            );
         }
         let parsed = |order| source.entity(self.registry, order, &self.places.get(order));
         let place = |order| parsed(order)?.name.place.clone();

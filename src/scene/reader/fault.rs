@@ -57,6 +57,8 @@ pub struct Fault {
     pub also: Vec<(Place, String)>,
     /// What would be right.
     pub help: Option<String>,
+    /// The word that was probably meant in place of the marked one, without quotes.
+    pub meant: Option<String>,
     /// The number of other faults that differ only in their places and are not listed separately, and the first of
     /// those places.
     pub alike: (usize, Vec<Place>),
@@ -72,6 +74,7 @@ impl Fault {
             label: String::new(),
             also: Vec::new(),
             help: None,
+            meant: None,
             alike: (0, Vec::new()),
         }
     }
@@ -96,6 +99,12 @@ impl Fault {
     /// Adds what would be right.
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
+        self
+    }
+
+    /// Adds the word that was probably meant in place of the marked one.
+    pub fn meant(mut self, word: Option<&str>) -> Self {
+        self.meant = word.map(str::to_owned);
         self
     }
 

@@ -315,8 +315,10 @@ impl Names {
                 }
                 None => {
                     let known = known.get(kind).filter(|_| is_told).into_iter().flatten().copied();
+                    let near = nearest(text, known);
                     Fault::error(first.clone(), format!("there is no {kind} `{text}`"))
-                        .label(suggestion(nearest(text, known), *count))
+                        .label(suggestion(near, *count))
+                        .meant(near)
                         .help(format!(
                             "define it before this: {}",
                             registry.example(*kind, text, report.syntax())

@@ -338,7 +338,8 @@ fn is_value(
     }
 }
 
-fn looks_like_number(word: &str) -> bool {
+/// Tells whether a word begins as a number does.
+pub fn looks_like_number(word: &str) -> bool {
     let unsigned = word.trim_start_matches(['+', '-']);
     unsigned.starts_with(|c: char| c.is_ascii_digit() || c == '.')
         || ["nan", "inf", "infinity"].iter().any(|number| unsigned.eq_ignore_ascii_case(number))

@@ -199,7 +199,7 @@ impl<'a> Numbers<'a> {
         }
         let is_told = report.tells(Severity::Error, &told.place);
         if let Some(near) = nearest(&unknown, self.names().filter(|_| is_told)) {
-            told = told.label(format!("did you mean `{near}`?"));
+            told = told.label(format!("did you mean `{near}`?")).meant(Some(near));
         }
         let names = list(self.names().take(LISTED));
         let more = if self.all.len() > LISTED { " and others" } else { "" };

@@ -30,7 +30,7 @@ impl Token {
         matches!(self.form, TokenForm::Open | TokenForm::Close)
     }
 
-    pub fn form(self) -> Form {
+    pub(super) fn form(self) -> Form {
         if matches!(self.form, TokenForm::Quoted | TokenForm::Unclosed) { Form::Text } else { Form::Any }
     }
 
@@ -158,7 +158,7 @@ impl<'a> Tokens<'a> {
         &self.text[token.start..token.end]
     }
 
-    pub fn word(&self, token: Token) -> Word<'a> {
+    pub(super) fn word(&self, token: Token) -> Word<'a> {
         Word::at(self.text(token), token.form(), token.place())
     }
 }

@@ -1,0 +1,70 @@
+//! `tabray fmt`: formats scenes.
+
+use super::failure::{Failure, print, tell};
+use super::{input, messages, output};
+use crate::editor::{self, Text, formatted, problem};
+use crate::scene::reader::{Fault, Report};
+use crate::scene::registry::Registry;
+use std::path::{Path, PathBuf};
+
+/// Format scenes
+///
+/// Attributes stand in columns, one on each line, and what stands on one line stays there. Comments and the order are
+/// kept, and so is what the scene means. A scene whose form has errors is left as it is.
+#[derive(clap::Args)]
+pub struct Args {
+    /// The scenes; `-` reads one from standard input and writes it to standard output
+    #[arg(required = true, value_name = "SCENE")]
+    scenes: Vec<PathBuf>,
+    /// Change nothing; name the scenes that are not formatted, and end with status 2 if there are any
+    #[arg(long)]
+    check: bool,
+}
+
+pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
+    let mut sound = true;
+    for scene in &args.scenes {
+        match one(registry, scene, args.check) {
+            Ok(is_formatted) => sound &= is_formatted,
+            Err(failure @ Failure::Failed(_)) => return Err(failure),
+            Err(failure) => {
+                tell(&failure);
+                sound = false;
+            }
+        }
+    }
+    if sound { Ok(()) } else { Err(Failure::Told) }
+}
+
+/// Formats a scene; returns whether it was formatted, or is now.
+fn one(registry: &Registry, path: &Path, only_check: bool) -> Result<bool, Failure> {
+    let (name, bytes) = input::read(path)?;
+    let text = String::from_utf8(bytes).map_err(|_| {
+        Failure::Usage(format!("`{name}` is not a text"), Some("a scene is plain text, in UTF-8".to_owned()))
+    })?;
+    let (mark, body) = match text.strip_prefix('\u{feff}') {
+        Some(body) => ("\u{feff}", body),
+        None => ("", text.as_str()),
+    };
+    let view = editor::read(registry, &name, Text::new(body));
+    let Some(new) = formatted(&view) else {
+        let mut report = Report::new(&name, body.to_owned(), view.syntax);
+        if let Some((place, message)) = problem(&view) {
+            let fault = Fault::error(Some(place.clone()), message);
+            report.add(fault.help("a scene is formatted when its form has no errors"));
+        }
+        return Err(Failure::Scene(report));
+    };
+    let is_formatted = new == body;
+    match (input::is_standard(path), only_check) {
+        (_, true) if !is_formatted => messages::error(&format!("{name}: not formatted"), None),
+        (_, true) => {}
+        (true, false) => print(&format!("{mark}{new}"))?,
+        (false, false) if is_formatted => {}
+        (false, false) => {
+            output::replace(path, format!("{mark}{new}").as_bytes())?;
+            messages::note(&format!("formatted {name}"));
+        }
+    }
+    Ok(is_formatted || !only_check)
+}

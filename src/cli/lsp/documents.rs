@@ -1,0 +1,112 @@
+//! The texts that are open in the editor, and the files beside them.
+
+use super::protocol::{Change, path};
+use crate::editor::{self, Files, Text, View};
+use crate::files;
+use crate::scene::registry::Registry;
+use std::cell::{OnceCell, RefCell};
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::SystemTime;
+
+/// The largest file that is read beside the open ones, in bytes.
+const LARGEST: u64 = 1 << 24;
+
+/// A text that is open in the editor.
+pub struct Document {
+    /// Its address, as the editor writes it.
+    pub uri: String,
+    pub version: i64,
+    pub text: Text,
+    view: OnceCell<Arc<View>>,
+}
+
+/// A file as it was read: when it was last changed, and what it says.
+type Stored = (Option<SystemTime>, Arc<View>);
+
+/// The texts that are open in the editor, by their paths, and the files that were read beside them.
+pub struct Documents<'r> {
+    registry: &'r Registry,
+    open: BTreeMap<PathBuf, Document>,
+    stored: RefCell<BTreeMap<PathBuf, Stored>>,
+}
+
+impl<'r> Documents<'r> {
+    pub fn new(registry: &'r Registry) -> Self {
+        Self { registry, open: BTreeMap::new(), stored: RefCell::default() }
+    }
+
+    /// Returns the registered entity types.
+    pub fn registry(&self) -> &'r Registry {
+        self.registry
+    }
+
+    /// Opens a text, or replaces it.
+    pub fn open(&mut self, uri: String, version: i64, text: String) -> PathBuf {
+        let path = path(&uri);
+        let document = Document { uri, version, text: Text::new(text), view: OnceCell::new() };
+        self.open.insert(path.clone(), document);
+        path
+    }
+
+    /// Changes a text.
+    pub fn change(&mut self, path: &Path, version: i64, changes: &[Change]) {
+        let Some(document) = self.open.get_mut(path) else { return };
+        for Change { range, text } in changes {
+            document.text = match range {
+                None => Text::new(text.as_str()),
+                Some(range) => {
+                    let place = document.text.offset(range.start)..document.text.offset(range.end);
+                    document.text.edited(place, text)
+                }
+            };
+        }
+        document.version = version;
+        document.view = OnceCell::new();
+    }
+
+    pub fn close(&mut self, path: &Path) {
+        self.open.remove(path);
+    }
+
+    pub fn get(&self, path: &Path) -> Option<&Document> {
+        self.open.get(path)
+    }
+
+    /// Returns the paths of the open texts.
+    pub fn paths(&self) -> Vec<PathBuf> {
+        self.open.keys().cloned().collect()
+    }
+
+    /// Returns the address of a file: that of the editor, if it is open.
+    pub fn uri(&self, path: &Path) -> String {
+        self.open.get(path).map_or_else(|| super::protocol::uri(path), |document| document.uri.clone())
+    }
+
+    fn read(&self, path: &Path) -> Option<Arc<View>> {
+        let changed = fs::metadata(path).ok()?.modified().ok();
+        if let Some((known, view)) = self.stored.borrow().get(path)
+            && *known == changed
+        {
+            return Some(view.clone());
+        }
+        let mut text = String::new();
+        files::open(path).ok()?.take(LARGEST).read_to_string(&mut text).ok()?;
+        let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+        let view = Arc::new(editor::read(self.registry, &path.to_string_lossy(), Text::new(text)));
+        self.stored.borrow_mut().insert(path.to_owned(), (changed, view.clone()));
+        Some(view)
+    }
+}
+
+impl Files for Documents<'_> {
+    fn view(&self, path: &Path) -> Option<Arc<View>> {
+        let Some(document) = self.open.get(path) else { return self.read(path) };
+        let name = path.to_string_lossy();
+        let view = || Arc::new(editor::read(self.registry, &name, document.text.clone()));
+        Some(document.view.get_or_init(view).clone())
+    }
+}

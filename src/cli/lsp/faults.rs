@@ -1,0 +1,166 @@
+//! The faults of the open scenes: each is read on a thread of its own whenever its text changes.
+
+use super::protocol::{span, uri};
+use crate::cli::crash;
+use crate::editor::{Diagnosis, diagnose};
+use crate::scene::reader::Severity;
+use crate::scene::registry::Registry;
+use lsp_server::{Message, Notification};
+use serde_json::{Value, json};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+/// The longest time for which a text must have been left alone before it is read. A scene that is read in less is left
+/// alone for as long as that takes.
+const SETTLED: Duration = Duration::from_millis(300);
+
+/// A scene to be read.
+struct Job {
+    uri: String,
+    version: i64,
+    /// The text; `None` where the scene is no longer open.
+    text: Option<Arc<str>>,
+}
+
+/// The faults of a scene.
+#[derive(Default)]
+struct Scene {
+    uri: String,
+    version: i64,
+    faults: Vec<Diagnosis>,
+}
+
+#[derive(Default)]
+struct State {
+    jobs: BTreeMap<PathBuf, Job>,
+    scenes: BTreeMap<PathBuf, Scene>,
+    is_over: bool,
+}
+
+/// The faults of the open scenes, and the scenes that are to be read.
+#[derive(Default)]
+pub struct Faults {
+    state: Mutex<State>,
+    changed: Condvar,
+}
+
+impl Faults {
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Has a scene read, in place of an older text of it that is waiting.
+    pub fn read(&self, path: &Path, uri: &str, version: i64, text: Option<Arc<str>>) {
+        self.state().jobs.insert(path.to_owned(), Job { uri: uri.to_owned(), version, text });
+        self.changed.notify_all();
+    }
+
+    /// Ends the thread that reads.
+    pub fn end(&self) {
+        self.state().is_over = true;
+        self.changed.notify_all();
+    }
+
+    /// Returns the faults in a file, those of all scenes that include it.
+    pub fn in_file(&self, path: &Path) -> Vec<Diagnosis> {
+        self.state()
+            .scenes
+            .values()
+            .flat_map(|scene| &scene.faults)
+            .filter(|fault| fault.path == path)
+            .cloned()
+            .collect()
+    }
+
+    /// Reads scenes and tells the editor their faults until there is no more to do.
+    pub fn work(&self, registry: &Registry, tell: &dyn Fn(Message) -> bool) {
+        let mut took = Duration::ZERO;
+        loop {
+            let mut state = self.state();
+            while state.jobs.is_empty() && !state.is_over {
+                state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
+            }
+            // While somebody types on, only the last text is read.
+            let until = Instant::now() + took.min(SETTLED);
+            while !state.is_over
+                && let Some(left) =
+                    until.checked_duration_since(Instant::now()).filter(|left| !left.is_zero())
+            {
+                state = self.changed.wait_timeout(state, left).unwrap_or_else(PoisonError::into_inner).0;
+            }
+            let next = state.jobs.pop_first();
+            let is_over = state.is_over;
+            drop(state);
+            let Some((path, job)) = next.filter(|_| !is_over) else {
+                if is_over {
+                    return;
+                }
+                continue;
+            };
+            let start = Instant::now();
+            let read = |text: &Arc<str>| {
+                crash::about(&path.display().to_string());
+                // A scene that ends in an internal error has no faults that could be told.
+                crash::catch(|| diagnose(registry, &path, text)).unwrap_or_default()
+            };
+            let faults = job.text.as_ref().map(read).unwrap_or_default();
+            took = start.elapsed();
+            if !self.keep(path, job, faults).into_iter().all(tell) {
+                return;
+            }
+        }
+    }
+
+    /// Keeps the faults of a scene, and returns what the editor is to be told.
+    fn keep(&self, path: PathBuf, job: Job, faults: Vec<Diagnosis>) -> Vec<Message> {
+        let mut state = self.state();
+        let is_open = job.text.is_some();
+        let scene = Scene { uri: job.uri, version: job.version, faults };
+        let mut touched: BTreeSet<PathBuf> = scene.faults.iter().map(|fault| fault.path.clone()).collect();
+        let mut addresses = BTreeMap::from([(path.clone(), (scene.uri.clone(), scene.version))]);
+        touched.insert(path.clone());
+        let before = match is_open {
+            true => state.scenes.insert(path, scene),
+            false => state.scenes.remove(&path),
+        };
+        touched.extend(before.into_iter().flat_map(|scene| scene.faults).map(|fault| fault.path));
+        addresses.extend(
+            state.scenes.iter().map(|(path, scene)| (path.clone(), (scene.uri.clone(), scene.version))),
+        );
+        let all: Vec<_> = state.scenes.values().flat_map(|scene| &scene.faults).collect();
+        touched
+            .into_iter()
+            .map(|path| {
+                let here = all.iter().filter(|fault| fault.path == path);
+                let told: Vec<_> = here.map(|fault| diagnostic(fault)).collect();
+                let parameters = match addresses.get(&path) {
+                    Some((uri, version)) => json!({ "uri": uri, "version": version, "diagnostics": told }),
+                    None => json!({ "uri": uri(&path), "diagnostics": told }),
+                };
+                Notification::new("textDocument/publishDiagnostics".to_owned(), parameters).into()
+            })
+            .collect()
+    }
+}
+
+/// Writes a fault.
+pub fn diagnostic(fault: &Diagnosis) -> Value {
+    let severity = match fault.severity {
+        Severity::Error => 1,
+        Severity::Warning => 2,
+    };
+    let also: Vec<_> = fault
+        .also
+        .iter()
+        .map(|also| json!({ "location": { "uri": uri(&also.path), "range": span(also.range) }, "message": also.text }))
+        .collect();
+    json!({
+        "range": span(fault.range),
+        "severity": severity,
+        "source": "tabray",
+        "message": fault.message,
+        "relatedInformation": also,
+    })
+}

@@ -1,0 +1,142 @@
+//! The Language Server Protocol, as far as it is used here: what an editor asks, and what it is told.
+
+use crate::editor::{Position, Text};
+use serde::Deserialize;
+use serde_json::{Value, json};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// What is asked, whatever it is about; what is not in a question has a default.
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Question {
+    pub text_document: Document,
+    pub position: Position,
+    pub range: Span,
+    pub new_name: String,
+    pub color: Colour,
+    pub context: Context,
+    pub content_changes: Vec<Change>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Document {
+    pub uri: String,
+    pub version: i64,
+    pub text: String,
+}
+
+#[derive(Clone, Copy, Default, Deserialize)]
+#[serde(default)]
+pub struct Span {
+    pub start: Position,
+    pub end: Position,
+}
+
+#[derive(Clone, Copy, Default, Deserialize)]
+#[serde(default)]
+pub struct Colour {
+    pub red: f64,
+    pub green: f64,
+    pub blue: f64,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Context {
+    pub include_declaration: bool,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub struct Change {
+    pub range: Option<Span>,
+    pub text: String,
+}
+
+/// What the server can do.
+pub fn capabilities() -> Value {
+    json!({
+        "textDocumentSync": { "openClose": true, "change": 2, "save": true },
+        "completionProvider": { "triggerCharacters": [" ", "\"", "[", ".", "/"] },
+        "hoverProvider": true,
+        "signatureHelpProvider": { "triggerCharacters": [" ", "=", "[", ","] },
+        "definitionProvider": true,
+        "referencesProvider": true,
+        "documentHighlightProvider": true,
+        "documentSymbolProvider": true,
+        "codeActionProvider": { "codeActionKinds": ["quickfix"] },
+        "colorProvider": true,
+        "documentFormattingProvider": true,
+        "foldingRangeProvider": true,
+        "renameProvider": { "prepareProvider": true },
+        "inlayHintProvider": true,
+    })
+}
+
+/// Writes a range of a text.
+pub fn range(text: &Text, place: &Range<usize>) -> Value {
+    span([place.start, place.end].map(|at| text.position(at)))
+}
+
+/// Writes the range between two positions.
+pub fn span([start, end]: [Position; 2]) -> Value {
+    json!({ "start": start, "end": end })
+}
+
+/// Writes Markdown.
+pub fn markdown(text: &str) -> Value {
+    json!({ "kind": "markdown", "value": text })
+}
+
+/// Returns the path of a file's address. Another address, as of a text without a file, is taken as it is.
+pub fn path(uri: &str) -> PathBuf {
+    let Some(path) = uri.strip_prefix("file://") else { return PathBuf::from(uri) };
+    let mut bytes = Vec::new();
+    let mut rest = path.as_bytes();
+    while let Some((first, after)) = rest.split_first() {
+        let digits = after.get(..2).and_then(|digits| std::str::from_utf8(digits).ok());
+        let code = digits.filter(|_| *first == b'%').and_then(|digits| u8::from_str_radix(digits, 16).ok());
+        bytes.push(code.unwrap_or(*first));
+        rest = if code.is_some() { &after[2..] } else { after };
+    }
+    let path = String::from_utf8_lossy(&bytes).into_owned();
+    // On Windows, `/c:/folder` is `c:/folder`.
+    let is_drive = path.as_bytes().get(2) == Some(&b':') && cfg!(windows);
+    PathBuf::from(if is_drive { path[1..].to_owned() } else { path })
+}
+
+/// Returns the address of a file.
+pub fn uri(path: &Path) -> String {
+    let path = path.to_string_lossy();
+    if path.contains("://") || path.starts_with("untitled:") {
+        return path.into_owned();
+    }
+    let mut uri = String::from("file://");
+    let path = path.replace('\\', if cfg!(windows) { "/" } else { "\\" });
+    uri += if path.starts_with('/') { "" } else { "/" };
+    for byte in path.bytes() {
+        if byte.is_ascii_alphanumeric() || b"/-._~".contains(&byte) {
+            uri.push(byte.into());
+        } else {
+            uri += &format!("%{byte:02X}");
+        }
+    }
+    uri
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_address_is_that_of_its_path() {
+        for file in ["/a b/ä%20#.ray", "/x/y-z_1.toml"] {
+            assert_eq!(path(&uri(Path::new(file))), Path::new(file));
+        }
+        assert_eq!(uri(Path::new("/a b.ray")), "file:///a%20b.ray");
+        assert_eq!(uri(&path("untitled:Untitled-1")), "untitled:Untitled-1");
+        assert_eq!(path("file:///a%2"), Path::new("/a%2"));
+    }
+}

@@ -1,0 +1,62 @@
+//! The colours of a scene, as swatches, and how another one is written in the place of one.
+
+use super::view::{Form, Item, View, Word};
+use crate::scene::COLOUR;
+use crate::scene::syntax::Syntax;
+use crate::text::shortest;
+use std::ops::Range;
+
+/// A colour in a text.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Swatch {
+    /// The range of its values.
+    pub place: Range<usize>,
+    /// Red, green and blue, from 0 to 1. A brighter colour is shown as bright as can be, with the same hue.
+    pub colour: [f64; 3],
+}
+
+/// Returns the colours that a text gives in numbers.
+pub fn colours(view: &View) -> Vec<Swatch> {
+    let mut swatches = Vec::new();
+    view.visit(&mut |item, _| {
+        let Item::Entity(entity) = item else { return };
+        for attribute in entity.attributes.iter().filter(|attribute| attribute.values.len() == COLOUR.len()) {
+            if let Some(known) = attribute.known
+                && known.each() == COLOUR
+                && let Some(colour) = numbers(view, &attribute.values)
+            {
+                let place = attribute.values[0].start..attribute.values[2].end;
+                let bright = brightest(colour);
+                swatches.push(Swatch { place, colour: colour.map(|channel| channel.max(0.0) / bright) });
+            }
+        }
+    });
+    swatches
+}
+
+fn numbers(view: &View, words: &[Word]) -> Option<[f64; 3]> {
+    let mut colour = [0.0; 3];
+    for (channel, word) in colour.iter_mut().zip(words) {
+        let number = Some(word).filter(|word| word.form == Form::Bare)?;
+        *channel = view.slice(number.place()).parse().ok().filter(|number: &f64| number.is_finite())?;
+    }
+    Some(colour)
+}
+
+/// Returns by what a colour is divided to be shown: 1, or its brightest channel if that is more.
+fn brightest(colour: [f64; 3]) -> f64 {
+    colour.into_iter().fold(1.0, f64::max)
+}
+
+/// Returns how a colour is written in place of the one in a range. It is as bright as that one where that is brighter
+/// than 1.
+pub fn presented(view: &View, place: &Range<usize>, colour: [f64; 3]) -> String {
+    let old = view.slice(place.clone()).split([' ', ',', '\t', '\n']).filter(|word| !word.is_empty());
+    let old: Vec<f64> = old.filter_map(|word| word.parse().ok()).collect();
+    let scale = brightest(old.try_into().unwrap_or([1.0; 3]));
+    let written = colour.map(|channel| shortest((channel * scale * 1000.0).round() / 1000.0));
+    match view.syntax {
+        Syntax::Notes => written.join(" "),
+        Syntax::Toml => written.join(", "),
+    }
+}

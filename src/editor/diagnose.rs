@@ -1,0 +1,79 @@
+//! The faults of a scene, as the loader tells them, in the files in which they are.
+
+use super::text::{Position, Text};
+use crate::scene::reader::{self, Fault, Report, Severity};
+use crate::scene::registry::Registry;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+/// A fault in a file.
+#[derive(Clone, Debug)]
+pub struct Diagnosis {
+    /// The file.
+    pub path: PathBuf,
+    pub severity: Severity,
+    /// What is wrong, and what would be right.
+    pub message: String,
+    /// The beginning and the end of what is marked.
+    pub range: [Position; 2],
+    /// Further places.
+    pub also: Vec<Remark>,
+    /// The word that was probably meant in place of the marked one.
+    pub meant: Option<String>,
+    /// The marked text.
+    pub marked: String,
+}
+
+/// A further place of a fault.
+#[derive(Clone, Debug)]
+pub struct Remark {
+    pub path: PathBuf,
+    pub range: [Position; 2],
+    pub text: String,
+}
+
+/// Reads a scene as a render does, and returns its faults.
+pub fn diagnose(registry: &Registry, path: &Path, text: &str) -> Vec<Diagnosis> {
+    let folder = path.parent().unwrap_or(path);
+    let name = path.display().to_string();
+    let report = match reader::read(registry, &name, folder, text.as_bytes(), None) {
+        Ok(loaded) => loaded.warnings,
+        Err(report) => report,
+    };
+    let mut texts = HashMap::new();
+    report.faults().iter().map(|fault| told(&report, fault, &mut texts)).collect()
+}
+
+/// Returns a fault with its places.
+fn told<'r>(report: &'r Report, fault: &'r Fault, texts: &mut HashMap<&'r str, Text>) -> Diagnosis {
+    let located = report.located(fault);
+    let mut remarks: Vec<_> = located
+        .iter()
+        .map(|located| {
+            let text = texts.entry(located.name).or_insert_with(|| Text::new(located.text));
+            let range = [located.place.start, located.place.end].map(|at| text.position(at));
+            Remark { path: PathBuf::from(located.name), range, text: located.label.to_owned() }
+        })
+        .collect();
+    let first = remarks.remove(0);
+    let mut message = fault.message.clone();
+    if !first.text.is_empty() {
+        message += &format!(": {}", first.text);
+    }
+    if fault.alike.0 > 0 {
+        message += &format!(" (and in {})", crate::text::count(fault.alike.0, "more place"));
+    }
+    if let Some(help) = &fault.help {
+        message += &format!("\nhelp: {help}");
+    }
+    let marked = &located[0];
+    Diagnosis {
+        path: first.path,
+        severity: fault.severity,
+        message,
+        range: first.range,
+        also: remarks,
+        meant: fault.meant.clone(),
+        marked: marked.text.get(marked.place.clone()).unwrap_or_default().to_owned(),
+    }
+}

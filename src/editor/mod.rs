@@ -1,0 +1,39 @@
+//! What an editor asks about a scene while it is written: pure functions of its text, which may be half written.
+//!
+//! All names come from the tables of the registered entity types.
+
+mod colours;
+mod complete;
+mod diagnose;
+mod format;
+mod format_toml;
+mod formulas;
+mod hints;
+mod hover;
+mod names;
+mod notes;
+mod outline;
+mod project;
+mod read;
+mod signature;
+mod snippet;
+#[cfg(test)]
+mod tests;
+mod text;
+mod toml;
+mod types;
+mod view;
+
+pub use colours::{Swatch, colours, presented};
+pub use complete::{Completion, What, completions};
+pub use diagnose::{Diagnosis, diagnose};
+pub use format::{formatted, problem};
+pub use hints::{Hint, hints};
+pub use hover::hover;
+pub use names::meant;
+pub use outline::{Fold, Symbol, folds, outline};
+pub use project::{Files, Found, Group, definitions, group, renamed, usages};
+pub use read::read;
+pub use signature::signature;
+pub use text::{Position, Text};
+pub use view::View;

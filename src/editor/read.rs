@@ -1,0 +1,20 @@
+//! Reads a text as far as possible.
+
+use super::text::Text;
+use super::view::View;
+use super::{notes, toml};
+use crate::scene::registry::Registry;
+use crate::scene::syntax::Syntax;
+
+/// Reads a text. Its syntax is that of the file's name, or else that in which the text begins.
+pub fn read(registry: &Registry, name: &str, text: Text) -> View {
+    let syntax = match Syntax::of_name(name) {
+        Some(Syntax::Toml) => Syntax::Toml,
+        _ => Syntax::of_text(text.as_str()),
+    };
+    let (items, breaks) = match syntax {
+        Syntax::Notes => notes::read(registry, text.as_str()),
+        Syntax::Toml => toml::read(registry, text.as_str()),
+    };
+    View { text, syntax, items, breaks }
+}

@@ -1,0 +1,55 @@
+//! What the values of an attribute are, for everything here that depends on it. A new type of values is told of here.
+
+use super::view::{Entity, View};
+use crate::scene::choice::Choices;
+use crate::scene::kind::Kind;
+use crate::scene::pparm::Attribute;
+use crate::scene::value::Type;
+
+/// What the values of an attribute are.
+#[derive(Clone, Copy)]
+pub enum Wanted {
+    /// Numbers, or formulas of named numbers in quotes.
+    Numbers,
+    /// A formula in these variables.
+    Formula(&'static [&'static str]),
+    /// The name of a file.
+    File,
+    /// The name of an entity of a kind.
+    Name(Kind),
+    /// One of several alternatives.
+    Choice(Choices),
+    /// Yes or no.
+    Truth,
+    /// Any word.
+    Word,
+}
+
+/// Returns what the values of an attribute are.
+pub fn wanted(entity: &Entity, attribute: &dyn Attribute) -> Wanted {
+    match attribute.value_type() {
+        Type::Whole | Type::Number | Type::Rotation => Wanted::Numbers,
+        Type::Formula(variables) => Wanted::Formula(variables),
+        Type::File => Wanted::File,
+        // What a texture is read from is a file, whatever the type of its name.
+        Type::Word if entity.known.is_some_and(|known| known.kind() == Kind::Texture) => Wanted::File,
+        Type::Word => Wanted::Word,
+        Type::Name(kind) => Wanted::Name(kind),
+        Type::Choice(choices) => Wanted::Choice(choices),
+        Type::Truth => Wanted::Truth,
+    }
+}
+
+/// Returns the name of the value of this index in a row, or an empty string where it has none.
+pub fn value_name(attribute: &dyn Attribute, index: usize) -> &'static str {
+    let names = attribute.each();
+    if names.is_empty() { "" } else { names[index % names.len()] }
+}
+
+/// Returns the words that stand for yes and no.
+pub fn truths(view: &View) -> [&'static str; 2] {
+    match view.syntax {
+        crate::scene::syntax::Syntax::Notes => ["yes", "no"],
+        crate::scene::syntax::Syntax::Toml => ["true", "false"],
+    }
+}

@@ -1,0 +1,246 @@
+//! What a text says, as far as it can be told: entities, attributes and values with their places, in either syntax.
+
+use super::text::Text;
+use crate::scene::entity;
+use crate::scene::pparm;
+use crate::scene::syntax::Syntax;
+use std::borrow::Cow;
+use std::ops::Range;
+use toml_parser::decoder::Encoding;
+use toml_parser::{ParseError, Raw, Span};
+
+/// A word of a text.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Word {
+    /// The first byte, that of the quote if it has one.
+    pub start: usize,
+    /// The first byte after it.
+    pub end: usize,
+    /// How it is quoted.
+    pub form: Form,
+}
+
+/// How a word is quoted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// Not at all.
+    Bare,
+    /// By quotes that this many bytes at each end are, with escape sequences in between.
+    Quoted(u8),
+    /// Likewise, without escape sequences.
+    Literal(u8),
+    /// By a quote at its beginning alone.
+    Unclosed,
+}
+
+impl Word {
+    /// Returns the range of the word with its quotes.
+    pub fn place(self) -> Range<usize> {
+        self.start..self.end
+    }
+
+    /// Returns the range of the word within its quotes.
+    pub fn inner(self) -> Range<usize> {
+        let (before, after) = match self.form {
+            Form::Bare => (0, 0),
+            Form::Quoted(quote) | Form::Literal(quote) => (quote.into(), quote.into()),
+            Form::Unclosed => (1, 0),
+        };
+        let start = (self.start + before).min(self.end);
+        start..(self.end - after).max(start)
+    }
+
+    /// Tells whether a cursor is at the word: in it, or at one of its ends.
+    pub fn has(self, at: usize) -> bool {
+        (self.start..=self.end).contains(&at)
+    }
+}
+
+/// What a scene consists of.
+#[derive(Debug)]
+pub enum Item {
+    /// An entity.
+    Entity(Entity),
+    /// A named number.
+    Let(Let),
+    /// Files that are included.
+    Include(Include),
+    /// What is repeated.
+    Repeat(Repeat),
+}
+
+impl Item {
+    /// Returns the range of its text.
+    pub fn place(&self) -> &Range<usize> {
+        match self {
+            Self::Entity(entity) => &entity.place,
+            Self::Let(number) => &number.place,
+            Self::Include(include) => &include.place,
+            Self::Repeat(repeat) => &repeat.place,
+        }
+    }
+}
+
+/// An entity.
+#[derive(Debug)]
+pub struct Entity {
+    /// Its type, as it is written.
+    pub kind: Word,
+    /// Its type, if there is one of this name.
+    pub known: Option<&'static entity::Entity>,
+    /// Its name.
+    pub name: Option<Word>,
+    /// Where else its name stands: TOML may write it with each attribute.
+    pub again: Vec<Word>,
+    pub attributes: Vec<Attribute>,
+    pub place: Range<usize>,
+    /// Where its attributes stand or may stand.
+    pub body: Range<usize>,
+}
+
+/// An attribute and its values.
+pub struct Attribute {
+    pub name: Word,
+    /// What the table of the entity's type says of it.
+    pub known: Option<&'static dyn pparm::Attribute>,
+    /// The first byte after the `=` in TOML, or after the name otherwise; `None` where there is no `=` yet.
+    pub values_from: Option<usize>,
+    pub values: Vec<Word>,
+    /// The first byte after it.
+    pub end: usize,
+}
+
+impl std::fmt::Debug for Attribute {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Attribute").field("name", &self.name).field("values", &self.values).finish()
+    }
+}
+
+/// A named number.
+#[derive(Debug)]
+pub struct Let {
+    pub name: Option<Word>,
+    pub value: Option<Word>,
+    pub place: Range<usize>,
+}
+
+/// Files that are included.
+#[derive(Debug)]
+pub struct Include {
+    pub files: Vec<Word>,
+    pub place: Range<usize>,
+}
+
+/// What is repeated.
+#[derive(Debug)]
+pub struct Repeat {
+    pub name: Option<Word>,
+    /// Where else its name stands.
+    pub again: Vec<Word>,
+    pub count: Option<Word>,
+    pub items: Vec<Item>,
+    pub place: Range<usize>,
+    /// Where its entities stand or may stand.
+    pub body: Range<usize>,
+}
+
+/// A place at which a text is not as a scene is written, and why.
+pub type Break = (Range<usize>, String);
+
+/// What a text says.
+#[derive(Debug)]
+pub struct View {
+    pub text: Text,
+    pub syntax: Syntax,
+    pub items: Vec<Item>,
+    /// Where the text is not as a scene is written; empty if its form is sound.
+    pub breaks: Vec<Break>,
+}
+
+impl View {
+    /// Returns the text of a range; of one that is not in the text, nothing.
+    pub fn slice(&self, place: Range<usize>) -> &str {
+        self.text.as_str().get(place).unwrap_or_default()
+    }
+
+    /// Returns what a word says, without quotes and escape sequences.
+    pub fn word(&self, word: Word) -> Cow<'_, str> {
+        let inner = self.slice(word.inner());
+        match word.form {
+            Form::Quoted(_) if inner.contains('\\') => match self.syntax {
+                Syntax::Notes => Cow::Owned(inner.replace("\\\"", "\"").replace("\\\\", "\\")),
+                Syntax::Toml => unescaped(self.slice(word.place())),
+            },
+            _ => Cow::Borrowed(inner),
+        }
+    }
+
+    /// Calls a function with each item, and with those that it is repeated by, from the outermost on.
+    pub fn visit<'v>(&'v self, visit: &mut dyn FnMut(&'v Item, &[&'v Repeat])) {
+        fn walk<'v>(
+            items: &'v [Item],
+            outer: &mut Vec<&'v Repeat>,
+            visit: &mut dyn FnMut(&'v Item, &[&'v Repeat]),
+        ) {
+            for item in items {
+                visit(item, outer);
+                if let Item::Repeat(repeat) = item {
+                    outer.push(repeat);
+                    walk(&repeat.items, outer, visit);
+                    outer.pop();
+                }
+            }
+        }
+        walk(&self.items, &mut Vec::new(), visit);
+    }
+
+    /// Returns the innermost item whose text, or whose place for more text, has a position.
+    pub fn at(&self, at: usize) -> Option<&Item> {
+        let has = |item: &&Item| {
+            let body = match item {
+                Item::Entity(entity) => &entity.body,
+                Item::Repeat(repeat) => &repeat.body,
+                _ => item.place(),
+            };
+            (item.place().start..=item.place().end.max(body.end)).contains(&at)
+        };
+        let mut found: Option<&Item> = None;
+        let mut items = &self.items;
+        loop {
+            // Where one ends and the next begins, the next one is meant.
+            let after = items.partition_point(|item| item.place().start <= at);
+            let Some(item) = items[..after].iter().rev().take(2).find(has) else { return found };
+            found = Some(item);
+            match item {
+                Item::Repeat(repeat) => items = &repeat.items,
+                _ => return found,
+            }
+        }
+    }
+
+    /// Returns the entity at a position.
+    pub fn entity_at(&self, at: usize) -> Option<&Entity> {
+        match self.at(at)? {
+            Item::Entity(entity) => Some(entity),
+            _ => None,
+        }
+    }
+
+    /// Tells whether anything in the text is a scene's: a file in TOML may be about something else.
+    pub fn is_scene(&self) -> bool {
+        self.syntax == Syntax::Notes
+            || self.items.iter().any(|item| match item {
+                Item::Entity(entity) => entity.known.is_some(),
+                _ => true,
+            })
+    }
+}
+
+/// Returns what a word in quotes says in TOML.
+fn unescaped(quoted: &str) -> Cow<'_, str> {
+    let encoding = if quoted.starts_with("\"\"\"") { Encoding::MlBasicString } else { Encoding::BasicString };
+    let raw = Raw::new_unchecked(quoted, Some(encoding), Span::new_unchecked(0, quoted.len()));
+    let mut word = Cow::Borrowed("");
+    let _ = raw.decode_scalar(&mut word, &mut |_: ParseError| {});
+    word
+}

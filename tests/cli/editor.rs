@@ -1,0 +1,345 @@
+//! `tabray lsp` and `tabray fmt`, as editors and people use them.
+
+use crate::common::program::{folder, outcome, tabray};
+use crate::common::root;
+use insta::Settings;
+use lsp_server::{Message, Notification, Request};
+use serde_json::{Value, json};
+use std::collections::VecDeque;
+use std::fs;
+use std::io::BufReader;
+use std::path::Path;
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use tempfile::TempDir;
+
+/// A client that asks one question after the other.
+struct Client {
+    program: Child,
+    input: ChildStdin,
+    output: BufReader<ChildStdout>,
+    asked: i32,
+    told: VecDeque<Notification>,
+}
+
+impl Client {
+    fn start(folder: &TempDir) -> Self {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_tabray"))
+            .arg("lsp")
+            .current_dir(folder.path())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("the program starts");
+        let input = program.stdin.take().expect("a pipe");
+        let output = BufReader::new(program.stdout.take().expect("a pipe"));
+        let mut client = Self { program, input, output, asked: 0, told: VecDeque::new() };
+        let item = json!({ "completionItem": { "snippetSupport": true } });
+        let capabilities = json!({ "textDocument": { "completion": item } });
+        let begun = client.ask("initialize", json!({ "capabilities": capabilities })).expect("capabilities");
+        assert_eq!(begun["serverInfo"]["name"], "tabray");
+        client.note("initialized", json!({}));
+        client
+    }
+
+    fn note(&mut self, method: &str, parameters: Value) {
+        let message = Message::from(Notification::new(method.to_owned(), parameters));
+        message.write(&mut self.input).expect("the server reads");
+    }
+
+    /// Asks a question, and returns the answer, or the reason why there is none.
+    fn ask(&mut self, method: &str, parameters: Value) -> Result<Value, String> {
+        self.asked += 1;
+        let message = Message::from(Request::new(self.asked.into(), method.to_owned(), parameters));
+        message.write(&mut self.input).expect("the server reads");
+        loop {
+            match Message::read(&mut self.output).expect("a message").expect("an answer") {
+                Message::Response(response) => {
+                    assert_eq!(response.id, self.asked.into());
+                    let response = serde_json::to_value(response).expect("JSON");
+                    return match response.get("error") {
+                        Some(error) => Err(error["message"].as_str().unwrap_or_default().to_owned()),
+                        None => Ok(response["result"].clone()),
+                    };
+                }
+                Message::Notification(told) => self.told.push_back(told),
+                Message::Request(_) => panic!("the server asks nothing"),
+            }
+        }
+    }
+
+    /// Returns the faults of a file that the server tells next.
+    fn faults(&mut self, uri: &str) -> Value {
+        loop {
+            let told = self.told.pop_front().unwrap_or_else(|| {
+                match Message::read(&mut self.output).expect("a message").expect("a message") {
+                    Message::Notification(told) => told,
+                    other => panic!("{other:?}"),
+                }
+            });
+            if told.method == "textDocument/publishDiagnostics" && told.params["uri"] == uri {
+                return told.params["diagnostics"].clone();
+            }
+        }
+    }
+
+    fn open(&mut self, uri: &str, text: &str) {
+        let document = json!({ "uri": uri, "languageId": "tabray", "version": 1, "text": text });
+        self.note("textDocument/didOpen", json!({ "textDocument": document }));
+    }
+
+    fn end(mut self) {
+        self.ask("shutdown", Value::Null).expect("an answer");
+        self.note("exit", Value::Null);
+        assert_eq!(self.program.wait().expect("an end").code(), Some(0));
+    }
+}
+
+fn uri(folder: &Path, name: &str) -> String {
+    format!("file://{}/{name}", folder.canonicalize().expect("a folder").display())
+}
+
+/// Takes each `^` out of a scene, and returns the positions.
+fn marks(text: &str) -> (String, Vec<Value>) {
+    let mut positions = Vec::new();
+    let mut lines: Vec<String> = Vec::new();
+    for (line, text) in text.lines().enumerate() {
+        let mut kept = String::new();
+        for part in text.split('^') {
+            kept += part;
+            positions.push((line, kept.encode_utf16().count()));
+        }
+        positions.pop();
+        lines.push(kept);
+    }
+    let position = |(line, character)| json!({ "line": line, "character": character });
+    (lines.join("\n") + "\n", positions.into_iter().map(position).collect())
+}
+
+/// Writes an answer with one value on each line.
+fn shown(answer: &Result<Value, String>) -> String {
+    match answer {
+        Ok(Value::Array(all)) if !all.is_empty() => all.iter().map(|one| format!("  {one}\n")).collect(),
+        Ok(one) => format!("  {one}\n"),
+        Err(reason) => format!("  error: {reason}\n"),
+    }
+}
+
+const NOTES: &str = r#"# The first
+# of two lines.
+include colours.inc
+camera eye { pixeldim 160 120  worlddim 8 6  viewpoint^ 4 ^3 6 }
+material "dark 😀 blue" { ambient 0.1 0.2 4 }
+let radius 1.2
+repeat i 3 {
+    material sha^de { ambient "i/3" 0 0 }
+    sphere bead { material shade  center 1 "rad^ius + gap*i" 3  radius "radius" }
+}
+sphere last { material sha^de_1 center 1 2 3 raduis 2 }
+revsurf vase { material re^d  surfer ^ }
+li^
+light lamp { location 1 2 3  emissivity 4 2 1 ^ }
+"#;
+
+const TOML: &str = r#"# The first
+# of two lines.
+include = "colours.toml"
+
+[camera.eye]
+pixeldim = [160, 120]
+worlddim = [8, 6]
+viewpoint^ = [4, ^3, 6]
+
+[material."dark 😀 blue"]
+ambient = [0.1, 0.2, 4]
+
+[let]
+radius = 1.2
+
+[repeat.i]
+count = 3
+
+[repeat.i.material.sha^de]
+ambient = ["i/3", 0, 0]
+
+[repeat.i.sphere.bead]
+material = "shade"
+center = [1, "rad^ius + gap*i", 3]
+radius = "radius"
+
+[sphere.last]
+material = "sha^de_1"
+center = [1, 2, 3]
+raduis = 2
+
+[revsurf.vase]
+material = "re^d"
+surfer = "^"
+
+[li^
+
+[light.lamp]
+location = [1, 2, 3]
+emissivity = [4, 2, 1]
+^
+"#;
+
+#[test]
+fn a_session_has_answers_to_all_that_an_editor_asks() {
+    for (syntax, text, included) in [
+        ("ray", NOTES, ("colours.inc", "material red { ambient 1 0 0 }\nlet gap 2\n")),
+        ("toml", TOML, ("colours.toml", "[material.red]\nambient = [1, 0, 0]\n[let]\ngap = 2\n")),
+    ] {
+        let folder = folder();
+        fs::write(folder.path().join(included.0), included.1).expect("room");
+        let mut client = Client::start(&folder);
+        let uri = uri(folder.path(), &format!("scene.{syntax}"));
+        let (text, positions) = marks(text);
+        client.open(&uri, &text);
+        let faults = client.faults(&uri);
+        let mut told = format!("faults\n{}", shown(&Ok(faults)));
+        let document = json!({ "uri": uri });
+        let whole = json!({ "start": { "line": 0, "character": 0 }, "end": { "line": 99, "character": 0 } });
+        for (at, position) in positions.iter().enumerate() {
+            for (method, more) in [
+                ("completion", json!({})),
+                ("hover", json!({})),
+                ("signatureHelp", json!({})),
+                ("definition", json!({})),
+                ("references", json!({ "context": { "includeDeclaration": true } })),
+                ("rename", json!({ "newName": "dark shade" })),
+            ] {
+                let mut question = json!({ "textDocument": document, "position": position });
+                question
+                    .as_object_mut()
+                    .expect("an object")
+                    .extend(more.as_object().expect("an object").clone());
+                let mut answer = client.ask(&format!("textDocument/{method}"), question);
+                if let (Ok(Value::Array(items)), "completion") = (&mut answer, method) {
+                    // All types would be too many.
+                    items.retain(|item| {
+                        at != 7 || item["label"].as_str().is_some_and(|name| name.starts_with("li"))
+                    });
+                    items.iter_mut().for_each(|item| {
+                        let item = item.as_object_mut().expect("an object");
+                        item.retain(|field, _| ["label", "detail", "textEdit"].contains(&field.as_str()));
+                    });
+                }
+                let is_empty = matches!(&answer, Ok(Value::Null)) || answer == Ok(json!([]));
+                if !is_empty && !answer.as_ref().is_err_and(|reason| reason.starts_with("there is no name")) {
+                    told += &format!(
+                        "\n{method} at {}:{}\n{}",
+                        position["line"],
+                        position["character"],
+                        shown(&answer)
+                    );
+                }
+            }
+        }
+        for method in
+            ["documentSymbol", "foldingRange", "documentColor", "inlayHint", "codeAction", "formatting"]
+        {
+            let question =
+                json!({ "textDocument": document, "range": whole, "context": { "diagnostics": [] } });
+            let answer = client.ask(&format!("textDocument/{method}"), question);
+            told += &format!("\n{method}\n{}", shown(&answer));
+        }
+        client.end();
+        let place = folder.path().canonicalize().expect("a folder").display().to_string();
+        let mut settings = Settings::clone_current();
+        settings.set_snapshot_path(root().join("snapshots/editor"));
+        settings.set_prepend_module_to_snapshot(false);
+        settings.set_omit_expression(true);
+        settings.bind(|| insta::assert_snapshot!(syntax, told.replace(&place, "FOLDER")));
+    }
+}
+
+#[test]
+fn faults_follow_what_is_typed() {
+    let folder = folder();
+    let mut client = Client::start(&folder);
+    let uri = uri(folder.path(), "a.ray");
+    client.open(&uri, "camera eye { pixeldim 8 6  worlddim 8 6  viewpoint 4 3 6 }\n");
+    assert_eq!(client.faults(&uri), json!([]));
+    let change = |from: [u32; 2], to: [u32; 2], text: &str| {
+        let [start, end] =
+            [from, to].map(|[line, character]| json!({ "line": line, "character": character }));
+        json!({ "range": { "start": start, "end": end }, "text": text })
+    };
+    let document = json!({ "uri": uri, "version": 2 });
+    let changes = json!([change([0, 13], [0, 21], "pixldim"), change([1, 0], [1, 0], "# ß\n")]);
+    client.note("textDocument/didChange", json!({ "textDocument": document, "contentChanges": changes }));
+    let faults = client.faults(&uri);
+    assert_eq!(faults[0]["range"]["end"], json!({ "line": 0, "character": 20 }), "{faults}");
+    let range = faults[0]["range"].clone();
+    let question =
+        json!({ "textDocument": { "uri": uri }, "range": range, "context": { "diagnostics": faults } });
+    let actions = client.ask("textDocument/codeAction", question).expect("actions");
+    assert_eq!(actions[0]["edit"]["changes"][&uri][0]["newText"], "pixeldim", "{actions}");
+    client.note("textDocument/didClose", json!({ "textDocument": { "uri": uri } }));
+    assert_eq!(client.faults(&uri), json!([]));
+    client.end();
+}
+
+#[test]
+fn toml_that_is_no_scene_is_left_alone() {
+    let folder = folder();
+    let mut client = Client::start(&folder);
+    let uri = uri(folder.path(), "Cargo.toml");
+    client.open(&uri, "[package]\nname = \"a\"\n");
+    assert_eq!(client.faults(&uri), json!([]));
+    let question = json!({ "textDocument": { "uri": uri } });
+    assert_eq!(client.ask("textDocument/formatting", question), Ok(Value::Null));
+    assert_eq!(
+        client.ask("textDocument/unheard", json!({})),
+        Err("`textDocument/unheard` is not known".to_owned())
+    );
+    client.end();
+}
+
+#[test]
+fn an_editor_that_breaks_off_is_a_failure() {
+    let folder = folder();
+    let mut client = Client::start(&folder);
+    client.note("exit", Value::Null);
+    assert_eq!(client.program.wait().expect("an end").code(), Some(1));
+    let (status, _, err) = outcome(tabray(&folder).arg("lsp").write_stdin("Content-Length: 3\r\n\r\n{}}"));
+    assert_eq!(status, 1, "{err}");
+}
+
+const UNTIDY: &str = "camera eye {\npixeldim 8 6 # wide\nworlddim 8 6   viewpoint 4 3 6\n}\n";
+const TIDY: &str = "camera eye\n{\n    pixeldim  8 6 # wide\n    worlddim  8 6\n    viewpoint 4 3 6\n}\n";
+
+#[test]
+fn fmt_formats_in_place_checks_and_reads_standard_input() {
+    let folder = folder();
+    let path = folder.path().join("a.ray");
+    fs::write(&path, UNTIDY).expect("room");
+    let (status, _, err) = outcome(tabray(&folder).args(["fmt", "--check", "a.ray"]));
+    assert_eq!((status, err.as_str()), (2, "error: a.ray: not formatted\n"));
+    assert_eq!(fs::read_to_string(&path).expect("a file"), UNTIDY);
+    let (status, out, err) = outcome(tabray(&folder).args(["fmt", "a.ray"]));
+    assert_eq!((status, out.len(), err.as_str()), (0, 0, "formatted a.ray\n"));
+    assert_eq!(fs::read_to_string(&path).expect("a file"), TIDY);
+    for arguments in [["fmt", "a.ray"].as_slice(), &["fmt", "--check", "a.ray"]] {
+        let (status, out, err) = outcome(tabray(&folder).args(arguments));
+        assert_eq!((status, out.len(), err.as_str()), (0, 0, ""));
+    }
+    let (status, out, _) = outcome(tabray(&folder).args(["fmt", "-"]).write_stdin(UNTIDY));
+    assert_eq!((status, String::from_utf8(out).as_deref()), (0, Ok(TIDY)));
+}
+
+#[test]
+fn fmt_leaves_a_scene_whose_form_has_errors() {
+    let folder = folder();
+    let path = folder.path().join("a.ray");
+    let text = "camera eye {\n  pixeldim 8 6\n";
+    fs::write(&path, text).expect("room");
+    let (status, _, err) = outcome(tabray(&folder).args(["fmt", "a.ray", "none.ray"]));
+    assert_eq!(status, 2);
+    assert!(err.contains("a.ray:1:1") && err.contains("missing `}` for this `camera`"), "{err}");
+    assert!(err.contains("cannot read `none.ray`"), "{err}");
+    assert_eq!(fs::read_to_string(&path).expect("a file"), text);
+    let mut input = tabray(&folder);
+    let (status, out, _) = outcome(input.args(["fmt", "-"]).write_stdin(b"\xff".as_slice()));
+    assert_eq!((status, out.len()), (2, 0));
+}
