@@ -26,11 +26,15 @@ mod list;
 mod man;
 mod measuring;
 mod memory;
+mod merge;
 mod messages;
 mod method;
 mod new;
 mod notes;
 mod output;
+mod part;
+mod part_begun;
+mod part_files;
 mod picture;
 mod plan;
 mod probe;
@@ -77,6 +81,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Render(render::Args),
+    Merge(merge::Args),
     Dump(dump::Args),
     Convert(convert::Args),
     Check(check::Args),
@@ -127,6 +132,7 @@ fn chosen() -> ExitCode {
     let outcome = match Registry::get() {
         Ok(registry) => match cli.command {
             Some(Command::Render(args)) => render::run(registry, args),
+            Some(Command::Merge(args)) => merge::run(&args),
             Some(Command::Dump(args)) => dump::run(registry, args),
             Some(Command::Convert(args)) => convert::run(registry, args),
             Some(Command::Check(args)) => check::run(registry, args),

@@ -5,12 +5,19 @@ use super::input::Source;
 use super::job::Job;
 use super::output::{Output, named};
 use super::resume::Begun;
+use super::size::Part;
 use super::stats::{self, Stats};
-use super::{aov, cpu, debug, full_range, input, keep, messages, method, output, samples, set, size, stop};
+use super::stop::Stop;
+use super::{
+    aov, cpu, debug, full_range, input, keep, messages, method, output, part, samples, set, size, stop,
+};
+use crate::output::aov::Aov;
 use crate::output::deflate::Compression;
 use crate::output::full_range::FullRange;
+use crate::output::part::What;
 use crate::output::picture::Format;
 use crate::render::renderer::Renderer;
+use crate::scene::model::Model;
 use crate::scene::reader::{Chosen, Loaded};
 use crate::scene::registry::Registry;
 use crate::world::accuracy::Accuracy;
@@ -48,6 +55,8 @@ pub struct Args {
     #[command(flatten)]
     method: method::Args,
     #[command(flatten)]
+    part: part::Args,
+    #[command(flatten)]
     keep: keep::Args,
     #[command(flatten)]
     aov: aov::Args,
@@ -80,6 +89,16 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     camera.exposure = args.exposure;
     let part = args.size.apply(camera)?;
     output::is_no_source(&path, &args.scene, &model)?;
+    if let Some(number) = args.part.part {
+        return share(
+            registry,
+            &args,
+            (&path, format, full_range),
+            (&source, &model, &part),
+            (&stop, stats),
+            number,
+        );
+    }
     let output = Output::open(&path)?;
     let main = if full_range.is_some() { path.with_extension("png") } else { path.clone() };
     let beside = aov::open((&args.scene, &model), &args.aov, &main, &output)?;
@@ -126,6 +145,53 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     };
     stop.ends_from_here()?;
     aov::write(&plan, exact, threads, format, beside)
+}
+
+/// Renders a part of the image into a file of its own.
+fn share(
+    registry: &Registry,
+    args: &Args,
+    (path, format, full_range): (&Path, Format, Option<FullRange>),
+    (source, model, region): (&Source, &Model, &Part),
+    (stop, mut stats): (&Stop, Stats),
+    number: [usize; 2],
+) -> Result<(), Failure> {
+    if path == Path::new("-") {
+        return Err(Failure::Usage(
+            "standard output has no place beside it for a part".to_owned(),
+            Some("name the image with `-o FILE`".to_owned()),
+        ));
+    }
+    debug::print(model, &args.debug)?;
+    let beside = aov::wanted(&args.aov, model)?;
+    let start = Instant::now();
+    let plan = args.keep.plan(model);
+    stats.building += start.elapsed();
+    let main = if full_range.is_some() { path.with_extension("png") } else { path.to_owned() };
+    let share = part::Share {
+        part: number,
+        plan: &plan,
+        region,
+        renderer: &Renderer::new(args.threads.unwrap_or(0).into())?.on(args.cpu.cpu()?),
+        paths: [path, &main],
+        what: full_range.map_or(What::picture(format), What::full_range),
+        beside: &beside,
+        format,
+        at_once: args.stop.band(region.columns.len())?,
+        stop,
+        stats: &stats,
+    };
+    let whole = Instant::now();
+    let exact = || {
+        let chosen =
+            Chosen { above_all: Some(Accuracy::Exact), memory: args.stop.left(), ..Chosen::default() };
+        source.load_by(registry, chosen).map(|loaded| loaded.model).map_err(Failure::Scene)
+    };
+    let is_wanted = beside.contains(&Aov::Error);
+    share.run(args.stop.resume, |work| aov::with_truth(&plan, is_wanted, exact, |truth| work(truth)))?;
+    stats.writing = whole.elapsed().saturating_sub(stats.rendering.get());
+    args.stats.print(&stats, model);
+    Ok(())
 }
 
 fn exposure(text: &str) -> Result<f64, String> {

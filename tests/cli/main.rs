@@ -13,6 +13,7 @@ mod full_range;
 mod limits;
 mod messages;
 mod new;
+mod parts;
 mod refusals;
 mod review;
 mod samples;
