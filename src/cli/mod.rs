@@ -14,6 +14,8 @@ mod diff;
 mod dump;
 mod explain;
 mod failure;
+mod film;
+mod frames;
 mod full_range;
 #[doc(hidden)]
 pub mod fuzz;
@@ -80,8 +82,9 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    Render(render::Args),
+    Render(Box<render::Args>),
     Merge(merge::Args),
+    Film(film::Args),
     Dump(dump::Args),
     Convert(convert::Args),
     Check(check::Args),
@@ -131,8 +134,9 @@ fn chosen() -> ExitCode {
     messages::choose(cli.message_format);
     let outcome = match Registry::get() {
         Ok(registry) => match cli.command {
-            Some(Command::Render(args)) => render::run(registry, args),
+            Some(Command::Render(args)) => render::run(registry, *args),
             Some(Command::Merge(args)) => merge::run(&args),
+            Some(Command::Film(args)) => film::run(&args),
             Some(Command::Dump(args)) => dump::run(registry, args),
             Some(Command::Convert(args)) => convert::run(registry, args),
             Some(Command::Check(args)) => check::run(registry, args),

@@ -9,7 +9,8 @@ use super::size::Part;
 use super::stats::{self, Stats};
 use super::stop::Stop;
 use super::{
-    aov, cpu, debug, full_range, input, keep, messages, method, output, part, samples, set, size, stop,
+    aov, cpu, debug, frames, full_range, input, keep, messages, method, output, part, samples, set, size,
+    stop,
 };
 use crate::output::aov::Aov;
 use crate::output::deflate::Compression;
@@ -57,6 +58,8 @@ pub struct Args {
     #[command(flatten)]
     part: part::Args,
     #[command(flatten)]
+    frames: frames::Args,
+    #[command(flatten)]
     keep: keep::Args,
     #[command(flatten)]
     aov: aov::Args,
@@ -70,12 +73,31 @@ pub struct Args {
     stop: stop::Args,
 }
 
-pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
     let path = target(&args)?;
+    let frames = args.frames.of(&path, &mut args.part.part)?;
+    let stop = args.stop.watch()?;
+    let Some(frames) = frames else { return one(registry, &args, path, &stop) };
+    if path == Path::new("-") || input::is_standard(&args.scene) {
+        return Err(Failure::Usage(
+            "frames are read from a file, and written to files".to_owned(),
+            Some("name the scene, and the images with `-o FILE`".to_owned()),
+        ));
+    }
+    let set = args.set.values.clone();
+    for frame in frames {
+        stop.ends_from_here()?;
+        args.set.values = [&set[..], &frame.sets].concat();
+        one(registry, &args, frame.path, &stop)?;
+    }
+    Ok(())
+}
+
+/// Renders one image to a path.
+fn one(registry: &Registry, args: &Args, path: PathBuf, stop: &Stop) -> Result<(), Failure> {
     let full_range = FullRange::of(&path).filter(|_| args.format.is_none());
     // Images beside one of full range are PNGs.
-    let format = if full_range.is_some() { Format::Png(args.compress) } else { format(&args, &path)? };
-    let stop = args.stop.watch()?;
+    let format = if full_range.is_some() { Format::Png(args.compress) } else { format(args, &path)? };
     let cpu = args.cpu.cpu()?;
     let start = Instant::now();
     let accuracy = args.method.accuracy()?;
@@ -92,10 +114,10 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     if let Some(number) = args.part.part {
         return share(
             registry,
-            &args,
+            args,
             (&path, format, full_range),
             (&source, &model, &part),
-            (&stop, stats),
+            (stop, stats),
             number,
         );
     }
@@ -117,7 +139,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let whole = Instant::now();
     if let Some(format) = full_range {
         args.stop.fits(full_range::PIXEL * part.columns.len() * part.rows.len())?;
-        full_range::render((&plan, &part), (&renderer, &stop), (format, &path), output, &stats)?;
+        full_range::render((&plan, &part), (&renderer, stop), (format, &path), output, &stats)?;
     } else {
         let job = Job {
             plan: &plan,
@@ -126,7 +148,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             format,
             path: &path,
             at_once: args.stop.band(part.columns.len())?,
-            stop: &stop,
+            stop,
             stats: args.stats.wants_any().then_some(&stats),
         };
         job.run(output, begun)?;

@@ -84,7 +84,8 @@ fn an_image_of_parts_may_be_of_any_kind() {
         ("a.ppm", &["--aov", "object"]),
     ] {
         let folder = folder();
-        let options = [&["--size", "90"], options].concat();
+        let size = if options.contains(&"error") || options[0] != "--crop" { "48" } else { "90" };
+        let options = [&["--size", size], options].concat();
         whole(&folder, name, &options);
         render(&folder, name, &options, 1..=5, 5);
         succeeds(&folder, &["merge", name, "--remove-parts"]);
@@ -103,7 +104,20 @@ fn a_part_that_is_killed_or_stopped_is_resumed() {
         let words = ["render", scene.to_str().expect("a path"), "-o", "a.png", "--resume", "--part", part];
         [&words[..], &options].concat().iter().map(|word| (*word).to_owned()).collect::<Vec<_>>()
     };
-    let mut kept = 0;
+    // The first part is stopped at later and later times, until it is done.
+    let (mut limit, mut kept) = (20, 0);
+    loop {
+        let (words, limit_of) = (arguments("1/4"), format!("{limit}ms"));
+        let words: Vec<_> = words.iter().map(String::as_str).chain(["--time-limit", &limit_of]).collect();
+        let (status, said) = run(&folder, &words);
+        kept += usize::from(said.contains("% of part 1/4 to a.png.part-1-of-4.checkpoint"));
+        match status {
+            0 => break,
+            130 => limit += limit / 4,
+            _ => panic!("{said}"),
+        }
+    }
+    assert!(kept > 0, "the part was not stopped in its midst");
     for turn in 0..50_u64 {
         let part = format!("{}/4", turn % 4 + 1);
         let mut child = Command::new(assert_cmd::cargo::cargo_bin!("tabray"))
@@ -113,16 +127,14 @@ fn a_part_that_is_killed_or_stopped_is_resumed() {
             .spawn()
             .expect("the program runs");
         thread::sleep(Duration::from_millis(13 * turn * turn % 97 + turn));
-        if turn % 2 == 0 {
+        if turn % 5 != 0 {
             child.kill().expect("it ends");
         } else {
             let _ =
                 Command::new("kill").args(["-INT", &child.id().to_string()]).stderr(Stdio::null()).status();
         }
         child.wait().expect("it ends");
-        kept += usize::from(names_in(folder.path()).iter().any(|name| name.ends_with(".checkpoint")));
     }
-    assert!(kept > 0, "no part was stopped in its midst");
     for part in ["1/4", "2/4", "3/4", "4/4"] {
         let words = arguments(part);
         succeeds(&folder, &words.iter().map(String::as_str).collect::<Vec<_>>());
@@ -220,4 +232,54 @@ fn parts_that_there_cannot_be_are_refused() {
         assert!(status == 2 && said.contains(says), "{options:?}: {said}");
     }
     assert_eq!(names_in(folder.path()), ["a.ray"]);
+}
+
+#[test]
+fn frames_have_values_that_change_and_names_by_their_numbers() {
+    let folder = folder();
+    fs::copy(scene("sphere/in-front.ray"), folder.path().join("a.ray")).expect("a copy");
+    let text = fs::read_to_string(folder.path().join("a.ray")).expect("a scene");
+    let ball =
+        text.split("sphere ").nth(1).and_then(|rest| rest.split_whitespace().next()).expect("a sphere");
+    let sweep = format!("{ball}.radius=0.5..1.5");
+    let film = ["render", "a.ray", "-o", "film.png", "--size", "40", "--frames", "8..12", "--sweep", &sweep];
+    succeeds(&folder, &[&film[..], &["--part", "2/2"]].concat());
+    let frames = |numbers: &[u32]| numbers.iter().map(|n| format!("film-{n:04}.png")).collect::<Vec<_>>();
+    assert_eq!(names_in(folder.path())[1..], frames(&[9, 11]));
+    succeeds(&folder, &[&film[..], &["--part", "1/2"]].concat());
+    let read = |name: &str| fs::read(folder.path().join(name)).expect(name);
+    for (number, t) in [(8, 0.0), (9, 0.25), (12, 1.0)] {
+        let radius = format!("{ball}.radius={}", 0.5 + t);
+        succeeds(&folder, &["render", "a.ray", "-o", "one.png", "--size", "40", "--set", &radius]);
+        assert!(read("one.png") == read(&format!("film-{number:04}.png")), "frame {number}");
+    }
+    let formula = format!("{ball}.radius=\"1.5 - t\"");
+    let back = [&film[..8], &["--sweep", &formula, "--frame", "11"]].concat();
+    for part in ["1/2", "2/2"] {
+        succeeds(&folder, &[&back[..], &["--part", part]].concat());
+    }
+    succeeds(&folder, &["merge", "film-0011.png", "--remove-parts"]);
+    assert!(read("film-0009.png") == read("film-0011.png"), "the way back is the same");
+    succeeds(&folder, &["film", "film.png", "--sheet", "sheet.png", "--animation", "film.apng"]);
+    let sheet = image::open(folder.path().join("sheet.png")).expect("an image");
+    assert_eq!((sheet.width(), sheet.height()), (3 * 192, 2 * 144));
+    let decoder = png::Decoder::new(
+        fs::File::open(folder.path().join("film.apng")).map(std::io::BufReader::new).expect("a file"),
+    );
+    assert_eq!(
+        decoder.read_info().expect("a PNG").info().animation_control.map(|all| all.num_frames),
+        Some(5)
+    );
+    fs::remove_file(folder.path().join("film-0010.png")).expect("a frame");
+    let (status, said) = run(&folder, &["film", "film.png", "--sheet", "sheet.png"]);
+    assert!(status == 2 && said.contains("frame 10 of `film.png` is missing"), "{said}");
+    for (options, says) in [
+        (&["--frames", "9..2"][..], "give the first and the last frame as `1..240`"),
+        (&["--frames", "1..9", "--frame", "10"], "there is no frame 10"),
+        (&["--frames", "1..9", "-o", "-"], "written to files"),
+        (&["--sweep", "a.b=1"], "--frames"),
+    ] {
+        let (status, said) = run(&folder, &[&["render", "a.ray"], options].concat());
+        assert!(status == 2 && said.contains(says), "{options:?}: {said}");
+    }
 }
