@@ -14,6 +14,7 @@ mod diff;
 mod dump;
 mod explain;
 mod failure;
+mod farm;
 mod film;
 mod frames;
 mod full_range;
@@ -85,6 +86,7 @@ enum Command {
     Render(Box<render::Args>),
     Merge(merge::Args),
     Film(film::Args),
+    Farm(farm::Args),
     Dump(dump::Args),
     Convert(convert::Args),
     Check(check::Args),
@@ -137,6 +139,7 @@ fn chosen() -> ExitCode {
             Some(Command::Render(args)) => render::run(registry, *args),
             Some(Command::Merge(args)) => merge::run(&args),
             Some(Command::Film(args)) => film::run(&args),
+            Some(Command::Farm(args)) => farm::run(&args),
             Some(Command::Dump(args)) => dump::run(registry, args),
             Some(Command::Convert(args)) => convert::run(registry, args),
             Some(Command::Check(args)) => check::run(registry, args),

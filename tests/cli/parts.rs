@@ -97,7 +97,7 @@ fn an_image_of_parts_may_be_of_any_kind() {
 #[test]
 fn a_part_that_is_killed_or_stopped_is_resumed() {
     let folder = folder();
-    let options = ["--size", "120", "--samples", "16"];
+    let options = ["--size", "120", "--samples", "256", "--threads", "1"];
     whole(&folder, "a.png", &options);
     let scene = scene(SCENE);
     let arguments = |part: &str| {
@@ -282,4 +282,27 @@ fn frames_have_values_that_change_and_names_by_their_numbers() {
         let (status, said) = run(&folder, &[&["render", "a.ray"], options].concat());
         assert!(status == 2 && said.contains(says), "{options:?}: {said}");
     }
+}
+
+/// The scripts are run here as Slurm runs them, task by task.
+#[test]
+fn the_scripts_of_a_job_array_render_and_merge_an_image() {
+    let folder = folder();
+    let scene = scene(SCENE);
+    let scene = scene.to_str().expect("a path");
+    let size = ["--size", "60"];
+    let words = [&["farm", "slurm", scene, "-o", "my image.png", "--parts", "3", "--"][..], &size].concat();
+    let said = succeeds(&folder, &words);
+    let [render, merge] = ["render", "merge"].map(|script| format!("'my image.png.slurm/{script}.sbatch'"));
+    assert_eq!(said, format!("sbatch --dependency=afterok:$(sbatch --parsable {render}) {merge}\n"));
+    let bash = |script: &str, task: &str| {
+        let mut bash = Command::new("bash");
+        bash.arg(folder.path().join("my image.png.slurm").join(script)).current_dir(folder.path());
+        let done = bash.env("SLURM_ARRAY_TASK_ID", task).output().expect("a shell");
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    };
+    ["2", "3", "1"].map(|task| bash("render.sbatch", task));
+    bash("merge.sbatch", "");
+    whole(&folder, "my image.png", &size);
+    is_the_same(&folder);
 }
