@@ -240,7 +240,7 @@ fn frames_have_values_that_change_and_names_by_their_numbers() {
     fs::copy(scene("sphere/in-front.ray"), folder.path().join("a.ray")).expect("a copy");
     let text = fs::read_to_string(folder.path().join("a.ray")).expect("a scene");
     let ball =
-        text.split("sphere ").nth(1).and_then(|rest| rest.split_whitespace().next()).expect("a sphere");
+        text.split("\nsphere ").nth(1).and_then(|rest| rest.split_whitespace().next()).expect("a sphere");
     let sweep = format!("{ball}.radius=0.5..1.5");
     let film = ["render", "a.ray", "-o", "film.png", "--size", "40", "--frames", "8..12", "--sweep", &sweep];
     succeeds(&folder, &[&film[..], &["--part", "2/2"]].concat());
