@@ -6,7 +6,7 @@ use crate::scene::pparm::{Attribute, Attributes, Given, Pparm, Row, Table};
 use crate::scene::value::{Datum, Type};
 use crate::text;
 use crate::world::accuracy::Accuracy;
-use crate::world::body::{AnyLight, Body};
+use crate::world::body::{AnyLight, Body, Paint};
 use crate::world::camera::Camera;
 use crate::world::material::Material;
 use crate::world::texture::Texture;
@@ -31,8 +31,10 @@ pub struct Entity {
     pub construct: Construct,
     /// The name that the notes' dump prints.
     pub dump_name: &'static str,
+    /// The numbers that the notes give a shader on planes and on spheres.
+    pub(crate) numbers: [Option<i64>; 2],
     tables: &'static [Table],
-    place: &'static Location<'static>,
+    pub(crate) place: &'static Location<'static>,
 }
 
 inventory::collect!(Entity);
@@ -52,17 +54,26 @@ pub enum Construct {
     Material(fn(&Args) -> Result<Material, Refusal>),
     /// Makes a texture.
     Texture(fn(&Args) -> Result<Texture, Refusal>),
+    /// Makes a shader, which objects name.
+    Shader(fn(&Args) -> Result<Paint, Refusal>),
     /// Makes an object's shape and, if it has one, its shader.
     Object(fn(&Args) -> Result<Body, Refusal>),
     /// Makes a light.
     Light(fn(&Args) -> Result<AnyLight, Refusal>),
 }
 
-/// The attribute that every object has beside its own.
+/// The attributes that every object has beside its own.
 pub static MATERIAL: Pparm<Arc<Material>> =
     Pparm::required("material", "the material, defined earlier in the scene");
 
 const OBJECT: Table = &[&MATERIAL];
+
+/// An object whose own table has a `shader` has no other.
+pub(crate) static SHADER: Pparm<Option<Paint>> = Pparm::or(
+    "shader",
+    "the shader that colours the surface in place of the material alone, defined earlier in the scene, or a type of shader",
+    None,
+);
 
 impl Entity {
     /// Describes a camera type.
@@ -98,7 +109,30 @@ impl Entity {
         Self::new(name, meaning, tables, Construct::Texture(construct))
     }
 
-    /// Describes a shape. The attribute `material` is added to its table.
+    /// Describes a type of shader.
+    #[track_caller]
+    pub const fn shader(
+        name: &'static str,
+        meaning: &'static str,
+        tables: &'static [Table],
+        construct: fn(&Args) -> Result<Paint, Refusal>,
+    ) -> Self {
+        Self::new(name, meaning, tables, Construct::Shader(construct))
+    }
+
+    /// Sets the number that the notes give a shader on planes.
+    pub const fn on_plane(mut self, number: i64) -> Self {
+        self.numbers[0] = Some(number);
+        self
+    }
+
+    /// Sets the number that the notes give a shader on spheres.
+    pub const fn on_sphere(mut self, number: i64) -> Self {
+        self.numbers[1] = Some(number);
+        self
+    }
+
+    /// Describes a shape. The attributes `material` and `shader` are added to its table.
     #[track_caller]
     pub const fn shape(
         name: &'static str,
@@ -127,7 +161,8 @@ impl Entity {
         tables: &'static [Table],
         construct: Construct,
     ) -> Self {
-        Self { name, meaning, aliases: &[], construct, dump_name: name, tables, place: Location::caller() }
+        let (aliases, numbers, place): (&[&str], _, _) = (&[], [None; 2], Location::caller());
+        Self { name, meaning, aliases, construct, dump_name: name, numbers, tables, place }
     }
 
     /// Sets other names that a scene may use.
@@ -148,6 +183,7 @@ impl Entity {
             Construct::Camera(_) => Kind::Camera,
             Construct::Material(_) => Kind::Material,
             Construct::Texture(_) => Kind::Texture,
+            Construct::Shader(_) => Kind::Shader,
             Construct::Object(_) => Kind::Object,
             Construct::Light(_) => Kind::Light,
         }
@@ -155,8 +191,12 @@ impl Entity {
 
     /// Returns the rows of the type's table, in the order of the dump.
     pub fn rows(&self) -> impl Iterator<Item = &'static dyn Row> + use<> {
-        let common = if self.kind() == Kind::Object { OBJECT } else { &[] };
-        iter::once(common).chain(self.tables.iter().copied()).flatten().copied()
+        let is_object = self.kind() == Kind::Object;
+        let common = if is_object { OBJECT } else { &[] };
+        let is_shader = |row: &&dyn Row| row.attribute().is_some_and(|its| its.name() == SHADER.name());
+        let has_own = || self.tables.iter().copied().flatten().any(&is_shader);
+        let shader = (is_object && !has_own()).then_some(&SHADER as &'static dyn Row);
+        iter::once(common).chain(self.tables.iter().copied()).flatten().copied().chain(shader)
     }
 
     /// Returns the type's attributes, in the order of its table.

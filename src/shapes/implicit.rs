@@ -19,7 +19,7 @@ use crate::world::certify::Equation;
 use crate::world::hittable::{Bracketed, Certified, Hittable, Searched};
 use crate::world::packets::shape::by_distance;
 use crate::world::shape::Shape;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::ops::Range;
 
 /// The number of plain rays that take as long as a search: that in a torus takes 25, that in a heart 60.
@@ -39,6 +39,11 @@ pub trait Implicit: Send + Sync {
     /// Returns a number that is not below 0 where the surface is kept, and below 0 where it is cut off.
     fn kept<N: Scalar>(&self, _at: [N; 3]) -> N {
         N::constant(1.0)
+    }
+
+    /// Returns the coordinates u and v of a point of the surface, for shaders; `None` where it has none.
+    fn uv(&self, _at: DVec3) -> Option<DVec2> {
+        None
     }
 
     /// Returns the low and the high corner of a box around the shape. What lies outside of the box is cut off, and a
@@ -63,6 +68,10 @@ struct ImplicitShape<T> {
 }
 
 impl<T: Implicit> Hittable for ImplicitShape<T> {
+    fn uv(&self, at: DVec3) -> Option<DVec2> {
+        self.formula.uv(self.frame.point(at))
+    }
+
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         let line = FormulaOnRay::new(self, ray);
         line.distance(line.first_hit(range).root, range)

@@ -13,6 +13,7 @@ pub mod rectangle;
 pub(crate) mod revolution;
 pub mod sphere;
 pub(crate) mod triangle;
+pub mod uv;
 
 pub use ellipsoid::Ellipsoid;
 pub use implicit::Implicit;

@@ -99,15 +99,17 @@ fn any_scene() -> impl Strategy<Value = String> {
         prop::collection::vec(prop::sample::select(entities).prop_flat_map(any_entity), least..4)
     };
     let (camera, materials) = (some(Kind::Camera, 1), some(Kind::Material, 1));
-    (camera, materials, some(Kind::Object, 0), some(Kind::Light, 0)).prop_map(
-        |(cameras, materials, objects, lights)| {
-            // `m0` and `t0` always exist, so that other entities can refer to them.
+    let (shaders, objects) = (some(Kind::Shader, 0), some(Kind::Object, 0));
+    (camera, materials, shaders, objects, some(Kind::Light, 0)).prop_map(
+        |(cameras, materials, shaders, objects, lights)| {
+            // `m0`, `t0` and `s0` always exist, so that other entities can refer to them.
             let materials =
                 materials.iter().enumerate().map(|(i, text)| text.replace("NAME", &format!("m{i}")));
             let texture = format!("texture t0 {{ filename {} }}\n", root().join(TEXTURE).display());
             let object = "sphere o0 { material m0 center 1 2 3 radius 4 }\n".to_owned();
-            [cameras[0].clone(), materials.collect(), texture, object, objects.concat(), lights.concat()]
-                .concat()
+            let shaders = format!("formula s0 {{ ambient \"x\" 0.5 \"nz\" }}\n{}", shaders.concat());
+            let others = [object, objects.concat(), lights.concat()].concat();
+            [cameras[0].clone(), materials.collect(), texture, shaders, others].concat()
         },
     )
 }
@@ -162,6 +164,7 @@ fn any_values(attribute: &'static dyn Attribute) -> BoxedStrategy<String> {
             .prop_map(Datum::Numbers)
             .boxed(),
         Type::Name(Kind::Texture) => return Just(format!("{} t0\n", attribute.name())).boxed(),
+        Type::Name(Kind::Shader) => return Just(format!("{} s0\n", attribute.name())).boxed(),
         Type::Name(Kind::Object) => return Just(format!("{} o0\n", attribute.name())).boxed(),
         Type::File => return Just(format!("{} scenes/models/bowl.stl\n", attribute.name())).boxed(),
         Type::Word | Type::Name(_) => return Just(format!("{} m0\n", attribute.name())).boxed(),
