@@ -86,24 +86,17 @@ impl Share<'_> {
         truth: impl FnOnce(&mut dyn FnMut(&Plan) -> Result<(), Failure>) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let (tiles, [path, beside]) = (self.tiles()?, self.paths);
+        let identity = resume::identity(self.plan.model, self.region)?;
         let label = |what, unfinished| {
-            let identity = resume::identity(self.plan.model, self.region)?;
+            let identity = identity.clone();
             let (part, size, beside) = (self.part, self.region.size(), self.beside.to_vec());
-            Ok::<_, Failure>(Label {
-                part,
-                tiles: [tiles.start, tiles.end],
-                size,
-                what,
-                beside,
-                identity,
-                unfinished,
-            })
+            Label { part, tiles: [tiles.start, tiles.end], size, what, beside, identity, unfinished }
         };
-        let main = beside_and_label(path, label(self.what, false)?);
+        let main = beside_and_label(path, label(self.what, false));
         if !(resumes && is_there(&main)?) {
             match self.what {
                 What::Exr | What::Pfm => self.full_range(&main)?,
-                _ => self.bytes(&main, resumes, label(self.what, true)?)?,
+                _ => self.bytes(&main, resumes, label(self.what, true))?,
             }
             wrote(&main.0, &main.1);
         }
@@ -118,7 +111,7 @@ impl Share<'_> {
                     Format::Ppm => None,
                 };
                 let what = What::Beside(*aov, compression, Setting::of(&self.plan.camera));
-                let file = beside_and_label(&aov::picture(beside, *aov), label(what, false)?);
+                let file = beside_and_label(&aov::picture(beside, *aov), label(what, false));
                 if !(resumes && is_there(&file)?) {
                     self.values(&file, *aov, truth)?;
                     wrote(&file.0, &file.1);

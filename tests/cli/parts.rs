@@ -301,7 +301,7 @@ fn the_scripts_of_a_job_array_render_and_merge_an_image() {
         let done = bash.env("SLURM_ARRAY_TASK_ID", task).output().expect("a shell");
         assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     };
-    ["2", "3", "1"].map(|task| bash("render.sbatch", task));
+    ["2", "3", "1"].iter().for_each(|task| bash("render.sbatch", task));
     bash("merge.sbatch", "");
     whole(&folder, "my image.png", &size);
     is_the_same(&folder);
