@@ -4,7 +4,7 @@ use super::failure::Failure;
 use super::messages;
 use super::output::{self, Output};
 use super::progress::Progress;
-use crate::output::aov::Aov;
+use crate::output::aov::{Aov, Layer};
 use crate::output::picture::Format;
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
@@ -53,8 +53,25 @@ pub fn open(
             Some("name a file for the main image with `-o FILE`".to_owned()),
         ));
     }
+    let aovs = wanted(args, model)?;
+    let opened = |path: PathBuf| {
+        output::is_no_source(&path, scene, model)?;
+        Output::open(&path).map(|output| (path, output))
+    };
+    aovs.into_iter()
+        .map(|aov| {
+            let picture = picture(main, aov);
+            let exact = aov.is_exact().then(|| opened(exact(&picture))).transpose()?;
+            let picture = opened(picture)?;
+            Ok(Files { aov, picture, exact })
+        })
+        .collect()
+}
+
+/// Returns the images that are asked for, each once.
+pub fn wanted(args: &Args, model: &Model) -> Result<Vec<Aov>, Failure> {
     let [width, height] = model.camera.value.pixels;
-    if width * height > LARGEST {
+    if !args.aov.is_empty() && width * height > LARGEST {
         return Err(Failure::Usage(
             format!("an image of {width} x {height} pixels is too large for `--aov`"),
             Some(format!("the maximum is {LARGEST} pixels, such as 8192 x 8192")),
@@ -66,21 +83,21 @@ pub fn open(
             aovs.push(*aov);
         }
     }
-    let opened = |path: PathBuf| {
-        output::is_no_source(&path, scene, model)?;
-        Output::open(&path).map(|output| (path, output))
-    };
-    aovs.into_iter()
-        .map(|aov| {
-            let mut stem = main.file_stem().unwrap_or_default().to_owned();
-            stem.push(format!("-{}", text::name(&aov)));
-            let picture = main.with_file_name(stem);
-            let with = |extension: &OsStr| output::ended(&output::ended(&picture, "."), extension);
-            let exact = aov.is_exact().then(|| opened(with("exr".as_ref()))).transpose()?;
-            let picture = opened(main.extension().map_or_else(|| picture.clone(), with))?;
-            Ok(Files { aov, picture, exact })
-        })
-        .collect()
+    Ok(aovs)
+}
+
+/// Returns the path of an image beside the main one.
+pub fn picture(main: &Path, aov: Aov) -> PathBuf {
+    let mut stem = main.file_stem().unwrap_or_default().to_owned();
+    stem.push(format!("-{}", text::name(&aov)));
+    let picture = main.with_file_name(stem);
+    let with = |extension: &OsStr| output::ended(&output::ended(&picture, "."), extension);
+    main.extension().map_or_else(|| picture.clone(), with)
+}
+
+/// Returns the path of the exact numbers of an image beside the main one.
+pub fn exact(picture: &Path) -> PathBuf {
+    picture.with_extension("exr")
 }
 
 /// The samples per pixel of the reference for errors: this many times the model's own, and at least [`TRUE_LEAST`].
@@ -90,6 +107,31 @@ const TRUE_LEAST: u32 = 64;
 /// The maximum number of samples per pixel of the reference where pixels take different numbers.
 const TRUE_MOST: u32 = 1024;
 
+/// Calls `work` with the plan of the reference for errors, if that is `wanted`, and else with the plan itself. `exact`
+/// makes the model of the reference.
+pub fn with_truth<T>(
+    plan: &Plan,
+    wanted: bool,
+    exact: impl FnOnce() -> Result<Model, Failure>,
+    work: impl FnOnce(&Plan) -> Result<T, Failure>,
+) -> Result<T, Failure> {
+    if !wanted || plan.camera.certain {
+        return work(plan);
+    }
+    let exact_model = exact()?;
+    let mut exact = Plan::new(&exact_model);
+    let samples = match plan.camera.adaptive {
+        None => (TRUE_TIMES * plan.camera.samples).clamp(TRUE_LEAST, Sampler::MOST),
+        Some(adaptive) => {
+            // Samples of their own, since a pixel may have taken as many.
+            exact.camera.scramble = SCRAMBLE;
+            TRUE_TIMES.saturating_mul(adaptive.most).clamp(TRUE_LEAST, TRUE_MOST)
+        }
+    };
+    (exact.camera.samples, exact.camera.sampler) = (samples, Sampler::Sobol);
+    work(&exact)
+}
+
 /// Renders the auxiliary images and writes their files. `exact` makes the model of the reference for errors.
 pub fn write(
     plan: &Plan,
@@ -98,24 +140,11 @@ pub fn write(
     format: Format,
     files: Vec<Files>,
 ) -> Result<(), Failure> {
-    let (exact_model, own);
-    let truth = if files.iter().any(|file| file.aov == Aov::Error) && !plan.camera.certain {
-        exact_model = exact()?;
-        let mut exact = Plan::new(&exact_model);
-        let samples = match plan.camera.adaptive {
-            None => (TRUE_TIMES * plan.camera.samples).clamp(TRUE_LEAST, Sampler::MOST),
-            Some(adaptive) => {
-                // Samples of their own, since a pixel may have taken as many.
-                exact.camera.scramble = SCRAMBLE;
-                TRUE_TIMES.saturating_mul(adaptive.most).clamp(TRUE_LEAST, TRUE_MOST)
-            }
-        };
-        (exact.camera.samples, exact.camera.sampler) = (samples, Sampler::Sobol);
-        own = exact;
-        &own
-    } else {
-        plan
-    };
+    let wanted = files.iter().any(|file| file.aov == Aov::Error);
+    with_truth(plan, wanted, exact, |truth| all(plan, truth, threads, format, files))
+}
+
+fn all(plan: &Plan, truth: &Plan, threads: usize, format: Format, files: Vec<Files>) -> Result<(), Failure> {
     let renderer = Renderer::new(threads)?;
     let size = plan.camera.pixels;
     for Files { aov, picture, exact } in files {
@@ -126,12 +155,7 @@ pub fn write(
         });
         progress.end();
         let layer = layer.map_err(|_| Failure::Interrupted("the image was not finished"))?;
-        if let Some((most, [x, y])) = layer.most {
-            messages::note(&format!("the most expensive pixel is {x} {y}, with {most} rays"));
-        }
-        if let Some((worst, [x, y])) = layer.worst {
-            messages::note(&format!("the greatest error is {worst:.2e}, at pixel {x} {y}"));
-        }
+        tell(&layer);
         if let Some((path, output)) = exact {
             let bytes = layer.exr(size).map_err(|error| Failure::cannot_write(&path, &error))?;
             output::put(&path, output, |out| out.write_all(&bytes))?;
@@ -140,4 +164,14 @@ pub fn write(
         output::put(&path, output, |out| format.write(out, size, iter::once(Ok(layer.bytes))))?;
     }
     Ok(())
+}
+
+/// Tells what is remarkable about an image.
+pub fn tell(layer: &Layer) {
+    if let Some((most, [x, y])) = layer.most {
+        messages::note(&format!("the most expensive pixel is {x} {y}, with {most} rays"));
+    }
+    if let Some((worst, [x, y])) = layer.worst {
+        messages::note(&format!("the greatest error is {worst:.2e}, at pixel {x} {y}"));
+    }
 }

@@ -17,7 +17,10 @@ mod diff;
 mod dump;
 mod explain;
 mod failure;
+mod farm;
+mod film;
 mod fmt;
+mod frames;
 mod full_range;
 #[doc(hidden)]
 pub mod fuzz;
@@ -32,11 +35,15 @@ mod made;
 mod man;
 mod measuring;
 mod memory;
+mod merge;
 mod messages;
 mod method;
 mod new;
 mod notes;
 mod output;
+mod part;
+mod part_begun;
+mod part_files;
 mod picture;
 mod plan;
 mod probe;
@@ -89,7 +96,10 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    Render(render::Args),
+    Render(Box<render::Args>),
+    Merge(merge::Args),
+    Film(film::Args),
+    Farm(farm::Args),
     Dump(dump::Args),
     Convert(convert::Args),
     Check(check::Args),
@@ -146,7 +156,10 @@ fn chosen() -> ExitCode {
     messages::choose(cli.message_format, cli.quiet);
     let outcome = match Registry::get() {
         Ok(registry) => match cli.command {
-            Some(Command::Render(args)) => render::run(registry, args),
+            Some(Command::Render(args)) => render::run(registry, *args),
+            Some(Command::Merge(args)) => merge::run(&args),
+            Some(Command::Film(args)) => film::run(&args),
+            Some(Command::Farm(args)) => farm::run(&args),
             Some(Command::Dump(args)) => dump::run(registry, args),
             Some(Command::Convert(args)) => convert::run(registry, args),
             Some(Command::Check(args)) => check::run(registry, args),

@@ -6,16 +6,20 @@ use super::input::Source;
 use super::job::Job;
 use super::output::{Output, named};
 use super::resume::Begun;
+use super::size::Part;
 use super::stats::{self, Stats};
 use super::stop::{self, Stop};
 use super::{
-    aov, cpu, debug, full_range, input, keep, made, messages, method, output, progress, samples, set,
-    several, size,
+    aov, cpu, debug, frames, full_range, input, keep, made, messages, method, output, part, progress,
+    samples, set, several, size,
 };
+use crate::output::aov::Aov;
 use crate::output::deflate::Compression;
 use crate::output::full_range::FullRange;
+use crate::output::part::What;
 use crate::output::picture::Format;
 use crate::render::renderer::Renderer;
+use crate::scene::model::Model;
 use crate::scene::reader::{Chosen, Loaded};
 use crate::scene::registry::Registry;
 use crate::world::accuracy::Accuracy;
@@ -55,6 +59,10 @@ pub struct Args {
     #[command(flatten)]
     method: method::Args,
     #[command(flatten)]
+    part: part::Args,
+    #[command(flatten)]
+    frames: frames::Args,
+    #[command(flatten)]
     keep: keep::Args,
     #[command(flatten)]
     aov: aov::Args,
@@ -68,12 +76,32 @@ pub struct Args {
     stop: stop::Args,
 }
 
-pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
     let output = args.output.as_deref();
     if let ([scene], false) = (&args.scenes[..], several::is_folder(output, args.scenes.len())) {
-        let path = target(&args, scene)?;
+        let (scene, path) = (scene.clone(), target(&args, scene)?);
+        let frames = args.frames.of(&path, &mut args.part.part)?;
         let stop = args.stop.watch()?;
-        return one(registry, &args, (scene, path), &stop);
+        let Some(frames) = frames else { return one(registry, &args, (&scene, path), &stop) };
+        if path == Path::new("-") || input::is_standard(&scene) {
+            return Err(Failure::Usage(
+                "frames are read from a file, and written to files".to_owned(),
+                Some("name the scene, and the images with `-o FILE`".to_owned()),
+            ));
+        }
+        let set = args.set.values.clone();
+        for frame in frames {
+            stop.ends_from_here()?;
+            args.set.values = [&set[..], &frame.sets].concat();
+            one(registry, &args, (&scene, frame.path), &stop)?;
+        }
+        return Ok(());
+    }
+    if args.frames.frames.is_some() {
+        return Err(Failure::Usage(
+            "frames are those of one scene".to_owned(),
+            Some("render the scenes one after the other, each with `-o FILE`".to_owned()),
+        ));
     }
     let extension = if args.format == Some(Format::Ppm) { "ppm" } else { "png" };
     let targets = several::targets(&args.scenes, output, extension)?;
@@ -84,7 +112,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     })
 }
 
-/// Renders one scene to a path.
+/// Renders one image of a scene to a path.
 fn one(
     registry: &Registry,
     args: &Args,
@@ -109,6 +137,16 @@ fn one(
     let made = made::texts(&source, &args.set, &model.camera.value, &part);
     let differences = Differences::of(registry, &source, &model);
     output::is_no_source(&path, scene, &model)?;
+    if let Some(number) = args.part.part {
+        return share(
+            registry,
+            args,
+            (&path, format, full_range),
+            (&source, &model, &part),
+            (stop, stats),
+            (number, &made),
+        );
+    }
     let output = Output::open(&path)?;
     let main = if full_range.is_some() { path.with_extension("png") } else { path.clone() };
     let beside = aov::open((scene, &model), &args.aov, &main, &output)?;
@@ -161,6 +199,54 @@ fn one(
     };
     stop.ends_from_here()?;
     aov::write(&plan, exact, threads, format, beside)
+}
+
+/// Renders a part of the image into a file of its own.
+fn share(
+    registry: &Registry,
+    args: &Args,
+    (path, format, full_range): (&Path, Format, Option<FullRange>),
+    (source, model, region): (&Source, &Model, &Part),
+    (stop, mut stats): (&Stop, Stats),
+    (number, made): ([usize; 2], &[(&str, String)]),
+) -> Result<(), Failure> {
+    if path == Path::new("-") {
+        return Err(Failure::Usage(
+            "standard output has no place beside it for a part".to_owned(),
+            Some("name the image with `-o FILE`".to_owned()),
+        ));
+    }
+    debug::print(model, &args.debug)?;
+    let beside = aov::wanted(&args.aov, model)?;
+    let start = Instant::now();
+    let plan = args.keep.plan(model);
+    stats.building += start.elapsed();
+    let main = if full_range.is_some() { path.with_extension("png") } else { path.to_owned() };
+    let share = part::Share {
+        part: number,
+        made,
+        plan: &plan,
+        region,
+        renderer: &Renderer::new(args.threads.unwrap_or(0).into())?.on(args.cpu.cpu()?),
+        paths: [path, &main],
+        what: full_range.map_or(What::picture(format), What::full_range),
+        beside: &beside,
+        format,
+        at_once: args.stop.band(region.columns.len())?,
+        stop,
+        stats: &stats,
+    };
+    let whole = Instant::now();
+    let exact = || {
+        let chosen =
+            Chosen { above_all: Some(Accuracy::Exact), memory: args.stop.left(), ..Chosen::default() };
+        source.load_by(registry, chosen).map(|loaded| loaded.model).map_err(Failure::Scene)
+    };
+    let is_wanted = beside.contains(&Aov::Error);
+    share.run(args.stop.resume, |work| aov::with_truth(&plan, is_wanted, exact, |truth| work(truth)))?;
+    stats.writing = whole.elapsed().saturating_sub(stats.rendering.get());
+    args.stats.print(&stats, model);
+    Ok(())
 }
 
 fn exposure(text: &str) -> Result<f64, String> {

@@ -11,12 +11,14 @@ use crate::world::film::Film;
 use crate::world::material::Rgb;
 use clap::ValueEnum;
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 use std::io;
 use std::ops::ControlFlow;
 
 /// An image beside the main one (an arbitrary output variable). All but the colour, the cost, the samples and the colours
 /// of the error are taken along the ray through the centre of each pixel, however many samples the pixel has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Aov {
     /// Distance of the first hit, near ones bright.
     ///
@@ -86,39 +88,56 @@ impl Aov {
         truth: &Plan,
         done: &(dyn Fn() -> ControlFlow<()> + Sync),
     ) -> io::Result<Layer> {
+        let setting = Setting::of(&plan.camera);
         match self {
-            Self::Depth => Ok(depth(&each(renderer, plan, done, |x, y| {
-                trace::first_hit(plan, &middle(plan, x, y)).map_or(f64::INFINITY, |hit| hit.distance)
-            })?)),
-            Self::Normal => Ok(normal(&each(renderer, plan, done, |x, y| {
-                let hit = trace::first_hit(plan, &middle(plan, x, y));
-                hit.map(|hit| hit.object.shape.normal(hit.point))
-            })?)),
-            Self::Object => Ok(object(&each(renderer, plan, done, |x, y| {
-                trace::first_hit(plan, &middle(plan, x, y)).map(|hit| hit.index)
-            })?)),
+            Self::Depth => Ok(depth(&each(renderer, plan, done, |x, y| depth_at(plan, x, y))?)),
+            Self::Normal => Ok(normal(&each(renderer, plan, done, |x, y| normal_at(plan, x, y))?)),
+            Self::Object => Ok(object(&each(renderer, plan, done, |x, y| object_at(plan, x, y))?)),
             Self::Colour => Ok(colour(&each(renderer, plan, done, |x, y| trace::pixel(plan, x, y))?)),
-            Self::Cost => {
-                let costs = each(renderer, plan, done, |x, y| {
-                    let mut rays = Rays(0);
-                    trace::observe_pixel(plan, x, y, &mut rays);
-                    rays.0
-                })?;
-                Ok(cost(&costs, plan.camera.pixels))
-            }
+            Self::Cost => Ok(cost(&each(renderer, plan, done, |x, y| cost_at(plan, x, y))?, setting.size)),
             Self::Samples => {
-                Ok(samples(&each(renderer, plan, done, |x, y| trace::samples(plan, x, y))?, &plan.camera))
+                Ok(samples(&each(renderer, plan, done, |x, y| trace::samples(plan, x, y))?, &setting))
             }
             Self::Error if plan.camera.certain => {
                 let proofs =
                     each(renderer, plan, done, |x, y| trace::bounded(plan, x, y).unwrap_or_default())?;
-                Ok(bounds(&proofs, &plan.camera))
+                Ok(bounds(&proofs, &setting))
             }
             Self::Error => {
                 let errors = each(renderer, plan, done, |x, y| PixelError::of(plan, truth, x, y))?;
-                Ok(error(&errors, plan.camera.pixels))
+                Ok(error(&errors, setting.size))
             }
         }
+    }
+}
+
+/// What the colours of an image beside the main one depend on, besides the numbers of its pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Setting {
+    /// The width and height of the image in pixels.
+    pub size: [usize; 2],
+    /// The maximum number of samples of a pixel.
+    most: u32,
+    /// The limit on the error of a pixel, where 1 is white, as its bits: a number written in decimals may come back as
+    /// another.
+    limit: Option<u64>,
+    /// Whether errors are proven.
+    pub(super) certain: bool,
+}
+
+impl Setting {
+    /// Returns that of a camera.
+    pub fn of(camera: &Film) -> Self {
+        Self {
+            size: camera.pixels,
+            most: camera.adaptive.map_or(camera.samples, |adaptive| adaptive.most),
+            limit: camera.adaptive.and_then(|adaptive| adaptive.error).map(f64::to_bits),
+            certain: camera.certain,
+        }
+    }
+
+    fn limit(&self) -> Option<f64> {
+        self.limit.map(f64::from_bits)
     }
 }
 
@@ -158,6 +177,24 @@ fn each<T: Clone + Default + Send>(
     renderer.pixels(plan, 0..height, done, pixel).ok_or_else(|| io::ErrorKind::Interrupted.into())
 }
 
+pub(super) fn depth_at(plan: &Plan, x: usize, y: usize) -> f64 {
+    trace::first_hit(plan, &middle(plan, x, y)).map_or(f64::INFINITY, |hit| hit.distance)
+}
+
+pub(super) fn normal_at(plan: &Plan, x: usize, y: usize) -> Option<DVec3> {
+    trace::first_hit(plan, &middle(plan, x, y)).map(|hit| hit.object.shape.normal(hit.point))
+}
+
+pub(super) fn object_at(plan: &Plan, x: usize, y: usize) -> Option<usize> {
+    trace::first_hit(plan, &middle(plan, x, y)).map(|hit| hit.index)
+}
+
+pub(super) fn cost_at(plan: &Plan, x: usize, y: usize) -> u64 {
+    let mut rays = Rays(0);
+    trace::observe_pixel(plan, x, y, &mut rays);
+    rays.0
+}
+
 fn middle(plan: &Plan, x: usize, y: usize) -> Sight {
     plan.camera.sight(x as f64, y as f64)
 }
@@ -166,7 +203,7 @@ fn shown_all(colours: impl Iterator<Item = DVec3>) -> Vec<u8> {
     colours.flat_map(|colour| colour.to_array().map(to_byte)).collect()
 }
 
-fn depth(depths: &[f64]) -> Layer {
+pub(super) fn depth(depths: &[f64]) -> Layer {
     // Brightness falls with 1 / distance, so that near objects keep their contrast beside a plane that extends to
     // infinity.
     let finite = || depths.iter().filter(|depth| depth.is_finite()).map(|depth| 1.0 / depth);
@@ -184,7 +221,7 @@ fn depth(depths: &[f64]) -> Layer {
     }
 }
 
-fn normal(normals: &[Option<DVec3>]) -> Layer {
+pub(super) fn normal(normals: &[Option<DVec3>]) -> Layer {
     Layer {
         bytes: shown_all(normals.iter().map(|normal| normal.map_or(DVec3::ZERO, |n| 0.5 * n + 0.5))),
         exact: Some(
@@ -195,7 +232,7 @@ fn normal(normals: &[Option<DVec3>]) -> Layer {
     }
 }
 
-fn colour(colours: &[Rgb]) -> Layer {
+pub(super) fn colour(colours: &[Rgb]) -> Layer {
     Layer {
         bytes: shown_all(colours.iter().copied()),
         exact: Some(colours.iter().flat_map(|colour| colour.as_vec3().to_array()).collect()),
@@ -204,7 +241,7 @@ fn colour(colours: &[Rgb]) -> Layer {
     }
 }
 
-fn object(objects: &[Option<usize>]) -> Layer {
+pub(super) fn object(objects: &[Option<usize>]) -> Layer {
     Layer {
         bytes: shown_all(objects.iter().map(|object| object.map_or(DVec3::ZERO, colour_of))),
         exact: None,
@@ -213,7 +250,7 @@ fn object(objects: &[Option<usize>]) -> Layer {
     }
 }
 
-fn cost(costs: &[u64], [width, height]: [usize; 2]) -> Layer {
+pub(super) fn cost(costs: &[u64], [width, height]: [usize; 2]) -> Layer {
     let most = costs.iter().copied().max().unwrap_or(0);
     let place = costs.iter().position(|cost| *cost == most).unwrap_or(0);
     Layer {
@@ -224,13 +261,13 @@ fn cost(costs: &[u64], [width, height]: [usize; 2]) -> Layer {
     }
 }
 
-fn samples(pixels: &[(u32, Option<f64>)], camera: &Film) -> Layer {
-    let most = camera.adaptive.map_or(camera.samples, |adaptive| adaptive.most);
+pub(super) fn samples(pixels: &[(u32, Option<f64>)], setting: &Setting) -> Layer {
+    let most = setting.most;
     let shade = |(samples, _): &(u32, Option<f64>)| {
         let part = libm::log2(f64::from(*samples)) / libm::log2(f64::from(most));
         DVec3::splat(if most == 1 { 1.0 } else { part })
     };
-    let limit = camera.adaptive.and_then(|adaptive| adaptive.error).unwrap_or(f64::INFINITY);
+    let limit = setting.limit().unwrap_or(f64::INFINITY);
     let numbers = |(samples, error): &(u32, Option<f64>)| {
         let error = error.unwrap_or(0.0);
         [*samples as f32, error as f32, f32::from(u8::from(error > limit))]
@@ -244,9 +281,9 @@ fn samples(pixels: &[(u32, Option<f64>)], camera: &Film) -> Layer {
 }
 
 /// Shows what is proven of pixels: as grey up to the limit, and red beyond.
-fn bounds(pixels: &[Bounded], camera: &Film) -> Layer {
-    let [width, height] = camera.pixels;
-    let limit = camera.adaptive.and_then(|adaptive| adaptive.error).unwrap_or(1.0);
+pub(super) fn bounds(pixels: &[Bounded], setting: &Setting) -> Layer {
+    let [width, height] = setting.size;
+    let limit = setting.limit().unwrap_or(1.0);
     let worst = pixels.iter().map(|pixel| pixel.error).fold(0.0, f64::max);
     let place = pixels.iter().position(|pixel| pixel.error == worst).unwrap_or(0);
     let shade = |pixel: &Bounded| match pixel.is_certified {
@@ -267,18 +304,18 @@ fn bounds(pixels: &[Bounded], camera: &Film) -> Layer {
 
 /// The errors of a pixel.
 #[derive(Clone, Copy, Default)]
-struct PixelError {
+pub(super) struct PixelError {
     /// The root of the mean square of the channels' errors, where 1 is white.
-    colour: f64,
+    pub colour: f64,
     /// The error of the distance along the ray through the pixel's centre, in world units; 0 where another object is
     /// hit.
-    distance: f64,
+    pub distance: f64,
     /// Whether the ray through the pixel's centre hits another object.
-    is_other: bool,
+    pub is_other: bool,
 }
 
 impl PixelError {
-    fn of(plan: &Plan, truth: &Plan, x: usize, y: usize) -> Self {
+    pub fn of(plan: &Plan, truth: &Plan, x: usize, y: usize) -> Self {
         let colours = [plan, truth].map(|plan| shown(trace::pixel(plan, x, y)));
         let [found, right] = [plan, truth].map(|plan| trace::first_hit(plan, &middle(plan, x, y)));
         let [found, right] = [found, right].map(|hit| hit.map(|hit| (hit.index, hit.distance)));
@@ -291,7 +328,7 @@ impl PixelError {
     }
 }
 
-fn error(errors: &[PixelError], [width, height]: [usize; 2]) -> Layer {
+pub(super) fn error(errors: &[PixelError], [width, height]: [usize; 2]) -> Layer {
     let worst = errors.iter().map(|pixel| pixel.colour).fold(0.0, f64::max);
     let place = errors.iter().position(|pixel| pixel.colour == worst).unwrap_or(0);
     let shade = |pixel: &PixelError| match pixel {

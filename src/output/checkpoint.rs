@@ -28,7 +28,7 @@ const KEYWORD: &str = "tabray checkpoint";
 
 /// All that the pixels of an image depend on; the text chunk is its JSON. A field that another version did not write is
 /// empty.
-#[derive(Default, Serialize, Deserialize)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Identity {
     /// The name of the accuracy.
@@ -94,6 +94,14 @@ impl Identity {
             textures: textures.collect(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
         })
+    }
+
+    /// Tells whether this build of the program has made it.
+    ///
+    /// # Errors
+    /// If the program cannot read its own file.
+    pub fn is_of_this_program(&self) -> io::Result<bool> {
+        Ok(self.program == program()?)
     }
 
     /// Lists the differences from an older identity, in words; empty where there are none.

@@ -3,6 +3,7 @@
 pub(crate) mod bytes;
 mod culling;
 pub mod decisions;
+pub(crate) mod division;
 mod features;
 mod footprint;
 mod frusta;

@@ -16,6 +16,7 @@ mod full_range;
 mod limits;
 mod messages;
 mod new;
+mod parts;
 mod refusals;
 mod review;
 mod samples;

@@ -1,0 +1,146 @@
+//! `tabray film`: puts frames together to a contact sheet and to an animation.
+
+use super::failure::Failure;
+use super::output::{self, Output};
+use super::progress::Progress;
+use super::{memory, messages, picture};
+use crate::output::deflate::Compression;
+use crate::output::picture::Format;
+use crate::text;
+use image::imageops;
+use std::fs;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// The maximum number of frames on a contact sheet.
+const ON_SHEET: usize = 100;
+
+/// The width of a frame on a contact sheet in pixels.
+const WIDTH: u32 = 192;
+
+/// Put frames together to a contact sheet and to an animation
+///
+/// The frames are those that `tabray render --frames A..B -o IMAGE` wrote.
+#[derive(clap::Args)]
+pub struct Args {
+    /// The name of the frames, as `render --frames` was told with -o: film.png for film-0001.png, film-0002.png ...
+    frames: PathBuf,
+    /// Write small images of the frames, evenly chosen if there are more than 100, in rows on one image
+    #[arg(long, value_name = "FILE", required_unless_present = "animation")]
+    sheet: Option<PathBuf>,
+    /// Write an animated PNG, which browsers and image viewers play
+    #[arg(long, value_name = "FILE")]
+    animation: Option<PathBuf>,
+    /// The number of frames per second of the animation
+    #[arg(long, value_name = "N", default_value = "25", value_parser = clap::value_parser!(u16).range(1..=240))]
+    rate: u16,
+}
+
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let frames = frames(&args.frames)?;
+    if let Some(path) = &args.sheet {
+        sheet(path, &frames)?;
+    }
+    if let Some(path) = &args.animation {
+        animation(path, &frames, args.rate)?;
+    }
+    Ok(())
+}
+
+/// Lists the frames in the order of their numbers.
+fn frames(name: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let folder = name.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let stem = name.file_stem().unwrap_or_default().to_string_lossy().into_owned() + "-";
+    let number = |path: &Path| {
+        let digits = path.file_stem()?.to_str()?.strip_prefix(&stem)?;
+        digits.bytes().all(|byte| byte.is_ascii_digit()).then(|| digits.parse::<u32>().ok()).flatten()
+    };
+    let cannot = |error: io::Error| {
+        Failure::Usage(format!("cannot read `{}`: {}", folder.display(), text::reason(&error)), None)
+    };
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).map_err(cannot)? {
+        let path = name.with_file_name(entry.map_err(cannot)?.file_name());
+        if let Some(number) = number(&path).filter(|_| path.extension() == name.extension()) {
+            found.push((number, path));
+        }
+    }
+    found.sort();
+    let (first, last) = match (found.first(), found.last()) {
+        (Some((first, _)), Some((last, _))) => (*first, *last),
+        _ => {
+            return Err(Failure::Usage(
+                format!("there is no frame of `{}`", name.display()),
+                Some("`tabray render SCENE --frames 1..240 -o IMAGE` renders frames".to_owned()),
+            ));
+        }
+    };
+    if let Some(missing) = (first..=last).zip(&found).find(|(number, (is, _))| number != is) {
+        return Err(Failure::Usage(
+            format!("frame {} of `{}` is missing", missing.0, name.display()),
+            Some(
+                "an image that was stopped or a frame of another number of digits may be the reason"
+                    .to_owned(),
+            ),
+        ));
+    }
+    Ok(found.into_iter().map(|(_, path)| path).collect())
+}
+
+fn sheet(path: &Path, frames: &[PathBuf]) -> Result<(), Failure> {
+    let format = output::named(path, "end it in .png or .ppm")?;
+    let format = if let Format::Png(_) = format { Format::Png(Compression::default()) } else { format };
+    let count = frames.len().min(ON_SHEET);
+    let (across, mut all) = ((count as f64).sqrt().ceil() as usize, image::RgbImage::new(0, 0));
+    let out = Output::open(path)?;
+    let mut tall = 0;
+    for index in 0..count {
+        // The first and the last are always there.
+        let at = index * (frames.len() - 1) / (count - 1).max(1);
+        let frame = picture::read(&frames[at])?;
+        if index == 0 {
+            tall = (WIDTH * frame.height() / frame.width()).clamp(1, 8 * WIDTH);
+            let rows = count.div_ceil(across) as u32;
+            all = image::RgbImage::new(WIDTH * across as u32, tall * rows);
+        }
+        let small = imageops::thumbnail(&frame, WIDTH, tall);
+        let place = [(index % across) as u32 * WIDTH, (index / across) as u32 * tall];
+        imageops::replace(&mut all, &small, place[0].into(), place[1].into());
+    }
+    let size = [all.width() as usize, all.height() as usize];
+    output::put(path, out, |out| format.write(out, size, [Ok(all.into_raw())]))
+}
+
+fn animation(path: &Path, frames: &[PathBuf], rate: u16) -> Result<(), Failure> {
+    let cannot = |error: png::EncodingError| Failure::cannot_write(path, &error.into());
+    let first = picture::read(&frames[0])?;
+    let (width, height) = first.dimensions();
+    memory::room(6 * width as usize * height as usize, "a frame")?;
+    let mut out = BufWriter::with_capacity(1 << 16, Output::open(path)?);
+    let mut encoder = png::Encoder::new(&mut out as &mut dyn Write, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
+    let count = u32::try_from(frames.len()).map_err(|error| Failure::Failed(error.to_string()))?;
+    encoder.set_animated(count, 0).map_err(cannot)?;
+    encoder.set_frame_delay(1, rate).map_err(cannot)?;
+    let mut writer = encoder.write_header().map_err(cannot)?;
+    let progress = Progress::new(frames.len());
+    for file in frames {
+        let frame = picture::read(file)?;
+        if frame.dimensions() != (width, height) {
+            progress.end();
+            return Err(Failure::Usage(
+                format!("`{}` is not {width} x {height} pixels large as the first frame is", file.display()),
+                None,
+            ));
+        }
+        writer.write_image_data(&frame).map_err(cannot)?;
+        progress.step();
+    }
+    progress.end();
+    writer.finish().map_err(cannot)?;
+    output::finished(path, Ok(()), out)?;
+    messages::note(&format!("wrote {} ({})", path.display(), text::count(frames.len(), "frame")));
+    Ok(())
+}

@@ -1,0 +1,218 @@
+//! `tabray merge`: puts an image together from its parts.
+
+use super::failure::Failure;
+use super::output::{self, Output};
+use super::part_files::{Parts, cannot_read, open, refuse};
+use super::progress::Progress;
+use super::{aov, full_range, memory, messages};
+use crate::output::aov::Aov;
+use crate::output::aov_values::Values;
+use crate::output::full_range::FullRange;
+use crate::output::part::{Reader, What, put_tile};
+use crate::output::picture::Format;
+use crate::render::renderer::Renderer;
+use crate::render::tiles::TILE;
+use crate::text;
+use std::fs;
+use std::io::{self, BufWriter, Write};
+use std::iter;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// The maximum number of parts that are named in a message.
+const NAMED: usize = 12;
+
+/// Put an image together from its parts
+///
+/// The parts are those that `tabray render --part K/N -o IMAGE` wrote. The image, and the images of --aov, are byte for
+/// byte those that one render of the whole image writes.
+#[derive(clap::Args)]
+pub struct Args {
+    /// The image to write, as `render --part` was told with -o
+    image: PathBuf,
+    /// The parts, in any order; by default all files beside the image that are named as its parts are
+    parts: Vec<PathBuf>,
+    /// Remove the parts once the image is written
+    #[arg(long)]
+    remove_parts: bool,
+    /// The number of threads; by default one per core
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let is_full_range = FullRange::of(&args.image).is_some();
+    let renderer = Renderer::new(args.threads.unwrap_or(0).into())?;
+    let is_main = |what: What| !matches!(what, What::Beside(..));
+    let main = Parts::gather(&args.image, &args.parts, is_main)?;
+    if !main.label.identity.is_of_this_program()? {
+        messages::warning(
+            "the parts were made by another build of this program",
+            Some("its images have the same pixels, but their files may be compressed differently"),
+        );
+    }
+    let names = if is_full_range { args.image.with_extension("png") } else { args.image.clone() };
+    let mut beside = Vec::new();
+    for aov in &main.label.beside {
+        let path = aov::picture(&names, *aov);
+        let is_this = |what: What| matches!(what, What::Beside(other, ..) if other == *aov);
+        let parts = Parts::gather(&path, &args.parts, is_this)?;
+        main.belongs_with(&parts)?;
+        beside.push((path, parts));
+    }
+    main.write(&args.image, &renderer)?;
+    for (path, parts) in &beside {
+        parts.write(path, &renderer)?;
+    }
+    let all = iter::once(&main).chain(beside.iter().map(|(_, parts)| parts));
+    if args.remove_parts {
+        for path in all.flat_map(|parts| &parts.paths) {
+            let cannot = |error| {
+                Failure::Failed(format!("cannot remove `{}`: {}", path.display(), text::reason(&error)))
+            };
+            fs::remove_file(path).map_err(cannot)?;
+        }
+    }
+    Ok(())
+}
+
+impl Parts {
+    /// Writes the image.
+    fn write(&self, path: &Path, renderer: &Renderer) -> Result<(), Failure> {
+        let start = Instant::now();
+        match self.label.what {
+            What::Ppm => self.bytes(path, Format::Ppm, renderer)?,
+            What::Png(compression) => self.bytes(path, Format::Png(compression), renderer)?,
+            What::Exr => self.full_range(path, FullRange::Exr)?,
+            What::Pfm => self.full_range(path, FullRange::Pfm)?,
+            What::Beside(aov, compression, setting) => {
+                let format = compression.map_or(Format::Ppm, Format::Png);
+                let numbers = self.all(24)?;
+                let number = |bytes: &[u8]| f64::from_le_bytes(bytes.try_into().unwrap_or_default());
+                let values: Vec<Values> = numbers
+                    .chunks_exact(24)
+                    .map(|pixel| [0, 8, 16].map(|at| number(&pixel[at..at + 8])))
+                    .collect();
+                drop(numbers);
+                let layer = Aov::layer(aov, &values, &setting);
+                aov::tell(&layer);
+                if aov.is_exact() {
+                    let exact = aov::exact(path);
+                    let bytes =
+                        layer.exr(self.label.size).map_err(|error| Failure::cannot_write(&exact, &error))?;
+                    output::put(&exact, self.open(&exact)?, |out| out.write_all(&bytes))?;
+                }
+                let rows = iter::once(Ok(layer.bytes));
+                return output::put(path, self.open(path)?, |out| format.write(out, self.label.size, rows));
+            }
+        }
+        if path != Path::new("-") {
+            let ([width, height], seconds) = (self.label.size, start.elapsed().as_secs_f64());
+            let (shown, parts) = (path.display(), text::count(self.paths.len(), "part"));
+            messages::note(&format!("wrote {shown} ({width} x {height} pixels, of {parts}, {seconds:.2} s)"));
+        }
+        Ok(())
+    }
+
+    /// Opens a file to write, which must not be a part.
+    fn open(&self, path: &Path) -> Result<Output, Failure> {
+        if self.paths.iter().any(|part| same_file::is_same_file(part, path).unwrap_or(false)) {
+            return Err(refuse(
+                format!("`{}` is a part, which the image would replace", path.display()),
+                "name another file for the image",
+            ));
+        }
+        Output::open(path)
+    }
+
+    /// Writes an image of bytes, a row of tiles at a time.
+    fn bytes(&self, path: &Path, format: Format, renderer: &Renderer) -> Result<(), Failure> {
+        let size = self.label.size;
+        let (mut out, mut broken) = (BufWriter::with_capacity(1 << 16, self.open(path)?), None);
+        let progress = Progress::new(size[1].div_ceil(TILE));
+        let rows = self.rows(3).map(|rows| {
+            progress.step();
+            rows.map_err(|failure| {
+                broken = Some(failure);
+                io::ErrorKind::InvalidData.into()
+            })
+        });
+        let made: Vec<_> =
+            self.label.made.iter().map(|(keyword, text)| (keyword.as_str(), text.clone())).collect();
+        let written = format.write_on(Some(renderer), &made, &mut out, size, rows);
+        progress.end();
+        match broken {
+            Some(failure) => Err(failure),
+            None => output::finished(path, written, out),
+        }
+    }
+
+    fn full_range(&self, path: &Path, format: FullRange) -> Result<(), Failure> {
+        let [width, height] = self.label.size;
+        memory::room(full_range::PIXEL.saturating_mul(width).saturating_mul(height), "the image")?;
+        let out = self.open(path)?;
+        let bytes = self.all(12)?;
+        let number = |bytes: &[u8]| f32::from_le_bytes(bytes.try_into().unwrap_or_default());
+        let pixels: Vec<f32> = bytes.chunks_exact(4).map(number).collect();
+        drop(bytes);
+        let mut out = BufWriter::new(out);
+        let written = format.write(&mut out, self.label.size, &pixels);
+        output::finished(path, written, out)
+    }
+
+    /// Returns all bytes of an image that is held in memory.
+    fn all(&self, pixel: usize) -> Result<Vec<u8>, Failure> {
+        let [width, height] = self.label.size;
+        memory::room(2 * pixel * width * height, "the image")?;
+        let mut all = Vec::with_capacity(pixel * width * height);
+        for rows in self.rows(pixel) {
+            all.extend(rows?);
+        }
+        Ok(all)
+    }
+
+    /// Reads the parts, and returns the bytes of each row of tiles, from the top.
+    fn rows(&self, pixel: usize) -> impl Iterator<Item = Result<Vec<u8>, Failure>> + '_ {
+        let (grid, [width, height]) = (self.label.grid(), self.label.size);
+        let (mut paths, mut reader) = (self.paths.iter(), None::<(&PathBuf, Reader)>);
+        let mut tile = Vec::new();
+        (0..height.div_ceil(TILE)).map(move |strip| {
+            let mut rows = vec![0; pixel * width * TILE.min(height - TILE * strip)];
+            for index in strip * grid.across()..(strip + 1) * grid.across() {
+                if reader.as_ref().is_none_or(|(_, reader)| reader.label.tiles[1] == index) {
+                    let Some(path) = paths.next() else {
+                        return Err(refuse("the parts have changed".to_owned(), "begin again"));
+                    };
+                    reader = Some((path, open(path)?));
+                }
+                let Some((path, reader)) = &mut reader else { continue };
+                tile.resize(pixel * grid.pixels(index), 0);
+                reader.read(&mut tile).map_err(|error| self.damaged(path, &error))?;
+                let [columns, at] = grid.tile(index);
+                put_tile(&mut rows, pixel * width, [columns, 0..at.len()], pixel, &tile);
+            }
+            Ok(rows)
+        })
+    }
+
+    /// Returns the error for a part that cannot be read to its end, and for all others of which that is so.
+    fn damaged(&self, path: &Path, error: &io::Error) -> Failure {
+        if error.kind() != io::ErrorKind::InvalidData {
+            return cannot_read(path, error);
+        }
+        let is_damaged = |path: &&PathBuf| open(path).is_ok_and(|mut part| part.check().is_err());
+        let damaged: Vec<_> =
+            self.paths.iter().filter(is_damaged).map(|path| format!("`{}`", path.display())).collect();
+        let (shown, rest) = damaged.split_at(damaged.len().min(NAMED));
+        let more = if rest.is_empty() { String::new() } else { format!(" and {} more", rest.len()) };
+        refuse(
+            format!("{} damaged: the checksum at the end is wrong{}", are_files(shown), more),
+            "render these parts again",
+        )
+    }
+}
+
+fn are_files(paths: &[String]) -> String {
+    let are = if paths.len() == 1 { "is" } else { "are" };
+    format!("{} {are}", paths.join(", "))
+}

@@ -1,0 +1,206 @@
+//! Finds the parts of an image, and refuses parts that do not belong together.
+
+use super::failure::Failure;
+use super::{input, part, resume};
+use crate::files;
+use crate::output::checkpoint::Identity;
+use crate::output::part::{Label, Reader, What};
+use crate::text;
+use std::collections::BTreeMap;
+use std::fs;
+use std::io;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// The maximum number of runs of missing parts that are named in a message.
+const RUNS: usize = 12;
+
+/// All parts of an image.
+pub struct Parts {
+    /// The label of the first.
+    pub label: Label,
+    /// All of them, in their order.
+    pub paths: Vec<PathBuf>,
+}
+
+/// What is known of a part, but for what all have in common.
+struct Found {
+    path: PathBuf,
+    tiles: Range<usize>,
+}
+
+impl Parts {
+    /// Finds all parts among these files, or beside the image if there are none, of those that contain what `is`
+    /// wanted. Refuses files that are not whole parts of one image, but does not check the pixels.
+    pub fn gather(image: &Path, files: &[PathBuf], is: impl Fn(What) -> bool) -> Result<Self, Failure> {
+        let paths = if files.is_empty() { beside(image)? } else { files.to_vec() };
+        let (mut first, mut found): (Option<(PathBuf, Label)>, BTreeMap<usize, Found>) =
+            (None, BTreeMap::new());
+        for path in paths {
+            let label = open(&path)?.label;
+            if !is(label.what) {
+                continue;
+            }
+            if label.unfinished {
+                return Err(refuse(
+                    format!("`{}` is an unfinished part", path.display()),
+                    "`tabray render --part K/N --resume` renders the rest of it",
+                ));
+            }
+            if let Some((other, first)) = &first {
+                same((&path, &label), (other, first))?;
+            }
+            let (number, tiles) = (label.part[0], label.tiles());
+            if let Some(other) = found.get(&number) {
+                if open(&path)?.checksum().map_err(|error| cannot_read(&path, &error))?
+                    != open(&other.path)?.checksum().map_err(|error| cannot_read(&other.path, &error))?
+                {
+                    let (one, other) = (other.path.display(), path.display());
+                    return Err(refuse(
+                        format!("`{one}` and `{other}` are two versions of part {number}"),
+                        "leave out the one that is wrong",
+                    ));
+                }
+                continue;
+            }
+            found.insert(number, Found { path: path.clone(), tiles });
+            first.get_or_insert((path, label));
+        }
+        let Some((_, label)) = first else {
+            return Err(refuse(
+                format!("there is no part of `{}`", image.display()),
+                "`tabray render SCENE -o IMAGE --part 1/16` makes the first of 16 parts",
+            ));
+        };
+        let of = label.part[1];
+        if found.len() < of {
+            let missing: Vec<_> = (1..=of).filter(|number| !found.contains_key(number)).collect();
+            let begun =
+                missing.iter().find(|number| resume::beside(&part::beside(image, [**number, of])).exists());
+            return Err(Failure::Usage(
+                format!("{} missing of `{}`, of {of}", are(&missing), image.display()),
+                Some(match begun {
+                    Some(number) => format!(
+                        "part {number} is begun: `tabray render --part {number}/{of} --resume` renders the rest"
+                    ),
+                    None => format!("render each with `tabray render --part {}/{of}`", missing[0]),
+                }),
+            ));
+        }
+        let mut next = 0;
+        for (number, part) in &found {
+            if part.tiles.start != next {
+                return Err(refuse(
+                    format!("`{}` does not begin where part {} ends", part.path.display(), number - 1),
+                    "render the parts anew with one build of the program",
+                ));
+            }
+            next = part.tiles.end;
+        }
+        if next != label.grid().len() {
+            return Err(refuse(
+                format!("part {of} of `{}` ends before the image does", image.display()),
+                "render the parts anew with one build of the program",
+            ));
+        }
+        Ok(Self { label, paths: found.into_values().map(|part| part.path).collect() })
+    }
+
+    /// Refuses parts of an image beside this one that belong to another scene.
+    pub fn belongs_with(&self, other: &Self) -> Result<(), Failure> {
+        let what = self.label.what;
+        let like = |label: &Label| Label {
+            part: self.label.part,
+            what,
+            identity: Identity::clone(&label.identity),
+            beside: label.beside.clone(),
+            made: label.made.clone(),
+            ..*label
+        };
+        same((&other.paths[0], &like(&other.label)), (&self.paths[0], &self.label))
+    }
+}
+
+/// Names parts by their numbers, and says that they are.
+fn are(numbers: &[usize]) -> String {
+    let mut runs: Vec<[usize; 2]> = Vec::new();
+    for number in numbers {
+        match runs.last_mut() {
+            Some([_, last]) if *last + 1 == *number => *last = *number,
+            _ => runs.push([*number; 2]),
+        }
+    }
+    let run = |[first, last]: &[usize; 2]| match last - first {
+        0 => first.to_string(),
+        _ => format!("{first} to {last}"),
+    };
+    let shown: Vec<_> = runs.iter().take(RUNS).map(run).collect();
+    let more = if runs.len() > RUNS { ", and more" } else { "" };
+    let (noun, verb) = if numbers.len() == 1 { ("part", "is") } else { ("parts", "are") };
+    format!("{noun} {}{more} {verb}", shown.join(", "))
+}
+
+/// Refuses two parts that are not of one image.
+fn same((path, label): (&Path, &Label), (other, first): (&Path, &Label)) -> Result<(), Failure> {
+    let mut differences = label.identity.differences(&first.identity);
+    // A texture or a file that only the first has is another scene.
+    if differences.is_empty() {
+        differences = first.identity.differences(&label.identity);
+    }
+    if differences.is_empty() && label.part[1] != first.part[1] {
+        differences.push(format!("there are {} parts and not {}", label.part[1], first.part[1]));
+    }
+    if differences.is_empty() && (label.size, label.what) != (first.size, first.what) {
+        differences.push("its format is another".to_owned());
+    }
+    if differences.is_empty() && label.beside != first.beside {
+        differences.push("it has other images beside it".to_owned());
+    }
+    if differences.is_empty() {
+        return Ok(());
+    }
+    Err(refuse(
+        format!(
+            "`{}` is not a part of the same image as `{}`: {}",
+            path.display(),
+            other.display(),
+            differences.join(", ")
+        ),
+        "name the parts that belong together: `tabray merge IMAGE PARTS`",
+    ))
+}
+
+pub fn open(path: &Path) -> Result<Reader, Failure> {
+    files::open(path).and_then(Reader::open).map_err(|error| cannot_read(path, &error))
+}
+
+pub fn cannot_read(path: &Path, error: &io::Error) -> Failure {
+    Failure::Usage(format!("cannot read `{}`: {}", path.display(), text::reason(error)), None)
+}
+
+pub fn refuse(message: String, help: &str) -> Failure {
+    Failure::Usage(message, Some(help.to_owned()))
+}
+
+/// Lists the parts beside an image, by their names.
+fn beside(image: &Path) -> Result<Vec<PathBuf>, Failure> {
+    if input::is_standard(image) {
+        return Err(refuse("standard output has no parts beside it".to_owned(), "name the parts"));
+    }
+    let folder = image.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let name = image.file_name().unwrap_or_default().to_string_lossy().into_owned() + ".part-";
+    let is_part = |file: &str| {
+        let numbers = file.strip_prefix(&name).and_then(|rest| rest.split_once("-of-"));
+        numbers.is_some_and(|(number, of)| number.parse::<usize>().is_ok() && of.parse::<usize>().is_ok())
+    };
+    let cannot = |error: io::Error| cannot_read(folder, &error);
+    let mut paths = Vec::new();
+    for entry in fs::read_dir(folder).map_err(cannot)? {
+        let file = entry.map_err(cannot)?.file_name();
+        if is_part(&file.to_string_lossy()) {
+            paths.push(image.with_file_name(file));
+        }
+    }
+    paths.sort();
+    Ok(paths)
+}
