@@ -32,6 +32,8 @@ pub struct Entity {
     /// The name that the notes' dump prints.
     pub dump_name: &'static str,
     tables: &'static [Table],
+    /// The attributes that it has beside those of its tables.
+    common: Table,
     place: &'static Location<'static>,
 }
 
@@ -63,6 +65,12 @@ pub static MATERIAL: Pparm<Arc<Material>> =
     Pparm::required("material", "the material, defined earlier in the scene");
 
 const OBJECT: Table = &[&MATERIAL];
+
+/// The attribute of an object that is made of others, in place of [`MATERIAL`].
+static MATERIAL_OF_ALL: Pparm<Option<Arc<Material>>> =
+    Pparm::or("material", "the material of all of it; without, each object in it keeps its own", None);
+
+const OF_OBJECTS: Table = &[&MATERIAL_OF_ALL];
 
 impl Entity {
     /// Describes a camera type.
@@ -109,6 +117,17 @@ impl Entity {
         Self::new(name, meaning, tables, Construct::Object(construct))
     }
 
+    /// Describes an object that is made of others. The attribute `material`, which may be left out, is added to its table.
+    #[track_caller]
+    pub const fn of_objects(
+        name: &'static str,
+        meaning: &'static str,
+        tables: &'static [Table],
+        construct: fn(&Args) -> Result<Body, Refusal>,
+    ) -> Self {
+        Self { common: OF_OBJECTS, ..Self::new(name, meaning, tables, Construct::Object(construct)) }
+    }
+
     /// Describes a light type.
     #[track_caller]
     pub const fn light(
@@ -127,7 +146,9 @@ impl Entity {
         tables: &'static [Table],
         construct: Construct,
     ) -> Self {
-        Self { name, meaning, aliases: &[], construct, dump_name: name, tables, place: Location::caller() }
+        let common = if matches!(construct, Construct::Object(_)) { OBJECT } else { &[] };
+        let place = Location::caller();
+        Self { name, meaning, aliases: &[], construct, dump_name: name, tables, common, place }
     }
 
     /// Sets other names that a scene may use.
@@ -155,8 +176,7 @@ impl Entity {
 
     /// Returns the rows of the type's table, in the order of the dump.
     pub fn rows(&self) -> impl Iterator<Item = &'static dyn Row> + use<> {
-        let common = if self.kind() == Kind::Object { OBJECT } else { &[] };
-        iter::once(common).chain(self.tables.iter().copied()).flatten().copied()
+        iter::once(self.common).chain(self.tables.iter().copied()).flatten().copied()
     }
 
     /// Returns the type's attributes, in the order of its table.
@@ -244,9 +264,22 @@ impl Args {
         self.get(&MATERIAL)
     }
 
+    /// Returns the material that an object made of others is given, if it is given one.
+    ///
+    /// # Panics
+    /// If the entity is not such an object.
+    #[track_caller]
+    pub fn material_of_all(&self) -> Option<Arc<Material>> {
+        self.get(&MATERIAL_OF_ALL)
+    }
+
     /// Tells whether the entity refers to an object that could not be made.
     pub(crate) fn refers_to_nothing(&self) -> bool {
-        self.values().any(|(_, datum)| matches!(datum, Datum::Object { body, .. } if body.get().is_none()))
+        self.values().any(|(_, datum)| match datum {
+            Datum::Object { body, .. } => body.get().is_none(),
+            Datum::Objects(all) => all.iter().any(|(_, body)| body.get().is_none()),
+            _ => false,
+        })
     }
 
     /// Tells whether the attribute that a refusal marks is in the type's table. It is if the refusal marks none.

@@ -188,6 +188,10 @@ fn attribute_rule(attribute: &'static dyn Attribute) -> Rule {
     let begin = format!("({}){END}", one_of(names));
     let (end, scopes) = match attribute.value_type() {
         Type::Whole | Type::Number => return Rule::matching(begin, Some(ATTRIBUTE)),
+        // The names are values of their own, as numbers are.
+        Type::Name(_) if attribute.arity().most() > 1 => {
+            return Rule::matching(begin, Some(ATTRIBUTE));
+        }
         Type::Name(_) => (format!("({QUOTED}|{BARE})|(?=[{{}}])"), &[REFERENCE][..]),
         Type::Truth => {
             (format!("({QUOTED})|(yes|no){END}|({BARE})|(?=[{{}}])"), &[IN_QUOTES, CHOICE, WORD][..])

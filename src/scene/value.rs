@@ -63,6 +63,8 @@ pub enum Datum {
         /// The body of the object of this name.
         body: NamedBody,
     },
+    /// Objects and their names, each once.
+    Objects(Vec<(Arc<str>, NamedBody)>),
     /// One of several alternatives.
     Choice(ChoiceName),
     /// A formula.
@@ -101,6 +103,7 @@ impl Datum {
             Self::Word(word) => format!(" {word}"),
             Self::Material { name, .. } | Self::Object { name, .. } => format!(" {name}"),
             Self::Choice(choice) => format!(" {}", choice.name),
+            Self::Objects(all) => all.iter().map(|(name, _)| format!(" {name}")).collect(),
             Self::Truth(truth) => format!(" {}", yes_or_no(*truth)),
         };
         format!("{label:<12}{values}{ending}")

@@ -15,11 +15,12 @@ pub(crate) mod packets;
 pub(crate) mod sample;
 pub(crate) mod shader;
 pub(crate) mod shape;
+pub(crate) mod solid;
 pub(crate) mod texture;
 
 pub use accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
 pub use any_shape::AnyShape;
-pub use body::{AnyLight, AnyShader, Body, NamedBody, Warning};
+pub use body::{AnyLight, AnyShader, Body, NamedBody, Part, Solid, Warning};
 pub use camera::Camera;
 pub use hittable::{Bracketed, Certified, Hittable, Searched};
 pub use light::Light;

@@ -114,7 +114,11 @@ impl Draw {
         if refers_to(entity, Kind::Object)
             && let Some(other) = registry.iter().find(is_plain)
         {
-            text += &self.entity(other, name(Kind::Object));
+            let most = entity.attributes().filter(|its| is_name_of(*its, Kind::Object));
+            let most = most.map(|its| its.arity().examples().into_iter().max().unwrap_or(1)).max();
+            for index in 0..most.unwrap_or(1) {
+                text += &self.entity(other, &of_list(name(Kind::Object), index));
+            }
         }
         if matches!(entity.kind(), Kind::Object | Kind::Light) {
             text += &self.entity(entity, "tried");
@@ -158,7 +162,7 @@ impl Draw {
         match attribute.value_type() {
             Type::Word => word(PICTURE),
             Type::File => word(MODEL),
-            Type::Name(kind) => word(name(kind)),
+            Type::Name(kind) => Some((0..count).map(|index| of_list(name(kind), index)).collect()),
             Type::Formula(HEIGHT) => word(&format!("\"{}\"", self.pick(&FORMULAS))),
             Type::Formula(_) => word(&format!("\"{}\"", self.pick(&FIELDS))),
             _ => {
@@ -178,8 +182,16 @@ impl Draw {
 
 /// Tells whether an attribute of the type refers to an entity of this kind.
 fn refers_to(entity: &Entity, kind: Kind) -> bool {
-    let mut types = entity.attributes().map(|attribute| attribute.value_type());
-    types.any(|its| matches!(its, Type::Name(named) if named == kind))
+    entity.attributes().any(|attribute| is_name_of(attribute, kind))
+}
+
+fn is_name_of(attribute: &dyn Attribute, kind: Kind) -> bool {
+    matches!(attribute.value_type(), Type::Name(named) if named == kind)
+}
+
+/// Returns the name of one of several entities.
+fn of_list(name: &str, index: usize) -> String {
+    if index == 0 { name.to_owned() } else { format!("{name}{index}") }
 }
 
 /// Returns the name of the entity of this kind that others refer to.
