@@ -175,7 +175,7 @@ impl<A: Bounded> Proofs for Shape<Mesh<A>, ByPackets, ByFaces> {
     }
 
     fn holds(&self, at: DVec3, error: f64) -> Option<bool> {
-        if self.shape.surface.touches::<A>(at, error) { None } else { self.shape.surface.holds::<A>(at) }
+        self.shape.surface.holds::<A>(at, error)
     }
 
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {

@@ -3,6 +3,7 @@
 use super::surface::Surface;
 use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::world::accuracy::Bounded;
+use crate::world::coincidence::ROUNDING;
 use glam::DVec3;
 
 /// Directions in which it is looked for the face that tells whether a point lies inside; along none of them do the edges
@@ -17,9 +18,41 @@ const DIRECTIONS: [DVec3; 4] = [
 /// The least cosine between a direction and the normal of a face that tells its sides apart.
 const LEAST_COSINE: f64 = 1e-3;
 
+/// The largest number of faces of a convex mesh that is compared with the planes of all of them.
+const MOST_PLANES: usize = 64;
+
+/// Returns a bound on the rounding error of the distance of a point from a plane through another one.
+fn rounding(point: DVec3, at: DVec3) -> f64 {
+    ROUNDING * (point.abs() + at.abs()).element_sum()
+}
+
+/// Tells whether a point lies below all of these planes; `None` where it may lie on one of them.
+fn inside(planes: &[[DVec3; 2]], at: DVec3, error: f64) -> Option<bool> {
+    // The box that extends the error along each axis reaches no farther along a normal.
+    let error = 1.75 * error;
+    let mut inside = Some(true);
+    for [normal, point] in planes {
+        let (above, error) = (normal.dot(at - *point), error + rounding(*point, at));
+        if above > error {
+            return Some(false);
+        }
+        if above >= -error {
+            inside = None;
+        }
+    }
+    inside
+}
+
 impl Surface {
-    /// Tells whether a point lies in a closed mesh; `None` where no face tells.
-    pub(super) fn holds<A: Bounded>(&self, at: DVec3) -> Option<bool> {
+    /// Tells whether a point lies in a closed mesh; `None` where the surface may be within an error in world units, and
+    /// where no face tells.
+    pub(super) fn holds<A: Bounded>(&self, at: DVec3, error: f64) -> Option<bool> {
+        if let Some(planes) = self.planes.get_or_init(|| self.convex::<A>()) {
+            return inside(planes, at, error);
+        }
+        if self.touches::<A>(at, error) {
+            return None;
+        }
         for dir in DIRECTIONS {
             let ray = Ray { origin: at, dir: dir.normalize() };
             let distance = self.distance::<A>(&ray, &RayRange::ALL, -1.0);
@@ -33,6 +66,20 @@ impl Surface {
             }
         }
         None
+    }
+
+    /// Returns the planes of the faces of a closed mesh that certainly is convex, a normal and a point of each; `None` for
+    /// others, and for those of many faces.
+    fn convex<A: Bounded>(&self) -> Option<Box<[[DVec3; 2]]>> {
+        if self.face_count() > MOST_PLANES {
+            return None;
+        }
+        let plane = |face: usize| [self.triangle::<A>(face).plane.normal, self.corners(face)[0]];
+        let planes: Box<[_]> = (0..self.face_count()).map(plane).collect();
+        let is_below = |at: &DVec3| {
+            planes.iter().all(|[normal, point]| normal.dot(*at - *point) <= rounding(*point, *at))
+        };
+        self.vertices.iter().all(is_below).then_some(planes)
     }
 
     /// Tells whether the faces of a closed mesh run clockwise as seen from the outside, so that its volume is negative.

@@ -34,7 +34,8 @@ impl Trimmed {
                 let origin_side = sides.map(|sides| sides[lane]);
                 let range =
                     RayRange { near: 0.0, far: ends[lane], origin_side, origin_error: rays.origin_error };
-                Trimmed::t_bounds(self, &rays.get(lane), &range)
+                let is_known = met[lane] != 0 && doubt[lane] == 0 && near[lane] == far[lane];
+                self.t_bounds_from(&rays.get(lane), &range, is_known.then_some(near[lane]))
             };
             (near[lane], far[lane]) = (bracket.near, bracket.far);
         }

@@ -111,8 +111,9 @@ impl Trimmed {
         (self.tree.owner(&beside(at + step, false), &beside(at - step, true)) == Some(self.index), false)
     }
 
-    /// Returns the distance of the first hit that is seen, and whether it is certain.
-    pub(super) fn first_hit(&self, ray: &Ray, range: &RayRange) -> (f64, bool) {
+    /// Returns the distance of the first hit that is seen, and whether it is certain. `first` is the distance of the
+    /// part's own first hit, if that is known.
+    pub(super) fn first_hit(&self, ray: &Ray, range: &RayRange, mut first: Option<f64>) -> (f64, bool) {
         let (shape, reach) = (self.own(), self.reach());
         let (mut start, mut gone, mut is_certain) = (*ray, 0.0, true);
         let mut side = range.origin_side.map(|side| self.side(side));
@@ -123,22 +124,28 @@ impl Trimmed {
             }
             let far = if range.far < MISS { (1.0 + CLOSE) * range.far - gone } else { MISS };
             let left = RayRange { near: 0.0, far, origin_side: side, origin_error: error };
-            let Bracket { near, far } = shape.t_bounds(&start, &left);
-            is_certain &= near == MISS || far < MISS;
-            let onward = if near == far { near } else { shape.distance(&start, &left) };
+            let bracket = first.take().map_or_else(|| shape.t_bounds(&start, &left), Bracket::exactly);
+            let is_exact = bracket.near == bracket.far;
+            let onward = if is_exact { bracket.near } else { shape.distance(&start, &left) };
             if onward == MISS {
+                // A ray that starts on the outside may miss what it has left.
+                is_certain &= !bracket.is_doubtful() || side == Some(Side::Outside) && far == MISS;
                 break;
             }
             let distance = gone + onward;
             let at = ray.at(distance);
             let normal = shape.normal(at);
+            let from = Side::seen_along(ray.dir, normal);
+            // What is doubtful of a ray that starts on the surface is that start. Inside and outside alternate where
+            // none of the hits are left out.
+            is_certain &= !bracket.is_doubtful() || side == Some(from);
             error = coincidence::error(ray, distance, normal, reach);
             let (is_seen, is_sure) = self.is_seen(at, normal, error);
             is_certain &= is_sure;
             if is_seen {
                 return (range.keep(distance), is_certain);
             }
-            side = Some(Side::seen_along(ray.dir, normal).opposite());
+            side = Some(from.opposite());
             (start.origin, gone) = (at, distance);
         }
         (MISS, is_certain)
@@ -146,12 +153,18 @@ impl Trimmed {
 
     /// Returns a bracket of the first hit of one ray.
     pub(super) fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        self.t_bounds_from(ray, range, None)
+    }
+
+    /// Returns a bracket of the first hit of one ray. `first` is the distance of the part's own first hit, if that is
+    /// known.
+    pub(super) fn t_bounds_from(&self, ray: &Ray, range: &RayRange, first: Option<f64>) -> Bracket {
         if self.is_whole() {
             return self.own().t_bounds(ray, &self.own_range(range));
         }
         let touches = || self.own().touches(ray.origin, range.origin_error);
         by_distance(range, touches, |range| {
-            let (distance, is_certain) = self.first_hit(ray, range);
+            let (distance, is_certain) = self.first_hit(ray, range, first);
             is_certain.then_some(distance)
         })
     }
@@ -166,7 +179,7 @@ impl Hittable for Trimmed {
         if self.is_whole() {
             self.own().distance(ray, &self.own_range(range))
         } else {
-            self.first_hit(ray, range).0
+            self.first_hit(ray, range, None).0
         }
     }
 
