@@ -12,4 +12,5 @@ mod implicit;
 mod mesh;
 mod notes;
 mod places;
+mod solids;
 mod stability;

@@ -8,7 +8,7 @@ use crate::numeric::double_double::DoubleDouble;
 use crate::world::any_shape::AnyShape;
 use crate::world::body::Part;
 use crate::world::certify::{Enclosure, Found, Onward, Precision, Proven};
-use crate::world::coincidence::{self, CLOSE, ROUNDING};
+use crate::world::coincidence::{self, CLOSE, LEAST_COSINE, ROUNDING};
 use crate::world::hittable::Hittable;
 use crate::world::packets::shape::{Proofs, by_distance};
 use crate::world::shape::{ByPackets, Shape};
@@ -41,6 +41,8 @@ pub struct Trimmed {
     /// The conditions under which the surface is the solid's, each with whether it must hold.
     needed: Vec<(Tree, bool)>,
     bounds: Option<Aabb>,
+    /// A box around the solid, if all of its parts are opaque.
+    outside: Option<Aabb>,
 }
 
 impl Trimmed {
@@ -51,9 +53,10 @@ impl Trimmed {
         (index, is_outer): (usize, bool),
         tree: Tree,
         needed: Vec<(Tree, bool)>,
-        bounds: Option<Aabb>,
+        [bounds, outside]: [Option<Aabb>; 2],
     ) -> Self {
-        Self { parts: parts.clone(), around: around.clone(), index, is_outer, tree, needed, bounds }
+        let (parts, around) = (parts.clone(), around.clone());
+        Self { parts, around, index, is_outer, tree, needed, bounds, outside }
     }
 
     /// Returns the shape of the part.
@@ -87,20 +90,23 @@ impl Trimmed {
         self.parts[part].body.shape.holds(at, error)
     }
 
-    /// Tells whether a hit of the part is seen, and whether that is certain. The point may be off by an error in world
-    /// units.
-    fn is_seen(&self, at: DVec3, normal: DVec3, error: f64) -> (bool, bool) {
-        let mut all = true;
+    /// Tells whether a hit of the part is the solid's; `None` where the surface of another part may be within an error in
+    /// world units.
+    fn is_bare(&self, at: DVec3, error: f64) -> Option<bool> {
+        let mut all = Some(true);
         for (tree, must_hold) in &self.needed {
             match tree.holds(&mut |part| self.holds(part, at, error)) {
                 Some(holds) if holds == *must_hold => {}
-                Some(_) => return (false, true),
-                None => all = false,
+                Some(_) => return Some(false),
+                None => all = None,
             }
         }
-        if all {
-            return (true, true);
-        }
+        all
+    }
+
+    /// Tells whether a hit of the part is the solid's by what lies on both sides of it, at a distance that is a multiple
+    /// of an error in world units.
+    fn is_bare_beside(&self, at: DVec3, normal: DVec3, error: f64) -> bool {
         let step = BESIDE * (error + ROUNDING * at.abs().max_element()) * normal;
         let beside = |at: DVec3, is_inside: bool| -> Vec<bool> {
             let inside = |part: usize| self.holds(part, at, 0.0).unwrap_or(false);
@@ -108,7 +114,13 @@ impl Trimmed {
                 .map(|part| if part == self.index { is_inside } else { inside(part) })
                 .collect()
         };
-        (self.tree.owner(&beside(at + step, false), &beside(at - step, true)) == Some(self.index), false)
+        self.tree.owner(&beside(at + step, false), &beside(at - step, true)) == Some(self.index)
+    }
+
+    /// Tells whether rays that start in a box certainly start outside of the solid, and need not find where they would
+    /// leave it: they enter it before, and see no farther.
+    pub(super) fn is_entered_from(&self, low: DVec3, high: DVec3) -> bool {
+        self.outside.is_some_and(|around| !around.overlaps(&Aabb { low, high }))
     }
 
     /// Returns the distance of the first hit that is seen, and whether it is certain. `first` is the distance of the
@@ -116,36 +128,55 @@ impl Trimmed {
     pub(super) fn first_hit(&self, ray: &Ray, range: &RayRange, mut first: Option<f64>) -> (f64, bool) {
         let (shape, reach) = (self.own(), self.reach());
         let (mut start, mut gone, mut is_certain) = (*ray, 0.0, true);
-        let mut side = range.origin_side.map(|side| self.side(side));
+        let mut leaves = range.origin_side.map(|side| self.side(side));
         let mut error = range.origin_error;
+        let (low, high) = (ray.origin - error, ray.origin + error);
+        let must_enter = leaves.is_none() && self.is_entered_from(low, high);
+        let is_apart = self.around[self.index].is_some_and(|own| !own.overlaps(&Aabb { low, high }));
+        // The side from which the next hit comes: inside and outside alternate.
+        let mut from = leaves.or(is_apart.then_some(Side::Outside));
         for _ in 0..MOST_HITS {
-            if side.is_some_and(|side| !shape.can_hit_itself(side)) {
+            if leaves.is_some_and(|side| !shape.can_hit_itself(side)) {
                 break;
             }
             let far = if range.far < MISS { (1.0 + CLOSE) * range.far - gone } else { MISS };
-            let left = RayRange { near: 0.0, far, origin_side: side, origin_error: error };
+            let left = RayRange { near: 0.0, far, origin_side: leaves, origin_error: error };
             let bracket = first.take().map_or_else(|| shape.t_bounds(&start, &left), Bracket::exactly);
             let is_exact = bracket.near == bracket.far;
             let onward = if is_exact { bracket.near } else { shape.distance(&start, &left) };
             if onward == MISS {
-                // A ray that starts on the outside may miss what it has left.
-                is_certain &= !bracket.is_doubtful() || side == Some(Side::Outside) && far == MISS;
+                // What is doubtful of a ray that starts on the surface is that start.
+                is_certain &= !bracket.is_doubtful() || leaves == Some(Side::Outside) && far == MISS;
                 break;
             }
             let distance = gone + onward;
             let at = ray.at(distance);
-            let normal = shape.normal(at);
-            let from = Side::seen_along(ray.dir, normal);
-            // What is doubtful of a ray that starts on the surface is that start. Inside and outside alternate where
-            // none of the hits are left out.
-            is_certain &= !bracket.is_doubtful() || side == Some(from);
-            error = coincidence::error(ray, distance, normal, reach);
-            let (is_seen, is_sure) = self.is_seen(at, normal, error);
-            is_certain &= is_sure;
-            if is_seen {
-                return (range.keep(distance), is_certain);
+            let side = match from {
+                Some(from) if !bracket.is_doubtful() => from,
+                _ => Side::seen_along(ray.dir, shape.normal(at)),
+            };
+            is_certain &= !bracket.is_doubtful() || leaves == Some(side);
+            let size = ray.origin.abs().max_element() + distance + reach;
+            if !must_enter || self.side(side) == Side::Outside {
+                // The error of any hit first, then that of this one, which takes its normal.
+                let (is_bare, is_sure) = self.is_bare(at, ROUNDING / LEAST_COSINE * size).map_or_else(
+                    || {
+                        let normal = shape.normal(at);
+                        let error = coincidence::error(ray, distance, normal, reach);
+                        let is_bare = self.is_bare(at, error);
+                        (is_bare.unwrap_or_else(|| self.is_bare_beside(at, normal, error)), is_bare.is_some())
+                    },
+                    |is_bare| (is_bare, true),
+                );
+                is_certain &= is_sure;
+                if is_bare {
+                    return (range.keep(distance), is_certain);
+                }
             }
-            side = Some(from.opposite());
+            leaves = Some(side.opposite());
+            from = leaves;
+            // The hit is off along the ray by more than that, but not off the surface.
+            error = ROUNDING * size;
             (start.origin, gone) = (at, distance);
         }
         (MISS, is_certain)
