@@ -139,7 +139,6 @@ fn seen(solid: &Solid) -> Vec<Body> {
     let bounds = parts.iter().map(|part| Some(part.body.shape.bounds()?.with_slack(0.0)));
     let bounds: Arc<[Option<Aabb>]> = bounds.collect();
     let whole = solid.tree.bounds(&|part| bounds[part]);
-    let is_opaque = parts.iter().all(|part| part.material.transparency == 0.0);
     let body = |index: usize| {
         let around = common(bounds[index], whole);
         let meets = |other: usize| match (around, bounds[other]) {
@@ -153,14 +152,7 @@ fn seen(solid: &Solid) -> Vec<Body> {
         let mut needed = Vec::new();
         let is_outer = tree.surface_of(index, &mut needed)?;
         let around = common(around, tree.bounds(&|part| bounds[part]));
-        let shape = Trimmed::new(
-            &parts,
-            &bounds,
-            (index, is_outer),
-            tree,
-            needed,
-            [around, whole.filter(|_| is_opaque)],
-        );
+        let shape = Trimmed::new(&parts, &bounds, (index, is_outer), tree, needed, around);
         let part = &parts[index];
         let shader = PartShader(part.body.clone());
         let body = Body::shaded(Shape::new(shape).by::<ByPackets, ByParts>(), shader);

@@ -26,14 +26,8 @@ impl Trimmed {
         let mut own = Crossings::new(self.proven(self.index).ok_or(zero)?, line, leaves);
         let mut others: Vec<Option<Crossings<'_, F>>> = Vec::new();
         others.resize_with(self.parts.len(), || None);
-        let ends = line.origin.map(|axis| axis.coarse());
-        let must_enter = leaves.is_none()
-            && self.is_entered_from(ends.map(|axis| axis.low).into(), ends.map(|axis| axis.high).into());
         for index in 0.. {
             let crossing = own.get(index)?;
-            if must_enter && crossing.enters == self.is_outer {
-                continue;
-            }
             if let Ok(next) = own.get(index + 1)
                 && next.at.low <= crossing.at.high
             {

@@ -6,7 +6,7 @@ use crate::geometry::ray_packet::{self, Nearest, PACKET_SIZE, RayPacket};
 use crate::simd::cpu::Cpu;
 use crate::world::hittable::Hittable;
 use crate::world::interaction::SurfaceInteraction;
-use crate::world::packets::shape::Packets;
+use crate::world::packets::shape::{self, Packets};
 use crate::world::shape::{ByPackets, Shape};
 
 impl Trimmed {
@@ -118,24 +118,12 @@ impl Packets for Shape<Trimmed, ByPackets, ByParts> {
     }
 
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction) {
-        let SurfaceInteraction { points, mut normals, sides, cosines, travelled } = interaction;
-        let (count, shape) = (travelled.len(), self.shape.own());
-        let own = SurfaceInteraction {
-            points,
-            normals: normals.first(count),
-            sides: &mut *sides,
-            cosines: &mut *cosines,
-            travelled,
-        };
-        shape.packets().interact(cpu, rays, distances, own);
-        if self.shape.is_outer {
-            sides.iter_mut().for_each(|side| *side = side.opposite());
-            cosines.iter_mut().for_each(|cosine| *cosine = -*cosine);
+        let own = self.shape.own().packets();
+        if self.shape.is_whole() || !self.shape.is_outer && !own.finds_normals_by_rays() {
+            return own.interact(cpu, rays, distances, interaction);
         }
-    }
-
-    fn finds_normals_by_rays(&self) -> bool {
-        self.shape.own().packets().finds_normals_by_rays()
+        let SurfaceInteraction { points, normals, sides, cosines, travelled } = interaction;
+        shape::interact(cpu, &self.shape, rays, distances, sides, cosines, travelled, points, normals);
     }
 
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {

@@ -24,6 +24,9 @@ const MOST_HITS: usize = 1024;
 /// error of the point.
 const BESIDE: f64 = 256.0;
 
+/// How far before a hit it is asked whether a ray is in the solid, as a fraction of what the hit is computed from.
+const SHORTLY: f64 = 1e-6;
+
 /// Marks a shape of which only a part is seen, whose hits are proven as the shape's.
 pub struct ByParts;
 
@@ -41,8 +44,6 @@ pub struct Trimmed {
     /// The conditions under which the surface is the solid's, each with whether it must hold.
     needed: Vec<(Tree, bool)>,
     bounds: Option<Aabb>,
-    /// A box around the solid, if all of its parts are opaque.
-    outside: Option<Aabb>,
 }
 
 impl Trimmed {
@@ -53,10 +54,10 @@ impl Trimmed {
         (index, is_outer): (usize, bool),
         tree: Tree,
         needed: Vec<(Tree, bool)>,
-        [bounds, outside]: [Option<Aabb>; 2],
+        bounds: Option<Aabb>,
     ) -> Self {
         let (parts, around) = (parts.clone(), around.clone());
-        Self { parts, around, index, is_outer, tree, needed, bounds, outside }
+        Self { parts, around, index, is_outer, tree, needed, bounds }
     }
 
     /// Returns the shape of the part.
@@ -117,10 +118,25 @@ impl Trimmed {
         self.tree.owner(&beside(at + step, false), &beside(at - step, true)) == Some(self.index)
     }
 
-    /// Tells whether rays that start in a box certainly start outside of the solid, and need not find where they would
-    /// leave it: they enter it before, and see no farther.
-    pub(super) fn is_entered_from(&self, low: DVec3, high: DVec3) -> bool {
-        self.outside.is_some_and(|around| !around.overlaps(&Aabb { low, high }))
+    /// Tells whether a hit of the part is the solid's; `None` where that is open. `size` is what the hit is computed from.
+    fn is_surely_bare(&self, ray: &Ray, distance: f64, size: f64) -> Option<bool> {
+        let at = ray.at(distance);
+        // The error of any hit first, then that of this one, which takes its normal.
+        self.is_bare(at, ROUNDING / LEAST_COSINE * size).or_else(|| {
+            self.is_bare(at, coincidence::error(ray, distance, self.own().normal(at), self.reach()))
+        })
+    }
+
+    /// Tells whether a ray is certainly in the solid shortly before a hit. If it enters the part there, what coincides
+    /// does not make it enter the solid.
+    fn is_within(&self, ray: &Ray, distance: f64, size: f64) -> bool {
+        let before = ray.at(distance - SHORTLY * size);
+        // What lies far from this surface is not in its tree.
+        let is_near =
+            self.bounds.is_none_or(|Aabb { low, high }| low.cmple(before).all() && before.cmple(high).all());
+        is_near
+            && distance > 2.0 * SHORTLY * size
+            && self.tree.holds(&mut |part| self.holds(part, before, ROUNDING * size)) == Some(true)
     }
 
     /// Returns the distance of the first hit that is seen, and whether it is certain. `first` is the distance of the
@@ -131,7 +147,6 @@ impl Trimmed {
         let mut leaves = range.origin_side.map(|side| self.side(side));
         let mut error = range.origin_error;
         let (low, high) = (ray.origin - error, ray.origin + error);
-        let must_enter = leaves.is_none() && self.is_entered_from(low, high);
         let is_apart = self.around[self.index].is_some_and(|own| !own.overlaps(&Aabb { low, high }));
         // The side from which the next hit comes: inside and outside alternate.
         let mut from = leaves.or(is_apart.then_some(Side::Outside));
@@ -157,21 +172,17 @@ impl Trimmed {
             };
             is_certain &= !bracket.is_doubtful() || leaves == Some(side);
             let size = ray.origin.abs().max_element() + distance + reach;
-            if !must_enter || self.side(side) == Side::Outside {
-                // The error of any hit first, then that of this one, which takes its normal.
-                let (is_bare, is_sure) = self.is_bare(at, ROUNDING / LEAST_COSINE * size).map_or_else(
-                    || {
-                        let normal = shape.normal(at);
-                        let error = coincidence::error(ray, distance, normal, reach);
-                        let is_bare = self.is_bare(at, error);
-                        (is_bare.unwrap_or_else(|| self.is_bare_beside(at, normal, error)), is_bare.is_some())
-                    },
-                    |is_bare| (is_bare, true),
-                );
-                is_certain &= is_sure;
-                if is_bare {
-                    return (range.keep(distance), is_certain);
-                }
+            let sure = self.is_surely_bare(ray, distance, size).or_else(|| {
+                let is_hidden = self.side(side) == Side::Outside && self.is_within(ray, distance, size);
+                is_hidden.then_some(false)
+            });
+            is_certain &= sure.is_some();
+            let is_bare = sure.unwrap_or_else(|| {
+                let normal = shape.normal(at);
+                self.is_bare_beside(at, normal, coincidence::error(ray, distance, normal, reach))
+            });
+            if is_bare {
+                return (range.keep(distance), is_certain);
             }
             leaves = Some(side.opposite());
             from = leaves;

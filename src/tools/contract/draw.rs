@@ -116,8 +116,12 @@ impl Draw {
         {
             let most = entity.attributes().filter(|its| is_name_of(*its, Kind::Object));
             let most = most.map(|its| its.arity().examples().into_iter().max().unwrap_or(1)).max();
-            for index in 0..most.unwrap_or(1) {
-                text += &self.entity(other, &of_list(name(Kind::Object), index));
+            // Half of the time they are all the same, as those that are drawn hardly ever meet.
+            let (first, most) = (self.entity(other, "NAME"), most.unwrap_or(1));
+            let are_same = most > 1 && self.below(2) == 0;
+            for index in 0..most {
+                let one = if index == 0 || are_same { first.clone() } else { self.entity(other, "NAME") };
+                text += &one.replacen("NAME", &of_list(name(Kind::Object), index), 1);
             }
         }
         if matches!(entity.kind(), Kind::Object | Kind::Light) {
