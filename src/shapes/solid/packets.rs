@@ -119,7 +119,7 @@ impl Packets for Shape<Trimmed, ByPackets, ByParts> {
 
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction) {
         let own = self.shape.own().packets();
-        if self.shape.is_whole() || !self.shape.is_outer && !own.finds_normals_by_rays() {
+        if !self.shape.is_outer && !own.finds_normals_by_rays() {
             return own.interact(cpu, rays, distances, interaction);
         }
         let SurfaceInteraction { points, normals, sides, cosines, travelled } = interaction;
