@@ -166,7 +166,11 @@ impl Draw {
         match attribute.value_type() {
             Type::Word => word(PICTURE),
             Type::File => word(MODEL),
-            Type::Name(kind) => Some((0..count).map(|index| of_list(name(kind), index)).collect()),
+            // All that there are: one that nothing refers to would be tried as well.
+            Type::Name(kind) => {
+                let most = attribute.arity().examples().into_iter().max().unwrap_or(count);
+                Some((0..most).map(|index| of_list(name(kind), index)).collect())
+            }
             Type::Formula(HEIGHT) => word(&format!("\"{}\"", self.pick(&FORMULAS))),
             Type::Formula(_) => word(&format!("\"{}\"", self.pick(&FIELDS))),
             _ => {
