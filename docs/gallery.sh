@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The pictures of docs/gallery.md, one for each type of object that it shows: 320 x 240 pixels, 16 samples in each.
+# The pictures of docs/gallery.md, one for each type of object and shader that it shows: 320 x 240 pixels, 16 samples in
+# each.
 #
 #     bash docs/gallery.sh
 #
@@ -11,6 +12,7 @@ if [ -z "${TABRAY:-}" ]; then
     cargo build --release --locked --quiet
     TABRAY=$(realpath "${CARGO_TARGET_DIR:-target}/release/tabray")
 fi
-for shape in implicit lathe box cylinder capsule disc polygon prism union intersection difference; do
+for shape in implicit lathe box cylinder capsule disc polygon prism union intersection difference tiles rainbow checker \
+    formula bumps; do
     "$TABRAY" render "scenes/entities/$shape.ray" --size 320x240 --samples 16 -o "docs/gallery/$shape.png"
 done

@@ -1,29 +1,44 @@
 //! The notes' shading of a sphere: colours that change with the angle around its centre.
 
-use super::rainbow;
+use super::rainbow::{FREQUENCY, Hues, PHASE};
 use crate::prelude::*;
 
+static BRIGHTNESS: Pparm<f64> = Pparm::or("brightness", "half of the strongest colour", 1.0)
+    .must("not negative", |brightness| *brightness >= 0.0);
+
+const TABLE: Table = &[&FREQUENCY, &PHASE, &BRIGHTNESS];
+
 inventory::submit! {
-    ProceduralShader::new("angular", "hues around the centre, independent of the material", |anchor| Box::new(Angular(anchor))).on_sphere(0)
+    Entity::shader("angular", "hues around the centre, independent of the material", &[TABLE], |args| {
+        let hues = Hues::new(args, args.get(&BRIGHTNESS));
+        Ok(match hues.are_of_the_notes() {
+            true => Paint::new(move |anchor| Angular::<true> { hues, anchor }),
+            false => Paint::new(move |anchor| Angular::<false> { hues, anchor }),
+        })
+    })
+    .on_sphere(0)
 }
 
-struct Angular(Anchor);
+struct Angular<const OF_THE_NOTES: bool> {
+    hues: Hues,
+    anchor: Anchor,
+}
 
-impl Shader for Angular {
+impl<const OF_THE_NOTES: bool> Shader for Angular<OF_THE_NOTES> {
     /// Returns the same colours above and below the centre: the notes' test for the lower half, `coord.y < 3.0`, is
     /// always true.
     #[inline]
-    fn ambient(&self, _material: &Material, at: DVec3) -> Rgb {
-        let DVec3 { x, y, .. } = at - self.0.origin;
-        rainbow::colour(DVec2::new(x, -y.abs()))
+    fn ambient(&self, _material: &Material, at: &SurfacePoint) -> Rgb {
+        let DVec3 { x, y, .. } = at.position - self.anchor.origin;
+        self.hues.colour::<OF_THE_NOTES>(DVec2::new(x, -y.abs()))
     }
 
-    fn enclose<F: Precise>(&self, material: &Material, [x, y, _]: [Interval<F>; 3]) -> Option<LookBounds<F>> {
-        let [x, y] = [x - Interval::constant(self.0.origin.x), y - Interval::constant(self.0.origin.y)];
-        Some(LookBounds { ambient: rainbow::enclose([x, -y.abs()]), ..material.into() })
+    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
+        let from = |axis: usize| at.position[axis] - Interval::constant(self.anchor.origin[axis]);
+        Some(LookBounds { ambient: self.hues.enclose([from(0), -from(1).abs()]), ..material.into() })
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {
-        rainbow::brightest(1.0, material)
+        self.hues.brightest(material)
     }
 }

@@ -1,6 +1,7 @@
 //! A cylinder: solid, or a tube without its ends.
 
 use crate::prelude::*;
+use crate::shapes::uv;
 
 static BASE: Pparm<DVec3> = Pparm::required("base", "the centre of its lower end").unit("world coordinates");
 static DIRECTION: Pparm<DVec3> = Pparm::or("direction", "the direction of the axis, upward", DVec3::Y)
@@ -31,6 +32,10 @@ struct Cylinder {
 
 impl Implicit for Cylinder {
     const IS_CUT: bool = true;
+
+    fn uv(&self, at: DVec3) -> Option<DVec2> {
+        Some(uv::on_height(at, self.height))
+    }
 
     fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
         let wall = x.powi(2) + z.powi(2) - N::constant(self.radius).powi(2);

@@ -3,7 +3,7 @@
 use super::sphere::{TABLE as SPHERE, center_and_radius};
 use crate::prelude::*;
 use crate::shapes::Ellipsoid;
-use crate::shapes::sphere;
+use crate::shapes::{sphere, uv};
 
 static SCALE: Pparm<DVec3> = Pparm::required("scale", "the scale factors along x, y and z")
     .must("positive in each dimension", |scale: &DVec3| scale.min_element() > 0.0);
@@ -42,6 +42,10 @@ impl Hittable for Ellipsoid<Classic> {
         self.upright(at)
     }
 
+    fn uv(&self, at: DVec3) -> Option<DVec2> {
+        Some(uv::on_sphere(((at - self.center) / self.scale).normalize_or_zero()))
+    }
+
     fn bounds(&self) -> Option<Aabb> {
         Some(self.around())
     }
@@ -65,6 +69,10 @@ impl<A: Bounded> Hittable for Ellipsoid<A> {
     #[inline]
     fn normal(&self, at: DVec3) -> DVec3 {
         self.upright(at)
+    }
+
+    fn uv(&self, at: DVec3) -> Option<DVec2> {
+        Some(uv::on_sphere(((at - self.center) / self.scale).normalize_or_zero()))
     }
 
     fn bounds(&self) -> Option<Aabb> {

@@ -26,7 +26,7 @@ pub const ROTATION: Table = &[&ROTATION_ROWS as &dyn Row];
 
 inventory::submit! {
     Entity::shape("fplane", "a rectangle with its lower left corner at `point`", &[plane::TABLE, TABLE, ROTATION], |args| {
-        Ok(Body::plain(shape(args)?))
+        Ok(plane::body(args, shape(args)?))
     })
 }
 

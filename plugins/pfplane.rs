@@ -9,7 +9,7 @@ inventory::submit! {
         "a rectangle with a procedural shader",
         &[plane::TABLE, pplane::TABLE, fplane::TABLE, fplane::ROTATION],
         |args| {
-            Ok(pplane::body(args, fplane::shape(args)?))
+            Ok(plane::body(args, fplane::shape(args)?))
         },
     )
 }

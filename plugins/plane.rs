@@ -13,7 +13,12 @@ pub static POINT: Pparm<DVec3> = Pparm::required("point", "a point on the plane"
 pub const TABLE: Table = &[&NORMAL, &POINT];
 
 inventory::submit! {
-    Entity::shape("plane", "an infinite plane", &[TABLE], |args| Ok(Body::plain(shape(args))))
+    Entity::shape("plane", "an infinite plane", &[TABLE], |args| Ok(body(args, shape(args))))
+}
+
+/// Makes an object of a plane, or of a part of one, of an entity whose table has the rows of [`TABLE`].
+pub fn body(args: &Args, shape: AnyShape) -> Body {
+    Body::plain(shape).anchored(args.get(&POINT), 1.0)
 }
 
 /// Makes the plane of an entity whose table has the rows of [`TABLE`].

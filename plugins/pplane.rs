@@ -10,13 +10,6 @@ pub const TABLE: Table = &[&SHADER as &dyn Row];
 
 inventory::submit! {
     Entity::shape("pplane", "an infinite plane with a procedural shader", &[plane::TABLE, TABLE], |args| {
-        Ok(body(args, plane::shape(args)))
+        Ok(plane::body(args, plane::shape(args)))
     })
-}
-
-/// Makes an object of a plane's shape and the `shader` of an entity whose table has the rows of [`plane::TABLE`] and
-/// [`TABLE`].
-pub fn body(args: &Args, shape: AnyShape) -> Body {
-    let anchor = Anchor { origin: args.get(&plane::POINT), unit: 1.0 };
-    Body::procedural(shape, args.get(&SHADER).0, anchor)
 }

@@ -9,8 +9,6 @@ const TABLE: Table = &[&SHADER as &dyn Row];
 
 inventory::submit! {
     Entity::shape("psphere", "a sphere with a procedural shader", &[sphere::TABLE, TABLE], |args| {
-        let (center, radius) = sphere::center_and_radius(args);
-        let anchor = Anchor { origin: center, unit: 2.0 * radius };
-        Ok(Body::procedural(sphere::shape(args), args.get(&SHADER).0, anchor))
+        Ok(sphere::body(args))
     })
 }

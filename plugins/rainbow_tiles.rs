@@ -1,24 +1,48 @@
 //! Continuous modulation combined with tiles, as the notes suggest for their third shader.
 
-use super::{rainbow, tiles};
+use super::rainbow::{self, Hues};
+use super::tiles::{Grid, WIDTH};
 use crate::prelude::*;
 
+static BRIGHTNESS: Pparm<f64> = Pparm::or("brightness", "half of the strongest colour", 6.0)
+    .must("not negative", |brightness| *brightness >= 0.0);
+
+const TABLE: Table = &[&WIDTH, &rainbow::FREQUENCY, &rainbow::PHASE, &BRIGHTNESS];
+
 inventory::submit! {
-    ProceduralShader::new("rainbow_tiles", "tiles along x and z: the material's colour and hues around a point in turn", |anchor| Box::new(RainbowTiles(anchor))).on_plane(2)
+    Entity::shader("rainbow_tiles", "tiles along x and z: the material's colour and hues around a point in turn", &[TABLE], |args| {
+        let (grid, hues) = (Grid::new(args), Hues::new(args, args.get(&BRIGHTNESS)));
+        Ok(match hues.are_of_the_notes() {
+            true => Paint::new(move |anchor| RainbowTiles::<true> { grid, hues, anchor }),
+            false => Paint::new(move |anchor| RainbowTiles::<false> { grid, hues, anchor }),
+        })
+    })
+    .on_plane(2)
 }
 
-struct RainbowTiles(Anchor);
+struct RainbowTiles<const OF_THE_NOTES: bool> {
+    grid: Grid,
+    hues: Hues,
+    anchor: Anchor,
+}
 
-impl Shader for RainbowTiles {
+impl<const OF_THE_NOTES: bool> Shader for RainbowTiles<OF_THE_NOTES> {
     #[inline]
-    fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
-        if tiles::is_odd(at) { material.ambient } else { 6.0 * rainbow::around(&self.0, at) }
+    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        if self.grid.is_odd(DVec2::new(at.position.x, at.position.z)) {
+            material.ambient
+        } else {
+            self.hues.colour::<OF_THE_NOTES>((at.position - self.anchor.origin).truncate())
+        }
     }
 
-    fn enclose<F: Precise>(&self, material: &Material, at: [Interval<F>; 3]) -> Option<LookBounds<F>> {
+    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
+        let [x, y, z] = at.position;
+        let from =
+            [x - Interval::constant(self.anchor.origin.x), y - Interval::constant(self.anchor.origin.y)];
         let odd = LookBounds::from(material);
-        let even = LookBounds { ambient: rainbow::enclosed_around(&self.0, at), ..odd };
-        Some(match tiles::is_certainly_odd(at) {
+        let even = LookBounds { ambient: self.hues.enclose(from), ..odd };
+        Some(match self.grid.is_certainly_odd([x, z]) {
             Some(true) => odd,
             Some(false) => even,
             None => odd.hull(&even),
@@ -26,12 +50,12 @@ impl Shader for RainbowTiles {
     }
 
     #[inline]
-    fn tile(&self, at: DVec3) -> DVec2 {
-        tiles::tile(at)
+    fn tile(&self, at: &SurfacePoint) -> DVec2 {
+        self.grid.tile(DVec2::new(at.position.x, at.position.z))
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {
-        let look = rainbow::brightest(6.0, material)?;
+        let look = self.hues.brightest(material)?;
         Some(Look { ambient: look.ambient.max(material.ambient.abs()), ..look })
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::prelude::*;
 use crate::shapes::sphere::{self, SphereLine};
+use crate::shapes::uv;
 use std::marker::PhantomData;
 
 static CENTER: Pparm<DVec3> =
@@ -15,11 +16,17 @@ static RADIUS: Pparm<f64> = Pparm::required("radius", "the distance from the cen
 pub const TABLE: Table = &[&CENTER, &RADIUS];
 
 inventory::submit! {
-    Entity::shape("sphere", "a sphere", &[TABLE], |args| Ok(Body::plain(shape(args))))
+    Entity::shape("sphere", "a sphere", &[TABLE], |args| Ok(body(args)))
+}
+
+/// Makes the object of an entity whose table has the rows of [`TABLE`].
+pub fn body(args: &Args) -> Body {
+    let (center, radius) = center_and_radius(args);
+    Body::plain(shape(args)).anchored(center, 2.0 * radius)
 }
 
 /// Makes the sphere of an entity whose table has the rows of [`TABLE`].
-pub fn shape(args: &Args) -> AnyShape {
+fn shape(args: &Args) -> AnyShape {
     match args.accuracy() {
         Accuracy::Classic => Shape::new(Sphere::<Classic>::new(args)).classic().into(),
         Accuracy::Draft => Shape::new(Sphere::<Draft>::new(args)).bracketed().certified().into(),
@@ -57,6 +64,10 @@ impl Hittable for Sphere<Classic> {
         (at - self.center).normalize()
     }
 
+    fn uv(&self, at: DVec3) -> Option<DVec2> {
+        Some(uv::on_sphere((at - self.center).normalize_or_zero()))
+    }
+
     fn bounds(&self) -> Option<Aabb> {
         Some(sphere::bounds(self.center, self.radius))
     }
@@ -84,6 +95,10 @@ impl<A: Bounded> Hittable for Sphere<A> {
     #[inline]
     fn normal(&self, at: DVec3) -> DVec3 {
         (at - self.center).normalize()
+    }
+
+    fn uv(&self, at: DVec3) -> Option<DVec2> {
+        Some(uv::on_sphere((at - self.center).normalize_or_zero()))
     }
 
     fn bounds(&self) -> Option<Aabb> {

@@ -27,7 +27,8 @@ inventory::submit! {
         &[plane::TABLE, fplane::TABLE, fplane::ROTATION, TABLE],
         |args| {
             let rectangle = fplane::rectangle(args)?;
-            Ok(Body::shaded(fplane::shape(args)?, Textured(Picture::new(args, rectangle))))
+            let picture = Textured(Picture::new(args, rectangle));
+            Ok(Body::shaded(fplane::shape(args)?, picture).anchored(args.get(&plane::POINT), 1.0))
         },
     )
 }
@@ -116,23 +117,23 @@ struct Textured(Picture);
 
 impl Shader for Textured {
     #[inline]
-    fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
-        material.ambient * self.0.colour(at)
+    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        material.ambient * self.0.colour(at.position)
     }
 
     #[inline]
-    fn diffuse(&self, material: &Material, at: DVec3) -> Rgb {
-        material.diffuse * self.0.colour(at)
+    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        material.diffuse * self.0.colour(at.position)
     }
 
     #[inline]
-    fn tile(&self, at: DVec3) -> DVec2 {
-        let [column, row] = self.0.texel(at);
+    fn tile(&self, at: &SurfacePoint) -> DVec2 {
+        let [column, row] = self.0.texel(at.position);
         DVec2::new(column.into(), row.into())
     }
 
-    fn enclose<F: Precise>(&self, material: &Material, at: [Interval<F>; 3]) -> Option<LookBounds<F>> {
-        let (look, texel) = (LookBounds::from(material), self.0.enclose(at));
+    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
+        let (look, texel) = (LookBounds::from(material), self.0.enclose(at.position));
         let times = |colour: [Interval<F>; 3]| per_axis(|channel| colour[channel] * texel[channel]);
         Some(LookBounds { ambient: times(look.ambient), diffuse: times(look.diffuse), ..look })
     }

@@ -19,7 +19,7 @@ inventory::submit! {
             dimensions: args.get(&DIMENSIONS),
             other: args.get(&ALTMATERIAL),
         };
-        Ok(Body::shaded(plane::shape(args), tiles))
+        Ok(Body::shaded(plane::shape(args), tiles).anchored(args.get(&plane::POINT), 1.0))
     })
     .alias(&["tplane"])
     .dumped_as("tplane")
@@ -34,29 +34,35 @@ struct Tiles {
 }
 
 impl Tiles {
+    #[inline]
+    fn tile_at(&self, at: DVec3) -> DVec2 {
+        let tile = |side: usize| ((self.sides[side].dot(at) + 100_000.0) / self.dimensions[side]).floor();
+        DVec2::new(tile(0), tile(1))
+    }
+
     /// Returns the material of the tile at a point. Tiles are counted from the world's origin, not from the plane's
     /// point. The notes add the offset because a cast to an integer would make the tile at 0 twice as wide.
     #[inline]
     fn material<'m>(&'m self, own: &'m Material, at: DVec3) -> &'m Material {
-        let tile = self.tile(at);
+        let tile = self.tile_at(at);
         if (tile.x + tile.y).rem_euclid(2.0) == 0.0 { &self.other } else { own }
     }
 }
 
 impl Shader for Tiles {
     #[inline]
-    fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
-        self.material(material, at).ambient
+    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.material(material, at.position).ambient
     }
 
     #[inline]
-    fn diffuse(&self, material: &Material, at: DVec3) -> Rgb {
-        self.material(material, at).diffuse
+    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.material(material, at.position).diffuse
     }
 
-    fn enclose<F: Precise>(&self, material: &Material, at: [Interval<F>; 3]) -> Option<LookBounds<F>> {
+    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
         let [normal, xdir] = self.given;
-        let [u, v] = along_sides(normal, xdir, at);
+        let [u, v] = along_sides(normal, xdir, at.position);
         let tile = |along: Interval<F>, side: usize| {
             let offset = Interval::constant(100_000.0);
             ((along + offset) / Interval::constant(self.dimensions[side])).certain_floor()
@@ -71,9 +77,8 @@ impl Shader for Tiles {
     }
 
     #[inline]
-    fn tile(&self, at: DVec3) -> DVec2 {
-        let tile = |side: usize| ((self.sides[side].dot(at) + 100_000.0) / self.dimensions[side]).floor();
-        DVec2::new(tile(0), tile(1))
+    fn tile(&self, at: &SurfacePoint) -> DVec2 {
+        self.tile_at(at.position)
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {

@@ -1,21 +1,84 @@
 //! The notes' tiled shading: cyan and yellow tiles half a unit wide, along x and z.
 
 use crate::prelude::*;
+use std::panic::Location;
+
+pub static WIDTH: Pparm<f64> =
+    Pparm::or("width", "the width of a tile", 0.5).unit("world units").must("positive", |width| *width > 0.0);
+static ON: Pparm<Wall> = Pparm::or("on", "the wall along which the tiles lie", Wall::Floor);
+
+const TABLE: Table = &[&WIDTH, &ON];
 
 inventory::submit! {
-    ProceduralShader::new("tiles", "tiles along x and z: the material's colour without red and without blue in turn", |_| Box::new(Tiles)).on_plane(0)
+    Entity::shader("tiles", "tiles along x and z: the material's colour without red and without blue in turn", &[TABLE], |args| {
+        let (grid, axes) = (Grid::new(args), args.get(&ON).axes());
+        Ok(match args.get(&ON) {
+            Wall::Floor => Paint::new(move |_| Tiles::<true> { grid, axes }),
+            _ => Paint::new(move |_| Tiles::<false> { grid, axes }),
+        })
+    })
+    .on_plane(0)
 }
 
-struct Tiles;
+/// The walls along which the notes modulate colours.
+#[derive(Clone, Copy)]
+pub enum Wall {
+    Floor,
+    Backwall,
+    Sidewall,
+}
 
-impl Shader for Tiles {
-    #[inline]
-    fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
-        let Rgb { x: red, y: green, z: blue } = material.ambient;
-        if is_odd(at) { Rgb::new(0.0, green, blue) } else { Rgb::new(red, green, 0.0) }
+impl Wall {
+    /// Returns the axes along the wall.
+    pub fn axes(self) -> [usize; 2] {
+        match self {
+            Self::Floor => [0, 2],
+            Self::Backwall => [0, 1],
+            Self::Sidewall => [2, 1],
+        }
+    }
+}
+
+impl Choice for Wall {
+    const WHAT: &'static str = "wall";
+
+    fn all() -> Vec<Self> {
+        vec![Self::Floor, Self::Backwall, Self::Sidewall]
     }
 
-    fn enclose<F: Precise>(&self, material: &Material, at: [Interval<F>; 3]) -> Option<LookBounds<F>> {
+    fn option(&self) -> ChoiceName {
+        const PLACE: &Location<'static> = Location::caller();
+        let (name, meaning) = match self {
+            Self::Floor => ("floor", "along x and z"),
+            Self::Backwall => ("backwall", "along x and y"),
+            Self::Sidewall => ("sidewall", "along z and y"),
+        };
+        ChoiceName { name, number: None, meaning, place: PLACE }
+    }
+}
+
+/// Tiles along two axes: x and z, which is quicker, or any.
+struct Tiles<const ON_FLOOR: bool> {
+    grid: Grid,
+    axes: [usize; 2],
+}
+
+impl<const ON_FLOOR: bool> Tiles<ON_FLOOR> {
+    #[inline]
+    fn along(&self, at: DVec3) -> DVec2 {
+        if ON_FLOOR { DVec2::new(at.x, at.z) } else { DVec2::from(self.axes.map(|axis| at[axis])) }
+    }
+}
+
+impl<const ON_FLOOR: bool> Shader for Tiles<ON_FLOOR> {
+    #[inline]
+    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        let Rgb { x: red, y: green, z: blue } = material.ambient;
+        let is_odd = self.grid.is_odd(self.along(at.position));
+        if is_odd { Rgb::new(0.0, green, blue) } else { Rgb::new(red, green, 0.0) }
+    }
+
+    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
         let own = LookBounds::from(material);
         let without = |channel: usize| {
             let mut look = own;
@@ -23,7 +86,7 @@ impl Shader for Tiles {
             look
         };
         let (odd, even) = (without(0), without(2));
-        Some(match is_certainly_odd(at) {
+        Some(match self.grid.is_certainly_odd(self.axes.map(|axis| at.position[axis])) {
             Some(true) => odd,
             Some(false) => even,
             None => odd.hull(&even),
@@ -31,8 +94,8 @@ impl Shader for Tiles {
     }
 
     #[inline]
-    fn tile(&self, at: DVec3) -> DVec2 {
-        tile(at)
+    fn tile(&self, at: &SurfacePoint) -> DVec2 {
+        self.grid.tile(self.along(at.position))
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {
@@ -41,24 +104,42 @@ impl Shader for Tiles {
     }
 }
 
-/// Tells whether a point lies on an odd tile. The notes add the offset because a cast to an integer makes the tile at 0
-/// twice as wide; with `floor` in place of the cast, tiles are equally wide at any distance.
-#[inline]
-pub fn is_odd(at: DVec3) -> bool {
-    let tile = tile(at);
-    (tile.x + tile.y).rem_euclid(2.0) != 0.0
+/// Tiles of one width.
+#[derive(Clone, Copy)]
+pub struct Grid {
+    width: f64,
+    per_unit: f64,
 }
 
-/// Returns the tile on which a point lies.
-#[inline]
-pub fn tile(at: DVec3) -> DVec2 {
-    let tile = |coordinate: f64| (2.0 * coordinate + 1000.0).floor();
-    DVec2::new(tile(at.x), tile(at.z))
-}
+impl Grid {
+    /// Makes the tiles of an entity whose table has [`WIDTH`].
+    pub fn new(args: &Args) -> Self {
+        let width = args.get(&WIDTH);
+        Self { width, per_unit: 1.0 / width }
+    }
 
-/// Tells whether a point lies on an odd tile, where that is certain.
-pub fn is_certainly_odd<F: Precise>([x, _, z]: [Interval<F>; 3]) -> Option<bool> {
-    let tile =
-        |along: Interval<F>| (Interval::constant(2.0) * along + Interval::constant(1000.0)).certain_floor();
-    Some((tile(x)? + tile(z)?).rem_euclid(2.0) != 0.0)
+    /// Tells whether a point lies on an odd tile. The notes add the offset because a cast to an integer makes the tile at
+    /// 0 twice as wide; with `floor` in place of the cast, tiles are equally wide at any distance.
+    #[inline]
+    pub fn is_odd(&self, along: DVec2) -> bool {
+        let tile = self.tile(along);
+        (tile.x + tile.y).rem_euclid(2.0) != 0.0
+    }
+
+    /// Returns the tile on which a point lies.
+    #[inline]
+    pub fn tile(&self, along: DVec2) -> DVec2 {
+        let tile = |coordinate: f64| (self.per_unit * coordinate + 1000.0).floor();
+        DVec2::new(tile(along.x), tile(along.y))
+    }
+
+    /// Tells whether a point lies on an odd tile, where that is certain.
+    pub fn is_certainly_odd<F: Precise>(&self, along: [Interval<F>; 2]) -> Option<bool> {
+        let n = Interval::<F>::constant;
+        // Of a width that is a power of two, the reciprocal is exact.
+        let is_exact = self.width.to_bits() << 12 == 0 && self.per_unit.is_normal();
+        let tiles = |along| if is_exact { n(self.per_unit) * along } else { along / n(self.width) };
+        let [one, other] = along.map(|along| (tiles(along) + n(1000.0)).certain_floor());
+        Some((one? + other?).rem_euclid(2.0) != 0.0)
+    }
 }

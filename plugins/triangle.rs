@@ -3,6 +3,7 @@
 use crate::prelude::*;
 use crate::shapes::Triangle;
 use crate::shapes::plane::{CLASSIC_METHOD, Flat, Plane};
+use crate::shapes::uv;
 
 static VERTEX1: Pparm<DVec3> = Pparm::required("vertex1", "the first vertex").unit("world coordinates");
 static VERTEX2: Pparm<DVec3> =
@@ -50,6 +51,10 @@ impl Hittable for Triangle<Classic> {
         self.plane.normal
     }
 
+    fn uv(&self, at: DVec3) -> Option<DVec2> {
+        Some(uv::on_triangle(self.corners, at))
+    }
+
     fn bounds(&self) -> Option<Aabb> {
         Some(Aabb::around(&self.corners))
     }
@@ -78,6 +83,10 @@ impl<A: Bounded> Hittable for Triangle<A> {
     #[inline]
     fn normal(&self, _at: DVec3) -> DVec3 {
         self.plane.normal
+    }
+
+    fn uv(&self, at: DVec3) -> Option<DVec2> {
+        Some(uv::on_triangle(self.corners, at))
     }
 
     fn bounds(&self) -> Option<Aabb> {

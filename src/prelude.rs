@@ -11,23 +11,24 @@ pub use crate::scene::pparm::{Attributes, Derived, LEAST_LENGTH, Pparm, Row, Tab
 pub use crate::scene::value::{Datum, PerChannel, Value};
 pub use inventory;
 
-// What a constructor returns: a camera, a material, a texture, an object or a light.
+// What a constructor returns: a camera, a material, a texture, a shader, an object or a light.
 pub use crate::world::accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
 pub use crate::world::any_shape::AnyShape;
-pub use crate::world::body::{Body, NamedBody, Warning};
+pub use crate::world::body::{AnyShader, Body, NamedBody, Paint, Warning};
 pub use crate::world::camera::Camera;
 pub use crate::world::hittable::{Bracketed, Certified, Hittable};
 pub use crate::world::light::Light;
 pub use crate::world::material::{Look, Material, Rgb};
 pub use crate::world::sample::Sampler;
-pub use crate::world::shader::{LookBounds, Shader};
+pub use crate::world::shader::{Anchor, LookBounds, PointBounds, Sees, Shader, SurfacePoint};
 pub use crate::world::shape::Shape;
 pub use crate::world::texture::Texture;
 
-// What a scene selects by name: procedural shaders and profiles.
+// What a scene selects by name: shaders, profiles and other alternatives.
 pub use crate::numeric::formula::Formula;
-pub use crate::numeric::formula::field::Field;
-pub use crate::scene::procedural::{Anchor, OnPlane, OnSphere, ProceduralShader};
+pub use crate::numeric::formula::field::{Field, SurfaceField};
+pub use crate::scene::choice::{Choice, ChoiceName};
+pub use crate::scene::procedural::{OnPlane, OnSphere};
 pub use crate::scene::profile::{Profile, ProfileLine};
 
 // What the traits of shapes take and return.
@@ -35,6 +36,7 @@ pub use crate::geometry::aabb::{Aabb, SLACK};
 pub use crate::geometry::frame::Frame;
 pub use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 pub use crate::numeric::double_double::DoubleDouble;
+pub use crate::numeric::dual::Dual;
 pub use crate::numeric::interval::{Interval, Wide};
 pub use crate::numeric::scalar::{Scalar, constants, cross, dot, per_axis};
 pub use crate::shapes::implicit::Implicit;

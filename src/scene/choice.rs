@@ -1,8 +1,9 @@
 //! Sets of alternatives from which an attribute chooses one, by name or by number: procedural shaders, profiles,
 //! accuracies.
 //!
-//! Procedural shaders and profiles are collected in a registry of their own; a plugin file adds one.
+//! Profiles are collected in a registry of their own; a plugin file adds one.
 
+use crate::scene::kind::Kind;
 use crate::text;
 use crate::world::accuracy::Accuracy;
 use std::panic::Location;
@@ -11,6 +12,8 @@ use std::panic::Location;
 pub trait Choice: Copy + Send + Sync + 'static {
     /// The noun for one alternative, in the singular: "profile".
     const WHAT: &'static str;
+    /// The kind of entity whose names may stand in place of an alternative's, if there is one.
+    const KIND: Option<Kind> = None;
     /// Returns all alternatives, in no particular order.
     fn all() -> Vec<Self>;
     /// Returns how a scene names this alternative.
@@ -35,13 +38,15 @@ pub struct ChoiceName {
 pub struct Choices {
     /// The noun for one alternative, in the singular.
     pub what: &'static str,
+    /// The kind of entity whose names may stand in place of an alternative's, if there is one.
+    pub kind: Option<Kind>,
     all: fn() -> Vec<ChoiceName>,
 }
 
 impl Choices {
     /// Describes the alternatives of type `T`.
     pub const fn of<T: Choice>() -> Self {
-        Self { what: T::WHAT, all: sorted::<T> }
+        Self { what: T::WHAT, kind: T::KIND, all: sorted::<T> }
     }
 
     /// Returns all alternatives: first those with numbers, in numerical order, then the others, by name.
@@ -75,13 +80,15 @@ fn sorted<T: Choice>() -> Vec<ChoiceName> {
     all
 }
 
-/// Returns an error message for each name or number that two plugins register, with both source positions.
+/// Returns an error message for each name or number that two plugins register, with both source positions; not for the
+/// names of alternatives that are entity types.
 pub(crate) fn contradictions<T: Choice>() -> Vec<String> {
     let all = sorted::<T>();
     let mut faults = Vec::new();
     for (index, second) in all.iter().enumerate() {
         for first in &all[..index] {
-            if first.name == second.name || (first.number.is_some() && first.number == second.number) {
+            let is_same = T::KIND.is_none() && first.name == second.name;
+            if is_same || (first.number.is_some() && first.number == second.number) {
                 faults.push(format!(
                     "two plugins register the {} `{}` or its number, at {} and at {}: rename or renumber one of them",
                     T::WHAT,

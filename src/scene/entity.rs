@@ -6,7 +6,7 @@ use crate::scene::pparm::{Attribute, Attributes, Given, Pparm, Row, Table};
 use crate::scene::value::{Datum, Type};
 use crate::text;
 use crate::world::accuracy::Accuracy;
-use crate::world::body::{AnyLight, Body};
+use crate::world::body::{AnyLight, Body, Paint};
 use crate::world::camera::Camera;
 use crate::world::material::Material;
 use crate::world::texture::Texture;
@@ -31,10 +31,12 @@ pub struct Entity {
     pub construct: Construct,
     /// The name that the notes' dump prints.
     pub dump_name: &'static str,
+    /// The numbers that the notes give a shader on planes and on spheres.
+    pub(crate) numbers: [Option<i64>; 2],
     tables: &'static [Table],
     /// The attributes that it has beside those of its tables.
     common: Table,
-    place: &'static Location<'static>,
+    pub(crate) place: &'static Location<'static>,
 }
 
 inventory::collect!(Entity);
@@ -54,13 +56,15 @@ pub enum Construct {
     Material(fn(&Args) -> Result<Material, Refusal>),
     /// Makes a texture.
     Texture(fn(&Args) -> Result<Texture, Refusal>),
+    /// Makes a shader, which objects name.
+    Shader(fn(&Args) -> Result<Paint, Refusal>),
     /// Makes an object's shape and, if it has one, its shader.
     Object(fn(&Args) -> Result<Body, Refusal>),
     /// Makes a light.
     Light(fn(&Args) -> Result<AnyLight, Refusal>),
 }
 
-/// The attribute that every object has beside its own.
+/// The attributes that every object has beside its own.
 pub static MATERIAL: Pparm<Arc<Material>> =
     Pparm::required("material", "the material, defined earlier in the scene");
 
@@ -71,6 +75,13 @@ static MATERIAL_OF_ALL: Pparm<Option<Arc<Material>>> =
     Pparm::or("material", "the material of all of it; without, each object in it keeps its own", None);
 
 const OF_OBJECTS: Table = &[&MATERIAL_OF_ALL];
+
+/// An object whose own table has a `shader` has no other.
+pub(crate) static SHADER: Pparm<Option<Paint>> = Pparm::or(
+    "shader",
+    "the shader that colours the surface in place of the material alone, defined earlier in the scene, or a type of shader",
+    None,
+);
 
 impl Entity {
     /// Describes a camera type.
@@ -106,7 +117,30 @@ impl Entity {
         Self::new(name, meaning, tables, Construct::Texture(construct))
     }
 
-    /// Describes a shape. The attribute `material` is added to its table.
+    /// Describes a type of shader.
+    #[track_caller]
+    pub const fn shader(
+        name: &'static str,
+        meaning: &'static str,
+        tables: &'static [Table],
+        construct: fn(&Args) -> Result<Paint, Refusal>,
+    ) -> Self {
+        Self::new(name, meaning, tables, Construct::Shader(construct))
+    }
+
+    /// Sets the number that the notes give a shader on planes.
+    pub const fn on_plane(mut self, number: i64) -> Self {
+        self.numbers[0] = Some(number);
+        self
+    }
+
+    /// Sets the number that the notes give a shader on spheres.
+    pub const fn on_sphere(mut self, number: i64) -> Self {
+        self.numbers[1] = Some(number);
+        self
+    }
+
+    /// Describes a shape. The attributes `material` and `shader` are added to its table.
     #[track_caller]
     pub const fn shape(
         name: &'static str,
@@ -147,8 +181,8 @@ impl Entity {
         construct: Construct,
     ) -> Self {
         let common = if matches!(construct, Construct::Object(_)) { OBJECT } else { &[] };
-        let place = Location::caller();
-        Self { name, meaning, aliases: &[], construct, dump_name: name, tables, common, place }
+        let (aliases, numbers, place): (&[&str], _, _) = (&[], [None; 2], Location::caller());
+        Self { name, meaning, aliases, construct, dump_name: name, numbers, tables, common, place }
     }
 
     /// Sets other names that a scene may use.
@@ -169,6 +203,7 @@ impl Entity {
             Construct::Camera(_) => Kind::Camera,
             Construct::Material(_) => Kind::Material,
             Construct::Texture(_) => Kind::Texture,
+            Construct::Shader(_) => Kind::Shader,
             Construct::Object(_) => Kind::Object,
             Construct::Light(_) => Kind::Light,
         }
@@ -176,7 +211,17 @@ impl Entity {
 
     /// Returns the rows of the type's table, in the order of the dump.
     pub fn rows(&self) -> impl Iterator<Item = &'static dyn Row> + use<> {
-        iter::once(self.common).chain(self.tables.iter().copied()).flatten().copied()
+        // The parts of a solid have shaders of their own.
+        let has_own = |row: &&dyn Row| {
+            row.attribute().is_some_and(|its| {
+                let is_list_of_objects =
+                    matches!(its.value_type(), Type::Name(Kind::Object)) && its.arity().most() > 1;
+                its.name() == SHADER.name() || is_list_of_objects
+            })
+        };
+        let takes_shader = self.kind() == Kind::Object && !self.tables.iter().copied().flatten().any(has_own);
+        let shader = takes_shader.then_some(&SHADER as &'static dyn Row);
+        iter::once(self.common).chain(self.tables.iter().copied()).flatten().copied().chain(shader)
     }
 
     /// Returns the type's attributes, in the order of its table.

@@ -13,6 +13,8 @@ pub enum Kind {
     Material,
     /// An image that colours surfaces or light.
     Texture,
+    /// A rule for the look of a surface.
+    Shader,
     /// A shape and its material.
     Object,
     /// A source of light, which is itself not visible.
@@ -32,6 +34,7 @@ impl fmt::Display for Kind {
             Kind::Camera => "camera",
             Kind::Material => "material",
             Kind::Texture => "texture",
+            Kind::Shader => "shader",
             Kind::Object => "object",
             Kind::Light => "light",
         })

@@ -7,7 +7,6 @@ use crate::scene::counts::Counts;
 use crate::scene::entity;
 use crate::scene::kind::Kind;
 use crate::scene::pparm;
-use crate::scene::procedural::{OnPlane, OnSphere};
 use crate::scene::profile::Profile;
 use crate::scene::reference::by_name;
 use crate::scene::registry::Registry;
@@ -15,7 +14,6 @@ use crate::scene::schema::Constant;
 use crate::scene::value::Type;
 use serde::Serialize;
 use std::borrow::Cow;
-use std::iter;
 
 /// The format's version: it grows when a field is removed or changes its meaning, and not when one is added.
 const VERSION: u32 = 1;
@@ -27,7 +25,7 @@ pub struct Tables {
     pub entities: Vec<Entity>,
     /// The profiles, sorted by name.
     pub profiles: Vec<Named>,
-    /// The procedural shaders, sorted by name.
+    /// The types of shader, sorted by name.
     pub shaders: Vec<Shader>,
     /// The format's version: it grows when a field is removed or changes its meaning, and not when one is added.
     pub version: u32,
@@ -40,7 +38,7 @@ pub struct Entity {
     pub aliases: &'static [&'static str],
     /// The type's attributes, in the order of the dump.
     pub attributes: Vec<Attribute>,
-    /// `camera`, `material`, `texture`, `object` or `light`.
+    /// `camera`, `material`, `texture`, `shader`, `object` or `light`.
     pub kind: Kind,
     /// The meaning, in a few words.
     pub meaning: &'static str,
@@ -71,7 +69,7 @@ pub struct Attribute {
     pub name: &'static str,
     /// The least and the greatest number that each value may be; null where there are none.
     pub range: Option<[f64; 2]>,
-    /// The kind of entity that a name refers to; null for other types.
+    /// The kind of entity that a name refers to, also in place of a choice; null for other types.
     pub refers_to: Option<Kind>,
     /// Whether a scene must give it.
     pub required: bool,
@@ -115,7 +113,7 @@ pub struct Named {
     pub number: Option<i64>,
 }
 
-/// A procedural shader.
+/// A type of shader.
 #[derive(Serialize)]
 pub struct Shader {
     /// The meaning, in a few words.
@@ -134,7 +132,7 @@ impl Tables {
         Self {
             entities: registry.iter().map(Entity::of).collect(),
             profiles: by_name::<&Profile>().map(Named::from).collect(),
-            shaders: iter::zip(by_name::<OnPlane>(), by_name::<OnSphere>()).map(Shader::of).collect(),
+            shaders: registry.iter().filter(|entity| entity.kind() == Kind::Shader).map(Shader::of).collect(),
             version: VERSION,
         }
     }
@@ -167,7 +165,7 @@ impl Attribute {
             Type::Truth => ("truth", None, None),
             Type::Name(kind) => ("name", Some(kind), None),
             Type::Choice(choices) => {
-                ("choice", None, Some(choices.all().into_iter().map(Named::from).collect()))
+                ("choice", choices.kind, Some(choices.all().into_iter().map(Named::from).collect()))
             }
         };
         let some = |text: &'static str| Some(text).filter(|text| !text.is_empty());
@@ -207,12 +205,8 @@ impl From<ChoiceName> for Named {
 }
 
 impl Shader {
-    fn of((on_plane, on_sphere): (ChoiceName, ChoiceName)) -> Self {
-        Self {
-            meaning: on_plane.meaning,
-            name: on_plane.name,
-            number_on_planes: on_plane.number,
-            number_on_spheres: on_sphere.number,
-        }
+    fn of(entity: &'static entity::Entity) -> Self {
+        let [number_on_planes, number_on_spheres] = entity.numbers;
+        Self { meaning: entity.meaning, name: entity.name, number_on_planes, number_on_spheres }
     }
 }

@@ -1,11 +1,13 @@
 //! A scene ready to be traced. It does not change during a render.
 
+use crate::geometry::ray::Side;
 use crate::scene::kind::Kind;
 use crate::scene::store::Record;
 use crate::world::any_shape::AnyShape;
-use crate::world::body::{AnyLight, AnyShader, NamedBody};
+use crate::world::body::{AnyLight, AnyShader, NamedBody, Paint};
 use crate::world::camera::Camera;
 use crate::world::material::{Material, Rgb};
+use crate::world::shader::SurfacePoint;
 use crate::world::texture::Texture;
 use glam::DVec3;
 use std::sync::Arc;
@@ -18,6 +20,8 @@ pub struct Model {
     pub materials: Vec<Item<Arc<Material>>>,
     /// The textures, in the order of the scene.
     pub textures: Vec<Item<Arc<Texture>>>,
+    /// The shaders, in the order of the scene.
+    pub shaders: Vec<Item<Paint>>,
     /// The visible objects, in the order of the scene.
     pub objects: Vec<Object>,
     /// The objects that other entities refer to, in the order of the scene: they are seen only where these put them.
@@ -33,6 +37,7 @@ impl Model {
             Kind::Camera => vec![&self.camera.args],
             Kind::Material => self.materials.iter().map(|item| &item.args).collect(),
             Kind::Texture => self.textures.iter().map(|item| &item.args).collect(),
+            Kind::Shader => self.shaders.iter().map(|item| &item.args).collect(),
             Kind::Object => {
                 let shown = self.objects.iter().map(|object| &object.args);
                 let mut all: Vec<_> = shown.chain(self.patterns.iter().map(|item| &item.args)).collect();
@@ -67,9 +72,23 @@ pub struct Object {
 }
 
 impl Object {
+    /// Returns a point of the surface, with what the shader sees of it, where a ray hits it on this side.
+    pub fn surface_point(&self, position: DVec3, side: Side) -> SurfacePoint {
+        let sees = self.shader.sees();
+        if sees.is_position() {
+            return SurfacePoint::at(position);
+        }
+        let outward = || {
+            let normal = self.shape.normal(position);
+            self.shape.shading_normal(position, normal)
+        };
+        let normal = if sees.normal { outward() } else { DVec3::ZERO };
+        SurfacePoint::seen(&*self.shape, sees, position, normal, side)
+    }
+
     /// Returns the fraction, from 0 to 1, of light that passes through at this point, for each channel: transparency
     /// times the diffuse colour, scaled so that the strongest channel is 1. Glass without a diffuse colour is grey.
-    pub fn tint(&self, at: DVec3) -> Rgb {
+    pub fn tint(&self, at: &SurfacePoint) -> Rgb {
         let diffuse = self.shader.diffuse(&self.material, at);
         let strongest = diffuse.max_element();
         let colour = if strongest > 0.0 { diffuse / strongest } else { DVec3::ONE };

@@ -89,8 +89,17 @@ impl dyn Attribute + '_ {
             Type::Choice(choices) if choices.all().iter().any(|choice| choice.number.is_some()) => {
                 format!("the name or number of a {}", choices.what)
             }
-            Type::Choice(choices) => format!("the name of an {}", choices.what),
-            Type::Formula(variables) => format!("a formula in {}, in quotes", text::and(variables)),
+            Type::Choice(choices) => {
+                let article = if choices.what.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+                format!("the name of {article} {}", choices.what)
+            }
+            Type::Formula(variables) => {
+                let what = match self.arity().most() {
+                    1 => "a formula".to_owned(),
+                    _ => self.arity().told("formula"),
+                };
+                format!("{what} in {}, in quotes", text::and(variables))
+            }
             Type::Truth => "`yes` or `no`".to_owned(),
         }
     }

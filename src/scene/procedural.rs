@@ -1,93 +1,98 @@
-//! Procedural shaders: surface looks that vary from point to point by a rule (the notes' `pplane`).
+//! Procedural shaders as values: an object names a shader of the scene, or a type of shader, which stands for that shader
+//! with its defaults.
 
-use crate::scene::choice::{Choice, ChoiceName};
-use crate::world::any_shape::AnyShape;
-use crate::world::body::{AnyShader, Body};
-use glam::DVec3;
-use std::panic::Location;
+use crate::scene::choice::{Choice, ChoiceName, Choices};
+use crate::scene::counts::Counts;
+use crate::scene::entity::{Args, Construct, Entity, Refusal, SHADER};
+use crate::scene::kind::Kind;
+use crate::scene::pparm::Attribute;
+use crate::scene::value::{Datum, Type, Value};
+use crate::world::body::{Body, Paint};
+use std::collections::BTreeMap;
+use std::sync::{Arc, LazyLock};
 
-/// A rule for the look of a surface, which a scene chooses by name or by number. A plugin registers one with
-/// `inventory::submit!`.
-pub struct ProceduralShader {
-    name: &'static str,
-    meaning: &'static str,
-    on_plane: Option<i64>,
-    on_sphere: Option<i64>,
-    /// Makes the shader of one object.
-    pub make: fn(Anchor) -> AnyShader,
-    place: &'static Location<'static>,
+/// Returns the shader that a type of shader stands for, with its defaults; `None` where an attribute has none.
+pub fn of_type(name: &str) -> Option<&'static Paint> {
+    static PAINTS: LazyLock<BTreeMap<&str, Paint>> = LazyLock::new(|| {
+        let made = |entity: &'static Entity| {
+            let Construct::Shader(construct) = entity.construct else { return None };
+            let paint = construct(&Args::blank(entity, Arc::default())).ok()?;
+            Some((entity.name, paint))
+        };
+        inventory::iter::<Entity>().filter(|entity| has_defaults(entity)).filter_map(made).collect()
+    });
+    PAINTS.get(name)
 }
 
-inventory::collect!(ProceduralShader);
-
-/// The origin and the unit of length of a procedural shader's pattern.
-#[derive(Clone, Copy, Debug)]
-pub struct Anchor {
-    /// The point of the plane or the centre of the sphere, in world units.
-    pub origin: DVec3,
-    /// The length that counts as 1, in world units: 1 on a plane, the diameter of a sphere.
-    pub unit: f64,
+/// Returns the types of shader that objects can name.
+pub(crate) fn types() -> impl Iterator<Item = &'static Entity> {
+    inventory::iter::<Entity>().filter(|entity| has_defaults(entity))
 }
 
-impl ProceduralShader {
-    /// Describes a procedural shader that has a name and no number.
-    #[track_caller]
-    pub const fn new(name: &'static str, meaning: &'static str, make: fn(Anchor) -> AnyShader) -> Self {
-        Self { name, meaning, on_plane: None, on_sphere: None, make, place: Location::caller() }
-    }
-
-    /// Sets the number that the notes give the shader on planes.
-    pub const fn on_plane(mut self, number: i64) -> Self {
-        self.on_plane = Some(number);
-        self
-    }
-
-    /// Sets the number that the notes give the shader on spheres.
-    pub const fn on_sphere(mut self, number: i64) -> Self {
-        self.on_sphere = Some(number);
-        self
-    }
-
-    fn option(&self, number: Option<i64>) -> ChoiceName {
-        ChoiceName { name: self.name, number, meaning: self.meaning, place: self.place }
-    }
+/// Makes the body of an object, with the look of the shader that it names.
+///
+/// # Errors
+/// If the constructor refuses the object.
+pub(crate) fn body(args: &Args, construct: fn(&Args) -> Result<Body, Refusal>) -> Result<Body, Refusal> {
+    let body = construct(args)?;
+    let paint = match args.find(SHADER.name()) {
+        Some(Datum::Shader { paint, .. }) => Some(paint),
+        Some(Datum::Choice(choice)) => of_type(choice.name),
+        _ => None,
+    };
+    Ok(match paint {
+        Some(paint) => body.painted(paint),
+        None => body,
+    })
 }
 
-impl Body {
-    /// Makes an object with the look of a procedural shader.
-    pub fn procedural(shape: impl Into<AnyShape>, shader: &ProceduralShader, anchor: Anchor) -> Self {
-        Self { shader: (shader.make)(anchor), ..Self::plain(shape) }
-    }
+fn has_defaults(entity: &Entity) -> bool {
+    let is_shader = matches!(entity.construct, Construct::Shader(_));
+    is_shader
+        && entity.groups().next().is_none()
+        && entity.attributes().all(|attribute| attribute.default().is_some())
 }
 
-/// A procedural shader, chosen by its name or by its number on planes.
+/// A shader, chosen by its name or by its number: that on planes for 0, on spheres for 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ByNumber<const ON: usize>(pub Paint);
+
+/// A shader, chosen by its name or by its number on planes.
+pub type OnPlane = ByNumber<0>;
+
+/// A shader, chosen by its name or by its number on spheres.
+pub type OnSphere = ByNumber<1>;
+
+/// A type of shader as an alternative, with its number on planes or on spheres.
 #[derive(Clone, Copy)]
-pub struct OnPlane(pub &'static ProceduralShader);
+pub struct ShaderType<const ON: usize>(pub &'static Entity);
 
-/// A procedural shader, chosen by its name or by its number on spheres.
-#[derive(Clone, Copy)]
-pub struct OnSphere(pub &'static ProceduralShader);
-
-impl Choice for OnPlane {
+impl<const ON: usize> Choice for ShaderType<ON> {
     const WHAT: &'static str = "shader";
+    const KIND: Option<Kind> = Some(Kind::Shader);
 
     fn all() -> Vec<Self> {
-        inventory::iter::<ProceduralShader>().map(Self).collect()
+        types().map(Self).collect()
     }
 
     fn option(&self) -> ChoiceName {
-        self.0.option(self.0.on_plane)
+        let Entity { name, meaning, numbers, place, .. } = *self.0;
+        ChoiceName { name, number: numbers[ON], meaning, place }
     }
 }
 
-impl Choice for OnSphere {
-    const WHAT: &'static str = "shader";
+impl<const ON: usize> Value for ByNumber<ON> {
+    const TYPE: Type = Type::Choice(Choices::of::<ShaderType<ON>>());
+    const ARITY: Counts = Counts::Of(&[1]);
 
-    fn all() -> Vec<Self> {
-        inventory::iter::<ProceduralShader>().map(Self).collect()
+    fn to_datum(&self) -> Datum {
+        self.0.to_datum()
     }
 
-    fn option(&self) -> ChoiceName {
-        self.0.option(self.0.on_sphere)
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Choice(choice) => of_type(choice.name).cloned().map(Self),
+            datum => Paint::from_datum(datum).map(Self),
+        }
     }
 }

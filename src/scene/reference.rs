@@ -5,12 +5,10 @@ use crate::scene::counts::OneOf;
 use crate::scene::entity::Entity;
 use crate::scene::kind::Kind;
 use crate::scene::pparm::Attribute;
-use crate::scene::procedural::{OnPlane, OnSphere};
 use crate::scene::profile::Profile;
 use crate::scene::registry::Registry;
 use crate::scene::value::Datum;
 use crate::text;
-use std::iter;
 
 /// The part of the reference that is the same whatever entity types there are.
 const LANGUAGE: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/language.md"));
@@ -30,15 +28,15 @@ pub fn markdown(registry: &Registry) -> String {
         (Kind::Texture, "Textures"),
         (Kind::Light, "Lights"),
         (Kind::Object, "Objects"),
+        (Kind::Shader, "Shaders"),
     ] {
         add(title, &mut registry.iter().filter(|entity| entity.kind() == kind).map(Word::entity));
     }
-    add("Procedural shaders", &mut shaders());
     add("Profiles", &mut profiles());
     text
 }
 
-/// Returns a page, with its name, for each word of the language: each entity type, procedural shader and profile. The
+/// Returns a page, with its name, for each word of the language: each entity type and profile. The
 /// pages lie in `snapshots/reference` and refer to the images beside that folder.
 pub fn pages(registry: &Registry) -> impl Iterator<Item = (&'static str, String)> {
     let entities = registry.iter().map(|entity| {
@@ -48,9 +46,8 @@ pub fn pages(registry: &Registry) -> impl Iterator<Item = (&'static str, String)
         );
         (kind, scene, Word::entity(entity))
     });
-    let shaders = shaders().map(|word| ("Procedural shader".to_owned(), String::new(), word));
     let profiles = profiles().map(|word| ("Profile".to_owned(), String::new(), word));
-    entities.chain(shaders).chain(profiles).map(|(what, scene, Word { name, meaning, place, details })| {
+    entities.chain(profiles).map(|(what, scene, Word { name, meaning, place, details })| {
         let file = place.split(':').next().unwrap_or_default();
         let plugin = format!("[{file}](../../{file})");
         (name, format!("# {name}\n\n{what}: {meaning}. Its plugin is {plugin}.\n{scene}{details}"))
@@ -77,29 +74,29 @@ impl Word {
         let one_of =
             |group: &OneOf| format!("\nExactly one of {} is given: {}.\n", group.told("and"), group.meaning);
         let groups: String = entity.groups().map(one_of).collect();
-        let details =
-            format!("{also}\n| attribute | values | default | meaning |\n|---|---|---|---|\n{rows}{groups}");
+        let numbers = numbers(&[(entity.numbers[0], " on planes"), (entity.numbers[1], " on spheres")]);
+        let details = format!(
+            "{also}{numbers}\n| attribute | values | default | meaning |\n|---|---|---|---|\n{rows}{groups}"
+        );
         Self { name: entity.name, meaning: entity.meaning, place: entity.place(), details }
     }
 
-    /// Describes an alternative that has a number in some places.
-    fn choice(choice: ChoiceName, numbers: &[(Option<i64>, &str)]) -> Self {
-        let told = numbers.iter().filter_map(|(number, place)| Some(format!("{}{place}", (*number)?)));
-        let told = told.collect::<Vec<_>>().join(" and ");
-        let details = if told.is_empty() { told } else { format!("\nIts number is {told}.\n") };
+    /// Describes an alternative that may have a number.
+    fn choice(choice: ChoiceName) -> Self {
+        let details = numbers(&[(choice.number, "")]);
         Self { name: choice.name, meaning: choice.meaning, place: text::place(choice.place), details }
     }
 }
 
-fn shaders() -> impl Iterator<Item = Word> {
-    let word = |(plane, sphere): (ChoiceName, ChoiceName)| {
-        Word::choice(plane, &[(plane.number, " on planes"), (sphere.number, " on spheres")])
-    };
-    iter::zip(by_name::<OnPlane>(), by_name::<OnSphere>()).map(word)
+/// Tells the numbers of a word in some places, if it has any.
+fn numbers(numbers: &[(Option<i64>, &str)]) -> String {
+    let told = numbers.iter().filter_map(|(number, place)| Some(format!("{}{place}", (*number)?)));
+    let told = told.collect::<Vec<_>>().join(" and ");
+    if told.is_empty() { told } else { format!("\nIts number is {told}.\n") }
 }
 
 fn profiles() -> impl Iterator<Item = Word> {
-    by_name::<&'static Profile>().map(|profile| Word::choice(profile, &[(profile.number, "")]))
+    by_name::<&'static Profile>().map(Word::choice)
 }
 
 /// Returns all alternatives of a type, sorted by name.

@@ -3,7 +3,7 @@
 use crate::scene::choice::contradictions;
 use crate::scene::entity::Entity;
 use crate::scene::kind::Kind;
-use crate::scene::procedural::{OnPlane, OnSphere};
+use crate::scene::procedural::ShaderType;
 use crate::scene::profile::Profile;
 use crate::scene::syntax::Syntax;
 use crate::text::nearest;
@@ -26,15 +26,13 @@ impl Registry {
     pub fn get() -> Result<&'static Registry, &'static str> {
         static REGISTRY: LazyLock<Result<Registry, String>> = LazyLock::new(|| {
             let choices = [
-                contradictions::<OnPlane>(),
-                contradictions::<OnSphere>(),
+                contradictions::<ShaderType<0>>(),
+                contradictions::<ShaderType<1>>(),
                 contradictions::<&Profile>(),
                 profiles(),
             ];
             let mut faults = choices.concat();
-            // A shader's name is registered on planes and on spheres, so its faults come twice.
             faults.sort_unstable();
-            faults.dedup();
             let registry = Registry::of(inventory::iter::<Entity>());
             faults.extend(registry.as_ref().err().cloned());
             if faults.is_empty() { registry } else { Err(faults.join("\n")) }

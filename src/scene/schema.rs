@@ -176,7 +176,7 @@ fn requiring(name: &'static str) -> Schema {
 
 /// Returns the schema of all entities of one type, by name.
 fn kind(entity: &'static Entity) -> Schema {
-    let is_single = matches!(entity.kind(), Kind::Camera | Kind::Material | Kind::Texture);
+    let is_single = matches!(entity.kind(), Kind::Camera | Kind::Material | Kind::Texture | Kind::Shader);
     let one = body(entity);
     let named = if is_single {
         one
@@ -239,12 +239,18 @@ fn value(attribute: &'static dyn Attribute) -> Schema {
             ],
             ..Schema::default()
         },
+        // Of several formulas, some are mere numbers.
+        Type::Formula(_) if attribute.arity().most() > 1 => number("number"),
         Type::Word | Type::File | Type::Name(_) | Type::Formula(_) => Schema::sort("string"),
         Type::Choice(choices) => {
             let all = choices.all();
             let names = all.iter().map(|choice| Constant::Text(choice.name.to_owned()));
             let numbers = all.iter().filter_map(|choice| choice.number).map(Constant::Whole);
-            Schema { choices: Some(names.chain(numbers).collect()), ..Schema::default() }
+            let known = Schema { choices: Some(names.chain(numbers).collect()), ..Schema::default() };
+            match choices.kind {
+                Some(_) => Schema { any_of: vec![known, Schema::sort("string")], ..Schema::default() },
+                None => known,
+            }
         }
     };
     let [minimum, maximum] = attribute.range().map_or([None; 2], |range| range.map(Some));
@@ -291,9 +297,11 @@ impl Constant {
             },
             Datum::Word(word) => Self::Text(word.clone()),
             Datum::Formula(formula) => Self::Text(formula.to_string()),
-            Datum::Material { name, .. } | Datum::Texture { name, .. } | Datum::Object { name, .. } => {
-                Self::Text(name.to_string())
-            }
+            Datum::Formulas(_) => return None,
+            Datum::Material { name, .. }
+            | Datum::Texture { name, .. }
+            | Datum::Shader { name, .. }
+            | Datum::Object { name, .. } => Self::Text(name.to_string()),
             Datum::Choice(choice) => {
                 choice.number.map_or_else(|| Self::Text(choice.name.to_owned()), Self::Whole)
             }

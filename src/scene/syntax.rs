@@ -99,10 +99,16 @@ impl Syntax {
             Datum::Numbers(numbers) => numbers.iter().map(|number| shortest(*number)).collect(),
             Datum::Word(word) => vec![self.word(word)],
             Datum::Formula(formula) => vec![quoted(&formula.to_string())],
+            Datum::Formulas(formulas) => {
+                formulas.iter().map(|formula| quoted(&formula.to_string())).collect()
+            }
             Datum::Truth(truth) if self == Self::Toml => vec![truth.to_string()],
             Datum::Truth(truth) => vec![yes_or_no(*truth).to_owned()],
             Datum::Absent => Vec::new(),
-            Datum::Material { name, .. } | Datum::Texture { name, .. } | Datum::Object { name, .. } => {
+            Datum::Material { name, .. }
+            | Datum::Texture { name, .. }
+            | Datum::Shader { name, .. }
+            | Datum::Object { name, .. } => {
                 vec![self.word(name)]
             }
             Datum::Objects(all) => all.iter().map(|(name, _)| self.word(name)).collect(),

@@ -1,11 +1,11 @@
 //! The types of attribute values that the scene language has.
 
-use crate::numeric::formula::field::{Field, SPACE};
+use crate::numeric::formula::field::{Field, SPACE, SURFACE, SurfaceField};
 use crate::numeric::formula::{Formula, HEIGHT};
 use crate::scene::choice::{Choice, ChoiceName, Choices};
 use crate::scene::counts::Counts;
 use crate::scene::kind::Kind;
-use crate::world::body::NamedBody;
+use crate::world::body::{NamedBody, Paint};
 use crate::world::material::{Material, Rgb};
 use crate::world::texture::Texture;
 use glam::{DVec2, DVec3};
@@ -65,10 +65,19 @@ pub enum Datum {
     },
     /// Objects and their names, each once.
     Objects(Vec<(Arc<str>, NamedBody)>),
+    /// A shader and its name.
+    Shader {
+        /// The name that the scene gives it.
+        name: Arc<str>,
+        /// The shader of this name.
+        paint: Paint,
+    },
     /// One of several alternatives.
     Choice(ChoiceName),
     /// A formula.
     Formula(Arc<Formula>),
+    /// Several formulas.
+    Formulas(Vec<Arc<Formula>>),
     /// Yes or no.
     Truth(bool),
     /// No value, where an attribute may be left out.
@@ -85,7 +94,8 @@ impl Datum {
             (Self::Texture { name, texture }, Self::Texture { name: name2, texture: texture2 }) => {
                 Arc::ptr_eq(name, name2) && Arc::ptr_eq(texture, texture2)
             }
-            (Self::Object { name, .. }, Self::Object { name: name2, .. }) => Arc::ptr_eq(name, name2),
+            (Self::Object { name, .. }, Self::Object { name: name2, .. })
+            | (Self::Shader { name, .. }, Self::Shader { name: name2, .. }) => Arc::ptr_eq(name, name2),
             (Self::Choice(one), Self::Choice(other)) => one == other,
             _ => false,
         }
@@ -100,8 +110,11 @@ impl Datum {
             Self::Choice(ChoiceName { number: Some(number), .. }) => format!(" {number:5}"),
             Self::Absent => return String::new(),
             Self::Formula(formula) => format!(" {formula}"),
+            Self::Formulas(formulas) => formulas.iter().map(|formula| format!(" {formula}")).collect(),
             Self::Word(word) => format!(" {word}"),
-            Self::Material { name, .. } | Self::Object { name, .. } => format!(" {name}"),
+            Self::Material { name, .. } | Self::Object { name, .. } | Self::Shader { name, .. } => {
+                format!(" {name}")
+            }
             Self::Choice(choice) => format!(" {}", choice.name),
             Self::Objects(all) => all.iter().map(|(name, _)| format!(" {name}")).collect(),
             Self::Truth(truth) => format!(" {}", yes_or_no(*truth)),
@@ -288,6 +301,28 @@ impl Value for Field {
     }
 }
 
+/// A formula of a surface for each of red, green and blue, written as three formulas, or as one where the three are equal.
+impl Value for [SurfaceField; 3] {
+    const TYPE: Type = Type::Formula(SURFACE);
+    const ARITY: Counts = Counts::Of(&[1, 3]);
+
+    fn to_datum(&self) -> Datum {
+        Datum::Formulas(self.iter().map(|field| field.formula().clone()).collect())
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        let field = |formula: &Arc<Formula>| SurfaceField::new(formula.clone());
+        match datum {
+            Datum::Formula(formula) => Some([field(formula)?, field(formula)?, field(formula)?]),
+            Datum::Formulas(formulas) => match &formulas[..] {
+                [red, green, blue] => Some([field(red)?, field(green)?, field(blue)?]),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+}
+
 /// Yes or no.
 impl Value for bool {
     const TYPE: Type = Type::Truth;
@@ -373,6 +408,23 @@ impl Value for NamedBody {
     fn from_datum(datum: &Datum) -> Option<Self> {
         match datum {
             Datum::Object { body, .. } => Some(body.clone()),
+            _ => None,
+        }
+    }
+}
+
+/// A shader, which a scene refers to by its name.
+impl Value for Paint {
+    const TYPE: Type = Type::Name(Kind::Shader);
+    const ARITY: Counts = Counts::Of(&[1]);
+
+    fn to_datum(&self) -> Datum {
+        Datum::Shader { name: Arc::from(""), paint: self.clone() }
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Shader { paint, .. } => Some(paint.clone()),
             _ => None,
         }
     }

@@ -9,7 +9,7 @@ use crate::numeric::scalar::Scalar;
 use crate::world::accuracy::{Bounded, Classic};
 use crate::world::certify::Equation;
 use crate::world::hittable::{Bracketed, Certified, Hittable};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 impl Hittable for FinitePlane<Classic> {
     #[inline(always)]
@@ -21,6 +21,10 @@ impl Hittable for FinitePlane<Classic> {
     #[inline]
     fn normal(&self, _at: DVec3) -> DVec3 {
         self.plane.normal
+    }
+
+    fn uv(&self, at: DVec3) -> Option<DVec2> {
+        Some(self.rectangle.coordinates(at) / self.rectangle.dimensions)
     }
 
     fn bounds(&self) -> Option<Aabb> {
@@ -51,6 +55,10 @@ impl<A: Bounded> Hittable for FinitePlane<A> {
     #[inline]
     fn normal(&self, _at: DVec3) -> DVec3 {
         self.plane.normal
+    }
+
+    fn uv(&self, at: DVec3) -> Option<DVec2> {
+        Some(self.rectangle.coordinates(at) / self.rectangle.dimensions)
     }
 
     fn bounds(&self) -> Option<Aabb> {

@@ -19,7 +19,7 @@ use crate::world::certify::Equation;
 use crate::world::hittable::{Bracketed, Certified, Hittable, Searched};
 use crate::world::packets::shape::by_distance;
 use crate::world::shape::Shape;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::ops::Range;
 
 /// The number of plain rays that take as long as a search: that in a torus takes 25, that in a heart 60.
@@ -46,6 +46,11 @@ pub trait Implicit: Send + Sync {
         Some("it has no inside")
     }
 
+    /// Returns the coordinates u and v of a point of the surface, for shaders; `None` where it has none.
+    fn uv(&self, _at: DVec3) -> Option<DVec2> {
+        None
+    }
+
     /// Returns the low and the high corner of a box around the shape. What lies outside of the box is cut off, and a
     /// shape that is cut shows its inside.
     fn bounds(&self) -> [DVec3; 2];
@@ -68,6 +73,10 @@ struct ImplicitShape<T> {
 }
 
 impl<T: Implicit> Hittable for ImplicitShape<T> {
+    fn uv(&self, at: DVec3) -> Option<DVec2> {
+        self.formula.uv(self.frame.point(at))
+    }
+
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         let line = FormulaOnRay::new(self, ray);
         line.distance(line.first_hit(range).root, range)

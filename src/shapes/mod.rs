@@ -14,6 +14,7 @@ pub(crate) mod revolution;
 pub(crate) mod solid;
 pub mod sphere;
 pub(crate) mod triangle;
+pub mod uv;
 
 pub use ellipsoid::Ellipsoid;
 pub use implicit::Implicit;

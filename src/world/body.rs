@@ -4,13 +4,50 @@ use crate::world::any_shape::AnyShape;
 use crate::world::material::Material;
 use crate::world::packets::light::PacketLight;
 use crate::world::packets::shader::PacketShader;
-use crate::world::shader::{Plain, Shader};
+use crate::world::shader::{Anchor, Plain, Shader};
 use crate::world::solid::{Operation, Tree};
+use glam::DVec3;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
 /// Any [`Shader`]: `Box::new(shader)` makes one.
 pub type AnyShader = Box<dyn PacketShader>;
+
+/// What a shader entity of a scene makes: a shader for each object that it is given to.
+#[derive(Clone)]
+pub struct Paint(Arc<dyn Fn(Anchor) -> AnyShader + Send + Sync>);
+
+impl Paint {
+    /// Calls a function for each object, with the origin and the unit of length of the pattern there.
+    pub fn new<S: Shader + 'static>(make: impl Fn(Anchor) -> S + Send + Sync + 'static) -> Self {
+        Self(Arc::new(move |anchor| Box::new(make(anchor))))
+    }
+
+    /// Makes the shader of one object.
+    pub fn on(&self, anchor: Anchor) -> AnyShader {
+        (self.0)(anchor)
+    }
+}
+
+/// What looks like the material.
+impl Default for Paint {
+    fn default() -> Self {
+        Self::new(|_| Plain)
+    }
+}
+
+/// All are equal: their names tell them apart.
+impl PartialEq for Paint {
+    fn eq(&self, _other: &Self) -> bool {
+        true
+    }
+}
+
+impl fmt::Debug for Paint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Paint")
+    }
+}
 
 /// Any [`Light`](crate::world::light::Light): `Box::new(light)` makes one.
 pub type AnyLight = Box<dyn PacketLight>;
@@ -45,12 +82,19 @@ impl fmt::Debug for NamedBody {
     }
 }
 
+/// Makes a shader of one that sees an object in its own coordinates.
+pub type ToOwn = Box<dyn Fn(AnyShader) -> AnyShader + Send + Sync>;
+
 /// What an object's constructor returns: the object's shape and its shader.
 pub struct Body {
     /// The object's geometry.
     pub shape: AnyShape,
     /// The object's reflectivities.
     pub shader: AnyShader,
+    /// The origin and the unit of length of patterns on it; `None` for those of its bounding box.
+    pub anchor: Option<Anchor>,
+    /// Takes a shader to the object's own coordinates, where it has such.
+    pub to_own: Option<ToOwn>,
     /// What the user should know of the object, although it can be rendered.
     pub warnings: Vec<Warning>,
     /// The memory that the object takes beside the scene, in bytes.
@@ -121,6 +165,8 @@ impl Body {
         Self {
             shape: shape.into(),
             shader: Box::new(shader),
+            anchor: None,
+            to_own: None,
             warnings: Vec::new(),
             bytes: 0,
             depth: 0,
@@ -128,6 +174,51 @@ impl Body {
             material: None,
             solid: None,
             more: Vec::new(),
+        }
+    }
+
+    /// Sets the origin and the unit of length of patterns on the object, in world units.
+    pub fn anchored(self, origin: DVec3, unit: f64) -> Self {
+        Self { anchor: Some(Anchor { origin, unit }), ..self }
+    }
+
+    /// Returns the origin and the unit of length of patterns on the object.
+    pub fn anchor(&self) -> Anchor {
+        let of_box = || {
+            let bounds = self.shape.bounds()?;
+            let unit = 2.0 * bounds.half_size().max_element();
+            Some(Anchor { origin: bounds.middle(), unit })
+        };
+        let anywhere = Anchor { origin: DVec3::ZERO, unit: 1.0 };
+        self.anchor.or_else(of_box).unwrap_or(anywhere)
+    }
+
+    /// Gives the object the look of a shader, in place of its own.
+    pub fn painted(mut self, paint: &Paint) -> Self {
+        self.more = self.more.into_iter().map(|one| one.painted(paint)).collect();
+        let shader = paint.on(self.anchor());
+        let shader = match &self.to_own {
+            Some(to_own) => to_own(shader),
+            None => shader,
+        };
+        let mut body = Self { shader, ..self };
+        body.warn_of_what_it_lacks();
+        body
+    }
+
+    /// Warns where the shader sees what the shape does not have.
+    fn warn_of_what_it_lacks(&mut self) {
+        let (sees, at) = (self.shader.sees(), self.anchor().origin);
+        let lacks = [
+            (sees.uv && self.shape.uv(at).is_none()).then_some("u and v"),
+            (sees.face && self.shape.face(at).is_none()).then_some("faces"),
+        ];
+        for what in lacks.into_iter().flatten() {
+            self.warnings.push(Warning {
+                attribute: "shader",
+                message: format!("has no {what}, which its shader sees"),
+                help: format!("where a shape has no {what}, a shader sees 0 or the material alone"),
+            });
         }
     }
 }

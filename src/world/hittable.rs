@@ -9,7 +9,7 @@ use crate::geometry::roots::Method;
 use crate::numeric::double_double::DoubleDouble;
 use crate::world::certify::Equation;
 use crate::world::coincidence;
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 /// A shape that rays can hit. Shapes do not change while an image is rendered.
 ///
@@ -68,6 +68,18 @@ pub trait Hittable: Send + Sync {
     /// Names the part of the shape that a ray hits at a distance in world units, for explanations: `face 7` of a mesh.
     /// `None` for a shape of one part.
     fn part(&self, _ray: &Ray, _distance: f64) -> Option<String> {
+        None
+    }
+
+    /// Returns the coordinates u and v of a point of the surface, for shaders: from 0 to 1 where the shape is all of its
+    /// kind, such as the longitude and the latitude of a sphere. `None` for a shape that has none.
+    fn uv(&self, _at: DVec3) -> Option<DVec2> {
+        None
+    }
+
+    /// Returns the index of the face on which a point of the surface lies, for shaders, from 0. `None` for a shape of one
+    /// face.
+    fn face(&self, _at: DVec3) -> Option<u32> {
         None
     }
 

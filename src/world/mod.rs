@@ -20,10 +20,10 @@ pub(crate) mod texture;
 
 pub use accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
 pub use any_shape::AnyShape;
-pub use body::{AnyLight, AnyShader, Body, NamedBody, Part, Solid, Warning};
+pub use body::{AnyLight, AnyShader, Body, NamedBody, Paint, Part, Solid, Warning};
 pub use camera::Camera;
 pub use hittable::{Bracketed, Certified, Hittable, Searched};
 pub use light::Light;
 pub use material::{Material, Rgb};
-pub use shader::Shader;
+pub use shader::{Anchor, PointBounds, Sees, Shader, SurfacePoint};
 pub use shape::Shape;

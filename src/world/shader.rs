@@ -1,42 +1,144 @@
 //! Shaders: the trait that a plugin implements for one point of a surface.
 
+use crate::geometry::ray::Side;
 use crate::numeric::interval::{Float, Interval};
 use crate::numeric::scalar::{Scalar, per_axis};
 use crate::world::certify::Precise;
+use crate::world::hittable::Hittable;
 use crate::world::material::{Look, Material, Rgb};
 use glam::{DVec2, DVec3};
+
+/// A point of a surface, as a shader sees it. Of an object that is a copy of another one, it is in the coordinates of that
+/// other one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfacePoint {
+    /// The point, in world coordinates.
+    pub position: DVec3,
+    /// The unit normal, outward: that with which the point would be shaded. It is 0 unless the shader [sees](Sees) it.
+    pub normal: DVec3,
+    /// The side that a ray hits. It is the outside unless the shader sees normals.
+    pub side: Side,
+    /// The coordinates u and v on the surface, mostly from 0 to 1; `None` where the shape has none, or the shader does
+    /// not see them.
+    pub uv: Option<DVec2>,
+    /// The index of the face, from 0; `None` where the shape has none, or the shader does not see it.
+    pub face: Option<u32>,
+}
+
+impl SurfacePoint {
+    /// Returns a point of which nothing but the position is known.
+    #[inline(always)]
+    pub fn at(position: DVec3) -> Self {
+        Self { position, normal: DVec3::ZERO, side: Side::Outside, uv: None, face: None }
+    }
+
+    /// Returns a point of a shape with what a shader sees of it. `normal` is the outward one.
+    pub fn seen(shape: &dyn Hittable, sees: Sees, position: DVec3, normal: DVec3, side: Side) -> Self {
+        let (uv, face) = (sees.uv.then(|| shape.uv(position)), sees.face.then(|| shape.face(position)));
+        let (uv, face) = (uv.flatten(), face.flatten());
+        let (normal, side) = if sees.normal { (normal, side) } else { (DVec3::ZERO, Side::Outside) };
+        Self { position, normal, side, uv, face }
+    }
+}
+
+/// What a shader sees of a point beside its position. What it does not see is not computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sees {
+    /// Whether it sees the normal and the side.
+    pub normal: bool,
+    /// Whether it sees u and v.
+    pub uv: bool,
+    /// Whether it sees which face the point lies on.
+    pub face: bool,
+}
+
+impl Sees {
+    /// The position alone.
+    pub const POSITION: Self = Self { normal: false, uv: false, face: false };
+    /// The position, the normal and the side.
+    pub const NORMAL: Self = Self { normal: true, ..Self::POSITION };
+    /// The position, and u and v.
+    pub const UV: Self = Self { uv: true, ..Self::POSITION };
+    /// The position and the face.
+    pub const FACE: Self = Self { face: true, ..Self::POSITION };
+
+    /// Tells whether the position is all that is seen.
+    #[inline(always)]
+    pub fn is_position(self) -> bool {
+        self == Self::POSITION
+    }
+}
+
+/// Points of a surface, in a box.
+#[derive(Clone, Copy, Debug)]
+pub struct PointBounds<F> {
+    /// The positions, in world coordinates, or in those of the object that is copied.
+    pub position: [Interval<F>; 3],
+    /// The unit normals, outward; `None` where they are not known.
+    pub normal: Option<[Interval<F>; 3]>,
+}
+
+/// The origin and the unit of length of the pattern of a shader on one object.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Anchor {
+    /// The point of the plane or the centre of the sphere, in world units; of other objects, the middle of their box.
+    pub origin: DVec3,
+    /// The length that counts as 1, in world units: 1 on a plane, the diameter of a sphere; of other objects, the longest
+    /// side of their box.
+    pub unit: f64,
+}
 
 /// The reflectivities of a surface, which may differ from point to point.
 ///
 /// The defaults are the material's, as in the notes' `material_getamb`, `material_getdiff` and `material_getspec`.
 pub trait Shader: Send + Sync {
-    /// Returns the reflectivity for ambient light at a point, in world coordinates.
+    /// Tells what the shader sees of a point beside its position. It is the same in every call.
+    #[inline(always)]
+    fn sees(&self) -> Sees {
+        Sees::POSITION
+    }
+
+    /// Returns the reflectivity for ambient light at a point.
     #[inline]
-    fn ambient(&self, material: &Material, _at: DVec3) -> Rgb {
+    fn ambient(&self, material: &Material, _at: &SurfacePoint) -> Rgb {
         material.ambient
     }
 
-    /// Returns the diffuse reflectivity for light from the scene's lights at a point, in world coordinates.
+    /// Returns the diffuse reflectivity for light from the scene's lights at a point.
     #[inline]
-    fn diffuse(&self, material: &Material, _at: DVec3) -> Rgb {
+    fn diffuse(&self, material: &Material, _at: &SurfacePoint) -> Rgb {
         material.diffuse
     }
 
-    /// Returns the mirror reflectivity at a point, in world coordinates.
+    /// Returns the mirror reflectivity at a point.
     #[inline]
-    fn specular(&self, material: &Material, _at: DVec3) -> Rgb {
+    fn specular(&self, material: &Material, _at: &SurfacePoint) -> Rgb {
         material.specular
     }
 
+    /// Tells whether the shader bends normals. It is the same in every call.
+    #[inline(always)]
+    fn bends(&self) -> bool {
+        false
+    }
+
+    /// Returns the outward unit normal with which a point is shaded, if the shader [bends](Self::bends) normals; then it
+    /// [sees](Self::sees) them. Lights and mirrors use it. The surface stays as it is: light from behind it does not reach
+    /// it, and rays leave it on the side that they hit.
+    #[inline]
+    fn bend(&self, at: &SurfacePoint) -> DVec3 {
+        at.normal
+    }
+
     /// Returns the three reflectivities, if each is the same at every point. Then the methods above are not called for
-    /// each point. `None` is always correct.
+    /// each point, but for [`bend`](Self::bend). `None` is always correct.
     fn uniform(&self, _material: &Material) -> Option<Look> {
         None
     }
 
     /// Encloses the three reflectivities, as mathematics has them, at every point of a box; `None` where they are not
     /// known. Proofs of colours ask for them. `None` is always correct.
-    fn enclose<F: Precise>(&self, material: &Material, _at: [Interval<F>; 3]) -> Option<LookBounds<F>>
+    fn enclose<F: Precise>(&self, material: &Material, _at: &PointBounds<F>) -> Option<LookBounds<F>>
     where
         Self: Sized,
     {
@@ -47,7 +149,7 @@ pub trait Shader: Send + Sync {
     /// points in different ones, an image may need more samples than their colours tell. Two zeros everywhere are
     /// correct.
     #[inline]
-    fn tile(&self, _at: DVec3) -> DVec2 {
+    fn tile(&self, _at: &SurfacePoint) -> DVec2 {
         DVec2::ZERO
     }
 

@@ -89,7 +89,7 @@ fn a_plugin_that_cannot_be_is_refused_and_nothing_is_written() {
         ("crate", "`crate` is a Rust keyword", NO_NAME),
         ("sphere", "the entity type `sphere` already exists, at plugins/sphere.rs:", TAKEN),
         ("tplane", "the entity type `tplane` already exists, at plugins/tiled_plane.rs:", TAKEN),
-        ("rainbow", "the shader `rainbow` already exists", TAKEN),
+        ("rainbow", "the entity type `rainbow` already exists, at plugins/rainbow.rs:", TAKEN),
         ("cone", "the profile `cone` already exists", TAKEN),
         ("body", "the template already uses the name `Body`", TAKEN),
         ("gem", "`plugins/gem.rs` already exists", IN_THE_WAY),

@@ -9,5 +9,6 @@ mod inside;
 mod needs;
 mod plan;
 mod readme;
+mod shaders;
 mod snapshots;
 mod verify;

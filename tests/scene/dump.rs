@@ -99,16 +99,18 @@ fn any_scene() -> impl Strategy<Value = String> {
         prop::collection::vec(prop::sample::select(entities).prop_flat_map(any_entity), least..4)
     };
     let (camera, materials) = (some(Kind::Camera, 1), some(Kind::Material, 1));
-    (camera, materials, some(Kind::Object, 0), some(Kind::Light, 0)).prop_map(
-        |(cameras, materials, objects, lights)| {
-            // `m0` and `t0` always exist, so that other entities can refer to them.
+    let (shaders, objects) = (some(Kind::Shader, 0), some(Kind::Object, 0));
+    (camera, materials, shaders, objects, some(Kind::Light, 0)).prop_map(
+        |(cameras, materials, shaders, objects, lights)| {
+            // `m0`, `t0` and `s0` always exist, so that other entities can refer to them.
             let materials =
                 materials.iter().enumerate().map(|(i, text)| text.replace("NAME", &format!("m{i}")));
             let texture = format!("texture t0 {{ filename {} }}\n", root().join(TEXTURE).display());
             let sphere = |index| format!("sphere o{index} {{ material m0 center {index} 2 3 radius 4 }}\n");
             let object: String = (0..5).map(sphere).collect();
-            [cameras[0].clone(), materials.collect(), texture, object, objects.concat(), lights.concat()]
-                .concat()
+            let shaders = format!("formula s0 {{ ambient \"x\" 0.5 \"nz\" }}\n{}", shaders.concat());
+            let others = [object, objects.concat(), lights.concat()].concat();
+            [cameras[0].clone(), materials.collect(), texture, shaders, others].concat()
         },
     )
 }
@@ -163,6 +165,7 @@ fn any_values(attribute: &'static dyn Attribute) -> BoxedStrategy<String> {
             .prop_map(Datum::Numbers)
             .boxed(),
         Type::Name(Kind::Texture) => return Just(format!("{} t0\n", attribute.name())).boxed(),
+        Type::Name(Kind::Shader) => return Just(format!("{} s0\n", attribute.name())).boxed(),
         Type::Name(Kind::Object) => {
             let names = |count| (0..count).map(|index| format!(" o{index}")).collect::<String>();
             return count.prop_map(move |count| format!("{}{}\n", attribute.name(), names(count))).boxed();

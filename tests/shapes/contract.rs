@@ -10,7 +10,9 @@ use tabray::scene::{Args, Derived, Entity, Kind, Pparm, Refusal, Registry, Row, 
 use tabray::shapes::Implicit;
 use tabray::tools::contract::{self, Breach, Promise};
 use tabray::world::certify::Equation;
-use tabray::world::{Body, Bracketed, Camera, Certified, Hittable, Light, Material, Rgb, Shader, Shape};
+use tabray::world::{
+    Body, Bracketed, Camera, Certified, Hittable, Light, Material, Rgb, Shader, Shape, SurfacePoint,
+};
 
 #[test]
 fn every_plugin_keeps_its_contract() {
@@ -224,7 +226,7 @@ impl Equation for Ball {
 struct Colour(Flaw);
 
 impl Shader for Colour {
-    fn diffuse(&self, material: &Material, _at: DVec3) -> Rgb {
+    fn diffuse(&self, material: &Material, _at: &SurfacePoint) -> Rgb {
         match self.0 {
             Flaw::NanColour => Rgb::NAN,
             Flaw::NegativeColour => -material.diffuse,

@@ -70,7 +70,7 @@ fn plugin(name: &str) -> PathBuf {
 const KINDS: [(&str, &str, &str); 4] = [
     ("shape", "loop", "scenes/entities/loop.ray"),
     ("light", "shade", "scenes/entities/shade.ray"),
-    ("shader", "rings", "scenes/psphere/rings.ray"),
+    ("shader", "rings", "scenes/entities/rings.ray"),
     ("profile", "ringed_cup", "scenes/revsurf/ringed_cup.ray"),
 ];
 
@@ -78,7 +78,7 @@ const KINDS: [(&str, &str, &str); 4] = [
 static NEW: LazyLock<Files> = LazyLock::new(|| {
     let checkout = TempDir::new().expect("a folder");
     fs::write(checkout.path().join("Cargo.toml"), "[package]\nname = \"tabray\"\n").expect("room for a file");
-    for folder in ["plugins", "scenes/entities", "scenes/psphere", "scenes/revsurf", "scenes/wrong"] {
+    for folder in ["plugins", "scenes/entities", "scenes/revsurf", "scenes/wrong"] {
         fs::create_dir_all(checkout.path().join(folder)).expect("room for a folder");
     }
     for (kind, name, _) in KINDS {
@@ -340,7 +340,7 @@ use crate::prelude::*;
 inventory::submit! { Entity::shape(\"sphere\", \"another ball\", &[], |_| unreachable!()) }
 inventory::submit! { Profile::new(\"cone\", \"another cone\", \"1\") }
 inventory::submit! { Profile::new(\"crooked\", \"no formula\", \"2 +\") }
-inventory::submit! { ProceduralShader::new(\"checks\", \"its number is that of tiles\", |_| unreachable!()).on_plane(0) }
+inventory::submit! { Entity::shader(\"checks\", \"its number is that of tiles\", &[], |_| unreachable!()).on_plane(0) }
 ";
 
 const BARREL: &str = "//! A barrel.
@@ -357,14 +357,14 @@ const STRIPES: &str = "//! Stripes, as wide as a tenth of the anchor's unit.
 use crate::prelude::*;
 
 inventory::submit! {
-    ProceduralShader::new(\"stripes\", \"stripes across y\", |anchor| Box::new(Stripes(anchor)))
+    Entity::shader(\"stripes\", \"stripes across y\", &[], |_| Ok(Paint::new(Stripes)))
 }
 
 struct Stripes(Anchor);
 
 impl Shader for Stripes {
-    fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
-        let stripe = (10.0 * (at - self.0.origin).y / self.0.unit).floor();
+    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        let stripe = (10.0 * (at.position - self.0.origin).y / self.0.unit).floor();
         if stripe.rem_euclid(2.0) == 0.0 { material.ambient } else { Rgb::ZERO }
     }
 }

@@ -3,7 +3,6 @@
 use crate::cli::failure::Failure;
 use crate::cli::{messages, output};
 use crate::scene::choice::Choice;
-use crate::scene::procedural::OnPlane;
 use crate::scene::profile::Profile;
 use crate::scene::registry::Registry;
 use serde::Deserialize;
@@ -27,7 +26,7 @@ pub struct Args {
 enum Kind {
     /// An entity type of objects
     Shape,
-    /// A procedural shader, for `psphere`, `pplane` and `pfplane`
+    /// A type of shader, for the looks of objects
     Shader,
     /// An entity type of lights
     Light,
@@ -55,7 +54,8 @@ impl Kind {
             ],
             Self::Shader => &[
                 ("plugins/NAME.rs", include_str!("templates/shader.rs")),
-                ("scenes/psphere/NAME.ray", include_str!("templates/shader.ray")),
+                ("scenes/entities/NAME.ray", include_str!("templates/shader.ray")),
+                ("scenes/wrong/NAME.ray", include_str!("templates/shader-wrong.ray")),
             ],
             Self::Profile => &[
                 ("plugins/NAME.rs", include_str!("templates/profile.rs")),
@@ -134,8 +134,6 @@ fn is_free(registry: &Registry, name: &str, template: &str) -> Result<(), Failur
     }
     let what = if let Some(entity) = registry.find(name) {
         format!("the entity type `{name}` already exists, at {}", entity.place())
-    } else if OnPlane::all().iter().any(|shader| shader.option().name == name) {
-        format!("the shader `{name}` already exists")
     } else if <&Profile>::all().iter().any(|profile| profile.option().name == name) {
         format!("the profile `{name}` already exists")
     } else if template.split(|c: char| !c.is_alphanumeric()).any(|word| word == camel_case(name)) {

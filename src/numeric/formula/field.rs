@@ -1,4 +1,4 @@
-//! Formulas in x, y and z.
+//! Formulas in x, y and z, and in all that is known of a point of a surface.
 
 use super::step::{Function, MAX_DEPTH, Step};
 use super::{Formula, SMALL_STACK};
@@ -8,27 +8,61 @@ use std::sync::Arc;
 /// The variables of a formula of space.
 pub const SPACE: &[&str] = &["x", "y", "z"];
 
+/// The variables of a formula of a surface: the point, u and v, and the unit normal.
+pub const SURFACE: &[&str] = &["x", "y", "z", "u", "v", "nx", "ny", "nz"];
+
 /// The stack depth that suffices for most formulas of space, in values. A stack of [`MAX_DEPTH`] takes longer to set up
 /// than most formulas to evaluate.
 const MEDIUM_STACK: usize = 8;
 
 /// A formula in x, y and z: `x^2 + y^2 + z^2 - 1`.
+pub type Field = FieldOf<3>;
+
+/// A formula in the variables of [`SURFACE`]: `0.5 + 0.5*sin(4*x)`.
+pub type SurfaceField = FieldOf<8>;
+
+/// A formula in 3 variables, those of [`SPACE`], or in the 8 of [`SURFACE`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct Field {
+pub struct FieldOf<const N: usize> {
     /// The formula as it was read.
     formula: Arc<Formula>,
     /// The same with fewer operations.
     quick: Formula,
 }
 
-impl Field {
-    /// Takes a formula, if its variables are x, y and z.
+impl<const COUNT: usize> FieldOf<COUNT> {
+    /// The names of the variables.
+    pub const VARIABLES: &'static [&'static str] = if COUNT == SURFACE.len() { SURFACE } else { SPACE };
+
+    /// Takes a formula, if its variables are these.
     pub fn new(formula: Arc<Formula>) -> Option<Self> {
-        if formula.variables() != SPACE {
+        if formula.variables() != Self::VARIABLES {
             return None;
         }
-        let quick = Formula::new(formula.text.clone(), SPACE, with_constants(&formula.steps));
+        let new = |steps| Formula::new(formula.text.clone(), Self::VARIABLES, steps);
+        let mut quick = new(with_constants(&formula.steps));
+        let of_surface = COUNT == SURFACE.len() && quick.steps.contains(&Step::Call(Function::Sqrt));
+        if of_surface {
+            let rooted = new(with_roots(&quick.steps));
+            if rooted.stack_depth <= MAX_DEPTH {
+                quick = rooted;
+            }
+        }
         Some(Self { formula, quick })
+    }
+
+    /// Tells whether the formula uses the variable of this index.
+    pub fn uses(&self, index: usize) -> bool {
+        self.quick.steps.contains(&Step::Variable(index as u8))
+    }
+
+    /// Tells whether intervals enclose the formula also where it takes a square root of what may be negative: in a formula
+    /// of a surface, that is 0.
+    pub fn is_enclosed(&self) -> bool {
+        let is_root = |step: &Step| *step == Step::Call(Function::Sqrt);
+        let roots = |steps: &[Step]| steps.iter().filter(|step| is_root(step)).count();
+        let pairs = self.quick.steps.windows(ROOT.len());
+        roots(&self.quick.steps) == pairs.filter(|steps| *steps == ROOT).count()
     }
 
     /// Returns the formula.
@@ -38,7 +72,7 @@ impl Field {
 
     /// Evaluates the formula at a point.
     #[inline(always)]
-    pub fn at<N: Scalar>(&self, at: [N; 3]) -> N {
+    pub fn at<N: Scalar>(&self, at: [N; COUNT]) -> N {
         let depth = self.quick.stack_depth;
         if depth <= SMALL_STACK {
             self.quick.run(&at, &mut [at[0]; SMALL_STACK])
@@ -48,6 +82,21 @@ impl Field {
             self.quick.run(&at, &mut [at[0]; MAX_DEPTH])
         }
     }
+}
+
+/// A square root of which that of a negative number is 0.
+const ROOT: [Step; 3] = [Step::Number(0.0), Step::Call(Function::Max), Step::Call(Function::Sqrt)];
+
+/// Returns the same operations, where square roots of negative numbers are 0.
+fn with_roots(steps: &[Step]) -> Vec<Step> {
+    let mut out = Vec::with_capacity(steps.len());
+    for step in steps {
+        match step {
+            Step::Call(Function::Sqrt) => out.extend(ROOT),
+            step => out.push(*step),
+        }
+    }
+    out
 }
 
 /// Returns the same operations, where those with a constant take one step and no derivatives of the constant.
@@ -93,6 +142,15 @@ fn with_constants(steps: &[Step]) -> Vec<Step> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn roots_of_negative_numbers_are_0_in_a_formula_of_a_surface() {
+        let formula = Formula::parse_in("2 + sqrt(x)*nz", SURFACE).expect("a formula");
+        let field = SurfaceField::new(Arc::new(formula)).expect("its variables are those of a surface");
+        assert!(field.is_enclosed() && field.uses(7) && !field.uses(6));
+        let at = |x: f64| field.at([x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5]);
+        assert_eq!([at(-4.0), at(4.0)], [2.0, 3.0]);
+    }
 
     #[test]
     fn a_field_means_what_its_formula_says() {

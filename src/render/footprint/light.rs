@@ -9,6 +9,7 @@ use crate::numeric::scalar::{Scalar, cross, dot};
 use crate::world::certify::Met;
 use crate::world::packets::light::{EncloseLight, PacketLight};
 use crate::world::packets::shader::EncloseLook;
+use crate::world::shader::PointBounds;
 
 /// The variables that stand for the point of a light with a size: two coordinates in a disc of radius 1.
 const ON_LIGHT: [usize; 2] = [2, 3];
@@ -190,8 +191,8 @@ impl Panes {
             }
             let (point, place) = (path.line.at(at), all[0].1);
             let pane = &scene.model.objects[object];
-            let look =
-                EncloseLook::<f64>::look(&*pane.shader, &pane.material, point.map(|axis| axis.range()))?;
+            let seen = PointBounds { position: point.map(|axis| axis.range()), normal: None };
+            let look = EncloseLook::<f64>::look(&*pane.shader, &pane.material, &seen)?;
             let tint = tint(pane.material.transparency, look.diffuse.map(Affine::from))?;
             let before = self.passed.unwrap_or([one; 3]);
             self.passed = Some([0, 1, 2].map(|channel| before[channel] * tint[channel]));

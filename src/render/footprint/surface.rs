@@ -7,6 +7,7 @@ use crate::numeric::interval::Interval;
 use crate::numeric::scalar::{Scalar, dot};
 use crate::world::certify::{gradient_over, shading_normals};
 use crate::world::packets::shader::EncloseLook;
+use crate::world::shader::PointBounds;
 
 /// The points that lines hit, and how they look there.
 pub(super) struct Surface {
@@ -41,19 +42,26 @@ impl Surface {
         } else {
             Interval::constant(-1.0)
         };
-        let look = EncloseLook::<f64>::look(&*object.shader, &object.material, at.map(|axis| axis.range()))?;
-        let [ambient, diffuse, specular] =
-            [look.ambient, look.diffuse, look.specular].map(|colour| colour.map(Affine::from));
-        let shaded = |normal: [Affine; 3]| {
+        // What is lit of a surface whose normals are bent also depends on those that it has.
+        if object.shader.bends() {
+            return None;
+        }
+        let shaded = |normal: [Affine; 3], is_turned: bool| {
             let normal = shading_normals(shape, at, place.part, normal)?;
+            let range = |vector: [Affine; 3]| vector.map(|axis| axis.range());
+            let outward = if is_turned { normal.map(|part| -part) } else { normal };
+            let point = PointBounds { position: range(at), normal: Some(range(outward)) };
+            let look = EncloseLook::<f64>::look(&*object.shader, &object.material, &point)?;
+            let [ambient, diffuse, specular] =
+                [look.ambient, look.diffuse, look.specular].map(|colour| colour.map(Affine::from));
             Some(Self { place, at, normal, ambient, diffuse, specular })
         };
         let mut all = Vec::with_capacity(2);
         if toward.low <= 0.0 {
-            all.push(shaded(outward)?);
+            all.push(shaded(outward, false)?);
         }
         if toward.high >= 0.0 {
-            all.push(shaded(outward.map(|part| -part))?);
+            all.push(shaded(outward.map(|part| -part), true)?);
         }
         Some(all)
     }

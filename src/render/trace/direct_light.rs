@@ -30,7 +30,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let points = surface.points.view(count);
         let is_matt = match surface.look {
             Some(look) => look.diffuse != Rgb::ZERO,
-            None => shader.diffuses(cpu, material, points, lighting.diffuse.resized(count)),
+            None => shader.diffuses(cpu, material, surface.points(count), lighting.diffuse.resized(count)),
         };
         let scatters = is_matt || material.shininess != 0.0 && surface.is_mirror;
         let ray_budget = group.ray_budget[0];
@@ -94,8 +94,11 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             t_max,
             shines,
         };
-        let faced =
+        let mut faced =
             light.sample(cpu, &ShadingPoints { points, normals, lights, slack: self.slack() }, samples);
+        if surface.is_bent {
+            faced.any_shines = surface.hide_from_behind(toward.view(count), shines, t_max);
+        }
         if !faced.any_shines {
             if W::SEES {
                 self.observer

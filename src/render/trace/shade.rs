@@ -14,6 +14,7 @@ use crate::render::plan::depth::Branch;
 use crate::scene::model::Object;
 use crate::world::interaction::SurfaceInteraction;
 use crate::world::material::Rgb;
+use crate::world::packets::shader::SurfacePoints;
 use glam::DVec3;
 use std::mem::swap;
 
@@ -73,7 +74,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             travelled,
         };
         shape.packets().interact(cpu, group.rays(), distances, interaction);
-        let points = surface.points.view(count);
+        surface.see(object, count);
         surface.look = shader.uniform(material);
         surface.is_mirror = match surface.look {
             Some(look) => {
@@ -81,13 +82,15 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 look.specular != Rgb::ZERO
             }
             None => {
+                let (points, seen) = (surface.points.view(count), &surface.seen);
+                let points = SurfacePoints { positions: points, seen };
                 let (ambients, speculars) = (colours.resized(count), surface.specular.resized(count));
                 shader.ambient_and_specular(cpu, material, points, ambients, speculars)
             }
         };
         if self.scratch.trails.is_on {
             let nearest = (self.depth == 0).then_some(distances);
-            let shader = surface.look.is_none().then_some((&**shader, points));
+            let shader = surface.look.is_none().then_some((&**shader, surface.points(count)));
             self.scratch.trails.meet(cpu, &group.camera[..group.len], index, nearest, shader);
         }
         let goes_on = !self.plan.needs.lights.is_empty() || surface.is_mirror || material.transparency != 0.0;
@@ -125,7 +128,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let object = &self.model.objects[surface.index];
         let kept = 1.0 - object.material.transparency;
         if W::SEES {
-            let tint = object.tint(surface.points.get(0));
+            let tint = object.tint(&object.surface_point(surface.points.get(0), surface.sides[0]));
             self.observer.see(Event::Begin(Purpose::Transmitted { tint, kept }));
         }
         let branch = self.plan.onward(surface.index).through;
@@ -140,7 +143,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let surface = &mut shading.surface;
         flip(&mut surface.sides[..count]);
         for lane in 0..group.len {
-            let tint = object.tint(surface.points.get(lane));
+            let point = object.surface_point(surface.points.get(lane), surface.sides[lane]);
+            let tint = object.tint(&point);
             colours.set(lane, kept * colours.get(lane) + tint * shading.behind.get(lane));
         }
     }
@@ -173,6 +177,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let dir = dir.resized(count);
         let branch = self.plan.onward(surface.index).mirrored;
         light::mirror(cpu, group.dir.view(count), normals, specular, travelled, MAX_DIST, goes, dir);
+        if surface.is_bent {
+            surface.keep_before(group.dir.view(count), &mut shading.dir);
+        }
         group.leave_out(cpu, &branch, travelled, goes);
         self.end_bounces(goes);
         let do_all = goes[0] != 0 && closest_hit::is_one(cpu, goes);

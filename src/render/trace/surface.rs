@@ -3,8 +3,12 @@
 use super::arrays::VectorList;
 use super::light::Colours;
 use crate::geometry::ray::Side;
+use crate::scene::model::Object;
+use crate::simd::soa::View;
 use crate::world::coincidence;
 use crate::world::material::Look;
+use crate::world::packets::shader::SurfacePoints;
+use crate::world::shader::SurfacePoint;
 
 /// The points where the rays of a packet hit one object.
 #[derive(Default)]
@@ -14,6 +18,12 @@ pub(super) struct Surface {
     pub points: VectorList,
     /// The unit normals, flipped to face the rays where both sides are lit.
     pub normals: VectorList,
+    /// The unit normals before the object's shader has bent them, if it does.
+    pub unbent: VectorList,
+    /// Whether the object's shader bends normals.
+    pub is_bent: bool,
+    /// The points as the object's shader sees them; empty where it sees their positions alone.
+    pub seen: Vec<SurfacePoint>,
     /// The side that each ray hits.
     pub sides: Vec<Side>,
     /// The path length from the viewer to each point, in world units.
@@ -31,6 +41,61 @@ pub(super) struct Surface {
 }
 
 impl Surface {
+    /// Returns the first points as the object's shader sees them.
+    pub fn points(&self, count: usize) -> SurfacePoints<'_> {
+        SurfacePoints { positions: self.points.view(count), seen: &self.seen }
+    }
+
+    /// Finds what the object's shader sees of the points beside their positions, and lets it bend the normals.
+    pub fn see(&mut self, Object { shape, shader, .. }: &Object, count: usize) {
+        self.seen.clear();
+        self.is_bent = shader.bends();
+        let sees = shader.sees();
+        if sees.is_position() && !self.is_bent {
+            return;
+        }
+        let is_two_sided = shape.is_two_sided();
+        for (lane, side) in self.sides[..count].iter().enumerate() {
+            let (position, normal) = (self.points.get(lane), self.normals.get(lane));
+            let normal = if is_two_sided && *side == Side::Inside { -normal } else { normal };
+            self.seen.push(SurfacePoint::seen(&**shape, sees, position, normal, *side));
+        }
+        if self.is_bent {
+            self.unbent.copy(self.normals.view(count));
+            for lane in 0..count {
+                let bent = shader.bend(&self.seen[lane]);
+                let is_turned = is_two_sided && self.sides[lane] == Side::Inside;
+                self.normals.set(lane, if is_turned { -bent } else { bent });
+            }
+        }
+    }
+
+    /// Clears `shines` where a light shines on the surface from behind: there it may shine on the bent normals only.
+    /// Such points need no shadow ray: `t_max` becomes 0. Returns whether it still shines on any.
+    pub fn hide_from_behind(&self, toward: View, shines: &mut [u64], t_max: &mut [f64]) -> bool {
+        let mut any = false;
+        for lane in 0..shines.len() {
+            let faces = toward.get(lane).dot(self.unbent.get(lane)) > 0.0;
+            if !faces {
+                (shines[lane], t_max[lane]) = (0, 0.0);
+            }
+            any |= shines[lane] != 0;
+        }
+        any
+    }
+
+    /// Turns mirrored directions back that bent normals mirror through the surface.
+    pub fn keep_before(&self, seen: View, mirrored: &mut VectorList) {
+        for lane in 0..seen.len() {
+            let (normal, dir) = (self.unbent.get(lane), mirrored.get(lane));
+            let height = dir.dot(normal);
+            // A ray that is mirrored by a flat surface rises as it came.
+            if height * seen.get(lane).dot(normal) > 0.0 {
+                mirrored.set(lane, dir - 2.0 * height * normal);
+            }
+        }
+    }
+
     /// Returns rays from the points in these directions.
     pub fn onward<'o>(&'o self, dir: &'o VectorList) -> Onward<'o> {
         let Self { index, points, sides, travelled, cosines, errors, .. } = self;

@@ -2,9 +2,8 @@
 
 use super::light::{Colours, Lit, Reflectivities};
 use crate::simd::cpu::Cpu;
-use crate::simd::soa::View;
 use crate::world::material::Rgb;
-use crate::world::packets::shader::PacketShader;
+use crate::world::packets::shader::{PacketShader, SurfacePoints};
 use std::mem::take;
 
 /// For each current primary ray, a hash of the objects, tiles and lights on its path: through mirrors and glass, in
@@ -42,12 +41,12 @@ impl Trails {
         camera: &[u8],
         object: usize,
         distances: Option<&[f64]>,
-        shader: Option<(&dyn PacketShader, View)>,
+        shader: Option<(&dyn PacketShader, SurfacePoints)>,
     ) {
         camera.iter().for_each(|lane| self.add(*lane, 2 * object as u64 + 1));
         if let Some((shader, points)) = shader {
             let mut tiles = take(&mut self.tiles);
-            tiles.resize(points.len(), 0);
+            tiles.resize(points.positions.len(), 0);
             shader.tiles(cpu, points, &mut tiles);
             camera.iter().zip(&tiles).for_each(|(lane, tile)| self.add(*lane, *tile));
             self.tiles = tiles;

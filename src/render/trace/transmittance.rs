@@ -90,11 +90,12 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let ray = Ray { origin: group.origin.get(lane), dir: group.dir.get(lane) };
             let point = ray.at(distances[lane]);
             let normal = object.shape.normal(point);
-            sides[lane] = Side::seen_along(ray.dir, normal).opposite();
+            let side = Side::seen_along(ray.dir, normal);
+            sides[lane] = side.opposite();
             cosines[lane] = ray.dir.dot(normal);
             group.travelled[lane] += distances[lane];
             group.origin.set(lane, point);
-            tint.set(lane, tint.get(lane) * object.tint(point));
+            tint.set(lane, tint.get(lane) * object.tint(&object.surface_point(point, side)));
             t_max[lane] -= distances[lane];
         }
         group.errors = self.errors(&*object.shape, &group.travelled[..count], &group.cosines[..count]);

@@ -6,6 +6,7 @@ use super::names::Names;
 use super::parsed::{Form, MAX_VALUES, Parsed, VALUES, Word};
 use super::report::Report;
 use super::values;
+use crate::scene::choice::Choices;
 use crate::scene::entity::Entity;
 use crate::scene::kind::Kind;
 use crate::scene::pparm::{Attribute, Given, LEAST_LENGTH, MOST_LENGTH};
@@ -182,6 +183,12 @@ impl Against<'_, '_> {
         }
         let datum = match (attribute.value_type(), words) {
             (Type::Name(kind), names) if attribute.arity().most() > 1 => self.objects(kind, title, names)?,
+            (Type::Choice(Choices { kind: Some(kind), .. }), [name])
+                if name.form != Form::Number
+                    && let Some(index) = self.names.defined(kind, &name.text) =>
+            {
+                self.store.datum(index).clone()
+            }
             (Type::Name(kind), [name]) if name.form != Form::Number => {
                 self.names.resolve(self.store, kind, name)
             }

@@ -95,11 +95,12 @@ impl Check<'_, '_> {
                     )),
             );
         }
-        let Self { camera, materials, textures, objects, patterns, lights, places, .. } = self;
+        let Self { camera, materials, textures, shaders, objects, patterns, lights, places, .. } = self;
         let model = camera.map(|camera| Model {
             camera: item(store, camera),
             materials: materials.into_iter().map(|material| item(store, material)).collect(),
             textures: textures.into_iter().map(|texture| item(store, texture)).collect(),
+            shaders: shaders.into_iter().map(|shader| item(store, shader)).collect(),
             objects,
             patterns,
             lights,

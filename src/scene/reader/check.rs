@@ -16,7 +16,7 @@ use crate::scene::registry::Registry;
 use crate::scene::store::Store;
 use crate::scene::value::Datum;
 use crate::world::accuracy::Accuracy;
-use crate::world::body::{AnyLight, NamedBody};
+use crate::world::body::{AnyLight, NamedBody, Paint};
 use crate::world::camera::Camera;
 use crate::world::material::Material;
 use crate::world::texture::Texture;
@@ -96,6 +96,7 @@ pub(super) struct Check<'r, 't> {
     pub(super) textures: Vec<(usize, Arc<Texture>)>,
     /// The textures by the paths of their files.
     files: HashMap<PathBuf, Arc<Texture>>,
+    pub(super) shaders: Vec<(usize, Paint)>,
     /// How many more bytes the images of textures may take.
     pub(super) texture_memory: u64,
     pub(super) objects: Vec<Object>,
@@ -132,6 +133,7 @@ impl<'r, 't> Check<'r, 't> {
             materials: Vec::new(),
             textures: Vec::new(),
             files: HashMap::new(),
+            shaders: Vec::new(),
             texture_memory: accuracy.memory.unwrap_or(TEXTURE_MEMORY),
             objects: Vec::new(),
             patterns: Vec::new(),
@@ -218,11 +220,14 @@ impl Check<'_, '_> {
         self.store.add(entity, text, values.as_deref());
         // An object to which one entity refers is often that of many.
         for (datum, _) in values.iter().flatten() {
-            if let Datum::Object { name, .. } = datum
-                && !name.is_empty()
-                && self.names.defined(Kind::Object, name).is_none()
-            {
-                self.define(Kind::Object, name, datum);
+            // And so is a type of shader that stands for a shader.
+            let (kind, name) = match datum {
+                Datum::Object { name, .. } => (Kind::Object, name),
+                Datum::Shader { name, .. } => (Kind::Shader, name),
+                _ => continue,
+            };
+            if !name.is_empty() && self.names.defined(kind, name).is_none() {
+                self.define(kind, name, datum);
             }
         }
         if let Some(values) = values
@@ -232,7 +237,7 @@ impl Check<'_, '_> {
         }
         // If the entity is faulty, a stand-in takes its place, so that the entities that refer to it are checked too.
         if counts
-            && matches!(entity.kind(), Kind::Material | Kind::Texture)
+            && matches!(entity.kind(), Kind::Material | Kind::Texture | Kind::Shader)
             && self.names.defined(entity.kind(), text).is_none()
         {
             self.define(entity.kind(), text, &stand_in(entity.kind()));
@@ -273,6 +278,12 @@ impl Check<'_, '_> {
                     };
                     self.define(kind, &args.name, &Datum::Texture { name, texture: texture.clone() });
                     self.textures.push((order, texture));
+                }
+            }
+            Construct::Shader(construct) => {
+                if let Some(paint) = self.made(parsed, &args, construct) {
+                    self.define(kind, &args.name, &Datum::Shader { name, paint: paint.clone() });
+                    self.shaders.push((order, paint));
                 }
             }
             Construct::Object(_) | Construct::Light(_) => {}

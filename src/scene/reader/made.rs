@@ -1,6 +1,7 @@
 //! Constructs objects and lights, some at a time.
 
 use crate::scene::entity::{Args, Construct, Entity, Refusal};
+use crate::scene::procedural;
 use crate::scene::store::Store;
 use crate::scene::value::Datum;
 use crate::world::body::{AnyLight, Body};
@@ -29,7 +30,9 @@ pub fn made(
         let construct: &dyn Fn(&Args) -> Result<Made, Refusal> =
             match store.sound(order).map(|entity| entity.construct) {
                 Some(Construct::Object(_)) if reads_files => &|_| Ok(Made::ByFile),
-                Some(Construct::Object(construct)) => &move |args| construct(args).map(Made::Object),
+                Some(Construct::Object(construct)) => {
+                    &move |args| procedural::body(args, construct).map(Made::Object)
+                }
                 Some(Construct::Light(construct)) => &move |args| construct(args).map(Made::Light),
                 _ => continue,
             };

@@ -5,11 +5,12 @@ use super::parsed::{Form, Word};
 use super::report::Report;
 use crate::scene::entity::Entity;
 use crate::scene::kind::Kind;
+use crate::scene::procedural;
 use crate::scene::registry::Registry;
 use crate::scene::store::Store;
-use crate::scene::value::Datum;
+use crate::scene::value::{Datum, Value};
 use crate::text::{self, nearest};
-use crate::world::body::NamedBody;
+use crate::world::body::{NamedBody, Paint};
 use hashbrown::hash_table::Entry;
 use hashbrown::{DefaultHashBuilder, HashMap, HashSet, HashTable};
 use std::collections::{BTreeMap, btree_map};
@@ -42,9 +43,9 @@ pub struct Names {
     again: BTreeMap<usize, Claims>,
     /// The hashes of the names of entities of unknown types, which a reference may mean.
     doubtful: HashSet<u64>,
-    /// The materials that can be referred to so far, the textures, and those objects to which an entity has referred, by
+    /// The materials that can be referred to so far, the textures, the shaders, and those objects to which an entity has referred, by
     /// the indices of their data.
-    defined: [HashMap<String, u32>; 3],
+    defined: [HashMap<String, u32>; 4],
     /// The objects that other entities refer to, by their orders: a datum each.
     patterns: BTreeMap<usize, Datum>,
     /// References to entities not (yet) defined.
@@ -259,6 +260,11 @@ impl Names {
             let new = || Datum::Object { name: Arc::from(&*word.text), body: NamedBody::default() };
             return self.patterns.entry(order).or_insert_with(new).clone();
         }
+        if kind == Kind::Shader
+            && let Some(paint) = procedural::of_type(&word.text)
+        {
+            return Datum::Shader { name: Arc::from(&*word.text), paint: paint.clone() };
+        }
         let hash = self.hash_of(&word.text);
         self.unresolved.add(kind, word, hash);
         stand_in(kind)
@@ -286,6 +292,7 @@ impl Names {
         for (entity, order) in orders.filter_map(|order| Some((store.entity(order)?, order))) {
             known.entry(entity.kind()).or_default().push(store.name(order));
         }
+        known.entry(Kind::Shader).or_default().extend(procedural::types().map(|entity| entity.name));
         known.values_mut().for_each(|known| {
             known.sort_unstable();
             known.dedup();
@@ -298,6 +305,15 @@ impl Names {
                         .label(suggestion(None, *count))
                         .also(place(defined), "defined here")
                         .help(format!("{} must be defined before it is used", kind.with_article()))
+                }
+                // A type that needs attributes does not stand for a shader.
+                None if *kind == Kind::Shader
+                    && let Some(entity) = registry.find(text).filter(|entity| entity.kind() == *kind) =>
+                {
+                    let usage = report.syntax().entity_usage(entity, "NAME");
+                    Fault::error(first.clone(), format!("there is no shader `{text}`"))
+                        .label(suggestion(None, *count))
+                        .help(format!("`{text}` is a type of shader: define one before this: {usage}"))
                 }
                 None => {
                     let known = known.get(kind).filter(|_| is_told).into_iter().flatten().copied();
@@ -317,6 +333,7 @@ impl Names {
 /// Returns the index of the table of the defined entities of a kind.
 fn table_of(kind: Kind) -> usize {
     match kind {
+        Kind::Shader => 3,
         Kind::Object => 2,
         Kind::Texture => 1,
         _ => 0,
@@ -367,8 +384,10 @@ fn few(mut all: Vec<Repeated<'_>>, is_placed: bool) -> Vec<(Repeated<'_>, usize,
 
 /// Returns a default entity, in place of one that is faulty or missing. All of a kind are the same.
 pub fn stand_in(kind: Kind) -> Datum {
-    if kind == Kind::Object {
-        return Datum::Object { name: Arc::from(""), body: NamedBody::default() };
+    match kind {
+        Kind::Object => return Datum::Object { name: Arc::from(""), body: NamedBody::default() },
+        Kind::Shader => return Paint::default().to_datum(),
+        _ => {}
     }
     static STAND_INS: LazyLock<[Datum; 2]> = LazyLock::new(|| {
         [

@@ -316,6 +316,12 @@ fn is_value(
 ) -> bool {
     let max = attribute.map_or(1, |attribute| attribute.max);
     match attribute.map(|attribute| attribute.value_type) {
+        // Of several formulas, the later ones may be left out.
+        Some(Type::Formula(_)) if already > 0 && !looks_like_number(word) => {
+            let is_attribute =
+                table.is_some_and(|table| table.find(word).is_some() || table.near(word, guesses).is_some());
+            already < max && !is_attribute
+        }
         // A name may look like anything, even like a number or an attribute: `material material`.
         // The names of a list end where the next attribute begins.
         Some(Type::Name(_)) if max > 1 => {

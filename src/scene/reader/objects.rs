@@ -5,6 +5,7 @@ use super::fault::Fault;
 use super::made::{Made, made};
 use crate::scene::entity::{Args, Construct, Refusal};
 use crate::scene::model::{Item, Object};
+use crate::scene::procedural;
 use crate::scene::store::{Record, Store};
 use crate::scene::value::Datum;
 use crate::world::accuracy::Accuracy;
@@ -55,7 +56,12 @@ impl Check<'_, '_> {
             for (order, made) in made.into_iter().flatten() {
                 let record = Record::new(&store, order);
                 match made {
-                    Ok(Made::Object(body)) => self.objects.extend(objects(record, body)),
+                    Ok(Made::Object(body)) => {
+                        if !body.warnings.is_empty() {
+                            self.warn(&record.args(), &body.warnings, source);
+                        }
+                        self.objects.extend(objects(record, body));
+                    }
                     Ok(Made::ByFile) => {
                         let body = self.body(record.args(), source);
                         self.objects.extend(body.into_iter().flat_map(|body| objects(record.clone(), body)));
@@ -76,19 +82,26 @@ impl Check<'_, '_> {
         for file in args.files() {
             self.report.add_file(self.setting.folder.join(file));
         }
-        let body = construct(&args).map_err(|refusal| self.refused(&args, refusal, source)).ok()?;
-        for Warning { attribute, message, help } in &body.warnings {
-            let parsed = source.entity(self.registry, args.order, &self.places.get(args.order));
-            let place = parsed.and_then(|parsed| place_of(args.entity, &parsed, Some(attribute)));
-            let message = format!("{} `{}` {message}", args.entity.name, args.name);
-            self.report.add(Fault::warning(place, message).help(help));
-        }
+        let body = procedural::body(&args, construct)
+            .map_err(|refusal| self.refused(&args, refusal, source))
+            .ok()?;
+        self.warn(&args, &body.warnings, source);
         if body.bytes > 0 {
             let setting = Arc::make_mut(&mut self.setting);
             setting.memory = setting.memory.saturating_sub(body.bytes);
             self.texture_memory = self.texture_memory.min(setting.memory);
         }
         Some(body)
+    }
+
+    /// Reports warnings about an object.
+    fn warn(&mut self, args: &Args, warnings: &[Warning], source: &Source<'_, '_>) {
+        for Warning { attribute, message, help } in warnings {
+            let parsed = source.entity(self.registry, args.order, &self.places.get(args.order));
+            let place = parsed.and_then(|parsed| place_of(args.entity, &parsed, Some(attribute)));
+            let message = format!("{} `{}` {message}", args.entity.name, args.name);
+            self.report.add(Fault::warning(place, message).help(help));
+        }
     }
 
     fn refused(&mut self, args: &Args, refusal: Refusal, source: &Source<'_, '_>) {

@@ -4,6 +4,7 @@ use super::fault::{Fault, Place};
 use super::numbers::Numbers;
 use super::parsed::Word;
 use super::report::Report;
+use crate::scene::choice::Choices;
 use crate::scene::value::Type;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -158,7 +159,7 @@ impl<'a> Rounds<'a> {
     /// Returns a word of an attribute's values with numbers in place of formulas, and the name of the entity of this
     /// round in place of that in the body.
     pub fn word(&mut self, word: Word<'a>, value_type: Option<Type>, report: &mut Report<'_>) -> Word<'a> {
-        if let Some(Type::Name(_)) = value_type {
+        if let Some(Type::Name(_) | Type::Choice(Choices { kind: Some(_), .. })) = value_type {
             let depth = self.open.iter().rposition(|round| round.entities.contains(&*word.text));
             return match depth {
                 Some(depth) => {

@@ -19,6 +19,9 @@ impl Check<'_, '_> {
         for user in users {
             used.extend(user.args_in(&mut memory).textures().map(str::to_owned));
         }
+        for (order, _) in &self.shaders {
+            used.extend(store.args(*order).textures().map(str::to_owned));
+        }
         for (order, texture) in &self.textures {
             let args = store.args(*order);
             if !used.contains(&args.name) {

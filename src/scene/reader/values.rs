@@ -18,7 +18,14 @@ pub fn read(value_type: Type, words: &[Word<'_>]) -> Result<Datum, Vec<Fault>> {
         Type::Number => all(words, number).map(Datum::Numbers),
         Type::Word | Type::File | Type::Name(_) => words.first().ok_or_else(Vec::new).and_then(text),
         Type::Formula(variables) => {
-            words.first().ok_or_else(Vec::new).and_then(|word| formula(word, variables))
+            let mut formulas = Vec::with_capacity(words.len());
+            for word in words {
+                formulas.push(formula(word, variables)?);
+            }
+            Ok(match formulas.pop() {
+                Some(formula) if formulas.is_empty() => Datum::Formula(formula),
+                last => Datum::Formulas(formulas.into_iter().chain(last).collect()),
+            })
         }
         Type::Truth => words.first().ok_or_else(Vec::new).and_then(truth),
         Type::Choice(choices) => words.first().ok_or_else(Vec::new).and_then(|word| choice(choices, word)),
@@ -52,9 +59,9 @@ fn truth(word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
     }
 }
 
-fn formula(word: &Word<'_>, variables: &'static [&'static str]) -> Result<Datum, Vec<Fault>> {
+fn formula(word: &Word<'_>, variables: &'static [&'static str]) -> Result<Arc<Formula>, Vec<Fault>> {
     Formula::parse_in(&word.text, variables)
-        .map(|formula| Datum::Formula(Arc::new(formula)))
+        .map(Arc::new)
         .map_err(|fault| vec![Fault::error(word.within(&fault.place), fault.message).help(fault.help)])
 }
 

@@ -2,7 +2,7 @@
 
 use super::surface::Surface;
 use crate::world::material::{Look, Material, Rgb};
-use crate::world::shader::Shader;
+use crate::world::shader::{Shader, SurfacePoint};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
@@ -25,20 +25,20 @@ impl Painted {
 }
 
 impl Shader for Painted {
-    fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
-        self.at(material, at).ambient
+    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.at(material, at.position).ambient
     }
 
-    fn diffuse(&self, material: &Material, at: DVec3) -> Rgb {
-        self.at(material, at).diffuse
+    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.at(material, at.position).diffuse
     }
 
-    fn specular(&self, material: &Material, at: DVec3) -> Rgb {
-        self.at(material, at).specular
+    fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.at(material, at.position).specular
     }
 
-    fn tile(&self, at: DVec3) -> DVec2 {
-        DVec2::new(f64::from(self.surface.slots[self.surface.face_at(at)]), 0.0)
+    fn tile(&self, at: &SurfacePoint) -> DVec2 {
+        DVec2::new(f64::from(self.surface.slots[self.surface.face_at(at.position)]), 0.0)
     }
 
     /// The largest of all materials, if none has a negative diffuse colour.

@@ -12,6 +12,7 @@ use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use crate::shapes::plane::Plane;
+use crate::shapes::uv;
 use crate::simd::cpu::Cpu;
 use crate::text;
 use crate::world::accuracy::{Accuracy, Bounded};
@@ -20,7 +21,7 @@ use crate::world::coincidence::{CLOSE, ROUNDING};
 use crate::world::hittable::Hittable;
 use crate::world::packets::shape::Proofs;
 use crate::world::shape::{ByPackets, Shape};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 use std::marker::PhantomData;
 use std::sync::Arc;
 
@@ -100,6 +101,14 @@ impl<A: Bounded> Hittable for Mesh<A> {
 
     fn shading_normal(&self, at: DVec3, normal: DVec3) -> DVec3 {
         self.surface.smoothed(self.surface.face_at(at), at, normal)
+    }
+
+    fn uv(&self, at: DVec3) -> Option<DVec2> {
+        Some(uv::on_triangle(self.surface.corners(self.surface.face_at(at)), at))
+    }
+
+    fn face(&self, at: DVec3) -> Option<u32> {
+        u32::try_from(self.surface.face_at(at)).ok()
     }
 
     fn bounds(&self) -> Option<Aabb> {

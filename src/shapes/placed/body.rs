@@ -2,60 +2,103 @@
 
 use super::shape::{ByPlacement, Placed};
 use crate::geometry::placement::Placement;
-use crate::numeric::interval::{Fine, Fraction, Interval};
-use crate::world::body::Body;
+use crate::numeric::interval::{Fine, Fraction};
+use crate::world::body::{AnyShader, Body};
 use crate::world::certify::Precise;
 use crate::world::material::{Look, Material, Rgb};
-use crate::world::packets::shader::EncloseLook;
-use crate::world::shader::{LookBounds, Plain, Shader};
+use crate::world::packets::shader::{EncloseLook, PacketShader};
+use crate::world::shader::{LookBounds, Plain, PointBounds, Sees, Shader, SurfacePoint};
 use crate::world::shape::{ByPackets, Shape};
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
 
 impl Placed {
     /// Makes a copy of an object with this material.
     pub fn body(body: &Arc<Body>, placement: Placement, material: &Material) -> Body {
         let shape = Shape::new(Self::new(body, placement)).by::<ByPackets, ByPlacement>();
-        let is_plain = body.shader.uniform(material) == Plain.uniform(material);
-        let shaded = |shape| Body::shaded(shape, PlacedShader(Self::new(body, placement)));
+        let is_plain = body.shader.uniform(material) == Plain.uniform(material) && !body.shader.bends();
+        let shaded = |shape| Body::shaded(shape, PlacedShader::new(body, placement, None));
         let copy = if is_plain { Body::plain(shape) } else { shaded(shape) };
-        Body { depth: body.depth + 1, ..copy }
+        let original = Arc::clone(body);
+        let to_own = move |shader: AnyShader| -> AnyShader {
+            Box::new(PlacedShader::new(&original, placement, Some(shader)))
+        };
+        Body { depth: body.depth + 1, anchor: Some(body.anchor()), to_own: Some(Box::new(to_own)), ..copy }
     }
 }
 
 /// The reflectivities of an object at its own points.
-struct PlacedShader(Placed);
+struct PlacedShader {
+    placed: Placed,
+    /// The shader of the copy; `None` for that of the object.
+    shader: Option<AnyShader>,
+    /// Takes normals from the world to the object's own coordinates, up to their length.
+    normal_to_own: DMat3,
+}
+
+impl PlacedShader {
+    fn new(body: &Arc<Body>, placement: Placement, shader: Option<AnyShader>) -> Self {
+        let placed = Placed::new(body, placement);
+        // The inverse of the transposed matrix, which takes them to the world.
+        let normal_to_own = placed.to_own.transpose().inverse();
+        Self { placed, shader, normal_to_own }
+    }
+
+    fn own(&self) -> &dyn PacketShader {
+        self.shader.as_deref().unwrap_or(&*self.placed.body.shader)
+    }
+
+    /// Takes a point from the world to the object's own coordinates.
+    fn own_point(&self, at: &SurfacePoint) -> SurfacePoint {
+        let normal = (self.normal_to_own * at.normal).normalize_or_zero();
+        SurfacePoint { position: self.placed.own_point(at.position), normal, ..*at }
+    }
+}
 
 impl Shader for PlacedShader {
-    fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
-        self.0.body.shader.ambient(material, self.0.own_point(at))
+    fn sees(&self) -> Sees {
+        self.own().sees()
     }
 
-    fn diffuse(&self, material: &Material, at: DVec3) -> Rgb {
-        self.0.body.shader.diffuse(material, self.0.own_point(at))
+    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.own().ambient(material, &self.own_point(at))
     }
 
-    fn specular(&self, material: &Material, at: DVec3) -> Rgb {
-        self.0.body.shader.specular(material, self.0.own_point(at))
+    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.own().diffuse(material, &self.own_point(at))
     }
 
-    fn tile(&self, at: DVec3) -> DVec2 {
-        self.0.body.shader.tile(self.0.own_point(at))
+    fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.own().specular(material, &self.own_point(at))
     }
 
-    fn enclose<F: Precise>(&self, material: &Material, at: [Interval<F>; 3]) -> Option<LookBounds<F>> {
-        let own = self.0.placement.point(at).map(F::widen);
-        let look = EncloseLook::<Fraction>::look(&*self.0.body.shader, material, own)?;
+    fn tile(&self, at: &SurfacePoint) -> DVec2 {
+        self.own().tile(&self.own_point(at))
+    }
+
+    fn bends(&self) -> bool {
+        self.own().bends()
+    }
+
+    fn bend(&self, at: &SurfacePoint) -> DVec3 {
+        let own = self.own().bend(&self.own_point(at));
+        (self.placed.to_own.transpose() * own).try_normalize().unwrap_or(at.normal)
+    }
+
+    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
+        let position = self.placed.placement.point(at.position).map(F::widen);
+        let own = PointBounds { position, normal: None };
+        let look = EncloseLook::<Fraction>::look(self.own(), material, &own)?;
         let narrow = |colour: [Fine; 3]| colour.map(F::narrow);
         let LookBounds { ambient, diffuse, specular } = look;
         Some(LookBounds { ambient: narrow(ambient), diffuse: narrow(diffuse), specular: narrow(specular) })
     }
 
     fn uniform(&self, material: &Material) -> Option<Look> {
-        self.0.body.shader.uniform(material)
+        self.own().uniform(material)
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {
-        self.0.body.shader.brightest(material)
+        self.own().brightest(material)
     }
 }

@@ -12,7 +12,7 @@ use crate::world::coincidence::{CLOSE, ROUNDING};
 use crate::world::hittable::Hittable;
 use crate::world::packets::shape::Proofs;
 use crate::world::shape::{ByPackets, Shape};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
 
 /// A copy of an object's shape.
@@ -200,6 +200,14 @@ impl Hittable for Placed {
     fn part(&self, ray: &Ray, distance: f64) -> Option<String> {
         let (own, length) = self.own_ray(ray);
         self.body.shape.part(&own, distance * length)
+    }
+
+    fn uv(&self, at: DVec3) -> Option<DVec2> {
+        self.body.shape.uv(self.own_point(at))
+    }
+
+    fn face(&self, at: DVec3) -> Option<u32> {
+        self.body.shape.face(self.own_point(at))
     }
 
     fn bounds(&self) -> Option<Aabb> {

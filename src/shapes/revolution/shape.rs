@@ -12,13 +12,14 @@ use crate::geometry::ray_packet::{self, Nearest, RayPacket, split};
 use crate::geometry::roots::Method;
 use crate::geometry::sight::Line;
 use crate::numeric::scalar::Scalar;
+use crate::shapes::uv;
 use crate::simd::cpu::Cpu;
 use crate::world::certify::Equation;
 use crate::world::hittable::{Certified, Hittable, Searched};
 use crate::world::interaction::SurfaceInteraction;
 use crate::world::packets::shape::{Packets, Proofs, by_distance};
 use crate::world::shape::{ByPackets, Shape};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// A surface around the y axis of a frame.
 pub struct InFrame<S> {
@@ -63,6 +64,10 @@ impl Hittable for InFrame<Classic> {
         false
     }
 
+    fn uv(&self, at: DVec3) -> Option<DVec2> {
+        Some(uv::on_height(self.frame.point(at), self.surface.height))
+    }
+
     fn bounds(&self) -> Option<Aabb> {
         let [low, high] = self.surface.extent();
         Some(self.frame.bounds(&Aabb { low, high }))
@@ -80,6 +85,10 @@ impl Hittable for InFrame<Revolution> {
 
     fn normal(&self, at: DVec3) -> DVec3 {
         self.surface.normal_in(&self.frame, at)
+    }
+
+    fn uv(&self, at: DVec3) -> Option<DVec2> {
+        Some(uv::on_height(self.frame.point(at), self.surface.height))
     }
 
     fn bounds(&self) -> Option<Aabb> {

@@ -156,7 +156,18 @@ fn seen(solid: &Solid) -> Vec<Body> {
         let part = &parts[index];
         let shader = PartShader(part.body.clone());
         let body = Body::shaded(Shape::new(shape).by::<ByPackets, ByParts>(), shader);
-        Some(Body { depth: part.body.depth, material: Some(part.material.clone()), ..body })
+        let own = part.body.clone();
+        let to_own = move |shader| match &own.to_own {
+            Some(to_own) => to_own(shader),
+            None => shader,
+        };
+        Some(Body {
+            depth: part.body.depth,
+            material: Some(part.material.clone()),
+            anchor: Some(part.body.anchor()),
+            to_own: Some(Box::new(to_own)),
+            ..body
+        })
     };
     (0..parts.len()).filter_map(body).collect()
 }

@@ -14,7 +14,7 @@ use crate::world::packets::shape::{Proofs, by_distance};
 use crate::world::shape::{ByPackets, Shape};
 use crate::world::solid::Tree;
 use f256::f256;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
 /// The largest number of hits of a part along a ray that are visited.
@@ -232,6 +232,14 @@ impl Hittable for Trimmed {
 
     fn shading_normal(&self, at: DVec3, normal: DVec3) -> DVec3 {
         self.own().shading_normal(at, normal)
+    }
+
+    fn uv(&self, at: DVec3) -> Option<DVec2> {
+        self.own().uv(at)
+    }
+
+    fn face(&self, at: DVec3) -> Option<u32> {
+        self.own().face(at)
     }
 
     fn part(&self, ray: &Ray, distance: f64) -> Option<String> {

@@ -18,7 +18,7 @@ use crate::scene::model::{Model, Object};
 use crate::simd::cpu::Cpu;
 use crate::world::body::AnyShader;
 use crate::world::material::{Look, Material, Rgb};
-use crate::world::shader::Shader;
+use crate::world::shader::{Sees, Shader, SurfacePoint};
 use ceiling::Bare;
 use glam::DVec3;
 use std::io;
@@ -190,15 +190,27 @@ fn matt(model: Model) -> Model {
 struct Matt(AnyShader);
 
 impl Shader for Matt {
-    fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
+    fn sees(&self) -> Sees {
+        self.0.sees()
+    }
+
+    fn bends(&self) -> bool {
+        self.0.bends()
+    }
+
+    fn bend(&self, at: &SurfacePoint) -> DVec3 {
+        self.0.bend(at)
+    }
+
+    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
         self.0.ambient(material, at)
     }
 
-    fn diffuse(&self, material: &Material, at: DVec3) -> Rgb {
+    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
         self.0.diffuse(material, at)
     }
 
-    fn specular(&self, _material: &Material, _at: DVec3) -> Rgb {
+    fn specular(&self, _material: &Material, _at: &SurfacePoint) -> Rgb {
         Rgb::ZERO
     }
 

@@ -7,6 +7,7 @@ use crate::numeric::interval::{Float, Interval};
 use crate::numeric::scalar::{Scalar, dot, per_axis};
 use crate::world::certify::Found;
 use crate::world::packets::light::PacketLight;
+use crate::world::shader::PointBounds;
 use glam::DVec2;
 
 /// The number of panes on a shadow ray after which what passes is open.
@@ -159,7 +160,8 @@ impl<F: Number> Panes<F> {
             }
             let point = path.line.at(at);
             let pane = &scene.objects[object];
-            let tint = tint(pane.material.transparency, F::look(pane, point)?.diffuse)?;
+            let look = F::look(pane, &PointBounds { position: point, normal: None })?;
+            let tint = tint(pane.material.transparency, look.diffuse)?;
             self.passed = per_axis(|channel| self.passed[channel] * tint[channel]);
             self.at.push(at);
             start = at;

@@ -8,7 +8,7 @@ use crate::scene::model::Object;
 use crate::world::certify::{Found, Precise};
 use crate::world::packets::light::{EncloseLight, PacketLight};
 use crate::world::packets::shader::{EncloseLook, PacketShader};
-use crate::world::shader::LookBounds;
+use crate::world::shader::{LookBounds, PointBounds};
 
 /// The number of edges of one object on a line after which its hits are in doubt.
 const MAX_EDGES: usize = 4;
@@ -28,7 +28,7 @@ pub(super) struct Place {
 /// A precision in which colours are proven.
 pub(super) trait Number: Precise {
     /// Encloses the look of an object at a point.
-    fn look(object: &Object, at: [Interval<Self>; 3]) -> Option<LookBounds<Self>>;
+    fn look(object: &Object, at: &PointBounds<Self>) -> Option<LookBounds<Self>>;
 
     /// Encloses what a light sends toward a point.
     fn sent(light: &(dyn PacketLight + 'static), toward: [Interval<Self>; 3]) -> Option<Colour<Self>>;
@@ -39,7 +39,7 @@ where
     dyn PacketShader: EncloseLook<F>,
     dyn PacketLight: EncloseLight<F>,
 {
-    fn look(object: &Object, at: [Interval<Self>; 3]) -> Option<LookBounds<Self>> {
+    fn look(object: &Object, at: &PointBounds<Self>) -> Option<LookBounds<Self>> {
         EncloseLook::<F>::look(&*object.shader, &object.material, at)
     }
 

@@ -5,6 +5,7 @@ use crate::geometry::sight::Line;
 use crate::numeric::interval::{Float, Interval};
 use crate::numeric::scalar::{Scalar, dot, per_axis};
 use crate::world::certify::gradient;
+use crate::world::shader::PointBounds;
 
 /// A point that a ray hits, and how it looks there.
 pub(super) struct Surface<F> {
@@ -21,6 +22,10 @@ impl<F: Number> Surface<F> {
     /// Returns the point at t of a line; `None` where its normal or its look are open.
     pub fn new(scene: &Scene, line: &Line<Interval<F>>, t: Interval<F>, place: Place) -> Option<Self> {
         let object = &scene.objects[place.object];
+        // What is lit of a surface whose normals are bent also depends on those that it has.
+        if object.shader.bends() {
+            return None;
+        }
         let at = line.at(t);
         let shape = F::proofs(object.shape.proven()?);
         let normal = gradient(shape, at, place.part);
@@ -32,16 +37,17 @@ impl<F: Number> Surface<F> {
         let zero = F::of(0.0);
         let toward =
             if object.shape.is_two_sided() { dot(normal, line.dir) } else { Interval::constant(-1.0) };
-        let normal = if toward.high < zero {
-            normal
-        } else if toward.low > zero {
-            per_axis(|axis| -normal[axis])
-        } else {
+        let is_turned = toward.low > zero;
+        if !is_turned && toward.high >= zero {
             return None;
+        }
+        let turned = |normal: [Interval<F>; 3]| {
+            if is_turned { per_axis(|axis| -normal[axis]) } else { normal }
         };
+        let normal = turned(normal);
         // What is mirrored is mirrored by the shading normal, too.
         let normal = shape.shading_normal(at, place.part, normal)?;
-        let look = F::look(object, at)?;
+        let look = F::look(object, &PointBounds { position: at, normal: Some(turned(normal)) })?;
         let [ambient, diffuse, specular] = [look.ambient, look.diffuse, look.specular];
         Some(Self { place, at, normal, ambient, diffuse, specular })
     }

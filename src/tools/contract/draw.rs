@@ -1,6 +1,7 @@
 //! Draws values for attributes by their types and rules, the same in every run.
 
 use crate::numeric::formula::HEIGHT;
+use crate::scene::choice::Choices;
 use crate::scene::entity::Entity;
 use crate::scene::kind::Kind;
 use crate::scene::pparm::Attribute;
@@ -12,6 +13,7 @@ use image::RgbImage;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 use std::fs;
+use std::mem::swap;
 use std::path::Path;
 use tempfile::TempDir;
 
@@ -52,24 +54,28 @@ impl SceneFolder {
 }
 
 /// Draws pseudorandom numbers, and values made of them.
-pub struct Draw(Pcg32);
+pub struct Draw {
+    numbers: Pcg32,
+    /// The numbers of what is drawn aside.
+    others: Pcg32,
+}
 
 impl Draw {
     /// Seeds the generator with a plugin's name, so that what is drawn for a plugin does not depend on the other
     /// plugins.
     pub fn new(name: &str) -> Self {
         let seed = name.bytes().fold(0, |seed: u64, byte| seed.wrapping_mul(257).wrapping_add(byte.into()));
-        Self(Pcg32::new(seed, 0))
+        Self { numbers: Pcg32::new(seed, 0), others: Pcg32::new(seed, 1) }
     }
 
     /// Draws a number from 0 to 1.
     pub fn part(&mut self) -> f64 {
-        f64::from(self.0.next_u32()) / f64::from(u32::MAX)
+        f64::from(self.numbers.next_u32()) / f64::from(u32::MAX)
     }
 
     /// Draws an integer from 0 to `count - 1`.
     fn below(&mut self, count: usize) -> usize {
-        self.0.next_u32() as usize % count
+        self.numbers.next_u32() as usize % count
     }
 
     fn pick<T: Copy>(&mut self, of: &[T]) -> T {
@@ -124,10 +130,38 @@ impl Draw {
                 text += &one.replacen("NAME", &of_list(name(Kind::Object), index), 1);
             }
         }
-        if matches!(entity.kind(), Kind::Object | Kind::Light) {
-            text += &self.entity(entity, "tried");
+        if matches!(entity.kind(), Kind::Shader | Kind::Object | Kind::Light) {
+            let (tried, named) = (self.entity(entity, "tried"), format!("shader {}\n", name(Kind::Shader)));
+            if tried.contains(&named) {
+                text += &self.aside(|draw| draw.shader(registry, entity));
+            }
+            text += &tried;
         }
         text
+    }
+
+    /// Draws a shader that others can refer to, with the texture that it may refer to.
+    fn shader(&mut self, registry: &Registry, user: &Entity) -> String {
+        let is_simple =
+            |other: &&'static Entity| other.kind() == Kind::Shader && !refers_to(other, Kind::Shader);
+        let shaders: Vec<_> = registry.iter().filter(is_simple).collect();
+        let shader = self.pick(&shaders);
+        let needs = |kind| refers_to(shader, kind) && !refers_to(user, kind);
+        let mut text = String::new();
+        for kind in [Kind::Material, Kind::Texture].into_iter().filter(|kind| needs(*kind)) {
+            if let Some(other) = registry.iter().find(|other| other.kind() == kind) {
+                text += &self.entity(other, name(kind));
+            }
+        }
+        text + &self.entity(shader, name(Kind::Shader))
+    }
+
+    /// Draws from other numbers, so that what is drawn afterwards does not depend on it.
+    fn aside<T>(&mut self, draw: impl FnOnce(&mut Self) -> T) -> T {
+        swap(&mut self.numbers, &mut self.others);
+        let drawn = draw(self);
+        swap(&mut self.numbers, &mut self.others);
+        drawn
     }
 
     fn entity(&mut self, entity: &Entity, name: &str) -> String {
@@ -139,7 +173,12 @@ impl Draw {
                 continue;
             }
             let must = chosen.is_some();
-            if let Some(values) = self.values(attribute, must, entity.kind() == Kind::Material) {
+            let positive = entity.kind() == Kind::Material;
+            let values = match attribute.value_type() {
+                Type::Name(Kind::Shader) => self.aside(|draw| draw.values(attribute, must, positive)),
+                _ => self.values(attribute, must, positive),
+            };
+            if let Some(values) = values {
                 lines += &format!("    {}\n", Syntax::Notes.pair(attribute.name(), &values));
             }
         }
@@ -171,6 +210,9 @@ impl Draw {
                 let most = attribute.arity().examples().into_iter().max().unwrap_or(count);
                 Some((0..most).map(|index| of_list(name(kind), index)).collect())
             }
+            Type::Choice(Choices { kind: Some(kind), .. }) if self.aside(|draw| draw.below(2) == 0) => {
+                word(name(kind))
+            }
             Type::Formula(HEIGHT) => word(&format!("\"{}\"", self.pick(&FORMULAS))),
             Type::Formula(_) => word(&format!("\"{}\"", self.pick(&FIELDS))),
             _ => {
@@ -190,7 +232,11 @@ impl Draw {
 
 /// Tells whether an attribute of the type refers to an entity of this kind.
 fn refers_to(entity: &Entity, kind: Kind) -> bool {
-    entity.attributes().any(|attribute| is_name_of(attribute, kind))
+    entity.attributes().any(|attribute| match attribute.value_type() {
+        Type::Name(named) => named == kind,
+        Type::Choice(choices) => choices.kind == Some(kind),
+        _ => false,
+    })
 }
 
 fn is_name_of(attribute: &dyn Attribute, kind: Kind) -> bool {
@@ -208,6 +254,7 @@ fn name(kind: Kind) -> &'static str {
         Kind::Camera => "eye",
         Kind::Material => "m",
         Kind::Texture => "t",
+        Kind::Shader => "s",
         Kind::Object => "o",
         Kind::Light => "tried",
     }

@@ -2,9 +2,9 @@
 
 use super::draw::Draw;
 use super::promise::{Fault, Promise};
+use crate::geometry::ray::Side;
 use crate::scene::dump;
 use crate::scene::model::Model;
-use crate::scene::procedural::{Anchor, ProceduralShader};
 use crate::scene::profile::Profile;
 use crate::scene::reader;
 use crate::scene::registry::Registry;
@@ -12,12 +12,14 @@ use crate::scene::syntax::Syntax;
 use crate::shapes::revolution::{Finish, Revolution};
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::{LANES, Vectors};
+use crate::world::body::Paint;
 use crate::world::camera::Camera;
 use crate::world::light_samples::{LightSamples, ShadingPoints};
 use crate::world::material::{Look, Material, Rgb};
 use crate::world::packets::light::PacketLight;
-use crate::world::packets::shader::PacketShader;
-use glam::DVec3;
+use crate::world::packets::shader::{PacketShader, SurfacePoints};
+use crate::world::shader::{Anchor, SurfacePoint};
+use glam::{DVec2, DVec3};
 use std::path::Path;
 
 /// The number of points at which lights and procedural shaders are evaluated.
@@ -37,8 +39,8 @@ pub fn dump(registry: &Registry, folder: &Path, model: &Model) -> Result<(), Fau
     Ok(())
 }
 
-/// Checks a shader's reflectivities at a point, for single rays and in packets.
-pub fn shader(shader: &dyn PacketShader, at: DVec3) -> Result<(), Fault> {
+/// Checks a shader's reflectivities and normals at a point, for single rays and in packets.
+pub fn shader(shader: &dyn PacketShader, at: &SurfacePoint) -> Result<(), Fault> {
     let material = Material {
         ambient: Rgb::new(0.1, 0.5, 3.0),
         diffuse: Rgb::new(2.0, 0.7, 0.0),
@@ -47,9 +49,10 @@ pub fn shader(shader: &dyn PacketShader, at: DVec3) -> Result<(), Fault> {
         transparency: 0.2,
     };
     let one = [shader.ambient(&material, at), shader.diffuse(&material, at), shader.specular(&material, at)];
+    let found = |what: String| format!("{what} at {}", at.position);
     for (colour, what) in one.iter().zip(["ambient", "diffuse", "specular"]) {
         if !colour.is_finite() || colour.min_element() < 0.0 {
-            return Err(Promise::ReflectivityIsSound.fault(format!("`{what}` is {colour} at {at}")));
+            return Err(Promise::ReflectivityIsSound.fault(found(format!("`{what}` is {colour}"))));
         }
     }
     if let Some(Look { ambient, diffuse, specular }) = shader.uniform(&material)
@@ -57,31 +60,38 @@ pub fn shader(shader: &dyn PacketShader, at: DVec3) -> Result<(), Fault> {
     {
         let even = [ambient, diffuse, specular];
         return Err(
-            Promise::PacketsAgree.fault(format!("`uniform` is {even:?}, and it returns {one:?} at {at}"))
+            Promise::PacketsAgree.fault(found(format!("`uniform` is {even:?}, and it returns {one:?}")))
         );
     }
     if let Some(Look { ambient, diffuse, specular }) = shader.brightest(&material)
         && let limit = [ambient, diffuse, specular]
         && one.iter().zip(limit).any(|(colour, limit)| !colour.abs().cmple(limit.abs()).all())
     {
-        let found = format!("`brightest` is {limit:?}, and it returns {one:?} at {at}");
+        let found = found(format!("`brightest` is {limit:?}, and it returns {one:?}"));
         return Err(Promise::ReflectivityIsSound.fault(found));
     }
-    let points = Vectors::<LANES> { x: [at.x; LANES], y: [at.y; LANES], z: [at.z; LANES] };
+    let bent = shader.bend(at);
+    if shader.bends() && (bent.length() - 1.0).abs() > 1e-9 {
+        return Err(
+            Promise::NormalIsUnit.fault(found(format!("`bend` is {bent}, of length {}", bent.length())))
+        );
+    }
+    let (positions, seen) = (Vectors::<LANES>::of(at.position), [*at; LANES]);
+    let points = SurfacePoints { positions: positions.view(LANES), seen: &seen };
     for cpu in Cpu::all() {
         let mut many = [const { Vectors::<LANES>::ZERO }; 3];
         let [ambient, diffuse, specular] = &mut many;
         shader.ambient_and_specular(
             cpu,
             &material,
-            points.view(LANES),
+            points,
             ambient.view_mut(LANES),
             specular.view_mut(LANES),
         );
-        shader.diffuses(cpu, &material, points.view(LANES), diffuse.view_mut(LANES));
+        shader.diffuses(cpu, &material, points, diffuse.view_mut(LANES));
         let many = many.map(|colours| colours.get(LANES - 1));
         if !many.iter().zip(&one).all(|(many, one)| same_bits(*many, *one)) {
-            return Err(Promise::PacketsAgree.fault(format!("{many:?} in packets ({cpu}), {one:?} at {at}")));
+            return Err(Promise::PacketsAgree.fault(found(format!("{many:?} in packets ({cpu}), {one:?}"))));
         }
     }
     Ok(())
@@ -92,13 +102,18 @@ pub fn same_bits(a: DVec3, b: DVec3) -> bool {
     a.to_array().map(f64::to_bits) == b.to_array().map(f64::to_bits)
 }
 
-/// Checks a procedural shader around its anchor, and at the anchor's origin.
-pub fn procedural(shader_type: &ProceduralShader, draw: &mut Draw) -> Result<(), Fault> {
+/// Checks a shader around its anchor, and at the anchor's origin, on surfaces with and without u, v and faces.
+pub fn paint(paint: &Paint, draw: &mut Draw) -> Result<(), Fault> {
     for unit in [1.0, 0.3, 7.0] {
         let anchor = Anchor { origin: DVec3::new(4.0, 3.0, -2.5), unit };
-        let made = (shader_type.make)(anchor);
-        for at in places(anchor.origin, draw) {
-            shader(&*made, at)?;
+        let made = paint.on(anchor);
+        let all: Vec<_> = places(anchor.origin, draw).collect();
+        for (index, position) in all.into_iter().enumerate() {
+            let (normal, has_more) = (draw.direction(), index % 2 == 0);
+            let uv = has_more.then(|| DVec2::new(draw.part(), draw.part()));
+            let face = has_more.then_some(index as u32);
+            let side = if index % 3 == 0 { Side::Inside } else { Side::Outside };
+            shader(&*made, &SurfacePoint { position, normal, side, uv, face })?;
         }
     }
     Ok(())

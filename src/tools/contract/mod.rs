@@ -18,7 +18,6 @@ use crate::scene::dump;
 use crate::scene::entity::Entity;
 use crate::scene::kind::Kind;
 use crate::scene::model::Model;
-use crate::scene::procedural::{OnPlane, ProceduralShader};
 use crate::scene::profile::Profile;
 use crate::scene::reader;
 use crate::scene::registry::Registry;
@@ -75,12 +74,11 @@ pub fn assert_kept() {
     assert!(told.is_empty(), "\n\n{}", told.join("\n"));
 }
 
-/// Returns the gravest breach of each entity type of a registry, and of each procedural shader and profile.
+/// Returns the gravest breach of each entity type of a registry, and of each profile.
 pub fn breaches(registry: &Registry) -> Vec<Breach> {
     let scenes = SceneFolder::new();
     let mut found: Vec<_> =
         registry.iter().filter_map(|entity| of_entity(registry, entity, &scenes)).collect();
-    found.extend(inventory::iter::<ProceduralShader>().filter_map(of_procedural_shader));
     found.extend(inventory::iter::<Profile>().filter_map(of_profile));
     found.sort_by(|a, b| (&a.place, &a.plugin).cmp(&(&b.place, &b.plugin)));
     found
@@ -136,6 +134,7 @@ fn of_entity(registry: &Registry, entity: &'static Entity, scenes: &SceneFolder)
             Kind::Camera => looks::camera(&model.camera.value),
             Kind::Material => model.materials.iter().try_for_each(|item| looks::material(&item.value)),
             Kind::Texture => Ok(()),
+            Kind::Shader => model.shaders.iter().try_for_each(|item| looks::paint(&item.value, &mut draw)),
             Kind::Light => model.lights.iter().try_for_each(|item| looks::light(&*item.value, &mut draw)),
             Kind::Object => model.objects.iter().try_for_each(|object| {
                 let outcome = rays::try_object(object, &mut draw, RAYS);
@@ -164,11 +163,6 @@ fn of_entity(registry: &Registry, entity: &'static Entity, scenes: &SceneFolder)
     }
 }
 
-fn of_procedural_shader(shader: &'static ProceduralShader) -> Option<Breach> {
-    let choice = OnPlane(shader).option();
-    of_choice("shader", choice, looks::procedural(shader, &mut Draw::new(choice.name)))
-}
-
 fn of_profile(profile: &'static Profile) -> Option<Breach> {
     of_choice("profile", profile.option(), looks::profile(profile))
 }
@@ -182,10 +176,10 @@ fn of_choice(what: &str, choice: ChoiceName, outcome: Result<(), Fault>) -> Opti
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::procedural::Anchor;
+    use crate::world::body::Paint;
     use crate::world::light::Light;
     use crate::world::material::{Look, Material, Rgb};
-    use crate::world::shader::{Plain, Shader};
+    use crate::world::shader::{Anchor, Plain, Sees, Shader, SurfacePoint};
     use glam::DVec3;
 
     static SOUND: Profile = Profile::new("sound", "a cone", "4 - y");
@@ -196,16 +190,16 @@ mod tests {
     struct Spokes(Anchor);
 
     impl Shader for Spokes {
-        fn ambient(&self, _material: &Material, at: DVec3) -> Rgb {
-            Rgb::ONE + (at - self.0.origin).normalize()
+        fn ambient(&self, _material: &Material, at: &SurfacePoint) -> Rgb {
+            Rgb::ONE + (at.position - self.0.origin).normalize()
         }
     }
 
     struct Uneven;
 
     impl Shader for Uneven {
-        fn ambient(&self, _material: &Material, at: DVec3) -> Rgb {
-            Rgb::splat(at.x.abs())
+        fn ambient(&self, _material: &Material, at: &SurfacePoint) -> Rgb {
+            Rgb::splat(at.position.x.abs())
         }
 
         fn uniform(&self, material: &Material) -> Option<Look> {
@@ -227,9 +221,9 @@ mod tests {
         }
     }
 
-    static UNEVEN: ProceduralShader = ProceduralShader::new("uneven", "not even", |_| Box::new(Uneven));
-    static SPOKES: ProceduralShader =
-        ProceduralShader::new("spokes", "spokes", |anchor| Box::new(Spokes(anchor)));
+    fn breach(paint: &Paint) -> Fault {
+        looks::paint(paint, &mut Draw::new("a shader")).expect_err("a breach")
+    }
 
     #[test]
     fn a_profile_that_is_not_finite_or_empty_is_found() {
@@ -250,16 +244,39 @@ mod tests {
 
     #[test]
     fn a_procedural_shader_without_a_colour_at_its_own_origin_is_found() {
-        let breach = of_procedural_shader(&SPOKES).expect("a breach");
+        let breach = breach(&Paint::new(Spokes));
         assert_eq!(breach.promise, Promise::ReflectivityIsSound);
         assert_eq!(breach.found, "`ambient` is [NaN, NaN, NaN] at [4, 3, -2.5]");
     }
 
     #[test]
     fn a_shader_that_says_it_is_even_and_is_not_is_found() {
-        let breach = of_procedural_shader(&UNEVEN).expect("a breach");
+        let breach = breach(&Paint::new(|_| Uneven));
         assert_eq!(breach.promise, Promise::PacketsAgree);
-        assert!(breach.found.starts_with("`uniform` is ["), "{breach}");
+        assert!(breach.found.starts_with("`uniform` is ["), "{}", breach.found);
+    }
+
+    struct Leaning;
+
+    impl Shader for Leaning {
+        fn sees(&self) -> Sees {
+            Sees::NORMAL
+        }
+
+        fn bends(&self) -> bool {
+            true
+        }
+
+        fn bend(&self, at: &SurfacePoint) -> DVec3 {
+            at.normal + DVec3::X
+        }
+    }
+
+    #[test]
+    fn a_shader_whose_normals_have_another_length_is_found() {
+        let breach = breach(&Paint::new(|_| Leaning));
+        assert_eq!(breach.promise, Promise::NormalIsUnit);
+        assert!(breach.found.starts_with("`bend` is ["), "{}", breach.found);
     }
 
     #[test]

@@ -32,7 +32,10 @@ pub fn try_object(object: &Object, draw: &mut Draw, rays: usize) -> Outcome {
         let ray = ray(&aims, draw, index);
         let tried = try_ray(&Tried { shape: &object.shape, ray, is_exact: index < EXACT }, draw);
         let tried = tried.and_then(|hit| match hit {
-            Some(at) => shader(&*object.shader, at).map(|()| Some(at)),
+            Some(at) => {
+                let side = Side::seen_along(ray.dir, object.shape.normal(at));
+                shader(&*object.shader, &object.surface_point(at, side)).map(|()| Some(at))
+            }
             None => Ok(None),
         });
         match tried {

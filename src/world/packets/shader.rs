@@ -1,12 +1,21 @@
 //! Shaders, evaluated at many points at once.
 
-use crate::numeric::interval::{Fraction, Interval};
+use crate::numeric::interval::Fraction;
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::{View, ViewMut};
 use crate::world::certify::Precise;
 use crate::world::material::{Material, Rgb};
-use crate::world::shader::{LookBounds, Shader};
+use crate::world::shader::{LookBounds, PointBounds, Shader, SurfacePoint};
 use f256::f256;
+
+/// Points of a surface, as a shader sees them.
+#[derive(Clone, Copy)]
+pub struct SurfacePoints<'p> {
+    /// The positions, in world coordinates.
+    pub positions: View<'p>,
+    /// The points, as many as there are positions; empty for a shader that sees their positions alone.
+    pub seen: &'p [SurfacePoint],
+}
 
 /// A shader for packets. Every [`Shader`] is one.
 pub trait PacketShader: Shader + EncloseLook<f64> + EncloseLook<f256> + EncloseLook<Fraction> {
@@ -16,26 +25,26 @@ pub trait PacketShader: Shader + EncloseLook<f64> + EncloseLook<f256> + EncloseL
         &self,
         cpu: Cpu,
         material: &Material,
-        points: View,
+        points: SurfacePoints,
         ambients: ViewMut,
         speculars: ViewMut,
     ) -> bool;
 
     /// Evaluates [`diffuse`](Shader::diffuse) at many points. Returns whether any reflectivity is not 0.
-    fn diffuses(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) -> bool;
+    fn diffuses(&self, cpu: Cpu, material: &Material, points: SurfacePoints, out: ViewMut) -> bool;
 
     /// Writes the [`tile`](Shader::tile) at each point, as one number.
-    fn tiles(&self, cpu: Cpu, points: View, out: &mut [u64]);
+    fn tiles(&self, cpu: Cpu, points: SurfacePoints, out: &mut [u64]);
 }
 
 /// A shader whose looks are enclosed in one precision. Every [`Shader`] is one.
 pub trait EncloseLook<F> {
     /// Returns what [`Shader::enclose`] does.
-    fn look(&self, material: &Material, at: [Interval<F>; 3]) -> Option<LookBounds<F>>;
+    fn look(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>>;
 }
 
 impl<T: Shader, F: Precise> EncloseLook<F> for T {
-    fn look(&self, material: &Material, at: [Interval<F>; 3]) -> Option<LookBounds<F>> {
+    fn look(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
         self.enclose(material, at)
     }
 }
@@ -45,59 +54,76 @@ impl<T: Shader> PacketShader for T {
         &self,
         cpu: Cpu,
         material: &Material,
-        points: View,
+        points: SurfacePoints,
         ambients: ViewMut,
         speculars: ViewMut,
     ) -> bool {
         ambient_and_specular(cpu, self, material, points, ambients, speculars)
     }
 
-    fn diffuses(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) -> bool {
+    fn diffuses(&self, cpu: Cpu, material: &Material, points: SurfacePoints, out: ViewMut) -> bool {
         diffuses(cpu, self, material, points, out)
     }
 
-    fn tiles(&self, cpu: Cpu, points: View, out: &mut [u64]) {
+    fn tiles(&self, cpu: Cpu, points: SurfacePoints, out: &mut [u64]) {
         tiles(cpu, self, points, out);
     }
+}
+
+/// Does something with each point. For a shader that sees positions alone, the loop is one over positions.
+macro_rules! each {
+    ($shader:expr, $points:expr, $lane:ident, $at:ident, $body:block) => {
+        let count = $points.positions.len();
+        if $shader.sees().is_position() {
+            let positions = $points.positions.first(count);
+            for $lane in 0..count {
+                let $at = &SurfacePoint::at(positions.get($lane));
+                $body
+            }
+        } else {
+            for ($lane, $at) in $points.seen[..count].iter().enumerate() $body
+        }
+    };
 }
 
 kernels! {
     /// Evaluates the ambient and the mirror reflectivities at points of a surface. Returns whether any mirror
     /// reflectivity is not 0.
-    fn ambient_and_specular[T: Shader](shader: &T, material: &Material, points: View) => ambients, speculars -> bool {
-        let (count, mut any) = (points.len(), 0);
+    fn ambient_and_specular[T: Shader](
+        shader: &T, material: &Material, points: SurfacePoints
+    ) => ambients, speculars -> bool {
+        let (count, mut any) = (points.positions.len(), 0);
         let (mut ambients, mut speculars) = (ambients.first(count), speculars.first(count));
-        for lane in 0..count {
-            let point = points.get(lane);
-            let specular = shader.specular(material, point);
-            ambients.set(lane, shader.ambient(material, point));
+        each!(shader, points, lane, at, {
+            let specular = shader.specular(material, at);
+            ambients.set(lane, shader.ambient(material, at));
             speculars.set(lane, specular);
             any |= is_any(specular);
-        }
+        });
         any != 0
     }
 
     /// Evaluates the diffuse reflectivities at points of a surface. Returns whether any is not 0.
-    fn diffuses[T: Shader](shader: &T, material: &Material, points: View) => out -> bool {
-        let (count, mut any) = (points.len(), 0);
+    fn diffuses[T: Shader](shader: &T, material: &Material, points: SurfacePoints) => out -> bool {
+        let (count, mut any) = (points.positions.len(), 0);
         let mut out = out.first(count);
-        for lane in 0..count {
-            let diffuse = shader.diffuse(material, points.get(lane));
+        each!(shader, points, lane, at, {
+            let diffuse = shader.diffuse(material, at);
             out.set(lane, diffuse);
             any |= is_any(diffuse);
-        }
+        });
         any != 0
     }
 
     /// Writes the tiles at points of a surface.
-    fn tiles[T: Shader](shader: &T, points: View, out: &mut [u64]) {
-        let points = points.first(out.len());
-        for lane in 0..out.len() {
-            let tile = shader.tile(points.get(lane));
+    fn tiles[T: Shader](shader: &T, points: SurfacePoints, out: &mut [u64]) {
+        let points = SurfacePoints { positions: points.positions.first(out.len()), ..points };
+        each!(shader, points, lane, at, {
+            let tile = shader.tile(at);
             // So that minus zero is zero.
             let [column, row] = [(tile.x + 0.0).to_bits(), (tile.y + 0.0).to_bits()];
             out[lane] = column.rotate_left(17) ^ row.wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        }
+        });
     }
 }
 

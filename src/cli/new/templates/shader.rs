@@ -2,34 +2,46 @@
 
 use crate::prelude::*;
 
-// Its name in scenes, its meaning, and how it is made for one object.
+static RINGS: Pparm<f64> = Pparm::or("rings", "how many rings there are in the unit of length", 6.0)
+    .must("positive", |rings| *rings > 0.0);
+
+const TABLE: Table = &[&RINGS as &dyn Row];
+
+// Its name in scenes, its meaning, its table, and how it is made: once for a scene, and then for each object. The anchor
+// is the point of a plane, the centre of a sphere or the middle of another object, and the unit of length there.
 inventory::submit! {
-    ProceduralShader::new("template", "rings across y, light and dark", |anchor| Box::new(Template(anchor)))
+    Entity::shader("template", "rings across y, light and dark", &[TABLE], |args| {
+        let rings = args.get(&RINGS);
+        Ok(Paint::new(move |anchor| Template { rings, anchor }))
+    })
 }
 
-/// The anchor is the point of a plane or the centre of a sphere, and the unit of length there.
-struct Template(Anchor);
+struct Template {
+    rings: f64,
+    anchor: Anchor,
+}
 
 impl Template {
     /// Returns the brightness of the surface at a point.
     #[inline]
-    fn brightness(&self, at: DVec3) -> f64 {
-        let height = (at - self.0.origin).y / self.0.unit;
-        0.6 + 0.4 * (40.0 * height).sin()
+    fn brightness(&self, at: &SurfacePoint) -> f64 {
+        let height = (at.position - self.anchor.origin).y / self.anchor.unit;
+        0.6 + 0.4 * (std::f64::consts::TAU * self.rings * height).sin()
     }
 }
 
-// Whatever is not defined here, such as `specular`, is that of the material.
+// Whatever is not defined here, such as `specular`, is that of the material. A shader that asks for more than the
+// position, such as the normal or u and v, says so in `sees`; one that bends normals defines `bends` and `bend`.
 impl Shader for Template {
     /// Returns the emission of the surface.
     #[inline]
-    fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
+    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
         material.ambient * self.brightness(at)
     }
 
     /// Returns the diffuse reflection coefficients.
     #[inline]
-    fn diffuse(&self, material: &Material, at: DVec3) -> Rgb {
+    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
         material.diffuse * self.brightness(at)
     }
 }

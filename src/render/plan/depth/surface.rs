@@ -6,6 +6,7 @@ use crate::geometry::aabb;
 use crate::render::culling;
 use crate::scene::model::{Model, Object};
 use crate::world::material::{Look, Rgb};
+use crate::world::shader::SurfacePoint;
 use glam::DVec3;
 
 /// A factor larger than the rounding error of a bound: that of the products along a branch, fewer than 2^15 with a
@@ -93,7 +94,7 @@ fn tint(object: &Object, look: Option<&Look>) -> f64 {
     let transparency = object.material.transparency;
     match (object.shader.uniform(&object.material), look) {
         _ if transparency == 0.0 => 0.0,
-        (Some(_), _) => largest(object.tint(DVec3::ZERO)),
+        (Some(_), _) => largest(object.tint(&SurfacePoint::at(DVec3::ZERO))),
         // The diffuse colour is not negative anywhere, and the tint is scaled so that its largest channel is the
         // transparency.
         (None, Some(_)) => transparency,

@@ -1,0 +1,69 @@
+//! Bumps: normals bent as those of a surface that is raised by a formula. The surface itself stays smooth.
+
+use crate::prelude::*;
+
+static HEIGHT: Pparm<Field> =
+    Pparm::required("height", "how far the surface seems to be raised at each point, in world units");
+static SHADER: Pparm<Option<Paint>> =
+    Pparm::or("shader", "the shader that gives the colours, in place of the material", None);
+
+const TABLE: Table = &[&HEIGHT, &SHADER];
+
+inventory::submit! {
+    Entity::shader("bumps", "bumps and waves, by a formula of their height", &[TABLE], |args| {
+        let (height, colours) = (args.get(&HEIGHT), args.get(&SHADER).unwrap_or_default());
+        Ok(Paint::new(move |anchor| Bumps { height: height.clone(), colours: colours.on(anchor) }))
+    })
+}
+
+struct Bumps {
+    height: Field,
+    colours: AnyShader,
+}
+
+impl Shader for Bumps {
+    fn sees(&self) -> Sees {
+        Sees { normal: true, ..self.colours.sees() }
+    }
+
+    fn bends(&self) -> bool {
+        true
+    }
+
+    /// Leans the normal against the slope of the height along the surface.
+    fn bend(&self, at: &SurfacePoint) -> DVec3 {
+        let normal = self.colours.bend(at);
+        let slope = |axis: usize| {
+            let along =
+                |other| Dual { value: at.position[other], slope: if other == axis { 1.0 } else { 0.0 } };
+            self.height.at(per_axis(along)).slope
+        };
+        let gradient = DVec3::from(per_axis(slope));
+        let bent = normal - (gradient - gradient.dot(normal) * normal);
+        if bent.is_finite() { bent.try_normalize().unwrap_or(normal) } else { normal }
+    }
+
+    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.colours.ambient(material, at)
+    }
+
+    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.colours.diffuse(material, at)
+    }
+
+    fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.colours.specular(material, at)
+    }
+
+    fn uniform(&self, material: &Material) -> Option<Look> {
+        self.colours.uniform(material)
+    }
+
+    fn tile(&self, at: &SurfacePoint) -> DVec2 {
+        self.colours.tile(at)
+    }
+
+    fn brightest(&self, material: &Material) -> Option<Look> {
+        self.colours.brightest(material)
+    }
+}

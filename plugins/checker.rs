@@ -1,0 +1,71 @@
+//! Squares in u and v, of two materials in turn: on spheres, rectangles, triangles, whatever has such coordinates.
+
+use crate::prelude::*;
+use std::sync::Arc;
+
+static SQUARES: Pparm<[i64; 2]> =
+    Pparm::or("squares", "how many squares there are along u and along v", [8, 8]).between(1.0, 1e6);
+static ALTMATERIAL: Pparm<Arc<Material>> =
+    Pparm::required("altmaterial", "the material of every other square");
+
+const TABLE: Table = &[&SQUARES, &ALTMATERIAL];
+
+inventory::submit! {
+    Entity::shader("checker", "squares in u and v, of the material and of another one in turn", &[TABLE], |args| {
+        let (squares, other) = (args.get(&SQUARES).map(|count| count as f64), args.get(&ALTMATERIAL));
+        Ok(Paint::new(move |_| Checker { squares: DVec2::from(squares), other: other.clone() }))
+    })
+}
+
+struct Checker {
+    squares: DVec2,
+    other: Arc<Material>,
+}
+
+impl Checker {
+    /// Returns the material of the square at a point; without u and v, the surface's own.
+    #[inline]
+    fn material<'m>(&'m self, own: &'m Material, at: &SurfacePoint) -> &'m Material {
+        let square = self.tile(at);
+        if (square.x + square.y).rem_euclid(2.0) == 0.0 { own } else { &self.other }
+    }
+}
+
+impl Shader for Checker {
+    fn sees(&self) -> Sees {
+        Sees::UV
+    }
+
+    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.material(material, at).ambient
+    }
+
+    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.material(material, at).diffuse
+    }
+
+    fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.material(material, at).specular
+    }
+
+    #[inline]
+    fn tile(&self, at: &SurfacePoint) -> DVec2 {
+        // Rounding must not begin a square beyond the last one.
+        let square = at.uv.map(|uv| (uv * self.squares).floor().min(self.squares - 1.0));
+        square.unwrap_or(DVec2::ZERO)
+    }
+
+    fn enclose<F: Precise>(&self, material: &Material, _at: &PointBounds<F>) -> Option<LookBounds<F>> {
+        Some(LookBounds::from(material).hull(&LookBounds::from(&*self.other)))
+    }
+
+    fn brightest(&self, material: &Material) -> Option<Look> {
+        let [one, other] = [material, &*self.other];
+        let is_sound = one.diffuse.min(other.diffuse).min_element() >= 0.0;
+        is_sound.then(|| Look {
+            ambient: one.ambient.abs().max(other.ambient.abs()),
+            diffuse: one.diffuse.max(other.diffuse),
+            specular: one.specular.abs().max(other.specular.abs()),
+        })
+    }
+}

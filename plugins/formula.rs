@@ -1,0 +1,116 @@
+//! Colours by formulas: in the point x, y, z, in u and v, and in the normal nx, ny, nz.
+
+use crate::prelude::*;
+
+type Formulas = [SurfaceField; 3];
+
+static AMBIENT: Pparm<Option<Formulas>> =
+    Pparm::or("ambient", "the reflectivity for ambient light, in place of the material's", None);
+static DIFFUSE: Pparm<Option<Formulas>> =
+    Pparm::or("diffuse", "the diffuse reflectivity, in place of the material's", None);
+static SPECULAR: Pparm<Option<Formulas>> =
+    Pparm::or("specular", "the mirror reflectivity, in place of the material's", None);
+
+const TABLE: Table = &[&AMBIENT, &DIFFUSE, &SPECULAR];
+
+inventory::submit! {
+    Entity::shader("formula", "colours by formulas", &[TABLE], |args| {
+        let look = ByFormula {
+            ambient: args.get(&AMBIENT),
+            diffuse: args.get(&DIFFUSE),
+            specular: args.get(&SPECULAR),
+        };
+        Ok(Paint::new(move |_| look.clone()))
+    })
+}
+
+/// The greatest reflectivity. One below 0, or of no value, counts as 0.
+const MOST: f64 = 1e6;
+
+/// The formulas of the three reflectivities; `None` for the material's.
+#[derive(Clone)]
+struct ByFormula {
+    ambient: Option<Formulas>,
+    diffuse: Option<Formulas>,
+    specular: Option<Formulas>,
+}
+
+impl ByFormula {
+    fn all(&self) -> impl Iterator<Item = &SurfaceField> {
+        [&self.ambient, &self.diffuse, &self.specular].into_iter().flatten().flatten()
+    }
+
+    fn uses(&self, variables: std::ops::Range<usize>) -> bool {
+        self.all().any(|formula| variables.clone().any(|variable| formula.uses(variable)))
+    }
+}
+
+fn colour(formulas: Option<&Formulas>, own: Rgb, at: &SurfacePoint) -> Rgb {
+    let Some(formulas) = formulas else { return own };
+    let (DVec3 { x, y, z }, DVec2 { x: u, y: v }) = (at.position, at.uv.unwrap_or_default());
+    let values = [x, y, z, u, v, at.normal.x, at.normal.y, at.normal.z];
+    let channel = |formula: &SurfaceField| {
+        let value = formula.at(values);
+        if value > 0.0 { value.min(MOST) } else { 0.0 }
+    };
+    Rgb::from(formulas.each_ref().map(channel))
+}
+
+impl Shader for ByFormula {
+    fn sees(&self) -> Sees {
+        Sees { uv: self.uses(3..5), normal: self.uses(5..8), face: false }
+    }
+
+    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        colour(self.ambient.as_ref(), material.ambient, at)
+    }
+
+    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        colour(self.diffuse.as_ref(), material.diffuse, at)
+    }
+
+    fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        colour(self.specular.as_ref(), material.specular, at)
+    }
+
+    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
+        let n = Interval::<F>::constant;
+        let normal = if self.uses(5..8) { at.normal? } else { [n(0.0); 3] };
+        if self.uses(3..5) || !self.all().all(SurfaceField::is_enclosed) {
+            return None;
+        }
+        let ([x, y, z], [nx, ny, nz]) = (at.position, normal);
+        let channel = |formula: &SurfaceField| {
+            formula.at([x, y, z, n(0.0), n(0.0), nx, ny, nz]).max(n(0.0)).min(n(MOST))
+        };
+        let colour = |formulas: &Option<Formulas>, own| match formulas {
+            Some(formulas) => formulas.each_ref().map(channel),
+            None => own,
+        };
+        let own = LookBounds::from(material);
+        Some(LookBounds {
+            ambient: colour(&self.ambient, own.ambient),
+            diffuse: colour(&self.diffuse, own.diffuse),
+            specular: colour(&self.specular, own.specular),
+        })
+    }
+
+    /// The formulas over all of space bound the colours.
+    fn brightest(&self, material: &Material) -> Option<Look> {
+        let (all, unit) = (Interval::<f64>::whole(), Interval { low: -1.0, high: 1.0 });
+        let most = |formula: &SurfaceField| {
+            let bound = formula.at([all, all, all, all, all, unit, unit, unit]).high;
+            if formula.is_enclosed() && bound < MOST { bound.max(0.0) } else { MOST }
+        };
+        let colour = |formulas: &Option<Formulas>, own: Rgb| match formulas {
+            Some(formulas) => Rgb::from(formulas.each_ref().map(most)),
+            None => own,
+        };
+        let is_sound = self.diffuse.is_some() || material.diffuse.min_element() >= 0.0;
+        is_sound.then(|| Look {
+            ambient: colour(&self.ambient, material.ambient),
+            diffuse: colour(&self.diffuse, material.diffuse),
+            specular: colour(&self.specular, material.specular),
+        })
+    }
+}
