@@ -35,6 +35,10 @@ impl Implicit for Capsule {
         x.powi(2) + z.powi(2) + beyond - N::constant(self.radius).powi(2)
     }
 
+    fn openness(&self) -> Option<&'static str> {
+        None
+    }
+
     fn bounds(&self) -> [DVec3; 2] {
         let around = DVec3::splat(1.125 * self.radius);
         [-around, around + self.height * DVec3::Y]

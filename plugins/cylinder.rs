@@ -46,6 +46,10 @@ impl Implicit for Cylinder {
         if self.is_open { y.min(N::constant(self.height) - y) } else { N::constant(1.0) }
     }
 
+    fn openness(&self) -> Option<&'static str> {
+        self.is_open.then_some("its two ends are left out")
+    }
+
     fn bounds(&self) -> [DVec3; 2] {
         // The box must not touch the surface, or it would be in doubt on which side of it a hit is.
         let Self { radius, height, .. } = *self;

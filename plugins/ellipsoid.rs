@@ -84,6 +84,10 @@ impl<A: Bounded> Hittable for Ellipsoid<A> {
         leaving == Side::Inside
     }
 
+    fn openness(&self) -> Option<&'static str> {
+        None
+    }
+
     fn is_two_sided(&self) -> bool {
         true
     }

@@ -31,6 +31,10 @@ impl Implicit for Heart {
         ellipsoid - (x.powi(2) + n(9.0) / n(80.0) * z.powi(2)).pow(n(1.0) / n(3.0)) * y
     }
 
+    fn openness(&self) -> Option<&'static str> {
+        None
+    }
+
     fn bounds(&self) -> [DVec3; 2] {
         [DVec3::new(-1.14, -1.0, -0.68) * self.size, DVec3::new(1.14, 1.24, 0.68) * self.size]
     }

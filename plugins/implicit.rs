@@ -47,6 +47,10 @@ impl Implicit for Surface {
         self.formula.at(at)
     }
 
+    fn openness(&self) -> Option<&'static str> {
+        (!field::is_outside(&self.formula, self.corners)).then_some("its box may cut its surface")
+    }
+
     fn bounds(&self) -> [DVec3; 2] {
         self.corners
     }

@@ -2,7 +2,6 @@
 
 use crate::geometry::Placement;
 use crate::prelude::*;
-use crate::shapes::Placed;
 
 static OBJECT: Pparm<NamedBody> = Pparm::required(
     "object",
@@ -26,7 +25,7 @@ const MAX_DEPTH: u32 = 12;
 const TABLE: Table = &[&OBJECT, &SCALE, &ROTATION, &TRANSLATION];
 
 inventory::submit! {
-    Entity::shape("place", "a copy of an object in another place", &[TABLE], |args| {
+    Entity::of_objects("place", "a copy of an object in another place", &[TABLE], |args| {
         let placement = Placement {
             scale: args.get(&SCALE),
             rotation: args.get(&ROTATION),
@@ -44,6 +43,6 @@ inventory::submit! {
                 help: "rounding grows with each copy: place the first object instead",
             });
         }
-        Ok(Placed::body(&object, placement, &args.material()))
+        Ok(Body::placed(&object, placement, args.material_of_all()))
     })
 }

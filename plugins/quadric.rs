@@ -98,6 +98,11 @@ impl<A: Bounded> Hittable for Quadric<A> {
         Some(self.around())
     }
 
+    fn openness(&self) -> Option<&'static str> {
+        (!self.is_closed())
+            .then_some("it is no ellipsoid within its box, with an equation that is below J inside")
+    }
+
     fn is_two_sided(&self) -> bool {
         true
     }

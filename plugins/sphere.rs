@@ -114,6 +114,10 @@ impl<A: Bounded> Hittable for Sphere<A> {
         leaving == Side::Inside
     }
 
+    fn openness(&self) -> Option<&'static str> {
+        None
+    }
+
     fn is_two_sided(&self) -> bool {
         true
     }

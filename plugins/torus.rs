@@ -35,6 +35,10 @@ impl Implicit for Torus {
         from_circle.powi(2) + y.powi(2) - N::constant(self.tube).powi(2)
     }
 
+    fn openness(&self) -> Option<&'static str> {
+        None
+    }
+
     fn bounds(&self) -> [DVec3; 2] {
         let across = self.radius + self.tube;
         let high = DVec3::new(across, self.tube, across);

@@ -35,6 +35,8 @@ pub struct Entity {
     /// The numbers that the notes give a shader on planes and on spheres.
     pub(crate) numbers: [Option<i64>; 2],
     tables: &'static [Table],
+    /// The attributes that it has before and after those of its tables.
+    common: [Table; 2],
     pub(crate) place: &'static Location<'static>,
 }
 
@@ -68,6 +70,12 @@ pub static MATERIAL: Pparm<Arc<Material>> =
     Pparm::required("material", "the material, defined earlier in the scene");
 
 const OBJECT: Table = &[&MATERIAL];
+
+/// The attribute of an object that is made of others, in place of [`MATERIAL`].
+static MATERIAL_OF_ALL: Pparm<Option<Arc<Material>>> =
+    Pparm::or("material", "the material of all of it; without, each object in it keeps its own", None);
+
+const OF_OBJECTS: Table = &[&MATERIAL_OF_ALL];
 
 /// An object whose own table has a `shader` has no other.
 pub(crate) static SHADER: Pparm<Option<Paint>> = Pparm::or(
@@ -163,6 +171,17 @@ impl Entity {
         Self::new(name, meaning, tables, Construct::Object(construct))
     }
 
+    /// Describes an object that is made of others. The attribute `material`, which may be left out, is added to its table.
+    #[track_caller]
+    pub const fn of_objects(
+        name: &'static str,
+        meaning: &'static str,
+        tables: &'static [Table],
+        construct: fn(&Args) -> Result<Body, Refusal>,
+    ) -> Self {
+        Self { common: [OF_OBJECTS, &[]], ..Self::new(name, meaning, tables, Construct::Object(construct)) }
+    }
+
     /// Describes a light type.
     #[track_caller]
     pub const fn light(
@@ -181,8 +200,13 @@ impl Entity {
         tables: &'static [Table],
         construct: Construct,
     ) -> Self {
+        let common: [Table; 2] = match construct {
+            Construct::Camera(_) => FILM,
+            Construct::Object(_) => [OBJECT, &[]],
+            _ => [&[], &[]],
+        };
         let (aliases, numbers, place): (&[&str], _, _) = (&[], [None; 2], Location::caller());
-        Self { name, meaning, aliases, construct, dump_name: name, numbers, tables, place }
+        Self { name, meaning, aliases, construct, dump_name: name, numbers, tables, common, place }
     }
 
     /// Sets other names that a scene may use.
@@ -211,14 +235,17 @@ impl Entity {
 
     /// Returns the rows of the type's table, in the order of the dump.
     pub fn rows(&self) -> impl Iterator<Item = &'static dyn Row> + use<> {
-        let [first, last]: [Table; 2] = match self.kind() {
-            Kind::Camera => FILM,
-            Kind::Object => [OBJECT, &[]],
-            _ => [&[], &[]],
+        // The parts of a solid have shaders of their own.
+        let has_own = |row: &&dyn Row| {
+            row.attribute().is_some_and(|its| {
+                let is_list_of_objects =
+                    matches!(its.value_type(), Type::Name(Kind::Object)) && its.arity().most() > 1;
+                its.name() == SHADER.name() || is_list_of_objects
+            })
         };
-        let is_shader = |row: &&dyn Row| row.attribute().is_some_and(|its| its.name() == SHADER.name());
-        let has_own = || self.tables.iter().copied().flatten().any(&is_shader);
-        let shader = (self.kind() == Kind::Object && !has_own()).then_some(&SHADER as &'static dyn Row);
+        let takes_shader = self.kind() == Kind::Object && !self.tables.iter().copied().flatten().any(has_own);
+        let shader = takes_shader.then_some(&SHADER as &'static dyn Row);
+        let [first, last] = self.common;
         iter::once(first).chain(self.tables.iter().copied()).chain([last]).flatten().copied().chain(shader)
     }
 
@@ -329,9 +356,22 @@ impl Args {
         self.get(&MATERIAL)
     }
 
+    /// Returns the material that an object made of others is given, if it is given one.
+    ///
+    /// # Panics
+    /// If the entity is not such an object.
+    #[track_caller]
+    pub fn material_of_all(&self) -> Option<Arc<Material>> {
+        self.get(&MATERIAL_OF_ALL)
+    }
+
     /// Tells whether the entity refers to an object that could not be made.
     pub(crate) fn refers_to_nothing(&self) -> bool {
-        self.values().any(|(_, datum)| matches!(datum, Datum::Object { body, .. } if body.get().is_none()))
+        self.values().any(|(_, datum)| match datum {
+            Datum::Object { body, .. } => body.get().is_none(),
+            Datum::Objects(all) => all.iter().any(|(_, body)| body.get().is_none()),
+            _ => false,
+        })
     }
 
     /// Tells whether the attribute that a refusal marks is in the type's table. It is if the refusal marks none.

@@ -125,7 +125,7 @@ pub fn of(registry: &Registry) -> Grammar {
 /// Matches an entity from its type to its closing brace.
 fn entity_rule(entity: &'static Entity) -> Rule {
     let names = iter::once(entity.name).chain(entity.aliases.iter().copied());
-    within(&one_of(names), Some(TYPE), entity.attributes().map(attribute_rule))
+    within(&one_of(names), Some(TYPE), entity.attributes().map(|attribute| attribute_rule(entity, attribute)))
 }
 
 /// Matches an entity whose type matches `begin`; between its braces, applies these rules and those for any other word.
@@ -183,11 +183,27 @@ fn computed(all: Vec<Rule>) -> [(&'static str, Rule); 3] {
 
 /// Matches an attribute. Numbers are recognised on their own; any other value may look like anything, even like an
 /// attribute.
-fn attribute_rule(attribute: &'static dyn Attribute) -> Rule {
+fn attribute_rule(entity: &'static Entity, attribute: &'static dyn Attribute) -> Rule {
     let names = iter::once(attribute.name()).chain(attribute.aliases().iter().copied());
     let begin = format!("({}){END}", one_of(names));
     let (end, scopes) = match attribute.value_type() {
         Type::Whole | Type::Number | Type::Rotation => return Rule::matching(begin, Some(ATTRIBUTE)),
+        Type::Name(_) if attribute.arity().most() > 1 => {
+            let others = entity
+                .attributes()
+                .flat_map(|other| iter::once(other.name()).chain(other.aliases().iter().copied()));
+            return Rule {
+                begin: Some(begin),
+                begin_captures: captures(&[ATTRIBUTE]),
+                // As the reader does, up to the next attribute.
+                end: Some(format!("(?=[{{}}]|(?:{}){END})", one_of(others))),
+                patterns: vec![
+                    Rule::include("comment-line"),
+                    Rule::matching(format!("{QUOTED}|{BARE}"), Some(REFERENCE)),
+                ],
+                ..Rule::default()
+            };
+        }
         Type::Name(_) => (format!("({QUOTED}|{BARE})|(?=[{{}}])"), &[REFERENCE][..]),
         Type::Truth => {
             (format!("({QUOTED})|(yes|no){END}|({BARE})|(?=[{{}}])"), &[IN_QUOTES, CHOICE, WORD][..])

@@ -2,8 +2,10 @@
 
 use crate::scene::counts::Counts;
 use crate::scene::value::{Datum, Type, Value};
+use crate::world::body::NamedBody;
+use std::sync::Arc;
 
-/// A list of values, each of one or several numbers, with a least and a most number of them.
+/// A list of values, each of one or several numbers or the name of an object, with a least and a most number of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct List<T, const LEAST: usize, const MOST: usize>(pub Vec<T>);
 
@@ -21,6 +23,8 @@ impl<T: Value, const LEAST: usize, const MOST: usize> Value for List<T, LEAST, M
         all.fold(first, |all, next| match (all, next) {
             (Datum::Numbers(all), Datum::Numbers(next)) => Datum::Numbers([all, next].concat()),
             (Datum::Whole(all), Datum::Whole(next)) => Datum::Whole([all, next].concat()),
+            (Datum::Object { name, body }, next) => joined(vec![(name, body)], next),
+            (Datum::Objects(all), next) => joined(all, next),
             (all, _) => all,
         })
     }
@@ -34,8 +38,19 @@ impl<T: Value, const LEAST: usize, const MOST: usize> Value for List<T, LEAST, M
             Datum::Whole(all) => {
                 all.chunks(group).map(|one| T::from_datum(&Datum::Whole(one.to_vec()))).collect()
             }
+            Datum::Objects(all) => all
+                .iter()
+                .map(|(name, body)| T::from_datum(&Datum::Object { name: name.clone(), body: body.clone() }))
+                .collect(),
             _ => None,
         };
         list.map(Self)
     }
+}
+
+fn joined(mut all: Vec<(Arc<str>, NamedBody)>, next: Datum) -> Datum {
+    if let Datum::Object { name, body } = next {
+        all.push((name, body));
+    }
+    Datum::Objects(all)
 }

@@ -42,6 +42,8 @@ impl Model {
                 let shown = self.objects.iter().map(|object| &object.args);
                 let mut all: Vec<_> = shown.chain(self.patterns.iter().map(|item| &item.args)).collect();
                 all.sort_unstable_by_key(|record| record.order());
+                // An object may be seen as several.
+                all.dedup_by_key(|record| record.order());
                 all
             }
             Kind::Light => self.lights.iter().map(|item| &item.args).collect(),

@@ -86,6 +86,7 @@ impl dyn Attribute + '_ {
             Type::Number | Type::Rotation => self.arity().told("number"),
             Type::Word => "a word".to_owned(),
             Type::File => "the name of a file".to_owned(),
+            Type::Name(kind) if self.arity().most() > 1 => self.arity().told(&format!("{kind} name")),
             Type::Name(kind) => format!("the name of {}", kind.with_article()),
             Type::Choice(choices) if choices.all().iter().any(|choice| choice.number.is_some()) => {
                 format!("the name or number of a {}", choices.what)

@@ -403,7 +403,8 @@ impl Constant {
                 choice.number.map_or_else(|| Self::Text(choice.name.to_owned()), Self::Whole)
             }
             Datum::Truth(truth) => Self::Truth(*truth),
-            Datum::Absent => return None,
+            // No list of objects is a default.
+            Datum::Objects(_) | Datum::Absent => return None,
         })
     }
 }

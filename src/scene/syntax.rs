@@ -50,7 +50,7 @@ impl Syntax {
             }
             Type::Word => ("WORD", 1),
             Type::File => ("FILE", 1),
-            Type::Name(_) => ("NAME", 1),
+            Type::Name(_) => ("NAME", attribute.arity().examples().first().copied().unwrap_or(1)),
             Type::Choice(_) => ("N", 1),
             Type::Formula(SPACE) => ("x^2 + y^2 + z^2 - 1", 1),
             Type::Formula(_) => ("2 + sin(y)", 1),
@@ -113,6 +113,7 @@ impl Syntax {
             | Datum::Object { name, .. } => {
                 vec![self.word(name)]
             }
+            Datum::Objects(all) => all.iter().map(|(name, _)| self.word(name)).collect(),
             Datum::Choice(choice) => {
                 vec![choice.number.map_or_else(|| self.word(choice.name), |number| number.to_string())]
             }

@@ -68,6 +68,8 @@ pub enum Datum {
         /// The body of the object of this name.
         body: NamedBody,
     },
+    /// Objects and their names, each once.
+    Objects(Vec<(Arc<str>, NamedBody)>),
     /// A shader and its name.
     Shader {
         /// The name that the scene gives it.
@@ -119,6 +121,7 @@ impl Datum {
                 format!(" {name}")
             }
             Self::Choice(choice) => format!(" {}", choice.name),
+            Self::Objects(all) => all.iter().map(|(name, _)| format!(" {name}")).collect(),
             Self::Truth(truth) => format!(" {}", yes_or_no(*truth)),
         };
         format!("{label:<12}{values}{ending}")

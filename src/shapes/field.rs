@@ -93,6 +93,34 @@ pub fn check(field: &Field, corners: [DVec3; 2]) -> Result<(), NoField> {
     if is_nowhere(field, smooth) { Err(NoField::Nowhere) } else { Ok(()) }
 }
 
+/// Tells whether a formula is certainly above 0 on all sides of a box.
+pub fn is_outside(field: &Field, [low, high]: [DVec3; 2]) -> bool {
+    let side = |index: usize| {
+        let (axis, mut from, mut to) = (index / 2, low, high);
+        if index.is_multiple_of(2) {
+            to[axis] = low[axis];
+        } else {
+            from[axis] = high[axis];
+        }
+        ([from, to], 0)
+    };
+    let mut waiting: Vec<Part> = (0..6).map(side).collect();
+    let mut left = PARTS;
+    while let Some(part) = waiting.pop() {
+        let ([low, high], _) = part;
+        let value = field.at([0, 1, 2].map(|axis| Interval { low: low[axis], high: high[axis] }));
+        if value.low > 0.0 {
+            continue;
+        }
+        if value.high <= 0.0 || left == 0 {
+            return false;
+        }
+        left -= 1;
+        waiting.extend(halves(part));
+    }
+    true
+}
+
 /// Tells whether a formula is certainly nowhere 0 in these parts.
 fn is_nowhere(field: &Field, parts: Vec<Part>) -> bool {
     let (mut signs, mut parts, mut judged) = ([false; 2], std::collections::VecDeque::from(parts), 0);

@@ -41,6 +41,11 @@ pub trait Implicit: Send + Sync {
         N::constant(1.0)
     }
 
+    /// Says why the surface is not that of a solid; `None` for a closed surface that lies within its box.
+    fn openness(&self) -> Option<&'static str> {
+        Some("it has no inside")
+    }
+
     /// Returns the coordinates u and v of a point of the surface, for shaders; `None` where it has none.
     fn uv(&self, _at: DVec3) -> Option<DVec2> {
         None
@@ -94,6 +99,10 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
     fn bounds(&self) -> Option<Aabb> {
         let own = Aabb { low: self.low, high: self.high };
         Some(self.frame.bounds(&own))
+    }
+
+    fn openness(&self) -> Option<&'static str> {
+        self.formula.openness()
     }
 
     fn is_two_sided(&self) -> bool {

@@ -11,6 +11,7 @@ pub mod plane;
 pub(crate) mod quadratic;
 pub mod rectangle;
 pub(crate) mod revolution;
+pub(crate) mod solid;
 pub mod sphere;
 pub(crate) mod triangle;
 pub mod uv;
@@ -20,4 +21,7 @@ pub use implicit::Implicit;
 pub use placed::Placed;
 pub use quadratic::Quadric;
 pub use revolution::{Classic, Finish, InFrame, Revolution};
+pub use solid::{Objects, combined};
 pub use triangle::Triangle;
+
+pub use crate::world::solid::Operation;

@@ -37,6 +37,11 @@ impl AnyShape {
         self.0.touches(at, error)
     }
 
+    /// Tells whether a point lies in a closed shape; `None` where the surface may be within an error in world units.
+    pub fn holds(&self, at: DVec3, error: f64) -> Option<bool> {
+        self.0.holds(at, error)
+    }
+
     /// Returns what is certain about a ray's first hit. For a shape without an equation, nothing is.
     pub fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
         self.0.certify(sight, precision)

@@ -1,9 +1,11 @@
 //! What an object's constructor returns.
 
 use crate::world::any_shape::AnyShape;
+use crate::world::material::Material;
 use crate::world::packets::light::PacketLight;
 use crate::world::packets::shader::PacketShader;
 use crate::world::shader::{Anchor, Plain, Shader};
+use crate::world::solid::{Operation, Tree};
 use glam::DVec3;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
@@ -99,6 +101,46 @@ pub struct Body {
     pub bytes: u64,
     /// The number of objects that lie within each other in it: 1 for a copy of a shape, 2 for a copy of a copy.
     pub depth: u32,
+    /// The name that the scene gives it, where others refer to it.
+    pub name: Option<Arc<str>>,
+    /// The material, where it is not that of the entity that the body is made for.
+    pub material: Option<Arc<Material>>,
+    /// The solid, if it is made of several parts.
+    pub solid: Option<Solid>,
+    /// The bodies that are seen together with this one.
+    pub more: Vec<Body>,
+}
+
+/// A solid that is made of closed shapes.
+#[derive(Clone)]
+pub struct Solid {
+    /// Its parts.
+    pub parts: Vec<Part>,
+    /// The parts that a point must lie in to lie in the solid.
+    pub tree: Tree,
+}
+
+/// A part of a solid.
+#[derive(Clone)]
+pub struct Part {
+    /// The name that the scene gives it.
+    pub name: Arc<str>,
+    /// The object; its shape is closed.
+    pub body: Arc<Body>,
+    /// The material.
+    pub material: Arc<Material>,
+}
+
+impl Solid {
+    /// Combines solids.
+    pub fn combined(operation: Operation, of: impl IntoIterator<Item = Self>) -> Self {
+        let (mut parts, mut trees) = (Vec::new(), Vec::new());
+        for one in of {
+            trees.push(one.tree.moved(parts.len()));
+            parts.extend(one.parts);
+        }
+        Self { parts, tree: Tree::Combined(operation, trees) }
+    }
 }
 
 /// A warning about an object.
@@ -128,6 +170,10 @@ impl Body {
             warnings: Vec::new(),
             bytes: 0,
             depth: 0,
+            name: None,
+            material: None,
+            solid: None,
+            more: Vec::new(),
         }
     }
 
@@ -148,7 +194,8 @@ impl Body {
     }
 
     /// Gives the object the look of a shader, in place of its own.
-    pub fn painted(self, paint: &Paint) -> Self {
+    pub fn painted(mut self, paint: &Paint) -> Self {
+        self.more = self.more.into_iter().map(|one| one.painted(paint)).collect();
         let shader = paint.on(self.anchor());
         let shader = match &self.to_own {
             Some(to_own) => to_own(shader),

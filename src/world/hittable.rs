@@ -54,6 +54,12 @@ pub trait Hittable: Send + Sync {
         false
     }
 
+    /// Says why the surface is not that of a solid, to follow "is open: "; `None` for a closed surface, whose normal points
+    /// outward and whose equation, if it has one, is below 0 inside. Only closed shapes can be parts of solids.
+    fn openness(&self) -> Option<&'static str> {
+        Some("it has no inside")
+    }
+
     /// Describes how hits are found, in a few words, for the plan of a scene.
     fn method(&self) -> String {
         "its own distance".to_owned()

@@ -17,11 +17,12 @@ pub(crate) mod pinhole;
 pub(crate) mod sample;
 pub(crate) mod shader;
 pub(crate) mod shape;
+pub(crate) mod solid;
 pub(crate) mod texture;
 
 pub use accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
 pub use any_shape::AnyShape;
-pub use body::{AnyLight, AnyShader, Body, NamedBody, Paint, Warning};
+pub use body::{AnyLight, AnyShader, Body, NamedBody, Paint, Part, Solid, Warning};
 pub use camera::{Camera, Origins, Projected};
 pub use film::{AnyCamera, Film};
 pub use hittable::{Bracketed, Certified, Hittable, Searched};

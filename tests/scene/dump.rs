@@ -109,7 +109,8 @@ fn any_scene() -> impl Strategy<Value = String> {
             let materials =
                 materials.iter().enumerate().map(|(i, text)| text.replace("NAME", &format!("m{i}")));
             let texture = format!("texture t0 {{ filename {} }}\n", root().join(TEXTURE).display());
-            let object = "sphere o0 { material m0 center 1 2 3 radius 4 }\n".to_owned();
+            let sphere = |index| format!("sphere o{index} {{ material m0 center {index} 2 3 radius 4 }}\n");
+            let object: String = (0..5).map(sphere).collect();
             let shaders = format!("formula s0 {{ ambient \"x\" 0.5 \"nz\" }}\n{}", shaders.concat());
             let others = [object, objects.concat(), lights.concat()].concat();
             [cameras[0].clone(), materials.collect(), texture, shaders, others].concat()
@@ -168,7 +169,10 @@ fn any_values(attribute: &'static dyn Attribute) -> BoxedStrategy<String> {
             .boxed(),
         Type::Name(Kind::Texture) => return Just(format!("{} t0\n", attribute.name())).boxed(),
         Type::Name(Kind::Shader) => return Just(format!("{} s0\n", attribute.name())).boxed(),
-        Type::Name(Kind::Object) => return Just(format!("{} o0\n", attribute.name())).boxed(),
+        Type::Name(Kind::Object) => {
+            let names = |count| (0..count).map(|index| format!(" o{index}")).collect::<String>();
+            return count.prop_map(move |count| format!("{}{}\n", attribute.name(), names(count))).boxed();
+        }
         Type::File => return Just(format!("{} scenes/models/bowl.stl\n", attribute.name())).boxed(),
         Type::Word | Type::Name(_) => return Just(format!("{} m0\n", attribute.name())).boxed(),
         Type::Formula(variables) => {

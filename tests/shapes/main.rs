@@ -13,4 +13,5 @@ mod implicit;
 mod mesh;
 mod notes;
 mod places;
+mod solids;
 mod stability;

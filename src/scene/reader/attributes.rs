@@ -8,6 +8,7 @@ use super::report::Report;
 use super::values;
 use crate::scene::choice::Choices;
 use crate::scene::entity::Entity;
+use crate::scene::kind::Kind;
 use crate::scene::pparm::{Attribute, Given, LEAST_LENGTH, MOST_LENGTH};
 use crate::scene::store::Store;
 use crate::scene::value::{Datum, Type};
@@ -210,6 +211,7 @@ impl Against<'_, '_> {
             return None;
         }
         let datum = match (attribute.value_type(), words) {
+            (Type::Name(kind), names) if attribute.arity().most() > 1 => self.objects(kind, title, names)?,
             (Type::Choice(Choices { kind: Some(kind), .. }), [name])
                 if name.form != Form::Number
                     && let Some(index) = self.names.defined(kind, &name.text) =>
@@ -255,6 +257,24 @@ impl Against<'_, '_> {
             return None;
         }
         Some(datum)
+    }
+
+    /// Returns the objects of these names, and reports names that are given twice.
+    fn objects(&mut self, kind: Kind, title: &str, words: &[Word<'_>]) -> Option<Datum> {
+        self.names.combines = true;
+        let (mut all, mut is_right) = (Vec::with_capacity(words.len()), true);
+        for (index, word) in words.iter().enumerate() {
+            if let Some(first) = words[..index].iter().find(|first| first.text == word.text) {
+                let message = format!("{title} names `{}` twice", word.text);
+                let fault =
+                    Fault::error(word.place.clone(), message).also(first.place.clone(), "named here first");
+                self.report.add(fault.help("an object is part of it or not: leave out one of the names"));
+                is_right = false;
+            } else if let Datum::Object { name, body } = self.names.resolve(self.store, kind, word) {
+                all.push((name, body));
+            }
+        }
+        is_right.then_some(Datum::Objects(all))
     }
 }
 

@@ -50,6 +50,8 @@ pub struct Names {
     patterns: BTreeMap<usize, Datum>,
     /// References to entities not (yet) defined.
     unresolved: Missing<Kind>,
+    /// Whether an entity refers to a list of objects.
+    pub combines: bool,
 }
 
 /// The maximum number of different missing names of one sort that are kept. Of more, only the number is known.

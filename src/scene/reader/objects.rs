@@ -8,7 +8,9 @@ use crate::scene::model::{Item, Object};
 use crate::scene::procedural;
 use crate::scene::store::{Record, Store};
 use crate::scene::value::Datum;
+use crate::world::accuracy::Accuracy;
 use crate::world::body::{Body, Warning};
+use std::iter;
 use std::mem::take;
 use std::sync::Arc;
 
@@ -25,6 +27,11 @@ impl Check<'_, '_> {
         let store = Arc::new(take(&mut self.store));
         let patterns = self.names.patterns();
         self.names.forget();
+        let accuracy = self.setting.camera.accuracy;
+        if self.names.combines && accuracy == Accuracy::Classic {
+            // The notes' formulas do not tell all hits of a ray, which solids need.
+            Arc::make_mut(&mut self.setting).camera.accuracy = Accuracy::Exact;
+        }
         for (order, datum) in &patterns {
             let Datum::Object { body, .. } = datum else { continue };
             let args = store.args(*order);
@@ -32,9 +39,13 @@ impl Check<'_, '_> {
                 && !args.refers_to_nothing()
                 && let Some(made) = self.body(args, source)
             {
-                body.set(made);
+                let material = made.material.clone().or_else(|| Record::new(&store, *order).material());
+                body.set(Body { name: Some(store.name(*order).into()), material, ..made });
             }
             self.patterns.push(Item { args: Record::new(&store, *order), value: body.clone() });
+        }
+        if self.setting.camera.accuracy != accuracy {
+            Arc::make_mut(&mut self.setting).camera.accuracy = accuracy;
         }
         for start in (0..store.len()).step_by(8 * TOGETHER) {
             let orders = start..store.len().min(start + 8 * TOGETHER);
@@ -49,11 +60,11 @@ impl Check<'_, '_> {
                         if !body.warnings.is_empty() {
                             self.warn(&record.args(), &body.warnings, source);
                         }
-                        self.objects.extend(object(record, body));
+                        self.objects.extend(objects(record, body));
                     }
                     Ok(Made::ByFile) => {
                         let body = self.body(record.args(), source);
-                        self.objects.extend(body.and_then(|body| object(record, body)));
+                        self.objects.extend(body.into_iter().flat_map(|body| objects(record.clone(), body)));
                     }
                     Ok(Made::Light(light)) => self.lights.push(Item { args: record, value: light }),
                     Err(refusal) => self.refused(&record.args(), refusal, source),
@@ -99,8 +110,11 @@ impl Check<'_, '_> {
     }
 }
 
-/// Returns an object, with the material that its record names.
-fn object(record: Record, Body { shape, shader, .. }: Body) -> Option<Object> {
-    let material = record.material()?;
-    Some(Object { args: record, material, shape, shader })
+/// Returns the objects that are seen of a body, with their own materials or the one that the record names.
+fn objects(record: Record, mut body: Body) -> impl Iterator<Item = Object> {
+    let more = take(&mut body.more);
+    iter::once(body).chain(more).filter_map(move |Body { shape, shader, material, .. }| {
+        let material = material.or_else(|| record.material())?;
+        Some(Object { args: record.clone(), material, shape, shader })
+    })
 }

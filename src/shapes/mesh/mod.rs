@@ -18,6 +18,7 @@ pub mod read;
 mod search;
 mod shape;
 mod smooth;
+mod solid;
 mod surface;
 #[cfg(test)]
 mod tests;

@@ -130,6 +130,16 @@ impl<A: Bounded> Hittable for Mesh<A> {
         self.can_hit_itself
     }
 
+    fn openness(&self) -> Option<&'static str> {
+        if self.surface.open_edges > 0 {
+            Some("some of its edges belong to one face only")
+        } else if self.surface.is_inside_out() {
+            Some("its faces are turned inside out")
+        } else {
+            None
+        }
+    }
+
     fn is_two_sided(&self) -> bool {
         self.surface.open_edges == 0
     }
@@ -171,6 +181,10 @@ impl<A: Bounded> Hittable for Mesh<A> {
 impl<A: Bounded> Proofs for Shape<Mesh<A>, ByPackets, ByFaces> {
     fn touches(&self, at: DVec3, error: f64) -> bool {
         self.shape.surface.touches::<A>(at, error)
+    }
+
+    fn holds(&self, at: DVec3, error: f64) -> Option<bool> {
+        self.shape.surface.holds::<A>(at, error)
     }
 
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {

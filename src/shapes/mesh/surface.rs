@@ -15,6 +15,7 @@ use rayon::slice::ParallelSliceMut;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::mem::take;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The largest number of faces.
@@ -43,6 +44,8 @@ pub struct Surface {
     pub(super) tree: Bvh,
     /// A bounding box of the vertices, in world coordinates.
     pub(super) bounds: Aabb,
+    /// The planes of the faces, where the mesh is convex and has few; found when it is first asked for.
+    pub(super) planes: OnceLock<Option<Box<[[DVec3; 2]]>>>,
     /// The number of edges that do not join two faces. Where it is 0, the surface is closed.
     pub open_edges: usize,
     /// The number of faces of the file without an area, which are left out.
@@ -108,6 +111,7 @@ impl Surface {
             normals,
             tree,
             bounds,
+            planes: OnceLock::new(),
             open_edges,
             degenerate,
             materials,

@@ -214,6 +214,10 @@ impl Hittable for Placed {
         self.bounds
     }
 
+    fn openness(&self) -> Option<&'static str> {
+        self.body.shape.openness()
+    }
+
     fn can_hit_itself(&self, leaving: Side) -> bool {
         self.body.shape.can_hit_itself(leaving)
     }
@@ -251,6 +255,10 @@ fn touches(placed: &Placed, at: DVec3, error: f64) -> bool {
 impl Proofs for Shape<Placed, ByPackets, ByPlacement> {
     fn touches(&self, at: DVec3, error: f64) -> bool {
         touches(&self.shape, at, error)
+    }
+
+    fn holds(&self, at: DVec3, error: f64) -> Option<bool> {
+        self.shape.body.shape.holds(self.shape.own_point(at), self.shape.own_error(at, error))
     }
 
     fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {

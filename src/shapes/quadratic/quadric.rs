@@ -84,6 +84,21 @@ impl<A> Quadric<A> {
         clearance(from, Some(around), |region| !around.overlaps(region))
     }
 
+    /// Tells whether the quadric is an ellipsoid that lies in its box, with values below 0 inside.
+    pub fn is_closed(&self) -> bool {
+        let Self { square, linear, constant, low, high, .. } = self;
+        let minors = [square.x_axis.x, square.x_axis.x * square.y_axis.y - square.x_axis.y.powi(2)];
+        if minors.into_iter().chain([square.determinant()]).any(|minor| minor <= 0.0) {
+            return false;
+        }
+        let inverse = square.inverse();
+        let middle = -0.5 * (inverse * *linear);
+        let level = middle.dot(*square * middle) - constant;
+        let half = (level * DVec3::new(inverse.x_axis.x, inverse.y_axis.y, inverse.z_axis.z)).map(f64::sqrt);
+        let half = half + SLACK * (half + middle.abs());
+        level > 0.0 && low.cmplt(middle - half).all() && (middle + half).cmplt(*high).all()
+    }
+
     /// Returns the left side of the equation at a point of the world: 0 on the quadric.
     pub fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         let from_center = per_axis(|axis| at[axis] - N::constant(self.center[axis]));

@@ -95,6 +95,10 @@ impl Hittable for InFrame<Revolution> {
         Some(self.frame.bounds(&self.surface.bounds()))
     }
 
+    fn openness(&self) -> Option<&'static str> {
+        self.surface.openness()
+    }
+
     fn is_two_sided(&self) -> bool {
         true
     }

@@ -2,7 +2,7 @@
 
 use super::no_surface::NoSurface;
 use super::pieces::Slabs;
-use crate::geometry::aabb::Aabb;
+use crate::geometry::aabb::{Aabb, SLACK};
 use crate::numeric::formula::Formula;
 use crate::numeric::interval::Interval;
 use crate::numeric::scalar::Scalar;
@@ -10,6 +10,9 @@ use crate::text;
 use crate::world::certify::Equation;
 use glam::DVec3;
 use std::fmt;
+
+/// The number of pieces of a profile that are examined to find out whether it crosses the axis.
+const MOST_PIECES: usize = 10_000;
 
 /// A surface of revolution around the y axis, from the origin upward.
 pub struct Revolution {
@@ -48,6 +51,30 @@ impl Revolution {
         let [x, y, z] = at.to_array().map(|place| Interval { low: place - error, high: place + error });
         let y = Interval { low: y.low.max(0.0), high: y.high.min(self.height) };
         y.low <= y.high && self.value([x, y, z]).has_zero()
+    }
+
+    /// Says why the surface is not that of a solid; `None` for a profile that begins and ends on the axis, and nowhere
+    /// crosses it, up to rounding.
+    pub fn openness(&self) -> Option<&'static str> {
+        let rounding = SLACK * self.slabs.widest();
+        let radius = |low: f64, high: f64| self.profile.at(Interval { low, high });
+        let is_on_axis = |at: f64| radius(at, at).magnitude() <= rounding;
+        if !is_on_axis(0.0) || !is_on_axis(self.height) {
+            return Some("its profile does not begin and end on the axis");
+        }
+        let (mut waiting, mut left) = (vec![(0.0, self.height)], MOST_PIECES);
+        while let Some((low, high)) = waiting.pop() {
+            if radius(low, high).low >= -rounding {
+                continue;
+            }
+            left -= 1;
+            if left == 0 {
+                return Some("its profile may cross the axis");
+            }
+            let middle = 0.5 * (low + high);
+            waiting.extend([(low, middle), (middle, high)]);
+        }
+        None
     }
 
     /// Returns a bounding box of the surface.

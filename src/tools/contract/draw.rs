@@ -120,7 +120,15 @@ impl Draw {
         if refers_to(entity, Kind::Object)
             && let Some(other) = registry.iter().find(is_plain)
         {
-            text += &self.entity(other, name(Kind::Object));
+            let most = entity.attributes().filter(|its| is_name_of(*its, Kind::Object));
+            let most = most.map(|its| its.arity().examples().into_iter().max().unwrap_or(1)).max();
+            // Half of the time they are all the same, as those that are drawn hardly ever meet.
+            let (first, most) = (self.entity(other, "NAME"), most.unwrap_or(1));
+            let are_same = most > 1 && self.below(2) == 0;
+            for index in 0..most {
+                let one = if index == 0 || are_same { first.clone() } else { self.entity(other, "NAME") };
+                text += &one.replacen("NAME", &of_list(name(Kind::Object), index), 1);
+            }
         }
         if matches!(entity.kind(), Kind::Shader | Kind::Object | Kind::Light) {
             let (tried, named) = (self.entity(entity, "tried"), format!("shader {}\n", name(Kind::Shader)));
@@ -198,7 +206,11 @@ impl Draw {
         match attribute.value_type() {
             Type::Word => word(PICTURE),
             Type::File => word(MODEL),
-            Type::Name(kind) => word(name(kind)),
+            // All that there are: one that nothing refers to would be tried as well.
+            Type::Name(kind) => {
+                let most = attribute.arity().examples().into_iter().max().unwrap_or(count);
+                Some((0..most).map(|index| of_list(name(kind), index)).collect())
+            }
             Type::Choice(Choices { kind: Some(kind), .. }) if self.aside(|draw| draw.below(2) == 0) => {
                 word(name(kind))
             }
@@ -221,12 +233,20 @@ impl Draw {
 
 /// Tells whether an attribute of the type refers to an entity of this kind.
 fn refers_to(entity: &Entity, kind: Kind) -> bool {
-    let mut types = entity.attributes().map(|attribute| attribute.value_type());
-    types.any(|its| match its {
+    entity.attributes().any(|attribute| match attribute.value_type() {
         Type::Name(named) => named == kind,
         Type::Choice(choices) => choices.kind == Some(kind),
         _ => false,
     })
+}
+
+fn is_name_of(attribute: &dyn Attribute, kind: Kind) -> bool {
+    matches!(attribute.value_type(), Type::Name(named) if named == kind)
+}
+
+/// Returns the name of one of several entities.
+fn of_list(name: &str, index: usize) -> String {
+    if index == 0 { name.to_owned() } else { format!("{name}{index}") }
 }
 
 /// Returns the name of the entity of this kind that others refer to.

@@ -16,12 +16,14 @@ pub use equation::{Equation, Found};
 pub use footprint::{Met, OverFootprint, coarse, gradient_over};
 pub use onward::{Onward, Precise, Proven, gradient, shading_normals};
 
-use crate::geometry::sight::Sight;
+use crate::geometry::sight::{Line, Sight};
 use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::interval::{Float, Interval, Wide};
+use crate::numeric::scalar::Scalar;
 use along::{PIECES, first_along, most_pieces};
 use equation::Values;
 use f256::f256;
+use glam::DVec3;
 
 /// What is certain about a ray's first hit of a shape. Distances are multiples of the length of the sight's direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,6 +107,19 @@ pub fn first_hit(shape: &impl Equation, sight: &Sight, precision: Precision) -> 
             Found::Doubtful(from) => Enclosure::Doubtful(from),
         },
     }
+}
+
+/// Tells whether a point lies inside of a closed surface, where the equation is below 0; `None` where the surface may pass
+/// through the box that extends `error` world units from the point along each axis.
+pub fn holds(shape: &impl Equation, at: DVec3, error: f64) -> Option<bool> {
+    let origin = at.to_array().map(|place| Interval { low: place - error, high: place + error });
+    let Line { origin, .. } = shape.own(Line { origin, dir: [Interval::constant(0.0); 3] });
+    let [low, high] = shape.extent();
+    if (0..3).any(|axis| origin[axis].high < low[axis] || origin[axis].low > high[axis]) {
+        return Some(false);
+    }
+    let value = shape.value(origin);
+    (!value.has_zero()).then_some(value.high < 0.0)
 }
 
 fn solve<F: Float>(shape: &dyn Values<Interval<F>>, sight: &Sight, pieces: usize) -> Found<F> {

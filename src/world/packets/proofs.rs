@@ -16,6 +16,11 @@ pub trait Proofs: Send + Sync {
     /// numbers. Rays that start at such a point leave the shape.
     fn touches(&self, at: DVec3, error: f64) -> bool;
 
+    /// Tells whether a point lies in a closed shape; `None` where the surface may be within an error in world units.
+    fn holds(&self, _at: DVec3, _error: f64) -> Option<bool> {
+        None
+    }
+
     /// Returns the distance of the hit near `distance` in double-double arithmetic, or `None` where no such distance
     /// can be computed.
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble>;
@@ -83,6 +88,10 @@ impl<T: Certified, S> Proofs for Shape<T, S, ByEquation> {
         self.shape.touches(at, error)
     }
 
+    fn holds(&self, at: DVec3, error: f64) -> Option<bool> {
+        certify::holds(&self.shape, at, error)
+    }
+
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
         self.shape.fine_distance(ray, distance)
     }
@@ -103,6 +112,10 @@ impl<T: Certified, S> Proofs for Shape<T, S, ByEquation> {
 impl<T: Searched, S> Proofs for Shape<T, S, ByRoots> {
     fn touches(&self, at: DVec3, error: f64) -> bool {
         self.shape.touches(at, error)
+    }
+
+    fn holds(&self, at: DVec3, error: f64) -> Option<bool> {
+        certify::holds(&self.shape, at, error)
     }
 
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {

@@ -17,6 +17,7 @@ mod program;
 mod random;
 mod ray;
 mod scenes;
+mod solid;
 mod spline;
 mod tally;
 mod text;

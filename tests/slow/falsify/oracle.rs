@@ -7,6 +7,7 @@ use super::fast::Fast;
 use super::formula::Formula;
 use super::number::{Jet, Number};
 use super::ray::Ray;
+use super::solid;
 use super::text::{Scene, Shape, Vector};
 use super::wide::Wide;
 use std::cmp::Ordering;
@@ -48,7 +49,7 @@ pub fn first(scene: &Scene, ray: &Ray) -> Truth {
 }
 
 /// Returns which of two places is nearer, unless they are equal to within 2^-200 of their size.
-fn order(one: &Wide, other: &Wide) -> Option<Ordering> {
+pub fn order(one: &Wide, other: &Wide) -> Option<Ordering> {
     let apart = one.sub(other);
     let (low, high) = apart.ends()?;
     let size = other.ends()?.1.size();
@@ -61,7 +62,7 @@ fn order(one: &Wide, other: &Wide) -> Option<Ordering> {
     }
 }
 
-fn hit(shape: &Shape, ray: &Ray) -> Hit {
+pub fn hit(shape: &Shape, ray: &Ray) -> Hit {
     match shape {
         Shape::Plane { normal, point, sides } => closed::plane(ray, normal, point, sides.as_ref()),
         Shape::Triangle { corners } => closed::triangle(ray, corners),
@@ -81,6 +82,7 @@ fn hit(shape: &Shape, ray: &Ray) -> Hit {
         }
         Shape::Mesh { faces } => closed::mesh(ray, faces),
         Shape::Placed { shape, place } => hit(shape, &place.own(ray)),
+        Shape::Combined { .. } => solid::first(shape, ray),
     }
 }
 
@@ -95,6 +97,9 @@ pub fn cosine(shape: &Shape, ray: &Ray, place: &Wide) -> f64 {
 /// Returns the largest coordinate that a copy's hits are computed from: those of its translation, and of its object when
 /// it is scaled. 0 for a shape of its own, whose hits are as exact as the ray is.
 pub fn reach(shape: &Shape) -> f64 {
+    if let Shape::Combined { shapes, .. } = shape {
+        return shapes.iter().map(|shape| reach(shape)).fold(0.0, f64::max);
+    }
     let Shape::Placed { shape, place } = shape else { return 0.0 };
     let most = |of: &Vector| of.iter().fold(0.0, |most: f64, part| most.max(part.to_f64(false).abs()));
     let own = match &**shape {
@@ -176,6 +181,10 @@ fn normal(shape: &Shape, ray: &Ray, at: &Wide) -> [f64; 3] {
             f64s(&super::ray::cross(&super::ray::minus(b, a), &super::ray::minus(c, a)))
         }
         Shape::Placed { shape, place } => place.world_normal(normal(shape, &place.own(ray), at)),
+        Shape::Combined { .. } => match solid::crossed(shape, ray, at) {
+            Some((shape, ray, at)) => normal(shape, &ray, &at),
+            None => [f64::NAN; 3],
+        },
     }
 }
 

@@ -45,11 +45,17 @@ impl Program {
         let ray = self.0.camera.value.ray(x as f64, y as f64);
         let hit = trace::first_hit(&Plan::new(&self.0), &self.0.camera.value.sight(x as f64, y as f64));
         Found {
-            first: hit.as_ref().map(|hit| hit.index),
+            first: hit.as_ref().map(|hit| self.entity(hit.index)),
             distance: hit.map_or(f64::INFINITY, |hit| hit.distance),
             origin: ray.origin.to_array(),
             dir: ray.dir.to_array(),
         }
+    }
+
+    /// Returns which of the seen entities an object is: a solid is seen as several.
+    fn entity(&self, object: usize) -> usize {
+        let name = |index: usize| self.0.objects[index].args.name();
+        (1..=object).filter(|index| name(*index) != name(index - 1)).count()
     }
 
     pub fn claim(&self, [x, y]: [usize; 2]) -> Claim {

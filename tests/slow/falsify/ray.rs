@@ -6,6 +6,7 @@ use super::text::{Scene, Vector};
 use super::wide::Wide;
 
 /// The ray `origin + s * dir`, and the length of `dir`.
+#[derive(Clone)]
 pub struct Ray {
     pub origin: Vector,
     pub dir: Vector,

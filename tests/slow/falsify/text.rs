@@ -76,6 +76,18 @@ pub enum Shape {
         shape: Rc<Shape>,
         place: Place,
     },
+    /// Closed shapes, combined.
+    Combined {
+        operation: Operation,
+        shapes: Vec<Rc<Shape>>,
+    },
+}
+
+#[derive(Clone, Copy)]
+pub enum Operation {
+    Union,
+    Intersection,
+    Difference,
 }
 
 /// The sides of a rectangle.
@@ -134,7 +146,8 @@ fn words(text: &str) -> Vec<&str> {
 /// The notes' profiles, in the order of their numbers.
 const SURFERS: [&str; 4] = ["2 + sin(y)", "-4/6 * (y - 6)", "1 + 0.5 * cos(y)", "1 + 0.5 * sin(y)"];
 
-const ATTRIBUTES: [&str; 38] = [
+const ATTRIBUTES: [&str; 39] = [
+    "objects",
     "formula",
     "points",
     "open",
@@ -250,7 +263,21 @@ impl Scene {
                 *is_seen = false;
                 shape.clone()
             });
-            if let Some(shape) = scene.shape(kind, &attributes, mesh, object) {
+            if let Some(names) = attributes.0.get("objects") {
+                let one = |name: &&str| {
+                    let (shape, is_seen) = named.get_mut(*name).expect("an object");
+                    *is_seen = false;
+                    shape.clone()
+                };
+                let shapes = names.iter().map(one).collect();
+                let operation = match kind {
+                    "union" => Operation::Union,
+                    "intersection" => Operation::Intersection,
+                    _ => Operation::Difference,
+                };
+                named.insert(name, (Rc::new(Shape::Combined { operation, shapes }), true));
+                order.push(name);
+            } else if let Some(shape) = scene.shape(kind, &attributes, mesh, object) {
                 named.insert(name, (Rc::new(shape), true));
                 order.push(name);
             }

@@ -1,0 +1,17 @@
+//! A difference: what is left of an object when others are taken away.
+
+use crate::prelude::*;
+use crate::shapes::{Objects, Operation, combined};
+
+static OBJECTS: Pparm<Objects> = Pparm::required(
+    "objects",
+    "the object and those that are taken away from it, defined earlier in the scene; they are seen only as parts of it",
+);
+
+const TABLE: Table = &[&OBJECTS as &dyn Row];
+
+inventory::submit! {
+    Entity::of_objects("difference", "what is left of an object when others are taken away", &[TABLE], |args| {
+        combined(args, &OBJECTS, Operation::Difference)
+    })
+}

@@ -1,0 +1,17 @@
+//! An intersection: what lies in all of several objects.
+
+use crate::prelude::*;
+use crate::shapes::{Objects, Operation, combined};
+
+static OBJECTS: Pparm<Objects> = Pparm::required(
+    "objects",
+    "the objects, defined earlier in the scene; they are seen only as parts of it",
+);
+
+const TABLE: Table = &[&OBJECTS as &dyn Row];
+
+inventory::submit! {
+    Entity::of_objects("intersection", "what lies in all of several objects", &[TABLE], |args| {
+        combined(args, &OBJECTS, Operation::Intersection)
+    })
+}

@@ -1,0 +1,17 @@
+//! A union: what lies in any of several objects.
+
+use crate::prelude::*;
+use crate::shapes::{Objects, Operation, combined};
+
+static OBJECTS: Pparm<Objects> = Pparm::required(
+    "objects",
+    "the objects, defined earlier in the scene; they are seen only as parts of it",
+);
+
+const TABLE: Table = &[&OBJECTS as &dyn Row];
+
+inventory::submit! {
+    Entity::of_objects("union", "several objects as one: what lies in any of them", &[TABLE], |args| {
+        combined(args, &OBJECTS, Operation::Union)
+    })
+}

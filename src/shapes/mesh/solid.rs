@@ -1,0 +1,94 @@
+//! Closed meshes as solids.
+
+use super::surface::Surface;
+use crate::geometry::ray::{MISS, Ray, RayRange};
+use crate::world::accuracy::Bounded;
+use crate::world::coincidence::ROUNDING;
+use glam::DVec3;
+
+/// Directions in which it is looked for the face that tells whether a point lies inside; along none of them do the edges
+/// of made-up shapes run.
+const DIRECTIONS: [DVec3; 4] = [
+    DVec3::new(0.615_947, 0.359_214, 0.701_135),
+    DVec3::new(-0.271_803, 0.857_241, -0.437_365),
+    DVec3::new(0.480_163, -0.692_127, -0.538_843),
+    DVec3::new(-0.733_019, -0.226_591, 0.641_357),
+];
+
+/// The least cosine between a direction and the normal of a face that tells its sides apart.
+const LEAST_COSINE: f64 = 1e-3;
+
+/// The largest number of faces of a convex mesh that is compared with the planes of all of them.
+const MOST_PLANES: usize = 64;
+
+/// Returns a bound on the rounding error of the distance of a point from a plane through another one.
+fn rounding(point: DVec3, at: DVec3) -> f64 {
+    ROUNDING * (point.abs() + at.abs()).element_sum()
+}
+
+/// Tells whether a point lies below all of these planes; `None` where it may lie on one of them.
+fn inside(planes: &[[DVec3; 2]], at: DVec3, error: f64) -> Option<bool> {
+    // The box that extends the error along each axis reaches no farther along a normal.
+    let error = 1.75 * error;
+    let mut inside = Some(true);
+    for [normal, point] in planes {
+        let (above, error) = (normal.dot(at - *point), error + rounding(*point, at));
+        if above > error {
+            return Some(false);
+        }
+        if above >= -error {
+            inside = None;
+        }
+    }
+    inside
+}
+
+impl Surface {
+    /// Tells whether a point lies in a closed mesh; `None` where the surface may be within an error in world units, and
+    /// where no face tells.
+    pub(super) fn holds<A: Bounded>(&self, at: DVec3, error: f64) -> Option<bool> {
+        if let Some(planes) = self.planes.get_or_init(|| self.convex::<A>()) {
+            return inside(planes, at, error);
+        }
+        if self.touches::<A>(at, error) {
+            return None;
+        }
+        for dir in DIRECTIONS {
+            let ray = Ray { origin: at, dir: dir.normalize() };
+            let distance = self.distance::<A>(&ray, &RayRange::ALL, -1.0);
+            if distance == MISS {
+                return Some(false);
+            }
+            let normal = self.triangle::<A>(self.face_along(&ray, distance)).plane.normal;
+            let cosine = ray.dir.dot(normal);
+            if cosine.abs() > LEAST_COSINE {
+                return Some(cosine > 0.0);
+            }
+        }
+        None
+    }
+
+    /// Returns the planes of the faces of a closed mesh that certainly is convex, a normal and a point of each; `None` for
+    /// others, and for those of many faces.
+    fn convex<A: Bounded>(&self) -> Option<Box<[[DVec3; 2]]>> {
+        if self.face_count() > MOST_PLANES {
+            return None;
+        }
+        let plane = |face: usize| [self.triangle::<A>(face).plane.normal, self.corners(face)[0]];
+        let planes: Box<[_]> = (0..self.face_count()).map(plane).collect();
+        let is_below = |at: &DVec3| {
+            planes.iter().all(|[normal, point]| normal.dot(*at - *point) <= rounding(*point, *at))
+        };
+        self.vertices.iter().all(is_below).then_some(planes)
+    }
+
+    /// Tells whether the faces of a closed mesh run clockwise as seen from the outside, so that its volume is negative.
+    pub(super) fn is_inside_out(&self) -> bool {
+        let middle = self.bounds.middle();
+        let volume = |face: usize| {
+            let [a, b, c] = self.corners(face).map(|corner| corner - middle);
+            a.dot(b.cross(c))
+        };
+        (0..self.face_count()).map(volume).sum::<f64>() < 0.0
+    }
+}

@@ -1,0 +1,92 @@
+//! All crossings of a line and a closed shape, proven one after the other.
+
+use crate::geometry::sight::Line;
+use crate::numeric::dual::Dual;
+use crate::numeric::interval::Interval;
+use crate::numeric::scalar::Scalar;
+use crate::world::certify::{Found, Precise, Proven};
+
+/// A crossing of a line and a closed shape.
+#[derive(Clone, Copy, Debug)]
+pub struct Crossing<F> {
+    /// Where on the line it is.
+    pub at: Interval<F>,
+    /// The part of the shape that is crossed.
+    pub part: usize,
+    /// Whether the line enters the shape there.
+    pub enters: bool,
+}
+
+/// The crossings of a line and a closed shape.
+pub struct Crossings<'l, F> {
+    shape: &'l dyn Proven,
+    line: &'l Line<Interval<F>>,
+    start: Line<Interval<F>>,
+    gone: Interval<F>,
+    leaves: Option<usize>,
+    known: Vec<Crossing<F>>,
+    /// Nothing is known from here on; infinite where all crossings are known.
+    end: Option<F>,
+}
+
+impl<'l, F: Precise> Crossings<'l, F> {
+    /// Prepares the search along a line, whose true start lies on this part of the shape, if it lies on the shape.
+    pub fn new(shape: &'l dyn Proven, line: &'l Line<Interval<F>>, leaves: Option<usize>) -> Self {
+        let gone = Interval::constant(0.0);
+        Self { shape, line, start: *line, gone, leaves, known: Vec::new(), end: None }
+    }
+
+    /// Returns the crossing of an index, counted from the start of the line.
+    ///
+    /// # Errors
+    /// From where on nothing is known; infinity where there are no more crossings.
+    pub fn get(&mut self, index: usize) -> Result<Crossing<F>, F> {
+        while self.known.len() <= index {
+            if let Some(end) = self.end {
+                return Err(end);
+            }
+            match self.next() {
+                Ok(crossing) => self.known.push(crossing),
+                Err(end) => self.end = Some(end),
+            }
+        }
+        Ok(self.known[index])
+    }
+
+    fn next(&mut self) -> Result<Crossing<F>, F> {
+        let (found, part) = F::proofs(self.shape).first_hit(&self.start, self.leaves);
+        let at = match found {
+            Found::Misses => return Err(F::INFINITY),
+            Found::Hits(at) => self.gone + at,
+            Found::Edge(at) => return Err((self.gone + at).low),
+            Found::Doubtful(from) => return Err((self.gone + Interval::point(from)).low),
+        };
+        let slope = F::proofs(self.shape).slope(self.line.along(Dual::variable(at)), part).slope;
+        if slope.has_zero() {
+            return Err(at.low);
+        }
+        self.start.origin = self.line.at(at);
+        (self.gone, self.leaves) = (at, Some(part));
+        Ok(Crossing { at, part, enters: slope.high < F::of(0.0) })
+    }
+
+    /// Tells whether the line is in the shape just before and just after a place on it; `None` where that is open. With
+    /// few digits, two crossings that may be at the same place leave it open.
+    pub fn around(&mut self, place: Interval<F>) -> Option<[bool; 2]> {
+        for index in 0.. {
+            match self.get(index) {
+                Ok(crossing) if crossing.at.high < place.low => {}
+                Ok(Crossing { at, enters, .. }) if place.high < at.low => return Some([!enters; 2]),
+                Ok(Crossing { enters, .. }) => {
+                    let is_alone = match self.get(index + 1) {
+                        Ok(next) => place.high < next.at.low,
+                        Err(end) => place.high < end,
+                    };
+                    return (F::IS_LONG && is_alone).then_some([!enters, enters]);
+                }
+                Err(end) => return (end == F::INFINITY).then_some([false; 2]),
+            }
+        }
+        None
+    }
+}

@@ -1,0 +1,173 @@
+//! Solids as objects: one for each part whose surface is seen.
+
+use super::shader::PartShader;
+use super::trimmed::{ByParts, Trimmed};
+use crate::geometry::aabb::Aabb;
+use crate::geometry::placement::Placement;
+use crate::scene::entity::{Args, Refusal};
+use crate::scene::list::List;
+use crate::scene::pparm::Pparm;
+use crate::shapes::placed::Placed;
+use crate::world::body::{Body, NamedBody, Part, Solid};
+use crate::world::material::Material;
+use crate::world::shape::{ByPackets, Shape};
+use crate::world::solid::{Operation, Tree, common};
+use std::sync::Arc;
+
+/// The largest number of parts of a solid. Each of them may have to be compared with all others.
+const MOST_PARTS: usize = 1024;
+
+/// The objects of which a solid is made.
+pub type Objects = List<NamedBody, 2, 256>;
+
+/// Makes the solid of an entity that names its objects.
+///
+/// # Errors
+/// Why they make none.
+pub fn combined(args: &Args, objects: &Pparm<Objects>, operation: Operation) -> Result<Body, Refusal> {
+    let List(objects) = args.get(objects);
+    let objects: Vec<_> = objects.iter().filter_map(|object| object.get().cloned()).collect();
+    Body::combined(operation, &objects, args.material_of_all()).map_err(|fault| {
+        let (message, help) = fault.told();
+        Refusal { attribute: Some("objects"), message, help }
+    })
+}
+
+/// The reason why objects cannot be combined.
+enum NoSolid {
+    /// An object of this name is open, for this reason.
+    Open(Arc<str>, &'static str),
+    /// There are too many parts.
+    TooMany,
+    /// No point lies in the solid.
+    Empty,
+}
+
+impl NoSolid {
+    /// Returns what is wrong and what would help, for messages: "encloses nothing".
+    fn told(self) -> (String, &'static str) {
+        match self {
+            Self::Open(name, why) => (
+                format!("cannot be made of `{name}`, which is open: {why}"),
+                "what is combined must be closed: a sphere, a box, a cylinder with its ends, a lathe that begins and ends \
+                 on its axis, a mesh without holes; for a cut along a plane, a large box",
+            ),
+            Self::TooMany => (
+                format!("has more than {MOST_PARTS} parts"),
+                "a `union` of what does not overlap can be left out: the objects are seen without it",
+            ),
+            Self::Empty => (
+                "encloses nothing: its objects do not meet as they would have to".to_owned(),
+                "an intersection is where all of its objects overlap, a difference what is left of the first one",
+            ),
+        }
+    }
+}
+
+impl Solid {
+    /// Returns a named object as a solid.
+    ///
+    /// # Errors
+    /// If it is open.
+    fn of(object: &Arc<Body>) -> Result<Self, NoSolid> {
+        let name = object.name.clone().unwrap_or_default();
+        if let Some(solid) = &object.solid {
+            let named =
+                |part: &Part| Part { name: format!("{} of {name}", part.name).into(), ..part.clone() };
+            return Ok(Self { parts: solid.parts.iter().map(named).collect(), tree: solid.tree.clone() });
+        }
+        if let Some(why) = object.shape.openness() {
+            return Err(NoSolid::Open(name, why));
+        }
+        let part = Part { name, body: object.clone(), material: object.material.clone().unwrap_or_default() };
+        Ok(Self { parts: vec![part], tree: Tree::Part(0) })
+    }
+
+    /// Returns a copy of a solid.
+    fn placed(&self, placement: Placement) -> Self {
+        let place = |Part { name, body, material }: &Part| Part {
+            name: name.clone(),
+            body: Arc::new(Placed::body(body, placement, material)),
+            material: material.clone(),
+        };
+        Self { parts: self.parts.iter().map(place).collect(), tree: self.tree.clone() }
+    }
+}
+
+impl Body {
+    /// Makes a solid of named objects, with this material or that of each.
+    ///
+    /// # Errors
+    /// Why there is none.
+    fn combined(
+        operation: Operation,
+        objects: &[Arc<Self>],
+        material: Option<Arc<Material>>,
+    ) -> Result<Self, NoSolid> {
+        let solids: Result<Vec<_>, _> = objects.iter().map(Solid::of).collect();
+        Self::of_solid(Solid::combined(operation, solids?), material)
+    }
+
+    /// Makes a copy of an object, which may be a solid, with this material or its own.
+    pub fn placed(object: &Arc<Self>, placement: Placement, material: Option<Arc<Material>>) -> Self {
+        if let Some(solid) = &object.solid
+            && let Ok(copy) = Self::of_solid(solid.placed(placement), material.clone())
+        {
+            return copy;
+        }
+        let material = material.or_else(|| object.material.clone()).unwrap_or_default();
+        let copy = Placed::body(object, placement, &material);
+        Self { material: Some(material), ..copy }
+    }
+
+    fn of_solid(mut solid: Solid, material: Option<Arc<Material>>) -> Result<Self, NoSolid> {
+        if solid.parts.len() > MOST_PARTS {
+            return Err(NoSolid::TooMany);
+        }
+        if let Some(material) = material {
+            solid.parts.iter_mut().for_each(|part| part.material = material.clone());
+        }
+        let mut seen = seen(&solid).into_iter();
+        let first = seen.next().ok_or(NoSolid::Empty)?;
+        Ok(Self { more: seen.collect(), solid: Some(solid), ..first })
+    }
+}
+
+/// Returns the bodies of the parts whose surface may be seen.
+fn seen(solid: &Solid) -> Vec<Body> {
+    let parts: Arc<[Part]> = solid.parts.clone().into();
+    let bounds = parts.iter().map(|part| Some(part.body.shape.bounds()?.with_slack(0.0)));
+    let bounds: Arc<[Option<Aabb>]> = bounds.collect();
+    let whole = solid.tree.bounds(&|part| bounds[part]);
+    let body = |index: usize| {
+        let around = common(bounds[index], whole);
+        let meets = |other: usize| match (around, bounds[other]) {
+            (Some(own), Some(other)) => own.overlaps(&other),
+            _ => true,
+        };
+        if !meets(index) {
+            return None;
+        }
+        let tree = solid.tree.without(&|other| other != index && !meets(other));
+        let mut needed = Vec::new();
+        let is_outer = tree.surface_of(index, &mut needed)?;
+        let around = common(around, tree.bounds(&|part| bounds[part]));
+        let shape = Trimmed::new(&parts, &bounds, (index, is_outer), tree, needed, around);
+        let part = &parts[index];
+        let shader = PartShader(part.body.clone());
+        let body = Body::shaded(Shape::new(shape).by::<ByPackets, ByParts>(), shader);
+        let own = part.body.clone();
+        let to_own = move |shader| match &own.to_own {
+            Some(to_own) => to_own(shader),
+            None => shader,
+        };
+        Some(Body {
+            depth: part.body.depth,
+            material: Some(part.material.clone()),
+            anchor: Some(part.body.anchor()),
+            to_own: Some(Box::new(to_own)),
+            ..body
+        })
+    };
+    (0..parts.len()).filter_map(body).collect()
+}

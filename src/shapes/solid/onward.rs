@@ -1,0 +1,125 @@
+//! Proofs of the hits of a part of a solid.
+
+use super::crossings::Crossings;
+use super::trimmed::Trimmed;
+use crate::geometry::sight::Line;
+use crate::numeric::affine::Affine;
+use crate::numeric::dual::Dual;
+use crate::numeric::interval::Interval;
+use crate::world::certify::{Found, Met, Onward, OverFootprint, Precise, Proven, coarse};
+
+impl Trimmed {
+    fn proven(&self, part: usize) -> Option<&dyn Proven> {
+        self.parts[part].body.shape.proven()
+    }
+
+    /// Returns the first hit that is seen, and its part.
+    ///
+    /// # Errors
+    /// From where on nothing is known; infinity where there is no hit.
+    fn proven_hit<F: Precise>(
+        &self,
+        line: &Line<Interval<F>>,
+        leaves: Option<usize>,
+    ) -> Result<(Interval<F>, usize), F> {
+        let zero = F::of(0.0);
+        let mut own = Crossings::new(self.proven(self.index).ok_or(zero)?, line, leaves);
+        let mut others: Vec<Option<Crossings<'_, F>>> = Vec::new();
+        others.resize_with(self.parts.len(), || None);
+        for index in 0.. {
+            let crossing = own.get(index)?;
+            if let Ok(next) = own.get(index + 1)
+                && next.at.low <= crossing.at.high
+            {
+                return Err(crossing.at.low);
+            }
+            let mut around = [!crossing.enters, crossing.enters].map(|inside| {
+                let mut of = vec![false; self.parts.len()];
+                of[self.index] = inside;
+                of
+            });
+            let mut is_known = true;
+            self.tree.holds(&mut |part| {
+                if part != self.index {
+                    let shape = self.proven(part)?;
+                    let other = others[part].get_or_insert_with(|| Crossings::new(shape, line, None));
+                    match other.around(crossing.at) {
+                        Some([before, after]) => {
+                            (around[0][part], around[1][part]) = (before, after);
+                        }
+                        None => is_known = false,
+                    }
+                }
+                // So that no part is passed over.
+                None
+            });
+            if !is_known {
+                return Err(crossing.at.low);
+            }
+            if self.tree.owner(&around[0], &around[1]) == Some(self.index) {
+                return Ok((crossing.at, crossing.part));
+            }
+        }
+        Err(F::INFINITY)
+    }
+}
+
+impl<F: Precise> Onward<F> for Trimmed {
+    fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (Found<F>, usize) {
+        if let Some(around) = self.around()
+            && line.clip(around.low, around.high).is_none()
+        {
+            return (Found::Misses, 0);
+        }
+        match self.proven_hit(line, leaves) {
+            Ok((at, part)) => (Found::Hits(at), part),
+            Err(end) if end == F::INFINITY => (Found::Misses, 0),
+            Err(end) => (Found::Doubtful(if end < F::of(0.0) { F::of(0.0) } else { end }), 0),
+        }
+    }
+
+    fn slope(&self, at: [Dual<Interval<F>>; 3], part: usize) -> Dual<Interval<F>> {
+        match self.proven(self.index) {
+            Some(proven) => F::proofs(proven).slope(at, part),
+            None => Dual::fixed(Interval::whole()),
+        }
+    }
+
+    fn shading_normal(
+        &self,
+        at: [Interval<F>; 3],
+        part: usize,
+        normal: [Interval<F>; 3],
+    ) -> Option<[Interval<F>; 3]> {
+        F::proofs(self.proven(self.index)?).shading_normal(at, part, normal)
+    }
+}
+
+/// Where a hit of the part may not be seen, what comes after it is not known.
+impl OverFootprint for Trimmed {
+    fn hits(&self, line: &Line<Affine>, leaves: Option<usize>, met: &mut dyn FnMut(Met, usize)) {
+        if let Some(around) = self.around()
+            && coarse(line).clip(around.low, around.high).is_none()
+        {
+            return;
+        }
+        let Some(proven) = self.proven(self.index) else { return met(Met::Doubtful(0.0), 0) };
+        if self.is_whole() {
+            return proven.hits(line, leaves, met);
+        }
+        let mut first: Option<f64> = None;
+        proven.hits(line, leaves, &mut |one, _| {
+            first = Some(first.map_or(one.low(), |first| first.min(one.low())))
+        });
+        if let Some(first) = first {
+            met(Met::Doubtful(first), 0);
+        }
+    }
+
+    fn slope(&self, at: [Dual<Affine>; 3], part: usize) -> Dual<Affine> {
+        match self.proven(self.index) {
+            Some(proven) => OverFootprint::slope(proven, at, part),
+            None => Dual::fixed(Affine::WHOLE),
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! The look of a part of a solid.
+
+use crate::numeric::interval::{Fine, Fraction};
+use crate::world::body::Body;
+use crate::world::certify::Precise;
+use crate::world::material::{Look, Material, Rgb};
+use crate::world::packets::shader::EncloseLook;
+use crate::world::shader::{LookBounds, PointBounds, Sees, Shader, SurfacePoint};
+use glam::{DVec2, DVec3};
+use std::sync::Arc;
+
+/// The reflectivities of the object that is a part.
+pub struct PartShader(pub Arc<Body>);
+
+impl Shader for PartShader {
+    fn sees(&self) -> Sees {
+        self.0.shader.sees()
+    }
+
+    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.0.shader.ambient(material, at)
+    }
+
+    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.0.shader.diffuse(material, at)
+    }
+
+    fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.0.shader.specular(material, at)
+    }
+
+    fn tile(&self, at: &SurfacePoint) -> DVec2 {
+        self.0.shader.tile(at)
+    }
+
+    fn bends(&self) -> bool {
+        self.0.shader.bends()
+    }
+
+    fn bend(&self, at: &SurfacePoint) -> DVec3 {
+        self.0.shader.bend(at)
+    }
+
+    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
+        let own = PointBounds {
+            position: at.position.map(F::widen),
+            normal: at.normal.map(|normal| normal.map(F::widen)),
+        };
+        let look = EncloseLook::<Fraction>::look(&*self.0.shader, material, &own)?;
+        let narrow = |colour: [Fine; 3]| colour.map(F::narrow);
+        let LookBounds { ambient, diffuse, specular } = look;
+        Some(LookBounds { ambient: narrow(ambient), diffuse: narrow(diffuse), specular: narrow(specular) })
+    }
+
+    fn uniform(&self, material: &Material) -> Option<Look> {
+        self.0.shader.uniform(material)
+    }
+
+    fn brightest(&self, material: &Material) -> Option<Look> {
+        self.0.shader.brightest(material)
+    }
+}

@@ -1,0 +1,333 @@
+//! The surface of a part of a solid, for single rays.
+
+use crate::geometry::aabb::Aabb;
+use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
+use crate::geometry::roots::Method;
+use crate::geometry::sight::Sight;
+use crate::numeric::double_double::DoubleDouble;
+use crate::world::any_shape::AnyShape;
+use crate::world::body::Part;
+use crate::world::certify::{Enclosure, Found, Onward, Precision, Proven};
+use crate::world::coincidence::{self, CLOSE, LEAST_COSINE, ROUNDING};
+use crate::world::hittable::Hittable;
+use crate::world::packets::shape::{Proofs, by_distance};
+use crate::world::shape::{ByPackets, Shape};
+use crate::world::solid::Tree;
+use f256::f256;
+use glam::{DVec2, DVec3};
+use std::sync::Arc;
+
+/// The largest number of hits of a part along a ray that are visited.
+const MOST_HITS: usize = 1024;
+
+/// How far from a surface that may coincide with another one it is asked what lies on both sides, as a multiple of the
+/// error of the point.
+const BESIDE: f64 = 256.0;
+
+/// How far before a hit it is asked whether a ray is in the solid, as a fraction of what the hit is computed from.
+const SHORTLY: f64 = 1e-6;
+
+/// Marks a shape of which only a part is seen, whose hits are proven as the shape's.
+pub struct ByParts;
+
+/// The surface of a part, where it is that of the solid.
+pub struct Trimmed {
+    /// All parts of the solid, and a box around each.
+    pub(super) parts: Arc<[Part]>,
+    around: Arc<[Option<Aabb>]>,
+    /// The index of the part whose surface this is.
+    pub(super) index: usize,
+    /// Whether the solid lies on the outer side of the part.
+    pub(super) is_outer: bool,
+    /// What a point near this surface must lie in to lie in the solid.
+    pub(super) tree: Tree,
+    /// The conditions under which the surface is the solid's, each with whether it must hold.
+    needed: Vec<(Tree, bool)>,
+    bounds: Option<Aabb>,
+}
+
+impl Trimmed {
+    /// Makes the surface of the part of an index.
+    pub(super) fn new(
+        parts: &Arc<[Part]>,
+        around: &Arc<[Option<Aabb>]>,
+        (index, is_outer): (usize, bool),
+        tree: Tree,
+        needed: Vec<(Tree, bool)>,
+        bounds: Option<Aabb>,
+    ) -> Self {
+        let (parts, around) = (parts.clone(), around.clone());
+        Self { parts, around, index, is_outer, tree, needed, bounds }
+    }
+
+    /// Returns the shape of the part.
+    pub(super) fn own(&self) -> &AnyShape {
+        &self.parts[self.index].body.shape
+    }
+
+    /// Returns the box around the surface.
+    pub(super) fn around(&self) -> Option<&Aabb> {
+        self.bounds.as_ref()
+    }
+
+    /// Tells whether all of the part's surface is the solid's.
+    pub(super) fn is_whole(&self) -> bool {
+        self.needed.is_empty()
+    }
+
+    /// Returns a side of the solid as a side of the part, and the other way round.
+    #[inline]
+    pub(super) fn side(&self, of: Side) -> Side {
+        if self.is_outer { of.opposite() } else { of }
+    }
+
+    /// Tells whether a point lies in a part; `None` where its surface may be within an error in world units.
+    fn holds(&self, part: usize, at: DVec3, error: f64) -> Option<bool> {
+        if let Some(Aabb { low, high }) = self.around[part]
+            && ((low - error).cmpgt(at).any() || at.cmpgt(high + error).any())
+        {
+            return Some(false);
+        }
+        self.parts[part].body.shape.holds(at, error)
+    }
+
+    /// Tells whether a hit of the part is the solid's; `None` where the surface of another part may be within an error in
+    /// world units.
+    fn is_bare(&self, at: DVec3, error: f64) -> Option<bool> {
+        let mut all = Some(true);
+        for (tree, must_hold) in &self.needed {
+            match tree.holds(&mut |part| self.holds(part, at, error)) {
+                Some(holds) if holds == *must_hold => {}
+                Some(_) => return Some(false),
+                None => all = None,
+            }
+        }
+        all
+    }
+
+    /// Tells whether a hit of the part is the solid's by what lies on both sides of it, at a distance that is a multiple
+    /// of an error in world units.
+    fn is_bare_beside(&self, at: DVec3, normal: DVec3, error: f64) -> bool {
+        let step = BESIDE * (error + ROUNDING * at.abs().max_element()) * normal;
+        let beside = |at: DVec3, is_inside: bool| -> Vec<bool> {
+            let inside = |part: usize| self.holds(part, at, 0.0).unwrap_or(false);
+            (0..self.parts.len())
+                .map(|part| if part == self.index { is_inside } else { inside(part) })
+                .collect()
+        };
+        self.tree.owner(&beside(at + step, false), &beside(at - step, true)) == Some(self.index)
+    }
+
+    /// Tells whether a hit of the part is the solid's; `None` where that is open. `size` is what the hit is computed from.
+    fn is_surely_bare(&self, ray: &Ray, distance: f64, size: f64) -> Option<bool> {
+        let at = ray.at(distance);
+        // The error of any hit first, then that of this one, which takes its normal.
+        self.is_bare(at, ROUNDING / LEAST_COSINE * size).or_else(|| {
+            self.is_bare(at, coincidence::error(ray, distance, self.own().normal(at), self.reach()))
+        })
+    }
+
+    /// Tells whether a ray is certainly in the solid shortly before a hit. If it enters the part there, what coincides
+    /// does not make it enter the solid.
+    fn is_within(&self, ray: &Ray, distance: f64, size: f64) -> bool {
+        let before = ray.at(distance - SHORTLY * size);
+        // What lies far from this surface is not in its tree.
+        let is_near =
+            self.bounds.is_none_or(|Aabb { low, high }| low.cmple(before).all() && before.cmple(high).all());
+        is_near
+            && distance > 2.0 * SHORTLY * size
+            && self.tree.holds(&mut |part| self.holds(part, before, ROUNDING * size)) == Some(true)
+    }
+
+    /// Returns the distance of the first hit that is seen, and whether it is certain. `first` is the distance of the
+    /// part's own first hit, if that is known.
+    pub(super) fn first_hit(&self, ray: &Ray, range: &RayRange, mut first: Option<f64>) -> (f64, bool) {
+        let (shape, reach) = (self.own(), self.reach());
+        let (mut start, mut gone, mut is_certain) = (*ray, 0.0, true);
+        let mut leaves = range.origin_side.map(|side| self.side(side));
+        let mut error = range.origin_error;
+        let (low, high) = (ray.origin - error, ray.origin + error);
+        let is_apart = self.around[self.index].is_some_and(|own| !own.overlaps(&Aabb { low, high }));
+        // The side from which the next hit comes: inside and outside alternate.
+        let mut from = leaves.or(is_apart.then_some(Side::Outside));
+        for _ in 0..MOST_HITS {
+            if leaves.is_some_and(|side| !shape.can_hit_itself(side)) {
+                break;
+            }
+            let far = if range.far < MISS { (1.0 + CLOSE) * range.far - gone } else { MISS };
+            let left = RayRange { near: 0.0, far, origin_side: leaves, origin_error: error };
+            let bracket = first.take().map_or_else(|| shape.t_bounds(&start, &left), Bracket::exactly);
+            let is_exact = bracket.near == bracket.far;
+            let onward = if is_exact { bracket.near } else { shape.distance(&start, &left) };
+            if onward == MISS {
+                // What is doubtful of a ray that starts on the surface is that start.
+                is_certain &= !bracket.is_doubtful() || leaves == Some(Side::Outside) && far == MISS;
+                break;
+            }
+            let distance = gone + onward;
+            let at = ray.at(distance);
+            let side = match from {
+                Some(from) if !bracket.is_doubtful() => from,
+                _ => Side::seen_along(ray.dir, shape.normal(at)),
+            };
+            is_certain &= !bracket.is_doubtful() || leaves == Some(side);
+            let size = ray.origin.abs().max_element() + distance + reach;
+            let sure = self.is_surely_bare(ray, distance, size).or_else(|| {
+                let is_hidden = self.side(side) == Side::Outside && self.is_within(ray, distance, size);
+                is_hidden.then_some(false)
+            });
+            is_certain &= sure.is_some();
+            let is_bare = sure.unwrap_or_else(|| {
+                let normal = shape.normal(at);
+                self.is_bare_beside(at, normal, coincidence::error(ray, distance, normal, reach))
+            });
+            if is_bare {
+                return (range.keep(distance), is_certain);
+            }
+            leaves = Some(side.opposite());
+            from = leaves;
+            // The hit is off along the ray by more than that, but not off the surface.
+            error = ROUNDING * size;
+            (start.origin, gone) = (at, distance);
+        }
+        (MISS, is_certain)
+    }
+
+    /// Returns a bracket of the first hit of one ray.
+    pub(super) fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        self.t_bounds_from(ray, range, None)
+    }
+
+    /// Returns a bracket of the first hit of one ray. `first` is the distance of the part's own first hit, if that is
+    /// known.
+    pub(super) fn t_bounds_from(&self, ray: &Ray, range: &RayRange, first: Option<f64>) -> Bracket {
+        if self.is_whole() {
+            return self.own().t_bounds(ray, &self.own_range(range));
+        }
+        let touches = || self.own().touches(ray.origin, range.origin_error);
+        by_distance(range, touches, |range| {
+            let (distance, is_certain) = self.first_hit(ray, range, first);
+            is_certain.then_some(distance)
+        })
+    }
+
+    fn own_range(&self, range: &RayRange) -> RayRange {
+        RayRange { origin_side: range.origin_side.map(|side| self.side(side)), ..*range }
+    }
+}
+
+impl Hittable for Trimmed {
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        if self.is_whole() {
+            self.own().distance(ray, &self.own_range(range))
+        } else {
+            self.first_hit(ray, range, None).0
+        }
+    }
+
+    fn normal(&self, at: DVec3) -> DVec3 {
+        let normal = self.own().normal(at);
+        if self.is_outer { -normal } else { normal }
+    }
+
+    fn shading_normal(&self, at: DVec3, normal: DVec3) -> DVec3 {
+        self.own().shading_normal(at, normal)
+    }
+
+    fn uv(&self, at: DVec3) -> Option<DVec2> {
+        self.own().uv(at)
+    }
+
+    fn face(&self, at: DVec3) -> Option<u32> {
+        self.own().face(at)
+    }
+
+    fn part(&self, ray: &Ray, distance: f64) -> Option<String> {
+        let Part { name, body, .. } = &self.parts[self.index];
+        let own = body.shape.part(ray, distance);
+        Some(format!("part `{name}`{}", own.map_or(String::new(), |own| format!(", {own}"))))
+    }
+
+    fn read_from_files(&self, each: &mut dyn FnMut(&[u8])) {
+        self.parts.iter().for_each(|part| part.body.shape.read_from_files(each));
+    }
+
+    fn bounds(&self) -> Option<Aabb> {
+        self.bounds
+    }
+
+    fn can_hit_itself(&self, leaving: Side) -> bool {
+        self.own().can_hit_itself(self.side(leaving))
+    }
+
+    fn is_two_sided(&self) -> bool {
+        true
+    }
+
+    fn may_be_costly(&self) -> bool {
+        self.own().may_be_costly()
+    }
+
+    fn search_cost(&self, ray: &Ray, origin_side: Option<Side>) -> u32 {
+        let own = self.own().search_cost(ray, origin_side.map(|side| self.side(side)));
+        // That for the first hit, and as much for those after it.
+        if self.is_whole() { own } else { 2 * own }
+    }
+
+    fn method(&self) -> String {
+        let Part { name, body, .. } = &self.parts[self.index];
+        let others = self.needed.len();
+        let own = body.shape.method();
+        match others {
+            0 => format!("all of part `{name}`: {own}"),
+            _ => format!("part `{name}` where the others allow it: {own}"),
+        }
+    }
+
+    fn clearance(&self, from: DVec3) -> Option<f64> {
+        self.own().clearance(from)
+    }
+
+    fn reach(&self) -> f64 {
+        self.own().reach()
+    }
+}
+
+impl Proofs for Shape<Trimmed, ByPackets, ByParts> {
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        let is_near = self
+            .shape
+            .bounds
+            .is_none_or(|Aabb { low, high }| (low - error).cmple(at).all() && at.cmple(high + error).all());
+        is_near && self.shape.own().touches(at, error)
+    }
+
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
+        self.shape.own().packets().fine_distance(ray, distance)
+    }
+
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        match precision {
+            Precision::Double => match Onward::<f64>::first_hit(&self.shape, &sight.line(), None).0 {
+                Found::Misses => Enclosure::Misses,
+                Found::Hits(at) => Enclosure::Hits(at.into()),
+                Found::Edge(at) => Enclosure::Edge(at.into()),
+                Found::Doubtful(from) => Enclosure::Doubtful(from.into()),
+            },
+            Precision::Octuple => match Onward::<f256>::first_hit(&self.shape, &sight.line(), None).0 {
+                Found::Misses => Enclosure::Misses,
+                Found::Hits(at) => Enclosure::Hits(at),
+                Found::Edge(at) => Enclosure::Edge(at),
+                Found::Doubtful(from) => Enclosure::Doubtful(from),
+            },
+        }
+    }
+
+    fn proven(&self) -> Option<&dyn Proven> {
+        Some(&self.shape)
+    }
+
+    fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
+        None
+    }
+}

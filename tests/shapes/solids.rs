@@ -1,0 +1,224 @@
+//! Solids: what rays hit of shapes that are combined, also where their surfaces coincide, and how they look.
+
+use crate::common::{model, render};
+use tabray::render::{Plan, trace};
+use tabray::tools::verify::{self, Verdict};
+
+/// A viewer who looks along -z from z = 6 through the middle of the only pixel.
+const VIEWER: &str =
+    "camera eye { pixeldim 1 1 worlddim 8 6 viewpoint 4 3 6 } material m { ambient 1 1 1 }\n";
+
+/// Returns the distance and the part that a ray from (4, 3, 6) along -z hits first, and what is proven of that.
+fn seen(solid: &str) -> (Option<(f64, String)>, Verdict) {
+    let model = model(&format!("{VIEWER}{}", solid.replace("{ ", "{ material m ")));
+    let plan = Plan::new(&model);
+    let sight = model.camera.value.sight(0.0, 0.0);
+    let hit = trace::first_hit(&plan, &sight).map(|hit| {
+        let part = hit.object.shape.part(&sight.ray(), hit.distance).expect("a part");
+        (hit.distance, part.split('`').nth(1).expect("a name").to_owned())
+    });
+    (hit, verify::pixel(&plan, 0, 0))
+}
+
+#[track_caller]
+fn is_hit(solid: &str, hit: Option<(f64, &str)>) {
+    let (found, verdict) = seen(solid);
+    assert_eq!(found.as_ref().map(|(distance, part)| (*distance, &**part)), hit, "{solid}");
+    assert!(verdict != Verdict::Contradicted, "{solid}");
+}
+
+#[test]
+fn the_first_hit_is_where_the_solid_begins() {
+    let (cube, hole) =
+        ("box cube { center 4.1 3.2 -2 size 2 2 2 }", "sphere hole { center 4 3 -1 radius 0.5 }");
+    for (operation, distance, part) in
+        [("union", 6.5, "hole"), ("intersection", 7.0, "cube"), ("difference", 7.5, "hole")]
+    {
+        let solid = format!("{cube} {hole} {operation} s {{ objects cube hole }}");
+        is_hit(&solid, Some((distance, part)));
+        assert_eq!(seen(&solid).1, Verdict::Proven, "{operation}");
+    }
+}
+
+#[test]
+fn a_hole_flush_with_a_side_is_open() {
+    is_hit(
+        "box cube { center 4 3 -2 size 2 2 2 } box hole { center 4 3 -1.5 size 1 1 1 }
+         difference s { objects cube hole }",
+        Some((8.0, "hole")),
+    );
+    is_hit(
+        "box cube { center 4 3 -2 size 2 2 2 } cylinder hole { base 4 3 -3 direction 0 0 1 height 2 radius 0.5 }
+         difference s { objects cube hole }",
+        None,
+    );
+    is_hit(
+        "box a { center 4 3 -2 size 2 2 2 } box b { center 4 3 -2 size 2 2 2 } difference s { objects a b }",
+        None,
+    );
+}
+
+#[test]
+fn shapes_that_share_a_side_are_one_where_they_are_joined() {
+    let boxes = "box near { center 4 3 2 size 2 2 10 } box far { center 4 3 -4 size 2 2 2 }";
+    is_hit(&format!("{boxes} union s {{ objects near far }}"), Some((11.0, "far")));
+    // From inside of the near one, which is all that is left.
+    is_hit(&format!("{boxes} difference s {{ objects near far }}"), Some((9.0, "near")));
+    is_hit(&format!("{boxes} intersection s {{ objects near far }}"), None);
+}
+
+#[test]
+fn surfaces_that_coincide_are_those_of_the_first_part() {
+    let balls = "sphere one { center 4 3 -2 radius 1 } sphere other { center 4 3 -2 radius 1 }";
+    for operation in ["union", "intersection"] {
+        is_hit(&format!("{balls} {operation} s {{ objects one other }}"), Some((7.0, "one")));
+        is_hit(&format!("{balls} {operation} s {{ objects other one }}"), Some((7.0, "other")));
+    }
+    is_hit(&format!("{balls} difference s {{ objects one other }}"), None);
+}
+
+#[test]
+fn what_a_ray_only_touches_does_not_matter() {
+    let cube = "box cube { center 4 3 -2 size 2 2 2 }";
+    let ball = "sphere ball { center 4 4 -2 radius 1 }";
+    is_hit(&format!("{cube} {ball} difference s {{ objects cube ball }}"), Some((7.0, "cube")));
+    is_hit(&format!("{cube} {ball} union s {{ objects cube ball }}"), Some((7.0, "cube")));
+    // A ball that touches the side from within, and one that touches it from outside.
+    let within = "sphere ball { center 4 3 -2 radius 1 }";
+    is_hit(&format!("{cube} {within} intersection s {{ objects cube ball }}"), Some((7.0, "cube")));
+    let outside = "sphere ball { center 4 3 0 radius 1 }";
+    is_hit(&format!("{cube} {outside} difference s {{ objects cube ball }}"), Some((7.0, "cube")));
+}
+
+#[test]
+fn a_ray_that_starts_in_a_solid_leaves_it_where_it_ends() {
+    let walls = "box walls { center 4 3 0 size 20 20 20 }";
+    is_hit(
+        &format!("{walls} sphere ball {{ center 4 3 -4 radius 1 }} difference s {{ objects walls ball }}"),
+        Some((9.0, "ball")),
+    );
+    is_hit(
+        &format!("{walls} sphere ball {{ center 4 3 6 radius 1 }} difference s {{ objects walls ball }}"),
+        Some((1.0, "ball")),
+    );
+    is_hit(
+        &format!("{walls} sphere ball {{ center 4 3 6 radius 1 }} intersection s {{ objects walls ball }}"),
+        Some((1.0, "ball")),
+    );
+    is_hit(
+        &format!("{walls} box more {{ center 4 3 -10 size 4 4 4 }} union s {{ objects walls more }}"),
+        Some((18.0, "more")),
+    );
+}
+
+#[test]
+fn a_part_is_met_again_behind_what_is_cut_away() {
+    let ring = "torus ring { center 4 3 -4 radius 2 tube 0.5 direction 0 1 0 }";
+    let front = "box front { center 4 3 -1 size 4 4 4 }";
+    is_hit(&format!("{ring} {front} difference s {{ objects ring front }}"), Some((11.5, "ring")));
+    let half = "box half { center 4 3 -6 size 8 8 4 }";
+    is_hit(&format!("{ring} {half} intersection s {{ objects ring half }}"), Some((11.5, "ring")));
+}
+
+#[test]
+fn solids_are_combined_and_placed_within_each_other() {
+    let die = "box cube { center 0 0 0 size 2 2 2 } sphere pip { center 0 0 1 radius 0.5 }
+               difference die { objects cube pip }";
+    let placed = "place p { object die translation 4 3 -2 }";
+    is_hit(&format!("{die} {placed}").replace("{ objects", "{ objects"), Some((7.5, "pip")));
+    let post = "cylinder post { base 4 3 -4 direction 0 0 1 height 2.75 radius 0.1 }";
+    is_hit(&format!("{die} {placed} {post} union s {{ objects p post }}"), Some((7.25, "post")));
+    is_hit(&format!("{die} {placed} {post} difference s {{ objects p post }}"), None);
+}
+
+const BEFORE: &str = "camera eye { pixeldim 160 120 worlddim 8 6 viewpoint 4 3 8 }
+    material red { ambient 1 0.3 0.2 diffuse 5 2 1 specular 0.3 shininess 12 }
+    material grey { ambient 0.4 0.4 0.5 diffuse 2 2 2.5 specular 0.2 0.2 0.2 }
+    material glass { ambient 0.1 0.1 0.2 diffuse 1 1 2 transparency 0.6 }
+    light lamp { location 1 9 5 emissivity 5 5 5 }
+    plane floor { material grey normal 0 1 0 point 0 0 0 }\n";
+
+/// Asserts that two scenes look the same but for the rounding of single pixels' bytes, and for single pixels at edges.
+#[track_caller]
+fn look_the_same(one: &str, other: &str) {
+    let [one_bytes, other_bytes] = [one, other].map(|scene| render(&model(&format!("{BEFORE}{scene}"))));
+    let differences = one_bytes.iter().zip(other_bytes.iter()).map(|(one, other)| one.abs_diff(*other));
+    let different = differences.filter(|difference| *difference > 1).count();
+    assert!(different * 2000 <= one_bytes.len(), "{one}: {different}");
+}
+
+#[test]
+fn a_solid_casts_shadows_and_is_mirrored_as_the_same_shape_written_out() {
+    look_the_same(
+        "box all { material red center 4 1 -2 size 2 2 2 } box upper { material red center 4 2 -2 size 3 2 3 }
+         difference s { objects all upper }",
+        "box s { material red center 4 0.5 -2 size 2 1 2 }",
+    );
+    look_the_same(
+        "sphere ball { material red center 4 1 -2 radius 1.5 } box part { material red center 4 2 -2 size 4 2 4 }
+         intersection s { objects ball part }",
+        "sphere ball { material red center 4 1 -2 radius 1.5 } box part { material red center 4 0 -2 size 4 2 4 }
+         difference s { objects ball part }",
+    );
+    look_the_same(
+        "sphere ball { material grey center 4 2 -2 radius 1.5 } torus ring { material red center 4 2 -2 radius 3 tube 0.2 }
+         union s { objects ball ring }",
+        "sphere ball { material grey center 4 2 -2 radius 1.5 } torus ring { material red center 4 2 -2 radius 3 tube 0.2 }",
+    );
+}
+
+#[test]
+fn glass_of_several_parts_has_no_walls_inside() {
+    look_the_same(
+        "box left { material glass center 3 1 -2 size 2 2 2 } box right { material glass center 4.5 1 -2 size 2 2 2 }
+         union s { objects left right }",
+        "box s { material glass center 3.75 1 -2 size 3.5 2 2 }",
+    );
+    look_the_same(
+        "box all { material glass center 4 1 -2 size 2 2 2 } box upper { material glass center 4 2 -2 size 3 2 3 }
+         difference s { objects all upper }",
+        "box s { material glass center 4 0.5 -2 size 2 1 2 }",
+    );
+}
+
+#[test]
+fn a_placed_solid_is_one_of_placed_parts() {
+    look_the_same(
+        "sphere ball { material red center 0 0 0 radius 1 } box corner { material grey center 0.5 0.5 0.5 size 1 1 1 }
+         difference s { objects ball corner } place p { object s scale 1.5 1 1 rotation 0 30 20 translation 4 1.5 -2 }",
+        "sphere ball0 { material red center 0 0 0 radius 1 } box corner0 { material grey center 0.5 0.5 0.5 size 1 1 1 }
+         place ball { object ball0 scale 1.5 1 1 rotation 0 30 20 translation 4 1.5 -2 }
+         place corner { object corner0 scale 1.5 1 1 rotation 0 30 20 translation 4 1.5 -2 }
+         difference s { objects ball corner }",
+    );
+}
+
+#[test]
+fn parts_have_their_own_materials_unless_the_solid_has_one() {
+    let parts = "sphere ball { material red center 4 1 -2 radius 1 } box corner { material glass center 4.5 1.5 -1.5 size 1 1 1 }";
+    let materials = |solid: &str| -> Vec<f64> {
+        let model = model(&format!("{BEFORE}{parts} {solid}"));
+        model.objects.iter().skip(1).map(|object| object.material.transparency).collect()
+    };
+    assert_eq!(materials("difference s { objects ball corner }"), [0.0, 0.6]);
+    assert_eq!(materials("difference s { material grey objects ball corner }"), [0.0, 0.0]);
+    assert_eq!(materials("difference s { objects ball corner } place p { object s }"), [0.0, 0.6]);
+    assert_eq!(
+        materials("difference s { objects ball corner } place p { object s material glass }"),
+        [0.6, 0.6]
+    );
+    assert_eq!(materials("place p { object ball } place q { object corner }"), [0.0, 0.6]);
+}
+
+#[test]
+fn solids_of_classic_scenes_are_made_of_exact_parts() {
+    let text = format!(
+        "{VIEWER}sphere a {{ material m center 4 3 -2 radius 1 }} sphere b {{ material m center 4 3 -1 radius 0.5 }}
+         difference s {{ objects a b }}"
+    )
+    .replace("pixeldim", "accuracy classic pixeldim");
+    let model = model(&text);
+    let sight = model.camera.value.sight(0.0, 0.0);
+    let hit = trace::first_hit(&Plan::new(&model), &sight).expect("a hit");
+    assert_eq!(hit.distance, 7.5);
+}
