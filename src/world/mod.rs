@@ -1,7 +1,8 @@
-//! What a scene is made of: the traits of shapes, shaders and lights, and the types in their signatures.
+//! What a scene is made of: the traits of shapes, shaders, lights and backgrounds, and the types in their signatures.
 
 pub(crate) mod accuracy;
 pub(crate) mod any_shape;
+pub(crate) mod background;
 pub(crate) mod body;
 pub(crate) mod camera;
 pub mod certify;
@@ -19,6 +20,7 @@ pub(crate) mod texture;
 
 pub use accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
 pub use any_shape::AnyShape;
+pub use background::{AnyBackground, Background};
 pub use body::{AnyLight, AnyShader, Body, NamedBody, Paint, Warning};
 pub use camera::Camera;
 pub use hittable::{Bracketed, Certified, Hittable, Searched};

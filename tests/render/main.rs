@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod backgrounds;
 mod colours;
 mod differences;
 mod inside;

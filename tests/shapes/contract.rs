@@ -11,7 +11,8 @@ use tabray::shapes::Implicit;
 use tabray::tools::contract::{self, Breach, Promise};
 use tabray::world::certify::Equation;
 use tabray::world::{
-    Body, Bracketed, Camera, Certified, Hittable, Light, Material, Rgb, Shader, Shape, SurfacePoint,
+    Background, Body, Bracketed, Camera, Certified, Hittable, Light, Material, Rgb, Shader, Shape,
+    SurfacePoint,
 };
 
 #[test]
@@ -274,7 +275,7 @@ const fn shape(name: &'static str, construct: fn(&Args) -> Result<Body, Refusal>
 
 static SOUND: Entity = shape("sound", |args| ball(args, Flaw::None));
 
-static BROKEN: [(Promise, Entity); 27] = [
+static BROKEN: [(Promise, Entity); 28] = [
     (Promise::DistanceIsInItsSpan, shape("nan", |args| ball(args, Flaw::Nan))),
     (Promise::DistanceIsInItsSpan, shape("no_span", |args| ball(args, Flaw::NoSpan))),
     (Promise::DistanceIsTheSameAgain, shape("restless", |args| ball(args, Flaw::Restless))),
@@ -300,6 +301,7 @@ static BROKEN: [(Promise, Entity); 27] = [
     (Promise::TakesWhatItsTableAllows, shape("refuses", refuse)),
     (Promise::DumpLoadsAgain, Entity::light("counts", "a lamp", &[COUNTS], |_| Ok(Box::new(Lamp)))),
     (Promise::LightIsFinite, Entity::light("lamp", "a lamp", &[], |_| Ok(Box::new(Lamp)))),
+    (Promise::BackgroundIsSound, Entity::background("glare", "a background", &[], |_| Ok(Box::new(Glare)))),
     (
         Promise::CameraLooks,
         Entity::camera("blind", "a camera", &[], |_| Ok(Camera { pixels: [0, 1], ..Camera::default() })),
@@ -311,6 +313,19 @@ static BROKEN: [(Promise, Entity); 27] = [
         }),
     ),
 ];
+
+/// Is brighter straight up than it says.
+struct Glare;
+
+impl Background for Glare {
+    fn colour(&self, toward: DVec3) -> Rgb {
+        Rgb::splat(1.0 + toward.y)
+    }
+
+    fn brightest(&self) -> Rgb {
+        Rgb::splat(1.9)
+    }
+}
 
 /// Returns the breaches of one entity type, in a registry with the program's own types of other kinds.
 fn breaches(entity: &'static Entity) -> Vec<Breach> {

@@ -12,6 +12,7 @@ use crate::render::limits::MAX_DIST;
 use crate::render::observer::{Count, Event, Hit, Purpose, RayKind, Reason, TraceObserver};
 use crate::render::plan::depth::Branch;
 use crate::scene::model::Object;
+use crate::world::background::Background;
 use crate::world::interaction::SurfaceInteraction;
 use crate::world::material::Rgb;
 use crate::world::packets::shader::SurfacePoints;
@@ -32,7 +33,12 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             parts.begin(met);
             while let Some((id, lanes)) = parts.next() {
                 let Some(object) = (id as usize).checked_sub(1) else {
-                    lanes.iter().for_each(|lane| colours.set(usize::from(*lane), Rgb::ZERO));
+                    match &self.model.background {
+                        None => lanes.iter().for_each(|lane| colours.set(usize::from(*lane), Rgb::ZERO)),
+                        Some(background) => {
+                            see_background(&*background.value, group, &hits.far, lanes, colours)
+                        }
+                    }
                     continue;
                 };
                 part.gather(group, lanes);
@@ -228,5 +234,19 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.trace(onward, behind);
         swap(&mut group.ray_budget, &mut onward.ray_budget);
         self.depth -= 1;
+    }
+}
+
+/// Sets the colours of rays that hit nothing. Those whose budget is used up end at a distance of 0, and are black.
+fn see_background(
+    background: &dyn Background,
+    group: &RayGroup,
+    far: &[f64],
+    lanes: &[u8],
+    colours: &mut VectorList,
+) {
+    for lane in lanes.iter().map(|lane| usize::from(*lane)) {
+        let is_over = far[lane] == 0.0;
+        colours.set(lane, if is_over { Rgb::ZERO } else { background.colour(group.dir.get(lane)) });
     }
 }

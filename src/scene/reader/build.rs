@@ -95,7 +95,9 @@ impl Check<'_, '_> {
                     )),
             );
         }
-        let Self { camera, materials, textures, shaders, objects, patterns, lights, places, .. } = self;
+        let Self {
+            camera, materials, textures, shaders, objects, patterns, lights, background, places, ..
+        } = self;
         let model = camera.map(|camera| Model {
             camera: item(store, camera),
             materials: materials.into_iter().map(|material| item(store, material)).collect(),
@@ -104,6 +106,7 @@ impl Check<'_, '_> {
             objects,
             patterns,
             lights,
+            background: background.map(|background| item(store, background)),
         });
         (model, places)
     }

@@ -16,6 +16,7 @@ use crate::scene::registry::Registry;
 use crate::scene::store::Store;
 use crate::scene::value::Datum;
 use crate::world::accuracy::Accuracy;
+use crate::world::background::AnyBackground;
 use crate::world::body::{AnyLight, NamedBody, Paint};
 use crate::world::camera::Camera;
 use crate::world::material::Material;
@@ -84,6 +85,8 @@ pub(super) struct Check<'r, 't> {
     pub(super) unknown: Missing<()>,
     /// The place of the first camera's name.
     pub(super) first_camera: Option<Place>,
+    /// The place of the first background's name.
+    first_background: Option<Place>,
     pub(super) setting: Arc<Setting>,
     /// The accuracy that overrides the scene's own.
     accuracy: Option<Accuracy>,
@@ -103,6 +106,7 @@ pub(super) struct Check<'r, 't> {
     /// The objects that other entities refer to.
     pub(super) patterns: Vec<Item<NamedBody>>,
     pub(super) lights: Vec<Item<AnyLight>>,
+    pub(super) background: Option<(usize, AnyBackground)>,
     quick: Quick<'r>,
     pub(super) threads: &'r Threads,
 }
@@ -125,6 +129,7 @@ impl<'r, 't> Check<'r, 't> {
             names: Names::default(),
             unknown: Missing::default(),
             first_camera: None,
+            first_background: None,
             setting: Arc::new(setting),
             accuracy: accuracy.above_all,
             store: Store::default(),
@@ -138,6 +143,7 @@ impl<'r, 't> Check<'r, 't> {
             objects: Vec::new(),
             patterns: Vec::new(),
             lights: Vec::new(),
+            background: None,
             quick: Quick::new(registry),
             threads,
         }
@@ -214,6 +220,15 @@ impl Check<'_, '_> {
                     .help("a scene has exactly one camera"),
             );
         }
+        if entity.kind() == Kind::Background
+            && let Some(first) = self.first_background.replace(place.clone())
+        {
+            self.report.add(
+                Fault::error(place.clone(), format!("a second background `{text}`"))
+                    .also(first, "the first one")
+                    .help("a scene has at most one background: `background`, `sky` or `environment`"),
+            );
+        }
         let values = Against { entity, names: &mut self.names, store: &self.store, report: self.report }
             .values(parsed);
         let values = values.filter(|_| counts);
@@ -285,6 +300,10 @@ impl Check<'_, '_> {
                     self.define(kind, &args.name, &Datum::Shader { name, paint: paint.clone() });
                     self.shaders.push((order, paint));
                 }
+            }
+            Construct::Background(construct) => {
+                let made = self.made(parsed, &args, construct);
+                self.background = made.map(|background| (order, background));
             }
             Construct::Object(_) | Construct::Light(_) => {}
         }

@@ -122,7 +122,7 @@ impl Draw {
         {
             text += &self.entity(other, name(Kind::Object));
         }
-        if matches!(entity.kind(), Kind::Shader | Kind::Object | Kind::Light) {
+        if matches!(entity.kind(), Kind::Shader | Kind::Object | Kind::Light | Kind::Background) {
             let (tried, named) = (self.entity(entity, "tried"), format!("shader {}\n", name(Kind::Shader)));
             if tried.contains(&named) {
                 text += &self.aside(|draw| draw.shader(registry, entity));
@@ -236,6 +236,6 @@ fn name(kind: Kind) -> &'static str {
         Kind::Texture => "t",
         Kind::Shader => "s",
         Kind::Object => "o",
-        Kind::Light => "tried",
+        Kind::Light | Kind::Background => "tried",
     }
 }

@@ -3,6 +3,7 @@
 use super::draw::Draw;
 use super::promise::{Fault, Promise};
 use crate::geometry::ray::Side;
+use crate::numeric::interval::Interval;
 use crate::scene::dump;
 use crate::scene::model::Model;
 use crate::scene::profile::Profile;
@@ -12,6 +13,7 @@ use crate::scene::syntax::Syntax;
 use crate::shapes::revolution::{Finish, Revolution};
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::{LANES, Vectors};
+use crate::world::background::Background;
 use crate::world::body::Paint;
 use crate::world::camera::Camera;
 use crate::world::light_samples::{LightSamples, ShadingPoints};
@@ -114,6 +116,40 @@ pub fn paint(paint: &Paint, draw: &mut Draw) -> Result<(), Fault> {
             let face = has_more.then_some(index as u32);
             let side = if index % 3 == 0 { Side::Inside } else { Side::Outside };
             shader(&*made, &SurfacePoint { position, normal, side, uv, face })?;
+        }
+    }
+    Ok(())
+}
+
+/// Checks a background's colours and their bounds in many directions.
+pub fn background(background: &dyn Background, draw: &mut Draw) -> Result<(), Fault> {
+    /// The largest rounding error of a colour, as a part of the brightest one.
+    const ROUNDING: f64 = 1e-12;
+    let most = background.brightest();
+    let error = ROUNDING * most.max_element();
+    for size in [0.0, 1e-6, 1e-3, 0.3] {
+        for _ in 0..PLACES {
+            let toward = draw.direction();
+            let colour = background.colour(toward);
+            if !colour.is_finite() || colour.min_element() < 0.0 {
+                return Err(Promise::BackgroundIsSound.fault(format!("toward {toward} it is {colour}")));
+            }
+            if !colour.cmple(most + error).all() {
+                let found = format!("`brightest` is {most}, and toward {toward} it is {colour}");
+                return Err(Promise::BackgroundIsSound.fault(found));
+            }
+            // A box of directions around one, which is not in the middle.
+            let at = toward.to_array();
+            let (below, above) = (size * draw.part(), size * draw.part());
+            let bounds = background.enclose(at.map(|at| Interval { low: at - below, high: at + above }));
+            let is_within = |channel: usize| {
+                bounds[channel].low - error <= colour[channel]
+                    && colour[channel] <= bounds[channel].high + error
+            };
+            if !(0..3).all(is_within) {
+                let found = format!("toward {toward} it is {colour}, and `enclose` says {bounds:?}");
+                return Err(Promise::BackgroundIsSound.fault(found));
+            }
         }
     }
     Ok(())

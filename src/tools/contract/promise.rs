@@ -41,6 +41,8 @@ pub enum Promise {
     ReflectivityIsSound,
     /// A light's location, size and emission are finite.
     LightIsFinite,
+    /// A background's colours are finite, not below 0, and within their bounds.
+    BackgroundIsSound,
     /// A camera's directions are unit vectors.
     CameraLooks,
     /// A profile's radius is finite, and somewhere above 0.
@@ -49,7 +51,7 @@ pub enum Promise {
 
 impl Promise {
     /// All promises, the gravest first.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 21] = [
         Self::TakesWhatItsTableAllows,
         Self::DumpLoadsAgain,
         Self::DistanceIsInItsSpan,
@@ -68,6 +70,7 @@ impl Promise {
         Self::IsMet,
         Self::ReflectivityIsSound,
         Self::LightIsFinite,
+        Self::BackgroundIsSound,
         Self::CameraLooks,
         Self::ProfileIsFinite,
     ];
@@ -115,6 +118,9 @@ impl Promise {
                 "look for a division by 0 or a root of a negative number, and clamp what may become negative"
             }
             Self::LightIsFinite => "return `None` where no light goes, including the light's own location",
+            Self::BackgroundIsSound => {
+                "state rules for the attributes, and leave out `enclose` if in doubt; `brightest` bounds all colours"
+            }
             Self::CameraLooks => "state rules for the attributes from which the camera is made",
             Self::ProfileIsFinite => {
                 "give a formula that is finite at every height from 0 to 4 and above 0 at some of them"
@@ -150,6 +156,9 @@ impl fmt::Display for Promise {
                 "a reflectivity is finite, and not negative unless the material's is"
             }
             Self::LightIsFinite => "a light's location, size and emission are finite",
+            Self::BackgroundIsSound => {
+                "a background's colours are finite, not negative, and within `brightest` and `enclose`"
+            }
             Self::CameraLooks => "a camera has pixels, samples and rays with unit directions",
             Self::ProfileIsFinite => "a profile is finite from 0 to 4, and above 0 somewhere",
         })

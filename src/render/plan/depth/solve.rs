@@ -24,12 +24,14 @@ pub(super) struct Scene {
     shiny: Vec<(usize, Sides<bool>)>,
     /// On which sides of one shiny surface another one lies, for each pair; empty for more than [`PAIRS`] surfaces.
     lies: Vec<Sides<bool>>,
-    /// For each shiny surface and side, the largest own light of the other surfaces that may be hit from there.
+    /// For each shiny surface and side, the largest own light of the background and of the other surfaces that may be hit from there.
     matt_light: Vec<Sides<f64>>,
 }
 
 impl Scene {
-    pub fn new(model: &Model, surfaces: Vec<Surface>) -> Self {
+    /// Makes the scene of a model's surfaces. `background` bounds the light of rays that hit nothing, times their path
+    /// length: they are not followed from where it is more than [`MAX_DIST`].
+    pub fn new(model: &Model, surfaces: Vec<Surface>, background: f64) -> Self {
         let objects = &model.objects;
         let (shiny, matt): (Vec<_>, Vec<_>) =
             (0..surfaces.len()).partition(|index| surfaces[*index].goes_on());
@@ -41,7 +43,9 @@ impl Scene {
             let sent = matt
                 .iter()
                 .map(|object| lies(*of, *object).map(|lies| if lies { surfaces[*object].own } else { 0.0 }));
-            sent.fold([0.0; 2], |[one, other], [outside, inside]| [above(one, outside), above(other, inside)])
+            sent.fold([background; 2], |[one, other], [outside, inside]| {
+                [above(one, outside), above(other, inside)]
+            })
         });
         let matt_light = matt_light.collect();
         let pairs = shiny.iter().flat_map(|of| shiny.iter().map(|object| lies(*of, *object)));
