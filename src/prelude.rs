@@ -18,6 +18,7 @@ pub use crate::world::background::Background;
 pub use crate::world::body::{AnyShader, Body, NamedBody, Paint, Warning};
 pub use crate::world::camera::Camera;
 pub use crate::world::hittable::{Bracketed, Certified, Hittable};
+pub use crate::world::interface::{AnyInterface, Crossing, Interface};
 pub use crate::world::light::Light;
 pub use crate::world::material::{Look, Material, Rgb};
 pub use crate::world::sample::Sampler;

@@ -6,6 +6,7 @@ mod common;
 mod backgrounds;
 mod colours;
 mod differences;
+mod glass;
 mod inside;
 mod needs;
 mod plan;

@@ -11,8 +11,8 @@ use tabray::shapes::Implicit;
 use tabray::tools::contract::{self, Breach, Promise};
 use tabray::world::certify::Equation;
 use tabray::world::{
-    Background, Body, Bracketed, Camera, Certified, Hittable, Light, Material, Rgb, Shader, Shape,
-    SurfacePoint,
+    AnyInterface, Background, Body, Bracketed, Camera, Certified, Crossing, Hittable, Interface, Light,
+    Material, Rgb, Shader, Shape, SurfacePoint,
 };
 
 #[test]
@@ -275,7 +275,7 @@ const fn shape(name: &'static str, construct: fn(&Args) -> Result<Body, Refusal>
 
 static SOUND: Entity = shape("sound", |args| ball(args, Flaw::None));
 
-static BROKEN: [(Promise, Entity); 28] = [
+static BROKEN: [(Promise, Entity); 29] = [
     (Promise::DistanceIsInItsSpan, shape("nan", |args| ball(args, Flaw::Nan))),
     (Promise::DistanceIsInItsSpan, shape("no_span", |args| ball(args, Flaw::NoSpan))),
     (Promise::DistanceIsTheSameAgain, shape("restless", |args| ball(args, Flaw::Restless))),
@@ -301,6 +301,13 @@ static BROKEN: [(Promise, Entity); 28] = [
     (Promise::TakesWhatItsTableAllows, shape("refuses", refuse)),
     (Promise::DumpLoadsAgain, Entity::light("counts", "a lamp", &[COUNTS], |_| Ok(Box::new(Lamp)))),
     (Promise::LightIsFinite, Entity::light("lamp", "a lamp", &[], |_| Ok(Box::new(Lamp)))),
+    (
+        Promise::LightGoesOn,
+        Entity::material("amplifier", "a material", &[], |_| {
+            let interface = Some(AnyInterface::new(Amplifier));
+            Ok(Material { transparency: 1.0, interface, ..Material::default() })
+        }),
+    ),
     (Promise::BackgroundIsSound, Entity::background("glare", "a background", &[], |_| Ok(Box::new(Glare)))),
     (
         Promise::CameraLooks,
@@ -313,6 +320,15 @@ static BROKEN: [(Promise, Entity); 28] = [
         }),
     ),
 ];
+
+/// Reflects more than it receives.
+struct Amplifier;
+
+impl Interface for Amplifier {
+    fn cross(&self, dir: DVec3, _normal: DVec3, _side: Side) -> Crossing {
+        Crossing { reflected: 1.5, onward: Some(dir) }
+    }
+}
 
 /// Is brighter straight up than it says.
 struct Glare;

@@ -60,7 +60,7 @@ impl<'s> Tracer<'s> {
         }
         let most = self.bound(ray, 0.0);
         let is_negligible = ray.depth > 0 && ray.weight * most < NEGLIGIBLE;
-        if is_negligible || ray.depth >= MAX_DEPTH || travelled.high > MAX_DIST {
+        if is_negligible || self.scene.is_split || ray.depth >= MAX_DEPTH || travelled.high > MAX_DIST {
             return up_to(most);
         }
         let (places, is_something) = self.scene.first(&ray.path);

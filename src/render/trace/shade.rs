@@ -115,6 +115,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let hit = Hit { index, object, distance: distances[0], point };
             self.observer.see(Event::Shaded { hit: &hit, travelled, colour: colours.get(0) });
         }
+        if let Some(interface) = &material.interface {
+            return self.add_split(&**interface, group, shading, colours);
+        }
         if material.transparency != 0.0 {
             self.add_transmitted(group, shading, colours);
         }
@@ -156,7 +159,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     }
 
     /// Ends all rays where a measurement limits the number of bounces.
-    fn end_bounces(&self, goes: &mut [u64]) {
+    pub(super) fn end_bounces(&self, goes: &mut [u64]) {
         if self.depth >= self.plan.bounces {
             goes.fill(0);
         }
@@ -200,7 +203,13 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
 
     /// Computes the light that returns along the rays that continue from a surface. It is black for points from which
     /// no ray continues: those that are too far away, or whose ray can return too little.
-    fn onward(&mut self, group: &mut RayGroup, shading: &mut ShadingScratch, kind: RayKind, branch: Branch) {
+    pub(super) fn onward(
+        &mut self,
+        group: &mut RayGroup,
+        shading: &mut ShadingScratch,
+        kind: RayKind,
+        branch: Branch,
+    ) {
         let ShadingScratch { surface, dir, goes, lanes, onward, seen, behind, .. } = shading;
         let lanes = compact(&goes[..group.len], lanes);
         if W::SEES && lanes.is_empty() {

@@ -226,7 +226,7 @@ impl Check<'_, '_> {
             self.report.add(
                 Fault::error(place.clone(), format!("a second background `{text}`"))
                     .also(first, "the first one")
-                    .help("a scene has at most one background: `background`, `sky` or `environment`"),
+                    .help("a scene has at most one background"),
             );
         }
         let values = Against { entity, names: &mut self.names, store: &self.store, report: self.report }

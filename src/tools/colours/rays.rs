@@ -109,6 +109,9 @@ impl<'s, 'p, 'm> Tracer<'s, 'p, 'm> {
         }
         colour = per_axis(|channel| colour[channel] / travelled);
         let material = &self.scene.objects[place.object].material;
+        if material.interface.is_some() {
+            return None;
+        }
         if material.transparency != 0.0 {
             let tint = tint(material.transparency, surface.diffuse)?;
             let kept = Interval::constant(1.0) - Interval::constant(material.transparency);

@@ -16,6 +16,7 @@ use crate::simd::soa::{LANES, Vectors};
 use crate::world::background::Background;
 use crate::world::body::Paint;
 use crate::world::camera::Camera;
+use crate::world::interface::Crossing;
 use crate::world::light_samples::{LightSamples, ShadingPoints};
 use crate::world::material::{Look, Material, Rgb};
 use crate::world::packets::light::PacketLight;
@@ -49,6 +50,7 @@ pub fn shader(shader: &dyn PacketShader, at: &SurfacePoint) -> Result<(), Fault>
         specular: Rgb::splat(0.3),
         shininess: 10.0,
         transparency: 0.2,
+        interface: None,
     };
     let one = [shader.ambient(&material, at), shader.diffuse(&material, at), shader.specular(&material, at)];
     let found = |what: String| format!("{what} at {}", at.position);
@@ -230,12 +232,28 @@ pub fn camera(camera: &Camera) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Checks that a material consists of finite numbers.
-pub fn material(material: &Material) -> Result<(), Fault> {
-    let Material { ambient, diffuse, specular, shininess, transparency } = material;
+/// Checks that a material consists of finite numbers, and what its interface does with rays.
+pub fn material(material: &Material, draw: &mut Draw) -> Result<(), Fault> {
+    let Material { ambient, diffuse, specular, shininess, transparency, interface } = material;
     let is_finite = [ambient, diffuse, specular].iter().all(|colour| colour.is_finite());
     if !is_finite || !shininess.is_finite() || !(0.0..=1.0).contains(transparency) {
         return Err(Promise::ReflectivityIsSound.fault(format!("it is {material:?}")));
+    }
+    let Some(interface) = interface else { return Ok(()) };
+    for _ in 0..PLACES {
+        let (dir, normal) = (draw.direction(), draw.direction());
+        let normal = if dir.dot(normal) > 0.0 { -normal } else { normal };
+        for side in [Side::Outside, Side::Inside] {
+            let crossing = interface.cross(dir, normal, side);
+            let Crossing { reflected, onward } = crossing;
+            let is_through = |onward: DVec3| onward.is_normalized() && onward.dot(normal) <= 0.0;
+            let is_sound = (0.0..=1.0).contains(&reflected)
+                && onward.map_or(reflected == 1.0, |onward| is_through(onward));
+            if !is_sound {
+                let found = format!("a ray along {dir} goes on from a normal {normal} as {crossing:?}");
+                return Err(Promise::LightGoesOn.fault(found));
+            }
+        }
     }
     Ok(())
 }

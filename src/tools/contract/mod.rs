@@ -136,7 +136,9 @@ fn of_entity(registry: &Registry, entity: &'static Entity, scenes: &SceneFolder)
         models += 1;
         let tried = match entity.kind() {
             Kind::Camera => looks::camera(&model.camera.value),
-            Kind::Material => model.materials.iter().try_for_each(|item| looks::material(&item.value)),
+            Kind::Material => {
+                model.materials.iter().try_for_each(|item| looks::material(&item.value, &mut draw))
+            }
             Kind::Texture => Ok(()),
             Kind::Shader => model.shaders.iter().try_for_each(|item| looks::paint(&item.value, &mut draw)),
             Kind::Light => model.lights.iter().try_for_each(|item| looks::light(&*item.value, &mut draw)),

@@ -39,6 +39,8 @@ pub enum Promise {
     IsMet,
     /// Reflectivities are finite and not below 0.
     ReflectivityIsSound,
+    /// A material's interface reflects a fraction, and transmits the rest to the other side.
+    LightGoesOn,
     /// A light's location, size and emission are finite.
     LightIsFinite,
     /// A background's colours are finite, not below 0, and within their bounds.
@@ -51,7 +53,7 @@ pub enum Promise {
 
 impl Promise {
     /// All promises, the gravest first.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
         Self::TakesWhatItsTableAllows,
         Self::DumpLoadsAgain,
         Self::DistanceIsInItsSpan,
@@ -69,6 +71,7 @@ impl Promise {
         Self::HitIsTouched,
         Self::IsMet,
         Self::ReflectivityIsSound,
+        Self::LightGoesOn,
         Self::LightIsFinite,
         Self::BackgroundIsSound,
         Self::CameraLooks,
@@ -117,6 +120,9 @@ impl Promise {
             Self::ReflectivityIsSound => {
                 "look for a division by 0 or a root of a negative number, and clamp what may become negative"
             }
+            Self::LightGoesOn => {
+                "clamp the reflected fraction, normalize the direction, and reflect all light where none is transmitted"
+            }
             Self::LightIsFinite => "return `None` where no light goes, including the light's own location",
             Self::BackgroundIsSound => {
                 "state rules for the attributes, and leave out `enclose` if in doubt; `brightest` bounds all colours"
@@ -154,6 +160,9 @@ impl fmt::Display for Promise {
             Self::IsMet => "rays hit the shape",
             Self::ReflectivityIsSound => {
                 "a reflectivity is finite, and not negative unless the material's is"
+            }
+            Self::LightGoesOn => {
+                "an interface reflects a fraction from 0 to 1, and transmits the rest to the other side"
             }
             Self::LightIsFinite => "a light's location, size and emission are finite",
             Self::BackgroundIsSound => {

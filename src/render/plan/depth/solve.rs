@@ -62,7 +62,7 @@ impl Scene {
         let beyond = self.solve(&self.matt_light, own).unwrap_or_else(infinite);
         let one = |light: f64| if light > 0.0 { 1.0 } else { 0.0 };
         let matt_light: Vec<_> = self.matt_light.iter().map(|matt_light| matt_light.map(one)).collect();
-        let shares = self.solve(&matt_light, |_| 1.0).unwrap_or_else(infinite);
+        let shares = self.solve(&matt_light, Surface::unit).unwrap_or_else(infinite);
         let most = |own: &dyn Fn(&Surface) -> f64, beyond: &[Sides<f64>]| {
             let mut met: Vec<_> = self.surfaces.iter().map(own).collect();
             for ((index, _), beyond) in self.shiny.iter().zip(beyond) {
@@ -72,7 +72,7 @@ impl Scene {
             }
             met.into_iter().fold(0.0, above)
         };
-        let whole = most(&|_| 1.0, &shares);
+        let whole = most(&Surface::unit, &shares);
         let none = |surface: &Surface| Onward { own: surface.own, ..Onward::NONE };
         let mut objects: Vec<_> = self.surfaces.iter().map(none).collect();
         for (((index, _), beyond), shares) in self.shiny.iter().zip(&beyond).zip(&shares) {
