@@ -135,15 +135,43 @@ fn the_page_lists_the_rooms_that_there_are() {
     assert_eq!(listed.len(), rooms(&page).len(), "each once");
 }
 
+/// Returns the Markdown files of a folder, by their names.
+fn pages(folder: &str) -> Vec<PathBuf> {
+    let files = fs::read_dir(root().join(folder)).expect("a folder").map(|file| file.expect("a file").path());
+    let mut pages: Vec<_> = files.filter(|path| path.extension().is_some_and(|name| name == "md")).collect();
+    pages.sort();
+    pages
+}
+
+/// Returns the files that a page links to, without the headings in them.
+fn links(page: &str) -> impl Iterator<Item = &str> {
+    let links = page.split("](").skip(1).filter_map(|rest| rest.split([')', '#']).next());
+    links.filter(|link| !link.is_empty() && !link.contains("://"))
+}
+
 #[test]
-fn the_page_links_to_what_is_there() {
-    let page = architecture();
-    let links: Vec<_> = page.split("](").skip(1).filter_map(|rest| rest.split(')').next()).collect();
-    assert!(links.len() > 20, "{links:?}");
-    for link in links {
-        assert!(root().join("docs").join(link).exists(), "{link} leads nowhere");
+fn pages_link_to_what_is_there() {
+    let mut broken = Vec::new();
+    for page in pages(".").into_iter().chain(pages("docs")) {
+        let text = fs::read_to_string(&page).expect("a page");
+        let missing = links(&text).filter(|link| !page.with_file_name(link).exists());
+        broken.extend(missing.map(|link| format!("{}: {link}", page.display())));
     }
-    // The names in the drawing must exist in `src/`.
+    assert!(broken.is_empty(), "these links lead nowhere:\n{}", broken.join("\n"));
+}
+
+#[test]
+fn the_index_lists_the_pages_that_there_are() {
+    let index = fs::read_to_string(root().join("docs/README.md")).expect("the index");
+    let listed: BTreeSet<_> = links(&index).filter(|link| !link.starts_with("..")).collect();
+    let pages = pages("docs");
+    let names = pages.iter().filter_map(|page| page.file_name()?.to_str());
+    assert_eq!(listed, names.filter(|name| *name != "README.md").collect());
+}
+
+#[test]
+fn the_drawing_names_what_is_there() {
+    let page = architecture();
     let drawing = page.split("```").nth(1).expect("a drawing");
     let words = drawing.split([' ', ',', '\n']).filter(|word| word.contains('/') && word.len() > 3);
     for word in words.filter(|word| !word.starts_with("plugins/")) {

@@ -91,7 +91,9 @@ fn cargo(folder: &Path) -> Result<String, String> {
     cargo.args(["build", "--offline", "--workspace", "--bins", "--examples"]).current_dir(folder);
     cargo.env("CARGO_TARGET_DIR", base().join("copy-target")).env("CARGO_BUILD_BUILD_DIR", base().join(".."));
     // The images are small, so the time of compilation matters more than that of rendering.
-    cargo.env("CARGO_PROFILE_DEV_OPT_LEVEL", "0").env("CARGO_PROFILE_DEV_DEBUG", "0");
+    cargo.env("CARGO_PROFILE_DEV_OPT_LEVEL", "0");
+    // One copy after the other is built, each with other plugins.
+    cargo.env("CARGO_INCREMENTAL", "1");
     let output = cargo.output().expect("cargo runs");
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     if output.status.success() { Ok(said) } else { Err(said) }

@@ -10,6 +10,7 @@ use crate::scene::kind::Kind;
 use crate::scene::registry::Registry;
 use crate::scene::store::{Packed, Store};
 use crate::scene::value::{Datum, Type};
+use std::mem::replace;
 use std::ops::Range;
 
 /// Entities that were checked and packed, and the memory in which that is done.
@@ -105,14 +106,17 @@ impl<'r> Quick<'r> {
             }
         }
         let mut packed = Packed::begin(&mut self.bytes, number, &parsed.name.text, true);
+        // Defaults at the end take no memory: most objects name no shader.
+        let mut defaults = 0;
         for (known, given) in table.iter().zip(&self.given) {
             let Some(given) = given else {
                 if known.is_required {
                     return None;
                 }
-                packed.default();
+                defaults += 1;
                 continue;
             };
+            (0..replace(&mut defaults, 0)).for_each(|_| packed.default());
             let words = parsed.values_of(*given);
             let is_right = |datum: &Datum| {
                 known.attribute.allows(datum) && known.attribute.beyond_squares(datum).is_none()
