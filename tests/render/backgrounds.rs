@@ -78,7 +78,7 @@ fn an_environment_shows_the_middle_of_its_picture_ahead_and_its_edge_behind() {
 #[test]
 fn first_hits_before_a_background_are_proven() {
     let model = model(&format!(
-        "{EYE} sky s {{ }} material m {{ specular 1 }} sphere b {{ material m center 4 3 -3 radius 2 }}"
+        "{EYE} sky s {{ horizon 1 1 1 }} material m {{ specular 1 }} sphere b {{ material m center 4 3 -3 radius 2 }}"
     ));
     let plan = Plan::new(&model);
     for x in 0..41 {
