@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The pictures of docs/gallery.md, one for each type of object, shader and camera that it shows: 320 x 240 pixels, 16 samples
-# in each, and 256 through a lens.
+# The pictures of docs/gallery.md, one for each type of object, shader, material, background and camera that it shows:
+# 320 x 240 pixels, 16 samples in each, and 256 through a lens.
 #
 #     bash docs/gallery.sh
 #
@@ -13,7 +13,8 @@ if [ -z "${TABRAY:-}" ]; then
     TABRAY=$(realpath "${CARGO_TARGET_DIR:-target}/release/tabray")
 fi
 for shape in implicit lathe box cylinder capsule disc polygon prism union intersection difference \
-    tiles rainbow checker formula bumps look_at orthographic fisheye thin_lens; do
+    tiles rainbow checker formula bumps glass background sky environment \
+    look_at orthographic fisheye thin_lens; do
     samples=16
     [ "$shape" != thin_lens ] || samples=256
     "$TABRAY" render "scenes/entities/$shape.ray" --size 320x240 --samples "$samples" -o "docs/gallery/$shape.png"

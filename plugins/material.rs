@@ -31,6 +31,7 @@ inventory::submit! {
             specular: args.get(&SPECULAR).0,
             shininess: args.get(&SHININESS),
             transparency: args.get(&TRANSPARENCY),
+            interface: None,
         })
     })
 }

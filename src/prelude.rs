@@ -11,13 +11,15 @@ pub use crate::scene::pparm::{Attributes, Derived, LEAST_LENGTH, Pparm, Row, Tab
 pub use crate::scene::value::{COLOUR, Datum, PerChannel, Value};
 pub use inventory;
 
-// What a constructor returns: a camera, a material, a texture, a shader, an object or a light.
+// What a constructor returns: a camera, a material, a texture, a shader, an object, a light or a background.
 pub use crate::world::accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
 pub use crate::world::any_shape::AnyShape;
+pub use crate::world::background::Background;
 pub use crate::world::body::{AnyShader, Body, NamedBody, Paint, Warning};
 pub use crate::world::camera::{Camera, Origins, Projected};
 pub use crate::world::film::AnyCamera;
 pub use crate::world::hittable::{Bracketed, Certified, Hittable};
+pub use crate::world::interface::{AnyInterface, Crossing, Interface};
 pub use crate::world::light::Light;
 pub use crate::world::material::{Look, Material, Rgb};
 pub use crate::world::pinhole::Pinhole;

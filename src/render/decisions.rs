@@ -184,8 +184,11 @@ fn named((_, object): (usize, &Object)) -> &str {
 fn depth(model: &Model, depth: &Depth) -> String {
     let ends =
         format!("after a path of {MAX_DIST} units, and at a ray budget of {MAX_RAYS} for one primary ray");
-    let bound =
-        || format!("nothing is brighter than {} divided by the path length of its light", short(depth.most));
+    let bound = || {
+        let rest = if model.background.is_some() { ", but for the background" } else { "" };
+        let most = short(depth.most);
+        format!("nothing is brighter than {most} divided by the path length of its light{rest}")
+    };
     match (model.camera.value.accuracy, depth.most.is_finite()) {
         (Accuracy::Classic, true) => format!("as in the notes, branches end {ends}; {}", bound()),
         (_, true) => {
@@ -214,6 +217,7 @@ fn textures(plan: &Plan) -> Vec<String> {
         objects.map(|(index, object)| uses(&object.args, unmet.next_if_eq(&&index).is_none())).collect();
     let lights = model.lights.iter().enumerate();
     users.extend(lights.map(|(index, light)| uses(&light.args, plan.needs.lights.contains(&index))));
+    users.extend(model.background.iter().map(|background| uses(&background.args, true)));
     let text = |item: &Item<Arc<Texture>>| {
         let name = item.args.name();
         let its = users.iter().filter(|(args, _)| args.textures().any(|used| used == name));

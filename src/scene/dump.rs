@@ -9,7 +9,7 @@ use crate::scene::syntax::Syntax;
 use crate::scene::value::Datum;
 use std::collections::HashMap;
 
-/// Returns the notes' dump: camera, materials, objects and lights, with numbers to one decimal. Textures and shaders are not in it.
+/// Returns the notes' dump: camera, materials, objects and lights, with numbers to one decimal. Textures, shaders and backgrounds are not in it.
 pub fn notes(model: &Model) -> String {
     let kinds = [Kind::Camera, Kind::Material, Kind::Object, Kind::Light];
     let mut memory = None;
@@ -21,7 +21,7 @@ fn notes_block(args: &Args) -> String {
     let (before, after_name, after) = match args.entity.kind() {
         Kind::Camera => ("", "", "\n\n"),
         Kind::Material | Kind::Texture | Kind::Shader => ("\n", " ", ""),
-        Kind::Object | Kind::Light => ("", " ", "\n"),
+        Kind::Object | Kind::Light | Kind::Background => ("", " ", "\n"),
     };
     let lines: String = args.entity.rows().map(|row| row.dump(args)).collect();
     format!("{before}{:<12} {}{after_name}\n{lines}{after}", args.entity.dump_name, args.name)
@@ -74,7 +74,15 @@ pub(crate) fn block(args: &Args, syntax: Syntax, repeated: bool) -> String {
 
 /// Returns all entities of a model in the order of its scene.
 pub(crate) fn in_order(model: &Model) -> Vec<&Record> {
-    let kinds = [Kind::Camera, Kind::Material, Kind::Texture, Kind::Shader, Kind::Object, Kind::Light];
+    let kinds = [
+        Kind::Camera,
+        Kind::Material,
+        Kind::Texture,
+        Kind::Shader,
+        Kind::Object,
+        Kind::Light,
+        Kind::Background,
+    ];
     let mut all: Vec<_> = kinds.into_iter().flat_map(|kind| model.entities(kind)).collect();
     all.sort_unstable_by_key(|record| record.order());
     all

@@ -6,6 +6,7 @@ use crate::scene::pparm::{Attribute, Attributes, Given, Pparm, Row, Table};
 use crate::scene::value::{Datum, Type};
 use crate::text;
 use crate::world::accuracy::Accuracy;
+use crate::world::background::AnyBackground;
 use crate::world::body::{AnyLight, Body, Paint};
 use crate::world::film::{AnyCamera, Film};
 use crate::world::material::Material;
@@ -63,6 +64,8 @@ pub enum Construct {
     Object(fn(&Args) -> Result<Body, Refusal>),
     /// Makes a light.
     Light(fn(&Args) -> Result<AnyLight, Refusal>),
+    /// Makes a background.
+    Background(fn(&Args) -> Result<AnyBackground, Refusal>),
 }
 
 /// The attributes that every object has beside its own.
@@ -193,6 +196,17 @@ impl Entity {
         Self::new(name, meaning, tables, Construct::Light(construct))
     }
 
+    /// Describes a type of background.
+    #[track_caller]
+    pub const fn background(
+        name: &'static str,
+        meaning: &'static str,
+        tables: &'static [Table],
+        construct: fn(&Args) -> Result<AnyBackground, Refusal>,
+    ) -> Self {
+        Self::new(name, meaning, tables, Construct::Background(construct))
+    }
+
     #[track_caller]
     const fn new(
         name: &'static str,
@@ -230,6 +244,7 @@ impl Entity {
             Construct::Shader(_) => Kind::Shader,
             Construct::Object(_) => Kind::Object,
             Construct::Light(_) => Kind::Light,
+            Construct::Background(_) => Kind::Background,
         }
     }
 

@@ -19,6 +19,8 @@ pub enum Kind {
     Object,
     /// A source of light, which is itself not visible.
     Light,
+    /// What is seen where there is no object; a scene has at most one.
+    Background,
 }
 
 impl Kind {
@@ -37,6 +39,7 @@ impl fmt::Display for Kind {
             Kind::Shader => "shader",
             Kind::Object => "object",
             Kind::Light => "light",
+            Kind::Background => "background",
         })
     }
 }

@@ -38,7 +38,7 @@ pub struct Entity {
     pub aliases: &'static [&'static str],
     /// The type's attributes, in the order of the dump.
     pub attributes: Vec<Attribute>,
-    /// `camera`, `material`, `texture`, `shader`, `object` or `light`.
+    /// `camera`, `material`, `texture`, `shader`, `object`, `light` or `background`.
     pub kind: Kind,
     /// The meaning, in a few words.
     pub meaning: &'static str,

@@ -4,6 +4,7 @@ use crate::geometry::ray::Side;
 use crate::scene::kind::Kind;
 use crate::scene::store::Record;
 use crate::world::any_shape::AnyShape;
+use crate::world::background::AnyBackground;
 use crate::world::body::{AnyLight, AnyShader, NamedBody, Paint};
 use crate::world::film::Film;
 use crate::world::material::{Material, Rgb};
@@ -28,6 +29,8 @@ pub struct Model {
     pub patterns: Vec<Item<NamedBody>>,
     /// The lights, in the order of the scene.
     pub lights: Vec<Item<AnyLight>>,
+    /// What is seen where there is no object; black without one.
+    pub background: Option<Item<AnyBackground>>,
 }
 
 impl Model {
@@ -47,6 +50,7 @@ impl Model {
                 all
             }
             Kind::Light => self.lights.iter().map(|item| &item.args).collect(),
+            Kind::Background => self.background.iter().map(|item| &item.args).collect(),
         }
     }
 }

@@ -29,6 +29,7 @@ pub fn markdown(registry: &Registry) -> String {
         (Kind::Light, "Lights"),
         (Kind::Object, "Objects"),
         (Kind::Shader, "Shaders"),
+        (Kind::Background, "Backgrounds"),
     ] {
         add(title, &mut registry.iter().filter(|entity| entity.kind() == kind).map(Word::entity));
     }

@@ -238,7 +238,7 @@ fn any_of(names: &[&'static str]) -> Schema {
 
 /// Returns the schema of all entities of one type, by name.
 fn kind(entity: &'static Entity) -> Schema {
-    let is_single = matches!(entity.kind(), Kind::Camera | Kind::Material | Kind::Texture | Kind::Shader);
+    let is_single = !matches!(entity.kind(), Kind::Object | Kind::Light);
     let one = body(entity);
     let named = if is_single {
         one
@@ -249,7 +249,7 @@ fn kind(entity: &'static Entity) -> Schema {
     Schema {
         description: Some(format!("{}: {}", entity.kind(), entity.meaning)),
         min_properties: Some(1),
-        max_properties: (entity.kind() == Kind::Camera).then_some(1),
+        max_properties: matches!(entity.kind(), Kind::Camera | Kind::Background).then_some(1),
         additional_properties: Some(Others::Each(Box::new(named))),
         ..Schema::sort("object")
     }

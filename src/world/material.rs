@@ -1,5 +1,6 @@
 //! Colours, and how a surface reflects light.
 
+use crate::world::interface::AnyInterface;
 use glam::DVec3;
 
 /// A colour or a reflectivity: red, green and blue. 1 is as bright as an image can show; there is no upper limit.
@@ -18,6 +19,9 @@ pub struct Material {
     pub shininess: f64,
     /// The fraction of light that passes through the surface, from 0 to 1.
     pub transparency: f64,
+    /// What decides how light goes on from the surface; `None` where it is transmitted in a straight line, and mirrored as
+    /// `specular` says.
+    pub interface: Option<AnyInterface>,
 }
 
 /// A surface's reflectivities, per channel, where they are the same at every point, or bounds of them.

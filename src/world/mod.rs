@@ -1,7 +1,9 @@
-//! What a scene is made of: the traits of shapes, shaders, lights and cameras, and the types in their signatures.
+//! What a scene is made of: the traits of shapes, shaders, lights, backgrounds and cameras, and the types in their
+//! signatures.
 
 pub(crate) mod accuracy;
 pub(crate) mod any_shape;
+pub(crate) mod background;
 pub(crate) mod body;
 pub(crate) mod camera;
 pub mod certify;
@@ -9,6 +11,7 @@ pub mod coincidence;
 pub(crate) mod film;
 pub(crate) mod hittable;
 pub(crate) mod interaction;
+pub(crate) mod interface;
 pub(crate) mod light;
 pub(crate) mod light_samples;
 pub(crate) mod material;
@@ -22,10 +25,12 @@ pub(crate) mod texture;
 
 pub use accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
 pub use any_shape::AnyShape;
+pub use background::{AnyBackground, Background};
 pub use body::{AnyLight, AnyShader, Body, NamedBody, Paint, Part, Solid, Warning};
 pub use camera::{Camera, Origins, Projected};
 pub use film::{AnyCamera, Film};
 pub use hittable::{Bracketed, Certified, Hittable, Searched};
+pub use interface::{AnyInterface, Crossing, Interface};
 pub use light::Light;
 pub use material::{Material, Rgb};
 pub use shader::{Anchor, PointBounds, Sees, Shader, SurfacePoint};

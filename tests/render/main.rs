@@ -3,8 +3,10 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod backgrounds;
 mod colours;
 mod differences;
+mod glass;
 mod inside;
 mod needs;
 mod plan;

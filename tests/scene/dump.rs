@@ -13,7 +13,8 @@ fn values(model: &Model) -> Vec<String> {
         .chain(model.materials.iter().map(|item| &item.args))
         .chain(model.textures.iter().map(|item| &item.args))
         .chain(model.objects.iter().map(|object| &object.args))
-        .chain(model.lights.iter().map(|item| &item.args));
+        .chain(model.lights.iter().map(|item| &item.args))
+        .chain(model.background.iter().map(|item| &item.args));
     items
         .flat_map(|record| {
             let value = |(attribute, datum): (&dyn Attribute, &Datum)| match datum {
@@ -103,8 +104,8 @@ fn any_scene() -> impl Strategy<Value = String> {
     };
     let (camera, materials) = (some(Kind::Camera, 1), some(Kind::Material, 1));
     let (shaders, objects) = (some(Kind::Shader, 0), some(Kind::Object, 0));
-    (camera, materials, shaders, objects, some(Kind::Light, 0)).prop_map(
-        |(cameras, materials, shaders, objects, lights)| {
+    (camera, materials, shaders, objects, some(Kind::Light, 0), some(Kind::Background, 0)).prop_map(
+        |(cameras, materials, shaders, objects, lights, backgrounds)| {
             // `m0`, `t0` and `s0` always exist, so that other entities can refer to them.
             let materials =
                 materials.iter().enumerate().map(|(i, text)| text.replace("NAME", &format!("m{i}")));
@@ -113,7 +114,8 @@ fn any_scene() -> impl Strategy<Value = String> {
             let object: String = (0..5).map(sphere).collect();
             let shaders = format!("formula s0 {{ ambient \"x\" 0.5 \"nz\" }}\n{}", shaders.concat());
             let others = [object, objects.concat(), lights.concat()].concat();
-            [cameras[0].clone(), materials.collect(), texture, shaders, others].concat()
+            let background = backgrounds.first().cloned().unwrap_or_default();
+            [cameras[0].clone(), materials.collect(), texture, shaders, others, background].concat()
         },
     )
 }

@@ -13,8 +13,8 @@ use tabray::shapes::Implicit;
 use tabray::tools::contract::{self, Breach, Promise};
 use tabray::world::certify::Equation;
 use tabray::world::{
-    Body, Bracketed, Camera, Certified, Hittable, Light, Material, Origins, Projected, Rgb, Shader, Shape,
-    SurfacePoint,
+    AnyInterface, Background, Body, Bracketed, Camera, Certified, Crossing, Hittable, Interface, Light,
+    Material, Origins, Projected, Rgb, Shader, Shape, SurfacePoint,
 };
 
 #[test]
@@ -277,7 +277,7 @@ const fn shape(name: &'static str, construct: fn(&Args) -> Result<Body, Refusal>
 
 static SOUND: Entity = shape("sound", |args| ball(args, Flaw::None));
 
-static BROKEN: [(Promise, Entity); 29] = [
+static BROKEN: [(Promise, Entity); 31] = [
     (Promise::DistanceIsInItsSpan, shape("nan", |args| ball(args, Flaw::Nan))),
     (Promise::DistanceIsInItsSpan, shape("no_span", |args| ball(args, Flaw::NoSpan))),
     (Promise::DistanceIsTheSameAgain, shape("restless", |args| ball(args, Flaw::Restless))),
@@ -309,6 +309,14 @@ static BROKEN: [(Promise, Entity); 29] = [
         Promise::CameraKnows,
         Entity::camera("crossed", "a camera", &[], |_| Ok(Arc::new(Eye(EyeFlaw::Crossed)))),
     ),
+    (
+        Promise::LightGoesOn,
+        Entity::material("amplifier", "a material", &[], |_| {
+            let interface = Some(AnyInterface::new(Amplifier));
+            Ok(Material { transparency: 1.0, interface, ..Material::default() })
+        }),
+    ),
+    (Promise::BackgroundIsSound, Entity::background("glare", "a background", &[], |_| Ok(Box::new(Glare)))),
     (
         Promise::ReflectivityIsSound,
         Entity::material("wax", "a material", &[], |_| {
@@ -344,6 +352,28 @@ impl Camera for Eye {
 
     fn project(&self, point: DVec3, _pixels: [usize; 2]) -> Projected {
         if self.0 == EyeFlaw::Crossed { Projected::At(-9.0 * point.truncate()) } else { Projected::Unknown }
+    }
+}
+
+/// Reflects more than it receives.
+struct Amplifier;
+
+impl Interface for Amplifier {
+    fn cross(&self, dir: DVec3, _normal: DVec3, _side: Side) -> Crossing {
+        Crossing { reflected: 1.5, onward: Some(dir) }
+    }
+}
+
+/// Is brighter straight up than it says.
+struct Glare;
+
+impl Background for Glare {
+    fn colour(&self, toward: DVec3) -> Rgb {
+        Rgb::splat(1.0 + toward.y)
+    }
+
+    fn brightest(&self) -> Rgb {
+        Rgb::splat(1.9)
     }
 }
 

@@ -125,12 +125,14 @@ impl Footprint {
 pub(crate) struct Prover {
     boxes: Vec<Option<Aabb>>,
     most: f64,
+    is_split: bool,
 }
 
 impl Prover {
     /// Prepares the proofs of a model.
     pub fn new(model: &Model) -> Self {
-        Self { boxes: scene::boxes(model), most: depth::most(model) }
+        let is_split = model.objects.iter().any(|object| object.material.interface.is_some());
+        Self { boxes: scene::boxes(model), most: depth::most(model), is_split }
     }
 
     /// Encloses the colour of a pixel, until it is known to within an error, where 1 is white, as it is shown, or until
@@ -142,7 +144,7 @@ impl Prover {
         [x, y]: [usize; 2],
         error: f64,
     ) -> Proof {
-        let scene = Scene { model, depth, boxes: &self.boxes, most: self.most };
+        let scene = Scene { model, depth, boxes: &self.boxes, most: self.most, is_split: self.is_split };
         let gain = camera.gain();
         let footprint = |middle: [f64; 2], cuts: u32| {
             let colour = match lines(camera, middle, 0.5_f64.powi(cuts as i32 + 1)) {

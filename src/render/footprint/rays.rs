@@ -60,7 +60,7 @@ impl<'s> Tracer<'s> {
         }
         let most = self.bound(ray, 0.0);
         let is_negligible = ray.depth > 0 && ray.weight * most < NEGLIGIBLE;
-        if is_negligible || ray.depth >= MAX_DEPTH || travelled.high > MAX_DIST {
+        if is_negligible || self.scene.is_split || ray.depth >= MAX_DEPTH || travelled.high > MAX_DIST {
             return up_to(most);
         }
         let (places, is_something) = self.scene.first(&ray.path);
@@ -69,7 +69,7 @@ impl<'s> Tracer<'s> {
             return up_to(self.bound(ray, nearest));
         }
         self.hits += places.len();
-        let mut any = (!is_something).then_some(black);
+        let mut any = (!is_something).then(|| self.background(ray));
         for (hit, place) in places {
             let most = self.bound(ray, hit.low());
             let seen = match hit {
@@ -80,6 +80,13 @@ impl<'s> Tracer<'s> {
             any = Some(any.map_or(seen, |any| hull(any, seen)));
         }
         any.unwrap_or(black)
+    }
+
+    /// Encloses the colours that rays return which hit nothing.
+    fn background(&self, ray: &Ray) -> Colour {
+        let Some(background) = &self.scene.model.background else { return [Affine::constant(0.0); 3] };
+        let toward = ray.path.line.dir.map(|part| (part / ray.length).range());
+        background.value.enclose(toward).map(Affine::from)
     }
 
     /// Encloses the colours that rays return which hit a place at t.
@@ -140,12 +147,14 @@ impl<'s> Tracer<'s> {
             (Some(place), Some(depth)) => depth.beyond(Some(place.object)),
             _ => self.scene.most,
         };
+        let behind = self.scene.model.background.as_ref();
+        let behind = behind.map_or(0.0, |background| background.value.brightest().max_element());
         if most == 0.0 {
-            return 0.0;
+            return behind;
         }
         let path = Interval::point(t) * ray.length.range() + ray.travelled.range();
         let bound = (Interval::point(most) / Interval { low: path.low.max(0.0), high: path.high }).high;
-        if bound.is_nan() { f64::INFINITY } else { bound }
+        if bound.is_nan() { f64::INFINITY } else { bound.max(behind) }
     }
 }
 

@@ -51,6 +51,27 @@ fn a_plane_half_in_shadow_has_the_mean_of_both_halves() {
 }
 
 #[test]
+fn a_background_is_bounded_by_itself_and_beside_an_edge() {
+    // The right half of the pixel sees the screen, 12 units from the viewer.
+    let scene = |background: &str| {
+        model(&format!(
+            "{CAMERA} {background}
+             fplane screen {{ material m normal 0 0 1 point 4 1 -4 xdir 1 0 0 dimensions 4 4 }}"
+        ))
+    };
+    let even = scene("background even { colour 0.75 0.75 0.75 }");
+    let [left, middle] = [3999, 4000].map(|x| proof(&even, [x, 3000], 1.0 / 255.0));
+    assert_eq!(left.footprints, 1);
+    holds(&left, 0.75);
+    holds(&middle, 0.5 * (0.75 + 0.5 / 12.0));
+    // The middle of the image looks along -z, halfway up to this zenith.
+    let sky = scene("sky s { horizon 0 0 0 zenith 1 1 1 up 1.7320508075688772 0 -1 }");
+    let aside = proof(&sky, [3999, 3000], 1.0 / 255.0);
+    holds(&aside, 0.5 - 0.000125 * 0.866);
+    assert!(aside.is_within(1.0 / 255.0, 1.0), "{aside:?}");
+}
+
+#[test]
 fn a_sphere_is_known_from_one_footprint() {
     // The sphere is 14 units from the viewer, and lit like the wall above.
     let model = model(&format!(

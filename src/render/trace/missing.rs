@@ -215,6 +215,37 @@ mod tests {
     }
 
     #[test]
+    fn what_is_left_out_before_a_background_is_below_a_1024th_of_a_level() {
+        let mut saved = 0;
+        for scene in scenes(60, 0.6) {
+            let scene = format!("{scene} sky s {{ horizon 2 3 4 zenith 9 0 1 ground 0 5 0 }}");
+            let (cut, few) = seen(&Plan::new(&model(&scene)), 1 << 30);
+            let (all, many) = deep(|| seen(&whole(&model(&scene)), 1 << 20));
+            saved += many.all_rays() - few.all_rays();
+            for ((cut, missing), (all, unseen)) in cut.into_iter().zip(all) {
+                assert_eq!([missing, unseen], [0.0; 2], "{scene}");
+                assert!(error(cut, all) < FAINT, "{cut} for {all}\n{scene}");
+            }
+        }
+        assert!(saved > 0);
+    }
+
+    #[test]
+    fn what_a_cap_cuts_before_a_background_is_no_more_than_is_said() {
+        for scene in scenes(20, 0.6) {
+            let scene = format!("{scene} background b {{ colour 3 0.5 1 }}");
+            let (all, _) = deep(|| seen(&whole(&model(&scene)), 1 << 20));
+            let cut = model(&scene);
+            for rays in [2, 5, 17, 100] {
+                for ((cut, missing), (all, _)) in seen(&Plan::new(&cut), rays).0.into_iter().zip(&all) {
+                    let error = error(cut, *all);
+                    assert!(error <= missing + FAINT, "{error} off, of {missing} at {rays} rays\n{scene}");
+                }
+            }
+        }
+    }
+
+    #[test]
     fn many_mirrors_have_a_bound_too() {
         let ball = |index: usize| {
             let [x, y, z] = [index % 8, index / 8 % 6, index / 48].map(|place| place as f64);

@@ -20,6 +20,7 @@ mod occlusion;
 mod one_ray;
 mod order;
 mod ray_group;
+mod refract;
 mod sampled;
 mod scratch;
 mod shade;

@@ -12,6 +12,7 @@ use crate::render::limits::MAX_DIST;
 use crate::render::observer::{Count, Event, Hit, Purpose, RayKind, Reason, TraceObserver};
 use crate::render::plan::depth::Branch;
 use crate::scene::model::Object;
+use crate::world::background::Background;
 use crate::world::interaction::SurfaceInteraction;
 use crate::world::material::Rgb;
 use crate::world::packets::shader::SurfacePoints;
@@ -32,7 +33,12 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             parts.begin(met);
             while let Some((id, lanes)) = parts.next() {
                 let Some(object) = (id as usize).checked_sub(1) else {
-                    lanes.iter().for_each(|lane| colours.set(usize::from(*lane), Rgb::ZERO));
+                    match &self.model.background {
+                        None => lanes.iter().for_each(|lane| colours.set(usize::from(*lane), Rgb::ZERO)),
+                        Some(background) => {
+                            see_background(&*background.value, group, &hits.far, lanes, colours)
+                        }
+                    }
                     continue;
                 };
                 part.gather(group, lanes);
@@ -109,6 +115,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let hit = Hit { index, object, distance: distances[0], point };
             self.observer.see(Event::Shaded { hit: &hit, travelled, colour: colours.get(0) });
         }
+        if let Some(interface) = &material.interface {
+            return self.add_split(&**interface, group, shading, colours);
+        }
         if material.transparency != 0.0 {
             self.add_transmitted(group, shading, colours);
         }
@@ -150,7 +159,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     }
 
     /// Ends all rays where a measurement limits the number of bounces.
-    fn end_bounces(&self, goes: &mut [u64]) {
+    pub(super) fn end_bounces(&self, goes: &mut [u64]) {
         if self.depth >= self.plan.bounces {
             goes.fill(0);
         }
@@ -194,7 +203,13 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
 
     /// Computes the light that returns along the rays that continue from a surface. It is black for points from which
     /// no ray continues: those that are too far away, or whose ray can return too little.
-    fn onward(&mut self, group: &mut RayGroup, shading: &mut ShadingScratch, kind: RayKind, branch: Branch) {
+    pub(super) fn onward(
+        &mut self,
+        group: &mut RayGroup,
+        shading: &mut ShadingScratch,
+        kind: RayKind,
+        branch: Branch,
+    ) {
         let ShadingScratch { surface, dir, goes, lanes, onward, seen, behind, .. } = shading;
         let lanes = compact(&goes[..group.len], lanes);
         if W::SEES && lanes.is_empty() {
@@ -228,5 +243,19 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.trace(onward, behind);
         swap(&mut group.ray_budget, &mut onward.ray_budget);
         self.depth -= 1;
+    }
+}
+
+/// Sets the colours of rays that hit nothing. Those whose budget is used up end at a distance of 0, and are black.
+fn see_background(
+    background: &dyn Background,
+    group: &RayGroup,
+    far: &[f64],
+    lanes: &[u8],
+    colours: &mut VectorList,
+) {
+    for lane in lanes.iter().map(|lane| usize::from(*lane)) {
+        let is_over = far[lane] == 0.0;
+        colours.set(lane, if is_over { Rgb::ZERO } else { background.colour(group.dir.get(lane)) });
     }
 }

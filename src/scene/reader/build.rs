@@ -102,7 +102,9 @@ impl Check<'_, '_> {
         if let Some(levels) = self.levels.take().filter(|_| !self.report.is_fatal()) {
             self.report.add_gathered(levels);
         }
-        let Self { camera, materials, textures, shaders, objects, patterns, lights, places, .. } = self;
+        let Self {
+            camera, materials, textures, shaders, objects, patterns, lights, background, places, ..
+        } = self;
         let model = camera.map(|camera| Model {
             camera: item(store, camera),
             materials: materials.into_iter().map(|material| item(store, material)).collect(),
@@ -111,6 +113,7 @@ impl Check<'_, '_> {
             objects,
             patterns,
             lights,
+            background: background.map(|background| item(store, background)),
         });
         (model, places)
     }

@@ -17,6 +17,7 @@ use crate::scene::registry::Registry;
 use crate::scene::store::Store;
 use crate::scene::value::Datum;
 use crate::world::accuracy::Accuracy;
+use crate::world::background::AnyBackground;
 use crate::world::body::{AnyLight, NamedBody, Paint};
 use crate::world::film::Film;
 use crate::world::material::Material;
@@ -85,6 +86,8 @@ pub(super) struct Check<'r, 't> {
     pub(super) unknown: Missing<()>,
     /// The place of the first camera's name.
     pub(super) first_camera: Option<Place>,
+    /// The place of the first background's name.
+    first_background: Option<Place>,
     pub(super) setting: Arc<Setting>,
     /// The accuracy that overrides the scene's own.
     accuracy: Option<Accuracy>,
@@ -106,6 +109,7 @@ pub(super) struct Check<'r, 't> {
     pub(super) lights: Vec<Item<AnyLight>>,
     /// The warning of colours from 0 to 255, if there is one.
     pub(super) levels: Option<Fault>,
+    pub(super) background: Option<(usize, AnyBackground)>,
     quick: Quick<'r>,
     pub(super) threads: &'r Threads,
 }
@@ -128,6 +132,7 @@ impl<'r, 't> Check<'r, 't> {
             names: Names::default(),
             unknown: Missing::default(),
             first_camera: None,
+            first_background: None,
             setting: Arc::new(setting),
             accuracy: accuracy.above_all,
             store: Store::default(),
@@ -142,6 +147,7 @@ impl<'r, 't> Check<'r, 't> {
             patterns: Vec::new(),
             lights: Vec::new(),
             levels: None,
+            background: None,
             quick: Quick::new(registry),
             threads,
         }
@@ -218,6 +224,15 @@ impl Check<'_, '_> {
                     .help("a scene has exactly one camera"),
             );
         }
+        if entity.kind() == Kind::Background
+            && let Some(first) = self.first_background.replace(place.clone())
+        {
+            self.report.add(
+                Fault::error(place.clone(), format!("a second background `{text}`"))
+                    .also(first, "the first one")
+                    .help("a scene has at most one background"),
+            );
+        }
         let values = Against { entity, names: &mut self.names, store: &self.store, report: self.report }
             .values(parsed);
         let values = values.filter(|_| counts);
@@ -291,6 +306,10 @@ impl Check<'_, '_> {
                     self.define(kind, &args.name, &Datum::Shader { name, paint: paint.clone() });
                     self.shaders.push((order, paint));
                 }
+            }
+            Construct::Background(construct) => {
+                let made = self.made(parsed, &args, construct);
+                self.background = made.map(|background| (order, background));
             }
             Construct::Object(_) | Construct::Light(_) => {}
         }

@@ -140,7 +140,7 @@ impl Names {
                 return true;
             }
         };
-        if text.is_empty() || kind == Kind::Camera {
+        if text.is_empty() || matches!(kind, Kind::Camera | Kind::Background) {
             return true;
         }
         let (title, first_title) = (title(entity), store.entity(first).map_or("", title));

@@ -23,6 +23,9 @@ impl Check<'_, '_> {
         for (order, _) in &self.shaders {
             used.extend(store.args(*order).textures().map(str::to_owned));
         }
+        if let Some((order, _)) = &self.background {
+            used.extend(store.args(*order).textures().map(str::to_owned));
+        }
         for (order, texture) in &self.textures {
             let args = store.args(*order);
             if !used.contains(&args.name) {

@@ -12,6 +12,9 @@ const MARGIN: f64 = 0.01;
 
 /// Returns a warning if nothing in a scene can be seen.
 pub fn warning(model: &Model) -> Option<Fault> {
+    if model.background.is_some() {
+        return None;
+    }
     let camera = &model.camera.value;
     let black = |why: &str, help: String| {
         Some(Fault::warning(None, format!("the image will be black: {why}")).help(help))

@@ -245,6 +245,14 @@ mod tests {
     }
 
     #[test]
+    fn a_background_in_a_mirror_is_as_worked_out_by_hand() {
+        let mirror = "material m { ambient 0.5 0.5 0.5 specular 0.25 } plane wall { material m normal 0 0 1 point 0 0 -2 }";
+        // 1/14 + 1/8
+        is_red(&format!("{mirror} background pale {{ colour 0.5 0 0 }}"), [11.0, 56.0]);
+        is_red("background pale { colour 0.5 0 0 }", [1.0, 2.0]);
+    }
+
+    #[test]
     fn a_wall_behind_a_rim_that_is_missed_is_seen() {
         // The ball is cut one part in 2^53 before its nearest point, which intervals in `f64` do not tell. Its inner wall
         // is 9 away; the screen behind it is as bright as the rim would be, at 7.

@@ -70,11 +70,11 @@ impl<'s, 'p, 'm> Tracer<'s, 'p, 'm> {
             return None;
         }
         match self.scene.first(&ray.path) {
-            First::Nothing => Some(black),
+            First::Nothing => Some(self.background(ray)),
             First::Hit(t, place) => self.seen(ray, t, place),
             First::OneOf(places, may_be_nothing) => {
                 let hull = |one: Colour<F>, other: Colour<F>| per_axis(|at| one[at].hull(other[at]));
-                let mut any = may_be_nothing.then_some(black);
+                let mut any = may_be_nothing.then(|| self.background(ray));
                 for (t, place) in places {
                     let seen = self.seen(ray, t, place)?;
                     any = Some(any.map_or(seen, |any| hull(any, seen)));
@@ -83,6 +83,16 @@ impl<'s, 'p, 'm> Tracer<'s, 'p, 'm> {
             }
             First::Open => None,
         }
+    }
+
+    /// Encloses the colour that a ray returns which hits nothing.
+    fn background<F: Number>(&self, ray: &Ray<F>) -> Colour<F> {
+        let Some(background) = &self.scene.plan.model.background else { return [Interval::constant(0.0); 3] };
+        let toward = per_axis(|axis| (ray.path.line.dir[axis] / ray.length).coarse());
+        background
+            .value
+            .enclose(toward)
+            .map(|Interval { low, high }| Interval { low: F::of(low), high: F::of(high) })
     }
 
     /// Encloses the colour that a ray returns which hits a place at t.
@@ -99,6 +109,9 @@ impl<'s, 'p, 'm> Tracer<'s, 'p, 'm> {
         }
         colour = per_axis(|channel| colour[channel] / travelled);
         let material = &self.scene.objects[place.object].material;
+        if material.interface.is_some() {
+            return None;
+        }
         if material.transparency != 0.0 {
             let tint = tint(material.transparency, surface.diffuse)?;
             let kept = Interval::constant(1.0) - Interval::constant(material.transparency);

@@ -112,7 +112,9 @@ impl Draw {
             if kind != Kind::Camera && !its(&entity) && !refers_to(entity, kind) {
                 continue;
             }
-            if let Some(other) = Some(entity).filter(its).or_else(|| registry.iter().find(its)) {
+            // Where a type has the kind's own name, that is the one that others refer to.
+            let usual = || registry.find(&kind.to_string()).filter(its).or_else(|| registry.iter().find(its));
+            if let Some(other) = Some(entity).filter(its).or_else(usual) {
                 text += &self.entity(other, name(kind));
             }
         }
@@ -130,7 +132,7 @@ impl Draw {
                 text += &one.replacen("NAME", &of_list(name(Kind::Object), index), 1);
             }
         }
-        if matches!(entity.kind(), Kind::Shader | Kind::Object | Kind::Light) {
+        if matches!(entity.kind(), Kind::Shader | Kind::Object | Kind::Light | Kind::Background) {
             let (tried, named) = (self.entity(entity, "tried"), format!("shader {}\n", name(Kind::Shader)));
             if tried.contains(&named) {
                 text += &self.aside(|draw| draw.shader(registry, entity));
@@ -149,7 +151,8 @@ impl Draw {
         let needs = |kind| refers_to(shader, kind) && !refers_to(user, kind);
         let mut text = String::new();
         for kind in [Kind::Material, Kind::Texture].into_iter().filter(|kind| needs(*kind)) {
-            if let Some(other) = registry.iter().find(|other| other.kind() == kind) {
+            let usual = registry.find(&kind.to_string());
+            if let Some(other) = usual.or_else(|| registry.iter().find(|other| other.kind() == kind)) {
                 text += &self.entity(other, name(kind));
             }
         }
@@ -257,6 +260,6 @@ fn name(kind: Kind) -> &'static str {
         Kind::Texture => "t",
         Kind::Shader => "s",
         Kind::Object => "o",
-        Kind::Light => "tried",
+        Kind::Light | Kind::Background => "tried",
     }
 }

@@ -3,6 +3,7 @@
 use super::draw::Draw;
 use super::promise::{Fault, Promise};
 use crate::geometry::ray::Side;
+use crate::numeric::interval::Interval;
 use crate::scene::dump;
 use crate::scene::model::Model;
 use crate::scene::profile::Profile;
@@ -12,7 +13,9 @@ use crate::scene::syntax::Syntax;
 use crate::shapes::revolution::{Finish, Revolution};
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::{LANES, Vectors};
+use crate::world::background::Background;
 use crate::world::body::Paint;
+use crate::world::interface::Crossing;
 use crate::world::light_samples::{LightSamples, ShadingPoints};
 use crate::world::material::{Look, Material, Rgb};
 use crate::world::packets::light::PacketLight;
@@ -46,6 +49,7 @@ pub fn shader(shader: &dyn PacketShader, at: &SurfacePoint) -> Result<(), Fault>
         specular: Rgb::splat(0.3),
         shininess: 10.0,
         transparency: 0.2,
+        interface: None,
     };
     let one = [shader.ambient(&material, at), shader.diffuse(&material, at), shader.specular(&material, at)];
     let found = |what: String| format!("{what} at {}", at.position);
@@ -118,6 +122,40 @@ pub fn paint(paint: &Paint, draw: &mut Draw) -> Result<(), Fault> {
     Ok(())
 }
 
+/// Checks a background's colours and their bounds in many directions.
+pub fn background(background: &dyn Background, draw: &mut Draw) -> Result<(), Fault> {
+    /// The largest rounding error of a colour, as a part of the brightest one.
+    const ROUNDING: f64 = 1e-12;
+    let most = background.brightest();
+    let error = ROUNDING * most.max_element();
+    for size in [0.0, 1e-6, 1e-3, 0.3] {
+        for _ in 0..PLACES {
+            let toward = draw.direction();
+            let colour = background.colour(toward);
+            if !colour.is_finite() || colour.min_element() < 0.0 {
+                return Err(Promise::BackgroundIsSound.fault(format!("toward {toward} it is {colour}")));
+            }
+            if !colour.cmple(most + error).all() {
+                let found = format!("`brightest` is {most}, and toward {toward} it is {colour}");
+                return Err(Promise::BackgroundIsSound.fault(found));
+            }
+            // A box of directions around one, which is not in the middle.
+            let at = toward.to_array();
+            let (below, above) = (size * draw.part(), size * draw.part());
+            let bounds = background.enclose(at.map(|at| Interval { low: at - below, high: at + above }));
+            let is_within = |channel: usize| {
+                bounds[channel].low - error <= colour[channel]
+                    && colour[channel] <= bounds[channel].high + error
+            };
+            if !(0..3).all(is_within) {
+                let found = format!("toward {toward} it is {colour}, and `enclose` says {bounds:?}");
+                return Err(Promise::BackgroundIsSound.fault(found));
+            }
+        }
+    }
+    Ok(())
+}
+
 /// Checks a light, seen from points around it and from its own position.
 pub fn light(light: &dyn PacketLight, draw: &mut Draw) -> Result<(), Fault> {
     let (location, size) = (light.location(), light.size());
@@ -176,12 +214,27 @@ fn places(middle: DVec3, draw: &mut Draw) -> impl Iterator<Item = DVec3> {
         .chain((0..PLACES).map(move |_| middle + draw.direction() * 10.0 * draw.part()))
 }
 
-/// Checks that a material consists of finite numbers.
-pub fn material(material: &Material) -> Result<(), Fault> {
-    let Material { ambient, diffuse, specular, shininess, transparency } = material;
+/// Checks that a material consists of finite numbers, and what its interface does with rays.
+pub fn material(material: &Material, draw: &mut Draw) -> Result<(), Fault> {
+    let Material { ambient, diffuse, specular, shininess, transparency, interface } = material;
     let is_finite = [ambient, diffuse, specular].iter().all(|colour| colour.is_finite());
     if !is_finite || !shininess.is_finite() || !(0.0..=1.0).contains(transparency) {
         return Err(Promise::ReflectivityIsSound.fault(format!("it is {material:?}")));
+    }
+    let Some(interface) = interface else { return Ok(()) };
+    for _ in 0..PLACES {
+        let (dir, normal) = (draw.direction(), draw.direction());
+        let normal = if dir.dot(normal) > 0.0 { -normal } else { normal };
+        for side in [Side::Outside, Side::Inside] {
+            let crossing = interface.cross(dir, normal, side);
+            let Crossing { reflected, onward } = crossing;
+            let is_through = |onward: DVec3| onward.is_normalized() && onward.dot(normal) <= 0.0;
+            let is_sound = (0.0..=1.0).contains(&reflected) && onward.map_or(reflected == 1.0, is_through);
+            if !is_sound {
+                let found = format!("a ray along {dir} goes on from a normal {normal} as {crossing:?}");
+                return Err(Promise::LightGoesOn.fault(found));
+            }
+        }
     }
     Ok(())
 }

@@ -97,6 +97,10 @@ pub fn breaches_in(model: &Model) -> Vec<Breach> {
     for light in &model.lights {
         found.extend(looks::light(&*light.value, &mut draw).err().map(|fault| (light.args.entity(), fault)));
     }
+    if let Some(background) = &model.background {
+        let fault = looks::background(&*background.value, &mut draw).err();
+        found.extend(fault.map(|fault| (background.args.entity(), fault)));
+    }
     let camera = &model.camera;
     found.extend(cameras::camera(&camera.value).err().map(|fault| (camera.args.entity(), fault)));
     found
@@ -133,10 +137,15 @@ fn of_entity(registry: &Registry, entity: &'static Entity, scenes: &SceneFolder)
         models += 1;
         let tried = match entity.kind() {
             Kind::Camera => cameras::camera(&model.camera.value),
-            Kind::Material => model.materials.iter().try_for_each(|item| looks::material(&item.value)),
+            Kind::Material => {
+                model.materials.iter().try_for_each(|item| looks::material(&item.value, &mut draw))
+            }
             Kind::Texture => Ok(()),
             Kind::Shader => model.shaders.iter().try_for_each(|item| looks::paint(&item.value, &mut draw)),
             Kind::Light => model.lights.iter().try_for_each(|item| looks::light(&*item.value, &mut draw)),
+            Kind::Background => {
+                model.background.iter().try_for_each(|item| looks::background(&*item.value, &mut draw))
+            }
             Kind::Object => model.objects.iter().try_for_each(|object| {
                 let outcome = rays::try_object(object, &mut draw, RAYS);
                 hits += outcome.hits;

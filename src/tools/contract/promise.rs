@@ -39,8 +39,12 @@ pub enum Promise {
     IsMet,
     /// Reflectivities are finite and not below 0.
     ReflectivityIsSound,
+    /// A material's interface reflects a fraction, and transmits the rest to the other side.
+    LightGoesOn,
     /// A light's location, size and emission are finite.
     LightIsFinite,
+    /// A background's colours are finite, not below 0, and within their bounds.
+    BackgroundIsSound,
     /// A camera's directions are unit vectors, the same each time and in packets.
     CameraLooks,
     /// What a camera says of its rays is so.
@@ -51,7 +55,7 @@ pub enum Promise {
 
 impl Promise {
     /// All promises, the gravest first.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 23] = [
         Self::TakesWhatItsTableAllows,
         Self::DumpLoadsAgain,
         Self::DistanceIsInItsSpan,
@@ -69,7 +73,9 @@ impl Promise {
         Self::HitIsTouched,
         Self::IsMet,
         Self::ReflectivityIsSound,
+        Self::LightGoesOn,
         Self::LightIsFinite,
+        Self::BackgroundIsSound,
         Self::CameraLooks,
         Self::CameraKnows,
         Self::ProfileIsFinite,
@@ -117,7 +123,13 @@ impl Promise {
             Self::ReflectivityIsSound => {
                 "look for a division by 0 or a root of a negative number, and clamp what may become negative"
             }
+            Self::LightGoesOn => {
+                "clamp the reflected fraction, normalize the direction, and reflect all light where none is transmitted"
+            }
             Self::LightIsFinite => "return `None` where no light goes, including the light's own location",
+            Self::BackgroundIsSound => {
+                "state rules for the attributes, and leave out `enclose` if in doubt; `brightest` bounds all colours"
+            }
             Self::CameraLooks => "state rules for the attributes from which the camera is made",
             Self::CameraKnows => {
                 "make `origins`, `project`, `corners`, `sight` and `line` agree with `ray`; if in doubt, leave them out, all but `origins`"
@@ -155,7 +167,13 @@ impl fmt::Display for Promise {
             Self::ReflectivityIsSound => {
                 "a reflectivity is finite, and not negative unless the material's is"
             }
+            Self::LightGoesOn => {
+                "an interface reflects a fraction from 0 to 1, and transmits the rest to the other side"
+            }
             Self::LightIsFinite => "a light's location, size and emission are finite",
+            Self::BackgroundIsSound => {
+                "a background's colours are finite, not negative, and within `brightest` and `enclose`"
+            }
             Self::CameraLooks => "a camera has pixels, samples and rays with unit directions",
             Self::CameraKnows => "what a camera says of its rays is so",
             Self::ProfileIsFinite => "a profile is finite from 0 to 4, and above 0 somewhere",

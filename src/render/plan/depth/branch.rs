@@ -38,6 +38,37 @@ impl Onward {
     pub const NONE: Self = Self { own: 0.0, beyond: 0.0, through: Branch::NONE, mirrored: Branch::NONE };
 }
 
+/// The number of steps by which reflected fractions are told apart.
+pub(crate) const STEPS: i32 = 16;
+
+/// The fraction of the allowance for cuts that the reflected ray gets where an interface divides a ray in two.
+pub(super) const REFLECTED: f64 = 0.25;
+
+/// Returns the step of a reflected fraction: 0 for all, and else the largest number n, up to [`STEPS`], such that the
+/// fraction is at most 2 to the power 1 - n.
+pub(crate) fn step(reflected: f64) -> i32 {
+    if reflected >= 1.0 {
+        return 0;
+    }
+    let mut step = 1;
+    while step < STEPS && reflected <= 0.5_f64.powi(step) {
+        step += 1;
+    }
+    step
+}
+
 impl Branch {
+    /// Returns the branch of the rays at an interface whose reflected fraction is of this [`step`]. Where all is reflected,
+    /// no other ray continues, and the reflected one gets the whole allowance.
+    pub fn reduced(self, step: i32) -> Self {
+        if step == 0 {
+            return Self { share: 1.0, faint: REFLECTED * self.faint, ..self };
+        }
+        let most = 0.5_f64.powi(step - 1);
+        let times = |light: f64| if light == f64::INFINITY { light } else { most * light };
+        let Self { weight, share, faint, faint_alone } = self;
+        Self { weight: times(weight), share, faint: times(faint), faint_alone: times(faint_alone) }
+    }
+
     const NONE: Self = Self { weight: 0.0, share: 1.0, faint: 0.0, faint_alone: 0.0 };
 }

@@ -20,6 +20,21 @@
 //! through glass are at most 1. Rays do not hit what lies behind the plane that they leave, nor the object that they
 //! leave if it cannot be hit again.
 //!
+//! **Interfaces.** Where the material has an interface, which divides light into a reflected fraction `r` and the rest, the
+//! sum is `kept * S / d + (1 - r) * tint * transmitted light + r * reflected light`, so that
+//!
+//! ```text
+//! beyond(i, side) >= kept_j * S_j + max(T_j * beyond(j, other side), beyond(j, same side))
+//! ```
+//!
+//! and so for `P`, but with 0 for `kept_j * S_j` where nothing is kept. The reflected ray gets a quarter of the allowance,
+//! and the transmitted one the rest, or either one all where the other is none. The weight of the reflected branch is `r`,
+//! rounded up to a power of two.
+//!
+//! The background counts as an object around everything, whose own light `S` is its brightest channel times
+//! [`MAX_DIST`](crate::render::limits::MAX_DIST): it is not divided by the path length `d`, but no ray leaves an object
+//! where `d` is more than that.
+//!
 //! Any solution of these inequalities is at least the least one, which is at least every sum of finitely many branches.
 //! A solution is searched for by iteration from below, and accepted when it satisfies the inequalities as it stands.
 //! Where mirrors and glass pass on as much light as they receive, there is none: then no branch is cut, and
@@ -42,9 +57,10 @@ mod sides;
 mod solve;
 mod surface;
 
-pub(crate) use branch::{Branch, FAINT, MANY, Onward};
+pub(crate) use branch::{Branch, FAINT, MANY, Onward, STEPS, step};
 pub(crate) use surface::clearance;
 
+use crate::render::limits::MAX_DIST;
 use crate::scene::model::Model;
 use crate::world::accuracy::Accuracy;
 use crate::world::material::Rgb;
@@ -53,7 +69,7 @@ use surface::Surface;
 
 /// Bounds on what the branches of a scene with mirrors or glass can return.
 pub(crate) struct Depth {
-    /// A bound on any channel of what a primary ray returns, times the path length; infinite where there is none.
+    /// A bound on any channel of what a primary ray returns that hits an object, times the path length; infinite where there is none.
     pub most: f64,
     /// The bounds for each object, by the object's index.
     pub objects: Vec<Onward>,
@@ -72,7 +88,7 @@ impl Depth {
         }
         let surfaces = Surface::all(model, &looks, None);
         let cuts = model.camera.value.accuracy != Accuracy::Classic;
-        let (most, objects) = Scene::new(model, surfaces).bounds(cuts);
+        let (most, objects) = Scene::new(model, surfaces, background(model)).bounds(cuts);
         Some(Self { most, objects })
     }
 
@@ -94,11 +110,18 @@ impl Depth {
     }
 }
 
-/// Bounds what a primary ray returns in any channel, times the path length; infinite where there is no bound.
+/// Bounds what rays that leave an object return which hit nothing, times the path length.
+fn background(model: &Model) -> f64 {
+    let brightest = model.background.as_ref().map(|background| background.value.brightest());
+    brightest.map_or(0.0, |brightest| brightest.max_element() * MAX_DIST)
+}
+
+/// Bounds what a primary ray that hits an object returns in any channel, times the path length; infinite where there is
+/// no bound.
 pub(crate) fn most(model: &Model) -> f64 {
     let looks: Vec<_> =
         model.objects.iter().map(|object| object.shader.brightest(&object.material)).collect();
-    Scene::new(model, Surface::all(model, &looks, None)).bounds(false).0
+    Scene::new(model, Surface::all(model, &looks, None), background(model)).bounds(false).0
 }
 
 /// Bounds what one light of a model adds to a primary ray in any channel, times the path length; infinite where there is
@@ -107,5 +130,5 @@ pub(crate) fn most_of_light(model: &Model, light: usize) -> f64 {
     let looks: Vec<_> =
         model.objects.iter().map(|object| object.shader.brightest(&object.material)).collect();
     let surfaces = Surface::all(model, &looks, Some(light));
-    Scene::new(model, surfaces).bounds(false).0
+    Scene::new(model, surfaces, 0.0).bounds(false).0
 }

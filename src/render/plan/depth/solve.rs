@@ -24,12 +24,14 @@ pub(super) struct Scene {
     shiny: Vec<(usize, Sides<bool>)>,
     /// On which sides of one shiny surface another one lies, for each pair; empty for more than [`PAIRS`] surfaces.
     lies: Vec<Sides<bool>>,
-    /// For each shiny surface and side, the largest own light of the other surfaces that may be hit from there.
+    /// For each shiny surface and side, the largest own light of the background and of the other surfaces that may be hit from there.
     matt_light: Vec<Sides<f64>>,
 }
 
 impl Scene {
-    pub fn new(model: &Model, surfaces: Vec<Surface>) -> Self {
+    /// Makes the scene of a model's surfaces. `background` bounds the light of rays that hit nothing, times their path
+    /// length: they are not followed from where it is more than [`MAX_DIST`].
+    pub fn new(model: &Model, surfaces: Vec<Surface>, background: f64) -> Self {
         let objects = &model.objects;
         let (shiny, matt): (Vec<_>, Vec<_>) =
             (0..surfaces.len()).partition(|index| surfaces[*index].goes_on());
@@ -41,7 +43,9 @@ impl Scene {
             let sent = matt
                 .iter()
                 .map(|object| lies(*of, *object).map(|lies| if lies { surfaces[*object].own } else { 0.0 }));
-            sent.fold([0.0; 2], |[one, other], [outside, inside]| [above(one, outside), above(other, inside)])
+            sent.fold([background; 2], |[one, other], [outside, inside]| {
+                [above(one, outside), above(other, inside)]
+            })
         });
         let matt_light = matt_light.collect();
         let pairs = shiny.iter().flat_map(|of| shiny.iter().map(|object| lies(*of, *object)));
@@ -58,7 +62,7 @@ impl Scene {
         let beyond = self.solve(&self.matt_light, own).unwrap_or_else(infinite);
         let one = |light: f64| if light > 0.0 { 1.0 } else { 0.0 };
         let matt_light: Vec<_> = self.matt_light.iter().map(|matt_light| matt_light.map(one)).collect();
-        let shares = self.solve(&matt_light, |_| 1.0).unwrap_or_else(infinite);
+        let shares = self.solve(&matt_light, Surface::unit).unwrap_or_else(infinite);
         let most = |own: &dyn Fn(&Surface) -> f64, beyond: &[Sides<f64>]| {
             let mut met: Vec<_> = self.surfaces.iter().map(own).collect();
             for ((index, _), beyond) in self.shiny.iter().zip(beyond) {
@@ -68,7 +72,7 @@ impl Scene {
             }
             met.into_iter().fold(0.0, above)
         };
-        let whole = most(&|_| 1.0, &shares);
+        let whole = most(&Surface::unit, &shares);
         let none = |surface: &Surface| Onward { own: surface.own, ..Onward::NONE };
         let mut objects: Vec<_> = self.surfaces.iter().map(none).collect();
         for (((index, _), beyond), shares) in self.shiny.iter().zip(&beyond).zip(&shares) {

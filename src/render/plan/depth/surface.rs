@@ -1,6 +1,6 @@
 //! What an object's surface does with light, bounded over all of its points.
 
-use super::branch::{Branch, FAINT, Onward};
+use super::branch::{Branch, FAINT, Onward, REFLECTED};
 use super::sides::{Sides, above, gain};
 use crate::geometry::aabb;
 use crate::render::culling;
@@ -22,6 +22,8 @@ pub(super) struct Surface {
     through: f64,
     /// The specular reflectivity.
     mirrored: f64,
+    /// Whether light is divided between the two, by an interface.
+    is_split: bool,
 }
 
 impl Surface {
@@ -39,7 +41,12 @@ impl Surface {
                 Self {
                     own: gain(1.0 - object.material.transparency, own) * ROUNDING,
                     through: tint * ROUNDING,
-                    mirrored: look.map_or(f64::INFINITY, |look| largest(look.specular)) * ROUNDING,
+                    mirrored: if object.material.interface.is_some() {
+                        1.0
+                    } else {
+                        look.map_or(f64::INFINITY, |look| largest(look.specular)) * ROUNDING
+                    },
+                    is_split: object.material.interface.is_some(),
                 }
             })
             .collect()
@@ -53,22 +60,33 @@ impl Surface {
     /// Bounds what rays that hit the surface on each side return, given its own light and what rays that leave it on
     /// each side return.
     pub fn met(&self, own: f64, [outside, inside]: [f64; 2]) -> [f64; 2] {
-        let onward =
-            |through: f64, mirrored: f64| gain(self.through, through) + gain(self.mirrored, mirrored);
+        let onward = |through: f64, mirrored: f64| {
+            let (through, mirrored) = (gain(self.through, through), gain(self.mirrored, mirrored));
+            if self.is_split { above(through, mirrored) } else { through + mirrored }
+        };
         [own + onward(inside, outside), own + onward(outside, inside)]
+    }
+
+    /// Returns the surface's own light in the unit of shares: 1, or 0 where an interface passes on all light.
+    pub fn unit(&self) -> f64 {
+        if self.is_split && self.own == 0.0 { 0.0 } else { 1.0 }
     }
 
     /// Computes how rays continue from the surface, given bounds on what they return. `whole` is the share of a primary
     /// ray, in the unit of `shares`.
     pub fn onward(&self, beyond: Sides<f64>, shares: Sides<f64>, whole: f64, cuts: bool) -> Onward {
-        let Self { own, through, mirrored } = *self;
+        let Self { own, through, mirrored, is_split } = *self;
         let part = if through == 0.0 || mirrored == 0.0 { 1.0 } else { 0.5 };
         // The larger ratio of the two sides, since rays may leave on either. A side from which nothing is hit returns
         // nothing.
         let ratio = |side: usize| if beyond[side] == 0.0 { 0.0 } else { beyond[side] / shares[side] };
         let (ratio, most) = (above(ratio(0), ratio(1)), above(shares[0], shares[1]));
-        let branch = |weight: f64| {
-            let share = if most > 0.0 { weight + part / most } else { 1.0 };
+        let branch = |weight: f64, part_of_split: f64| {
+            let share = match most > 0.0 {
+                _ if is_split => part_of_split,
+                true => weight + part / most,
+                false => 1.0,
+            };
             let faint = gain(weight, ratio) * whole * ROUNDING / (share * FAINT);
             let faint_alone = gain(weight, above(beyond[0], beyond[1])) * ROUNDING / FAINT;
             let [faint, faint_alone] =
@@ -78,8 +96,8 @@ impl Surface {
         Onward {
             own,
             beyond: above(beyond[0], beyond[1]),
-            through: branch(through),
-            mirrored: branch(mirrored),
+            through: branch(through, 1.0 - REFLECTED),
+            mirrored: branch(mirrored, REFLECTED),
         }
     }
 }

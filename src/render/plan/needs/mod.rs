@@ -2,7 +2,7 @@
 //!
 //! **Views.** Primary rays lead away from the viewer, between the edges of the image. Where they may meet a mirror in a
 //! plane, the rays that it reflects lead away from the viewer's mirror image, in front of the mirror; and so on from
-//! mirror to mirror. Glass does not turn rays. A curved mirror may show everything, and so may more than [`MAX_VIEWS`]
+//! mirror to mirror. Glass does not turn rays, unless its material has an interface. Such a material and a curved mirror may show everything, and so may more than [`MAX_VIEWS`]
 //! views: then no object is left out.
 //!
 //! **Lights.** A light is left out where it adds nothing to anything that a view may meet: it lies behind the object's
@@ -196,6 +196,10 @@ impl Scene<'_> {
             };
             let count = self.model.objects.len();
             let shown = parallel::ranges(count, MANY, &|range| range.filter(shows).collect());
+            // Where rays are bent, anything may be seen.
+            if shown.iter().any(|index| self.model.objects[*index].material.interface.is_some()) {
+                return None;
+            }
             for index in shown.iter().filter(|index| mirror != Some(**index) && self.reflects(**index)) {
                 let [at, normal] = self.model.objects[*index].shape.plane()?;
                 if !normal.is_normalized() {

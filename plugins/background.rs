@@ -1,0 +1,32 @@
+//! A background of one colour.
+
+use crate::prelude::*;
+
+static COLOUR: Pparm<Rgb> =
+    Pparm::required("colour", "the red, green and blue of every ray that hits nothing, where 1 is white")
+        .alias(&["color"])
+        .must("0 or more in each channel", |colour| colour.min_element() >= 0.0);
+
+const TABLE: Table = &[&COLOUR];
+
+inventory::submit! {
+    Entity::background("background", "one colour where there is no object", &[TABLE], |args| {
+        Ok(Box::new(Uniform(args.get(&COLOUR))))
+    })
+}
+
+struct Uniform(Rgb);
+
+impl Background for Uniform {
+    fn colour(&self, _toward: DVec3) -> Rgb {
+        self.0
+    }
+
+    fn brightest(&self) -> Rgb {
+        self.0
+    }
+
+    fn enclose(&self, _toward: [Interval; 3]) -> [Interval; 3] {
+        self.0.to_array().map(Interval::constant)
+    }
+}
