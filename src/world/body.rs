@@ -106,7 +106,7 @@ pub struct Body {
     /// The material, where it is not that of the entity that the body is made for.
     pub material: Option<Arc<Material>>,
     /// The solid, if it is made of several parts.
-    pub solid: Option<Solid>,
+    pub solid: Option<Box<Solid>>,
     /// The bodies that are seen together with this one.
     pub more: Vec<Body>,
 }

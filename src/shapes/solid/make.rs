@@ -129,7 +129,7 @@ impl Body {
         }
         let mut seen = seen(&solid).into_iter();
         let first = seen.next().ok_or(NoSolid::Empty)?;
-        Ok(Self { more: seen.collect(), solid: Some(solid), ..first })
+        Ok(Self { more: seen.collect(), solid: Some(Box::new(solid)), ..first })
     }
 }
 
