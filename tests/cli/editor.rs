@@ -258,7 +258,9 @@ fn faults_follow_what_is_typed() {
     let folder = folder();
     let mut client = Client::start(&folder);
     let uri = uri(folder.path(), "a.ray");
-    client.open(&uri, "camera eye { pixeldim 8 6  worlddim 8 6  viewpoint 4 3 6 }\n");
+    // Without them there would be a warning: the image is black.
+    let seen = "material m { ambient 1 1 1 }\nsphere s { material m  center 4 3 -4  radius 1 }\n";
+    client.open(&uri, &format!("camera eye {{ pixeldim 8 6  worlddim 8 6  viewpoint 4 3 6 }}\n{seen}"));
     assert_eq!(client.faults(&uri), json!([]));
     let change = |from: [u32; 2], to: [u32; 2], text: &str| {
         let [start, end] =

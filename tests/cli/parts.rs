@@ -259,7 +259,9 @@ fn frames_have_values_that_change_and_names_by_their_numbers() {
         succeeds(&folder, &[&back[..], &["--part", part]].concat());
     }
     succeeds(&folder, &["merge", "film-0011.png", "--remove-parts"]);
-    assert!(read("film-0009.png") == read("film-0011.png"), "the way back is the same");
+    // The files say with which options they were made, which differ.
+    let pixels = |name: &str| image::open(folder.path().join(name)).expect("an image").into_rgb8();
+    assert!(pixels("film-0009.png") == pixels("film-0011.png"), "the way back is the same");
     succeeds(&folder, &["film", "film.png", "--sheet", "sheet.png", "--animation", "film.apng"]);
     let sheet = image::open(folder.path().join("sheet.png")).expect("an image");
     assert_eq!((sheet.width(), sheet.height()), (3 * 192, 2 * 144));

@@ -5,15 +5,17 @@ use super::closest_hit;
 use super::context::Tracer;
 use super::light;
 use super::ray_group::RayGroup;
+use super::refract;
 use super::scratch::{HitScratch, ShadingScratch};
 use super::surface::Errors;
 use crate::geometry::ray::Side;
 use crate::render::limits::MAX_DIST;
 use crate::render::observer::{Count, Event, Hit, Purpose, RayKind, Reason, TraceObserver};
-use crate::render::plan::depth::Branch;
+use crate::render::plan::depth::{Branch, STEPS, step};
 use crate::scene::model::Object;
 use crate::world::background::Background;
 use crate::world::interaction::SurfaceInteraction;
+use crate::world::interface::{Crossing, Interface};
 use crate::world::material::Rgb;
 use crate::world::packets::shader::SurfacePoints;
 use glam::DVec3;
@@ -159,7 +161,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     }
 
     /// Ends all rays where a measurement limits the number of bounces.
-    pub(super) fn end_bounces(&self, goes: &mut [u64]) {
+    fn end_bounces(&self, goes: &mut [u64]) {
         if self.depth >= self.plan.bounces {
             goes.fill(0);
         }
@@ -201,15 +203,102 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         light::reflect(cpu, specular, shading.behind.view(count), colours.resized(count));
     }
 
-    /// Computes the light that returns along the rays that continue from a surface. It is black for points from which
-    /// no ray continues: those that are too far away, or whose ray can return too little.
-    pub(super) fn onward(
+    /// Adds transmitted and reflected light, in the fractions that an interface decides.
+    ///
+    /// How deep reflected rays are followed depends on the fraction, rounded up to a power of two, so that it does not
+    /// depend on the other rays of the packet.
+    fn add_split(
+        &mut self,
+        interface: &dyn Interface,
+        group: &mut RayGroup,
+        shading: &mut ShadingScratch,
+        colours: &mut VectorList,
+    ) {
+        let (count, surface) = (group.padded(), &mut shading.surface);
+        let (object, branches) = (&self.model.objects[surface.index], self.plan.onward(surface.index));
+        let kept = 1.0 - object.material.transparency;
+        let crossings = refract::crossings(interface, group.dir.view(count), surface);
+        let tints: Vec<Rgb> = (0..group.len)
+            .map(|lane| {
+                let point = object.surface_point(surface.points.get(lane), surface.sides[lane]);
+                object.tint(&point) * (1.0 - crossings[lane].reflected)
+            })
+            .collect();
+        (0..group.len).for_each(|lane| colours.set(lane, kept * colours.get(lane)));
+
+        if W::SEES && crossings[0].onward.is_some() {
+            self.observer.see(Event::Begin(Purpose::Transmitted { tint: tints[0], kept }));
+        }
+        let flip = |sides: &mut [Side]| sides.iter_mut().for_each(|side| *side = side.opposite());
+        flip(&mut surface.sides[..count]);
+        let mut dir = shading.dir.resized(count);
+        for lane in 0..count {
+            dir.set(lane, crossings[lane].onward.unwrap_or(DVec3::NEG_Z));
+        }
+        let is_through = |crossing: &Crossing| crossing.onward.is_some();
+        self.go(group, shading, RayKind::Transmitted, branches.through, &crossings, is_through);
+        flip(&mut shading.surface.sides[..count]);
+        for lane in 0..group.len {
+            colours.set(lane, colours.get(lane) + tints[lane] * shading.behind.get(lane));
+        }
+
+        for number in 0..=STEPS {
+            let is_its = |crossing: &Crossing| crossing.reflected > 0.0 && step(crossing.reflected) == number;
+            if !crossings[..group.len].iter().any(is_its) {
+                continue;
+            }
+            if W::SEES {
+                let specular = Rgb::splat(crossings[0].reflected);
+                self.observer.see(Event::Begin(Purpose::Reflected { specular }));
+            }
+            let surface = &mut shading.surface;
+            let mut dir = shading.dir.resized(count);
+            for lane in 0..count {
+                let (seen, normal) = (group.dir.get(lane), surface.normals.get(lane));
+                dir.set(lane, seen - 2.0 * seen.dot(normal) * normal);
+            }
+            if surface.is_bent {
+                surface.keep_before(group.dir.view(count), &mut shading.dir);
+            }
+            self.go(
+                group,
+                shading,
+                RayKind::Reflected,
+                branches.mirrored.reduced(number),
+                &crossings,
+                is_its,
+            );
+            for lane in (0..group.len).filter(|lane| is_its(&crossings[*lane])) {
+                let seen = crossings[lane].reflected * shading.behind.get(lane);
+                colours.set(lane, colours.get(lane) + seen);
+            }
+        }
+    }
+
+    /// Computes the light that returns along the rays whose crossings are chosen.
+    fn go(
         &mut self,
         group: &mut RayGroup,
         shading: &mut ShadingScratch,
         kind: RayKind,
         branch: Branch,
+        crossings: &[Crossing],
+        is_its: impl Fn(&Crossing) -> bool,
     ) {
+        let count = group.padded();
+        let (travelled, goes) = (&shading.surface.travelled[..count], resized(&mut shading.goes, count));
+        light::reach(self.cpu, travelled, MAX_DIST, goes);
+        for (goes, crossing) in goes.iter_mut().zip(crossings) {
+            *goes &= u64::from(is_its(crossing));
+        }
+        group.leave_out(self.cpu, &branch, travelled, goes);
+        self.end_bounces(goes);
+        self.onward(group, shading, kind, branch);
+    }
+
+    /// Computes the light that returns along the rays that continue from a surface. It is black for points from which
+    /// no ray continues: those that are too far away, or whose ray can return too little.
+    fn onward(&mut self, group: &mut RayGroup, shading: &mut ShadingScratch, kind: RayKind, branch: Branch) {
         let ShadingScratch { surface, dir, goes, lanes, onward, seen, behind, .. } = shading;
         let lanes = compact(&goes[..group.len], lanes);
         if W::SEES && lanes.is_empty() {

@@ -308,7 +308,7 @@ impl Check<'_, '_> {
                 }
             }
             Construct::Background(construct) => {
-                let made = self.made(parsed, &args, construct);
+                let made = self.made(parsed, args, construct);
                 self.background = made.map(|background| (order, background));
             }
             Construct::Object(_) | Construct::Light(_) => {}

@@ -29,7 +29,7 @@ pub fn warning(model: &Model) -> Option<Fault> {
         );
     }
     // Of rays that start at different points, nothing is said.
-    let Some(corners) = camera.camera.corners(camera.pixels, MARGIN) else { return None };
+    let corners = camera.camera.corners(camera.pixels, MARGIN)?;
     let viewer = camera.origins().middle;
     let place = |at: DVec3| at.to_array().map(shortest).join(" ");
     let ahead: DVec3 = corners.iter().sum();
