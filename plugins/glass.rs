@@ -2,12 +2,9 @@
 
 use crate::prelude::*;
 
-static INDEX: Pparm<f64> = Pparm::or(
-    "index",
-    "the refractive index inside, relative to outside: 1.5 is glass, 1.33 water",
-    1.5,
-)
-.between(1.0, 4.0);
+static INDEX: Pparm<f64> =
+    Pparm::or("index", "the refractive index inside, relative to outside: 1.5 is glass, 1.33 water", 1.5)
+        .between(1.0, 4.0);
 static COLOUR: Pparm<Rgb> = Pparm::or(
     "colour",
     "the tint of light that passes through a wall, scaled so that its strongest channel is 1",

@@ -4,7 +4,8 @@ use crate::prelude::*;
 
 static LOCATION: Pparm<DVec3> =
     Pparm::required("location", "the position of the light").unit("world coordinates");
-static EMISSIVITY: Pparm<Rgb> = Pparm::required("emissivity", "the emission in red, green and blue").each(COLOUR);
+static EMISSIVITY: Pparm<Rgb> =
+    Pparm::required("emissivity", "the emission in red, green and blue").each(COLOUR);
 
 static SIZE: Pparm<f64> = Pparm::or("size", "the radius of a spherical light, for soft shadows", 0.0)
     .unit("world units")

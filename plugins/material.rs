@@ -3,9 +3,11 @@
 use crate::prelude::*;
 
 static AMBIENT: Pparm<Rgb> =
-    Pparm::or("ambient", "the emission in red, green and blue, independent of lights", Rgb::ZERO).each(COLOUR);
+    Pparm::or("ambient", "the emission in red, green and blue, independent of lights", Rgb::ZERO)
+        .each(COLOUR);
 static DIFFUSE: Pparm<Rgb> =
-    Pparm::or("diffuse", "the diffuse reflection coefficients for red, green and blue", Rgb::ZERO).each(COLOUR);
+    Pparm::or("diffuse", "the diffuse reflection coefficients for red, green and blue", Rgb::ZERO)
+        .each(COLOUR);
 static SPECULAR: Pparm<PerChannel> = Pparm::or(
     "specular",
     "the specular reflection coefficient, for mirror images and highlights",
