@@ -106,7 +106,7 @@ static ACCURACY: Pparm<Accuracy> =
 const FILM: [Table; 2] = [&[&PIXELDIM], &[&SAMPLES, &ACCURACY]];
 
 impl Entity {
-    /// Describes a camera type. The attributes of every camera are added to its table: [`PIXELDIM`] before its own, and
+    /// Describes a camera type. The attributes of every camera are added to its table: `pixeldim` before its own, and
     /// `samples` and `accuracy` after them.
     #[track_caller]
     pub const fn camera(

@@ -18,10 +18,10 @@ const MEDIUM_STACK: usize = 8;
 /// A formula in x, y and z: `x^2 + y^2 + z^2 - 1`.
 pub type Field = FieldOf<3>;
 
-/// A formula in the variables of [`SURFACE`]: `0.5 + 0.5*sin(4*x)`.
+/// A formula in x, y, z, u, v, nx, ny and nz: `0.5 + 0.5*sin(4*x)`.
 pub type SurfaceField = FieldOf<8>;
 
-/// A formula in 3 variables, those of [`SPACE`], or in the 8 of [`SURFACE`].
+/// A formula in 3 variables, those of [`SPACE`], or in these 8.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldOf<const N: usize> {
     /// The formula as it was read.
