@@ -25,7 +25,7 @@ const POV: [&str; 12] = [
     "rgbt",
 ];
 
-/// The number of different words that tell POV-Ray's language for certain: some of them may be those of a scene.
+/// The number of different signs that tell POV-Ray's language for certain: some words may be those of a scene.
 const ENOUGH: usize = 2;
 
 /// Returns the report on a text that is not read as a scene: the one given, or that it is one in another language.
@@ -71,6 +71,10 @@ fn of_pov(text: &str, name: &str) -> Option<Fault> {
                 found.insert(word);
                 first.get_or_insert(start..start + line.trim().len());
             }
+        }
+        // A shape without a name begins with its place: `sphere { <0, 1, 2>, 2`.
+        if code.split('{').skip(1).any(|rest| rest.trim_start().starts_with('<')) {
+            found.insert("{ <");
         }
     }
     // Entities of scenes have names, and values no brackets.
