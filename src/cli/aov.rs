@@ -23,6 +23,7 @@ const LARGEST: usize = 1 << 26;
 
 #[derive(clap::Args)]
 #[group(id = "pictures beside")]
+#[command(next_help_heading = "Looking inside")]
 pub struct Args {
     /// Also write these auxiliary images, beside the main one: `-o a.png --aov depth` writes a-depth.png, and
     /// a-depth.exr with exact numbers

@@ -21,6 +21,7 @@ use std::time::Duration;
 /// For each scene, prints the rays per second by kind, the time of a test by entity type, and how close the frame comes
 /// to the bare arithmetic of its tests. Times are CPU times of one core, the minimum of several rounds.
 #[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
 pub struct Args {
     /// The scenes; `-` reads one from standard input; by default four built-in ones
     scenes: Vec<PathBuf>,
@@ -49,6 +50,11 @@ pub struct Args {
     #[command(flatten)]
     method: method::Args,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray bench
+  tabray bench ball.ray --seconds 1 --json";
 
 fn seconds(text: &str) -> Result<Duration, String> {
     let seconds = text.parse().ok().and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());

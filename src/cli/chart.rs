@@ -24,6 +24,7 @@ use std::time::{Duration, Instant};
 /// Computes the ground truth, runs the choices that the scene has (methods of finding the hits of its shapes, and
 /// samples per pixel) in turn, and says which are best. Ctrl-C keeps what has been measured so far.
 #[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
@@ -38,6 +39,11 @@ pub struct Args {
     #[arg(long, value_name = "TIME", value_parser = stop::time)]
     time_limit: Option<Duration>,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray chart ball.ray
+  tabray chart ball.ray -o ball.svg --time-limit 5m";
 
 /// How long a chart may take if no time limit is given: on a quiet machine, most scenes take less.
 const LIMIT: Duration = Duration::from_secs(120);

@@ -9,6 +9,7 @@ use std::path::PathBuf;
 ///
 /// Of each scene, the first 100 errors and the first 100 warnings are printed, and the others are counted.
 #[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
 pub struct Args {
     /// The scenes; `-` reads one from standard input
     #[arg(required = true, value_name = "SCENE")]
@@ -16,6 +17,11 @@ pub struct Args {
     #[command(flatten)]
     set: set::Args,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray check ball.ray
+  tabray check *.ray --message-format short";
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let mut worst = 0;

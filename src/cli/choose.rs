@@ -28,6 +28,7 @@ use std::time::{Duration, Instant};
 /// of a tiny image. Never takes longer than 10 seconds unless it is given more.
 #[derive(clap::Args)]
 #[command(group = ArgGroup::new("limit").args(["max_error", "max_time"]).required(true))]
+#[command(after_long_help = EXAMPLES)]
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
@@ -47,6 +48,11 @@ pub struct Args {
     #[arg(long, value_name = "TIME", value_parser = stop::time)]
     time_limit: Option<Duration>,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray choose ball.ray --max-error 0.01
+  tabray choose ball.ray --max-time 2 --worst";
 
 /// How long choosing may take if no time limit is given.
 const LIMIT: Duration = Duration::from_secs(10);

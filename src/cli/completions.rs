@@ -7,10 +7,16 @@ use clap_complete::Shell;
 
 /// Print a completion script for a shell
 #[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
 pub struct Args {
     /// The shell
     shell: Shell,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray completions bash > ~/.local/share/bash-completion/completions/tabray
+  tabray completions fish > ~/.config/fish/completions/tabray.fish";
 
 pub fn run(registry: &Registry, args: &Args, command: clap::Command) -> Result<(), Failure> {
     let mut script = Vec::new();

@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 ///
 /// Everything but comments is kept, and what the scene computes is written out: the copy loads to the identical model.
 #[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
@@ -25,6 +26,11 @@ pub struct Args {
     #[arg(long, value_name = "SYNTAX")]
     to: Option<Syntax>,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray convert ball.ray ball.toml
+  tabray convert ball.toml - --to ray";
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let syntax = syntax(&args)?;

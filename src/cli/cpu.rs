@@ -6,6 +6,7 @@ use crate::text;
 
 #[derive(clap::Args)]
 #[group(id = "instructions")]
+#[command(next_help_heading = "Speed")]
 pub struct Args {
     /// The highest level of CPU instructions to use, by default the highest that this machine has; the image is the
     /// same with any

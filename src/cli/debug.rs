@@ -10,6 +10,7 @@ use std::io::{self, BufWriter, Write};
 
 #[derive(clap::Args)]
 #[group(id = "debug lines")]
+#[command(next_help_heading = "Looking inside")]
 pub struct Args {
     /// Print the course notes' debug lines to standard error before rendering
     #[arg(long, value_name = "LINES", value_delimiter = ',')]

@@ -16,7 +16,7 @@ use std::process::ExitCode;
 /// (RMS) of the differences of all channels, the first pixel that differs, row by row from the top, each row from the
 /// left, and the one that differs most. As everywhere, a pixel's column counts from 0 at the left and its row from 0 at the bottom.
 #[derive(clap::Args)]
-#[command(after_help = EXIT_STATUS)]
+#[command(after_help = EXIT_STATUS, after_long_help = EXAMPLES)]
 pub struct Args {
     /// The old image: PNG or PPM, or EXR or PFM
     old: PathBuf,
@@ -43,6 +43,16 @@ Exit status:
     0  the images are the same
     1  the images differ
     2  trouble: an image could not be read, the sizes differ, or the page could not be written";
+
+const EXAMPLES: &str = "\
+Exit status:
+    0  the images are the same
+    1  the images differ
+    2  trouble: an image could not be read, the sizes differ, or the page could not be written
+
+Examples:
+  tabray diff old.png new.png
+  tabray diff old.png new.png --tolerance 1 -o diff.html --scene ball.ray";
 
 /// Compares two images. The exit status distinguishes errors of any kind from a difference, as with `diff` and `cmp`.
 pub fn run(registry: &Registry, args: &Args) -> ExitCode {

@@ -9,6 +9,7 @@ use std::path::PathBuf;
 
 /// Print a scene as the program understands it
 #[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
@@ -18,6 +19,12 @@ pub struct Args {
     #[arg(long, default_value = "notes")]
     format: Format,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray dump ball.ray
+  tabray dump ball.ray --format toml
+  tabray dump ball.ray --format ray --set ball.radius=3";
 
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum Format {

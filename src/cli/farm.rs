@@ -9,10 +9,15 @@ use std::path::{Path, PathBuf};
 
 /// Write scripts that render the parts of an image on a cluster
 #[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
 pub struct Args {
     #[command(subcommand)]
     engine: Engine,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray farm slurm hall.ray -o big.png --parts 64 -- --samples 256";
 
 #[derive(clap::Subcommand)]
 enum Engine {
@@ -24,6 +29,7 @@ enum Engine {
 /// Each task of the array renders a part, and a job that depends on all of them puts the image together. Nothing is
 /// submitted.
 #[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
 struct Slurm {
     /// The scene
     scene: PathBuf,

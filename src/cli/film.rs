@@ -22,6 +22,7 @@ const WIDTH: u32 = 192;
 ///
 /// The frames are those that `tabray render --frames A..B -o IMAGE` wrote.
 #[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
 pub struct Args {
     /// The name of the frames, as `render --frames` was told with -o: film.png for film-0001.png, film-0002.png ...
     frames: PathBuf,
@@ -35,6 +36,11 @@ pub struct Args {
     #[arg(long, value_name = "N", default_value = "25", value_parser = clap::value_parser!(u16).range(1..=240))]
     rate: u16,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray film film.png --sheet sheet.png
+  tabray film film.png --animation film.apng --rate 30";
 
 pub fn run(args: &Args) -> Result<(), Failure> {
     let frames = frames(&args.frames)?;

@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 /// Attributes stand in columns, one on each line, and what stands on one line stays there. Comments and the order are
 /// kept, and so is what the scene means. A scene whose form has errors is left as it is.
 #[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
 pub struct Args {
     /// The scenes; `-` reads one from standard input and writes it to standard output
     #[arg(required = true, value_name = "SCENE")]
@@ -20,6 +21,12 @@ pub struct Args {
     #[arg(long)]
     check: bool,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray fmt ball.ray
+  tabray fmt --check *.ray
+  tabray fmt - < ball.ray";
 
 pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
     let mut sound = true;

@@ -13,6 +13,7 @@ const DIGITS: usize = 4;
 
 #[derive(clap::Args)]
 #[group(id = "which frames")]
+#[command(next_help_heading = "Parts and frames")]
 pub struct Args {
     /// Render one image for each frame from A to B: `-o film.png --frames 1..240` writes film-0001.png to
     /// film-0240.png. With --part K/N, every Nth frame from the Kth on

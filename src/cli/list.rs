@@ -12,6 +12,7 @@ use crate::text;
 
 /// List the entity types, or the attributes of one
 #[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
 pub struct Args {
     /// The entity type whose attributes to list
     entity: Option<String>,
@@ -22,6 +23,12 @@ pub struct Args {
     #[arg(long, conflicts_with_all = ["entity", "markdown"])]
     json: bool,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray list
+  tabray list sphere
+  tabray list --json";
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     if args.markdown {

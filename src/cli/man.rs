@@ -9,10 +9,15 @@ use std::path::{Path, PathBuf};
 
 /// Write the man pages, one for each command
 #[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
 pub struct Args {
     /// The folder to write to, such as share/man/man1
     folder: PathBuf,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray man ~/.local/share/man/man1";
 
 pub fn run(registry: &Registry, args: &Args, command: clap::Command) -> Result<(), Failure> {
     let folder = &args.folder;

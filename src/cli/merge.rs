@@ -27,6 +27,7 @@ const NAMED: usize = 12;
 /// The parts are those that `tabray render --part K/N -o IMAGE` wrote. The image, and the images of --aov, are byte for
 /// byte those that one render of the whole image writes.
 #[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
 pub struct Args {
     /// The image to write, as `render --part` was told with -o
     image: PathBuf,
@@ -39,6 +40,12 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray merge big.png
+  tabray merge big.png --remove-parts
+  tabray merge big.png node1/big.png.part-* node2/big.png.part-*";
 
 pub fn run(args: &Args) -> Result<(), Failure> {
     let is_full_range = FullRange::of(&args.image).is_some();

@@ -8,6 +8,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 #[derive(clap::Args)]
 #[group(id = "how exactly")]
+#[command(next_help_heading = "Method")]
 pub struct Args {
     /// The method of computing hits; by default that of the scene's camera
     #[arg(long, value_name = "NAME", value_parser = among([Accuracy::Classic, Accuracy::Exact]))]

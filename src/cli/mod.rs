@@ -25,6 +25,7 @@ mod full_range;
 #[doc(hidden)]
 pub mod fuzz;
 mod grammar;
+mod help;
 mod input;
 mod interrupt;
 mod job;
@@ -79,7 +80,7 @@ use std::process::ExitCode;
 /// standard error and writes its image, a PPM, to standard output. It uses the notes' own methods unless the scene's
 /// camera says otherwise.
 #[derive(Parser)]
-#[command(version, after_help = EXIT_STATUS)]
+#[command(version, after_help = EXIT_STATUS, after_long_help = EXAMPLES)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -129,9 +130,23 @@ Exit status:
     2  bad input: a scene or a command line with errors
   130  interrupted, or stopped at a limit";
 
+const EXAMPLES: &str = "\
+Exit status:
+    0  success
+    1  failure: something could not be read, written or started
+    2  bad input: a scene or a command line with errors
+  130  interrupted, or stopped at a limit
+
+Examples:
+  tabray new scene ball                     # writes ball.ray, a scene to start from
+  tabray render ball.ray                    # writes ball.png
+  tabray watch ball.ray --open              # shows it in the browser, and each change
+  tabray render ball.ray -o big.png --size 1600 --samples 16
+  tabray help render                        # explains the options of `render`";
+
 /// Returns the command line, under the name of the running program.
 fn command() -> clap::Command {
-    program::named(Cli::command())
+    help::grouped(program::named(Cli::command()))
 }
 
 /// Runs the command that the program's arguments name, with every plugin that is linked in. Messages go to standard

@@ -33,6 +33,7 @@ const UNKEPT: &str = "the part was not finished, and nothing is written";
 
 #[derive(clap::Args)]
 #[group(id = "which part")]
+#[command(next_help_heading = "Parts and frames")]
 pub struct Args {
     /// Render only part K of N, into a file beside the image: `-o a.png --part 3/16` writes a.png.part-3-of-16, and
     /// `merge a.png` makes the image of all parts. Parts take about equally long, on any machine; with --resume,

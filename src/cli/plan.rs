@@ -9,6 +9,7 @@ use std::path::PathBuf;
 
 /// Print how a scene would be rendered, each decision with its reason
 #[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
@@ -21,6 +22,11 @@ pub struct Args {
     #[command(flatten)]
     keep: keep::Args,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray plan ball.ray
+  tabray plan ball.ray --samples 4..64";
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let mut model = input::load(registry, &args.scene, &args.set, args.method.accuracy()?)?;

@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 
 /// Explain how a pixel gets its colour
 #[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
@@ -26,6 +27,11 @@ pub struct Args {
     #[command(flatten)]
     method: method::Args,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray probe ball.ray 160 120
+  tabray probe ball.ray 160 120 --method classic";
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let model = input::load(registry, &args.scene, &args.set, args.method.accuracy()?)?;

@@ -28,6 +28,7 @@ use std::time::Instant;
 
 /// Render scenes
 #[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
 pub struct Args {
     /// The scenes; `-` reads one from standard input
     #[arg(required = true, value_name = "SCENE")]
@@ -47,34 +48,46 @@ pub struct Args {
     #[arg(long, value_name = "HOW", default_value = "fast")]
     compress: Compression,
     #[command(flatten)]
-    samples: samples::Args,
-    /// The number of threads; by default one per core
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    size: size::Args,
     /// The exposure in stops: each doubles all colours, and each below 0 halves them
     #[arg(long, value_name = "STOPS", default_value = "0", value_parser = exposure, allow_negative_numbers = true)]
+    #[arg(help_heading = "Image")]
     exposure: f64,
     #[command(flatten)]
-    size: size::Args,
+    samples: samples::Args,
     #[command(flatten)]
     method: method::Args,
-    #[command(flatten)]
-    part: part::Args,
-    #[command(flatten)]
-    frames: frames::Args,
-    #[command(flatten)]
-    keep: keep::Args,
     #[command(flatten)]
     aov: aov::Args,
     #[command(flatten)]
     debug: debug::Args,
     #[command(flatten)]
-    cpu: cpu::Args,
-    #[command(flatten)]
     stats: stats::Args,
     #[command(flatten)]
+    part: part::Args,
+    #[command(flatten)]
+    frames: frames::Args,
+    #[command(flatten)]
     stop: stop::Args,
+    /// The number of threads; by default one per core
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(help_heading = "Speed")]
+    threads: Option<u16>,
+    #[command(flatten)]
+    cpu: cpu::Args,
+    #[command(flatten)]
+    keep: keep::Args,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray render ball.ray                                  # writes ball.png
+  tabray render ball.ray -o big.png --size 1600 --samples 16
+  tabray render ball.ray --quick --set ball.radius=3
+  tabray render *.ray -o images/
+  tabray render ball.ray --max-error 2 --stats             # levels of 255
+  tabray render ball.ray -o film.png --frames 1..100 --sweep ball.radius=1..2
+  tabray render ball.ray -o big.png --part 1/4             # then 2/4 to 4/4, and `merge`";
 
 pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
     let output = args.output.as_deref();

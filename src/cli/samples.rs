@@ -13,6 +13,7 @@ const LEVELS: f64 = 255.0;
 
 #[derive(clap::Args)]
 #[group(id = "how many samples")]
+#[command(next_help_heading = "Samples")]
 pub struct Args {
     /// The number of samples per pixel, to smooth edges; by default that of the scene's camera. With two powers of two
     /// as `4..64`, each pixel takes the first number, and more up to the second where its colour is less certain: at

@@ -7,7 +7,12 @@ use crate::text;
 
 /// Print a JSON Schema of scenes in TOML, for editors
 #[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
 pub struct Args {}
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray schema > tabray.schema.json";
 
 pub fn run(registry: &Registry) -> Result<(), Failure> {
     print(&text::json_in_lines(&schema::of(registry)))

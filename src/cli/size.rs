@@ -9,6 +9,7 @@ const MAX_SIDE: usize = 100_000;
 
 #[derive(clap::Args)]
 #[group(id = "how large")]
+#[command(next_help_heading = "Image")]
 pub struct Args {
     /// The width and height of the image in pixels, or the width alone, with the height in proportion; by default those
     /// of the scene's camera

@@ -15,6 +15,7 @@ use std::time::{Duration, Instant};
 
 #[derive(clap::Args)]
 #[group(id = "statistics")]
+#[command(next_help_heading = "Looking inside")]
 pub struct Args {
     /// Print statistics of the render to standard error, as a table or as JSON: rays by kind, pixels that were cut off,
     /// tests by entity type, the time of each stage and the peak memory

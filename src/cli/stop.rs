@@ -36,6 +36,7 @@ const NOT_FINISHED: &str = "the image was not finished";
 
 #[derive(clap::Args)]
 #[group(id = "when to stop")]
+#[command(next_help_heading = "Limits")]
 pub struct Args {
     /// Continue from the checkpoint that was left beside the image when its render was stopped; if there is none, start
     /// from the beginning

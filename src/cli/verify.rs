@@ -28,6 +28,7 @@ use std::path::PathBuf;
 /// of the image. The image may differ by rounding, where the true ray passes exactly through an edge or a level is a whole
 /// number; the exit status is 1 if it differs by more.
 #[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
@@ -48,6 +49,12 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray verify ball.ray
+  tabray verify ball.ray -o proven.png
+  tabray verify ball.ray --colours";
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let model = input::load(registry, &args.scene, &args.set, args.method.accuracy()?)?;

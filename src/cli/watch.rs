@@ -44,6 +44,7 @@ const SETTLED: Duration = Duration::from_millis(10);
 /// Only this machine can reach the page, and only at the address that is printed: it contains a token, new for each run,
 /// that keeps other users out. Click a pixel to see how it gets its colour. Ctrl-C quits, with status 0.
 #[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
 pub struct Args {
     /// The scene
     scene: PathBuf,
@@ -58,6 +59,11 @@ pub struct Args {
     #[command(flatten)]
     method: method::Args,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray watch ball.ray --open
+  tabray watch ball.ray --port 3000";
 
 /// The events that the command waits for.
 enum News {

@@ -8,10 +8,17 @@ use crate::scene::registry::Registry;
 
 /// Write a scene or a plugin to start from
 #[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
 pub struct Args {
     #[command(subcommand)]
     what: What,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray new scene ball
+  tabray new plugin gem
+  tabray new plugin stripes --kind shader";
 
 #[derive(clap::Subcommand)]
 enum What {

@@ -14,6 +14,7 @@ use std::path::Path;
 /// A plugin is compiled into the program, so this runs in the top folder of a checkout of tabray. After `cargo build`,
 /// scenes can use the new name.
 #[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
 pub struct Args {
     /// Its name in scenes: lower-case letters, digits and `_`
     name: String,
@@ -21,6 +22,11 @@ pub struct Args {
     #[arg(long, default_value = "shape")]
     kind: Kind,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray new plugin gem
+  tabray new plugin stripes --kind shader";
 
 #[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
 enum Kind {

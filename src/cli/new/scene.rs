@@ -7,6 +7,7 @@ use std::path::PathBuf;
 
 /// Write a commented scene, ready to render
 #[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
 pub struct Args {
     /// The scene's name or its file; a name without an extension gets that of its syntax
     name: PathBuf,
@@ -14,6 +15,11 @@ pub struct Args {
     #[arg(long)]
     toml: bool,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray new scene ball
+  tabray new scene ball --toml";
 
 pub fn run(args: &Args) -> Result<(), Failure> {
     let ending = args.name.extension().and_then(|ending| ending.to_str());

@@ -17,6 +17,7 @@ use std::path::PathBuf;
 /// and the command that accepts it. The pixel that differs most is explained as by `tabray probe`, for the scene as it
 /// is now and, with `--before`, by the program that made the old image.
 #[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
 pub struct Args {
     /// The folder of the snapshots
     #[arg(default_value = "snapshots")]
@@ -41,6 +42,12 @@ pub struct Args {
     #[arg(long, value_name = "SNAPSHOT", num_args = 1.., conflicts_with_all = ["output", "before", "serve"])]
     reject: Vec<PathBuf>,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray review --serve
+  tabray review --accept snapshots/entities/ring.snap.png
+  tabray review -o review.html --before ../old/tabray";
 
 pub fn run(registry: &'static Registry, args: &Args) -> Result<(), Failure> {
     if !args.accept.is_empty() {

@@ -1,0 +1,74 @@
+//! The help of the whole command line: the commands in groups by their purpose.
+
+use clap::Command;
+use clap::builder::StyledStr;
+use std::fmt::Write;
+
+/// The commands by their purpose, as `--help` lists them.
+const GROUPS: [(&str, &[&str]); 5] = [
+    ("Rendering", &["render", "watch", "merge", "film", "farm"]),
+    ("Scenes", &["new", "list", "check", "fmt", "convert", "dump"]),
+    ("Looking inside", &["plan", "probe", "diff", "review"]),
+    ("Speed and accuracy", &["choose", "chart", "verify", "bench"]),
+    ("Tools", &["lsp", "schema", "grammar", "completions", "man", "help"]),
+];
+
+/// Makes `--help` list the commands in groups.
+pub fn grouped(command: Command) -> Command {
+    let styles = command.get_styles();
+    let (header, literal) = (styles.get_header(), styles.get_literal());
+    let mut template = StyledStr::new();
+    let _ = write!(template, "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n");
+    for (purpose, names) in GROUPS {
+        let _ = write!(template, "\n{header}{purpose}:{header:#}\n");
+        for name in names {
+            let about = match command.find_subcommand(name) {
+                Some(command) => command.get_about().map(ToString::to_string).unwrap_or_default(),
+                None => "Explain a command and its options".to_owned(),
+            };
+            let _ = writeln!(template, "  {literal}{name:<11}{literal:#}  {about}");
+        }
+    }
+    let _ = write!(template, "\n{header}Options:{header:#}\n{{options}}{{after-help}}");
+    command.help_template(template)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::command;
+    use clap::error::ErrorKind;
+
+    #[test]
+    fn every_command_is_in_one_group() {
+        let command = command();
+        let mut known: Vec<&str> = command.get_subcommands().map(Command::get_name).chain(["help"]).collect();
+        let mut grouped: Vec<&str> = GROUPS.iter().flat_map(|(_, names)| *names).copied().collect();
+        known.sort_unstable();
+        grouped.sort_unstable();
+        assert_eq!(grouped, known);
+    }
+
+    /// Appends a command and those below it.
+    fn collect<'c>(command: &'c Command, all: &mut Vec<&'c Command>) {
+        all.push(command);
+        command.get_subcommands().for_each(|command| collect(command, all));
+    }
+
+    #[test]
+    fn every_example_is_a_command_line() {
+        let command = command();
+        let mut all = Vec::new();
+        collect(&command, &mut all);
+        for explained in all.into_iter().filter(|command| command.get_name() != "lsp") {
+            let text = explained.get_after_long_help().map(ToString::to_string).unwrap_or_default();
+            let (_, examples) = text.split_once("Examples:\n").expect(explained.get_name());
+            for line in examples.lines() {
+                let words = line.split(['#', '>', '<']).next().expect("a line").split_whitespace();
+                let fault = command.clone().try_get_matches_from(words).err();
+                let fault = fault.filter(|fault| fault.kind() != ErrorKind::DisplayHelp);
+                assert!(fault.is_none(), "{line}: {fault:?}");
+            }
+        }
+    }
+}
