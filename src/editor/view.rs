@@ -3,6 +3,7 @@
 use super::text::Text;
 use crate::scene::entity;
 use crate::scene::pparm;
+use crate::scene::reader::tokens;
 use crate::scene::syntax::Syntax;
 use std::borrow::Cow;
 use std::ops::Range;
@@ -168,7 +169,7 @@ impl View {
         let inner = self.slice(word.inner());
         match word.form {
             Form::Quoted(_) if inner.contains('\\') => match self.syntax {
-                Syntax::Notes => Cow::Owned(inner.replace("\\\"", "\"").replace("\\\\", "\\")),
+                Syntax::Notes => tokens::unescaped(inner),
                 Syntax::Toml => unescaped(self.slice(word.place())),
             },
             _ => Cow::Borrowed(inner),

@@ -10,8 +10,10 @@ use std::iter;
 
 /// Matches the position at which a word ends.
 const END: &str = r"(?=[\s{}]|$)";
-/// Matches a word in quotes.
-const QUOTED: &str = r#""(?:[^"\\]|\\.)*"?"#;
+/// Matches a word in quotes that ends on its line.
+const QUOTED: &str = r#""(?:[^"\\]|\\.)*(?:"|(?<!\\)$)"#;
+/// Matches the beginning of a word in quotes that a `\` at the end of the line continues on the next.
+const CONTINUED: &str = r#""(?=(?:[^"\\]|\\.)*\\$)"#;
 /// Matches a word without quotes, which does not begin a comment or a quoted word.
 const BARE: &str = r#"[^\s{}#"][^\s{}]*"#;
 const NUMBER: &str = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?";
@@ -103,6 +105,7 @@ pub fn of(registry: &Registry) -> Grammar {
         ("comment-line", Rule::matching("#.*$", Some("comment.line.number-sign.tabray"))),
         ("any-number", Rule::matching(number, Some(NUMERIC))),
         ("quoted-word", Rule::matching(QUOTED, Some(IN_QUOTES))),
+        ("continued-word", continued_word()),
         ("bare-word", Rule::matching(BARE, None)),
         // The program that reads the scene may have more plugins than the one that wrote the grammar.
         ("other-entity", within(BARE, None, iter::empty())),
@@ -122,6 +125,17 @@ pub fn of(registry: &Registry) -> Grammar {
     }
 }
 
+/// Matches a word in quotes on several lines.
+fn continued_word() -> Rule {
+    Rule {
+        begin: Some(CONTINUED.to_owned()),
+        end: Some(r#""|(?<!\\)$"#.to_owned()),
+        name: Some(IN_QUOTES),
+        patterns: vec![Rule::matching(r"\\.", None)],
+        ..Rule::default()
+    }
+}
+
 /// Matches an entity from its type to its closing brace.
 fn entity_rule(entity: &'static Entity) -> Rule {
     let names = iter::once(entity.name).chain(entity.aliases.iter().copied());
@@ -131,7 +145,7 @@ fn entity_rule(entity: &'static Entity) -> Rule {
 /// Matches an entity whose type matches `begin`; between its braces, applies these rules and those for any other word.
 fn within(begin: &str, scope: Option<&'static str>, attributes: impl Iterator<Item = Rule>) -> Rule {
     let comment = || iter::once(Rule::include("comment-line"));
-    let rest = ["any-number", "quoted-word", "bare-word"].map(Rule::include);
+    let rest = ["any-number", "quoted-word", "continued-word", "bare-word"].map(Rule::include);
     let body = Rule {
         begin: Some(r"\{".to_owned()),
         end: Some(r"\}".to_owned()),
@@ -158,9 +172,9 @@ fn computed(all: Vec<Rule>) -> [(&'static str, Rule); 3] {
     let number = Rule {
         begin: Some(named("let")),
         begin_captures: captures(&[KEYWORD, NAME]),
-        end: Some(format!("({QUOTED})|({NUMBER}){END}|({BARE})|(?=[{{}}])")),
+        end: Some(format!("({QUOTED})|({NUMBER}){END}|({BARE})|(?=[{{}}])|(?<=\")")),
         end_captures: captures(&[IN_QUOTES, NUMERIC, WORD]),
-        patterns: vec![Rule::include("comment-line")],
+        patterns: ["comment-line", "continued-word"].map(Rule::include).into(),
         ..Rule::default()
     };
     let file = Rule {
@@ -209,7 +223,7 @@ fn attribute_rule(entity: &'static Entity, attribute: &'static dyn Attribute) ->
             (format!("({QUOTED})|(yes|no){END}|({BARE})|(?=[{{}}])"), &[IN_QUOTES, CHOICE, WORD][..])
         }
         Type::Word | Type::File | Type::Formula(_) => {
-            (format!("({QUOTED})|({BARE})|(?=[{{}}])"), &[IN_QUOTES, WORD][..])
+            (format!("({QUOTED})|({BARE})|(?=[{{}}])|(?<=\")"), &[IN_QUOTES, WORD][..])
         }
         Type::Choice(choices) => {
             let known = one_of(choices.all().iter().map(|choice| choice.name));
@@ -222,7 +236,7 @@ fn attribute_rule(entity: &'static Entity, attribute: &'static dyn Attribute) ->
         begin_captures: captures(&[ATTRIBUTE]),
         end: Some(end),
         end_captures: captures(scopes),
-        patterns: vec![Rule::include("comment-line")],
+        patterns: ["comment-line", "continued-word"].map(Rule::include).into(),
         ..Rule::default()
     }
 }

@@ -47,6 +47,17 @@ fn every_scene_survives_its_dump() {
 }
 
 #[test]
+fn a_formula_on_several_lines_is_dumped_on_one() {
+    let camera = "camera eye { pixeldim 4 3 worlddim 8 6 viewpoint 4 3 6 } material red { ambient 1 0 0 }";
+    let egg = "implicit egg { material red formula \"x^2 \\\n   + y^2 \\\r\n - 1\" box -2 -2 -2 2 2 2 }";
+    let toml = dump::scene(&model(&format!("{camera} {egg}")), Syntax::Toml);
+    assert!(toml.contains("\"x^2 + y^2 - 1\""), "{toml}");
+    let on_lines = toml.replace("\"x^2 + y^2 - 1\"", "\"\"\"\nx^2\n + y^2 - 1\"\"\"");
+    assert_loads_again(&model(&on_lines));
+    assert_eq!(dump::scene(&model(&on_lines), Syntax::Toml), toml);
+}
+
+#[test]
 fn a_dumped_scene_gives_the_same_picture() {
     for path in scenes().iter().filter(|path| path.to_string_lossy().contains("material")) {
         let first = load(path);

@@ -156,8 +156,8 @@ fn a_scene_read_by_its_colours_is_the_same_scene() {
     for path in in_notes.chain([root().join("src/cli/new/templates/scene.ray")]) {
         let text = fs::read_to_string(&path).expect("a scene");
         let scoped = highlighter.scopes(&text);
-        // What is computed has no entities to be compared word by word.
-        if scoped.iter().any(|(scope, _)| scope.starts_with("keyword.")) {
+        // What is computed has no entities to be compared word by word, and a word on several lines is in several pieces.
+        if scoped.iter().any(|(scope, _)| scope.starts_with("keyword.")) || text.contains("\\\n") {
             continue;
         }
         let understood = scene_of(&scoped);
@@ -229,6 +229,17 @@ fn what_is_computed_has_its_colours_and_entities_in_it_have_theirs() {
             "t entity.",
         ]
     );
+}
+
+#[test]
+fn a_formula_on_several_lines_ends_where_its_quote_does() {
+    let text = "implicit egg { formula \"x^2 \\\n + y \\\n - 1\" box -1 -1 -1 1 1 1 }\nlet r \"2 \\\n*pi\" sphere s { }";
+    let scoped = Highlighter::new().scopes(text);
+    let shown: Vec<_> = scoped.iter().map(|(scope, word)| format!("{word} {}", &scope[..6])).collect();
+    let numbers = ["-1 consta"; 3].into_iter().chain(["1 consta"; 3]);
+    let before = ["implicit storag", "egg entity", "formula suppor", "\" string", "\" string", "box suppor"];
+    let after = ["let keywor", "r entity", "\" string", "\" string", "sphere storag", "s entity"];
+    assert_eq!(shown, before.into_iter().chain(numbers).chain(after).collect::<Vec<_>>());
 }
 
 #[test]

@@ -59,7 +59,8 @@ impl Formula {
         Self::parse_with(text, variables, &|_| None)
     }
 
-    /// Parses a formula in these variables and named numbers. Its own text has the numbers in place of their names.
+    /// Parses a formula in these variables and named numbers. Its own text has the numbers in place of their names, and
+    /// stands on one line.
     ///
     /// # Errors
     /// Returns the first place where the text is not a formula.
@@ -76,7 +77,11 @@ impl Formula {
             written += &if number.starts_with('-') { format!("({number})") } else { number };
             at = place.end;
         }
-        Ok(Self::new(written + &text[at..], variables, steps))
+        written += &text[at..];
+        if written.contains('\n') || written.contains("  ") {
+            written = written.split_whitespace().collect::<Vec<_>>().join(" ");
+        }
+        Ok(Self::new(written, variables, steps))
     }
 
     /// Returns the names of the variables.

@@ -174,7 +174,8 @@ impl Against<'_, '_> {
             fault = fault.label(format!("did you mean `{near}`?")).meant(Some(near));
         }
         let names = list(entity.attributes().map(|attribute| attribute.name()));
-        self.report.add(fault.help(format!("a {} takes {names}", entity.name)));
+        let article = text::article(entity.name);
+        self.report.add(fault.help(format!("{article} {} takes {names}", entity.name)));
     }
 
     /// Checks the values of one attribute for type, number and rule.

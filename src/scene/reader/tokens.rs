@@ -147,7 +147,7 @@ impl<'a> Tokens<'a> {
     pub fn text(&self, token: Token) -> Cow<'a, str> {
         match token.form {
             TokenForm::Quoted => unescaped(&self.text[token.start + 1..token.end - 1]),
-            TokenForm::Unclosed => Cow::Borrowed(&self.text[token.start + 1..token.end]),
+            TokenForm::Unclosed => Cow::Borrowed(self.text[token.start + 1..token.end].trim_end_matches('"')),
             _ => Cow::Borrowed(self.raw(token)),
         }
     }
@@ -170,6 +170,9 @@ fn quoted(text: &str, at: usize, report: &mut Report<'_>) -> (bool, usize) {
     while let Some((index, letter)) = letters.next().filter(|(_, letter)| *letter != '\n') {
         match letter {
             '"' => return (true, index + 1),
+            '\\' if continued(&text[index..]) > 0 => {
+                letters.by_ref().find(|(_, letter)| *letter == '\n');
+            }
             '\\' => match letters.next() {
                 Some((_, '"' | '\\')) => {}
                 other => {
@@ -183,27 +186,50 @@ fn quoted(text: &str, at: usize, report: &mut Report<'_>) -> (bool, usize) {
             _ => {}
         }
     }
-    report.add(
-        Fault::error(Some(at..at + 1), "missing closing quote")
-            .help("a quoted word must end on the line on which it begins"),
-    );
-    // The closing quote is missing: probably only the first word was meant.
-    (false, word_end(text, 1))
+    report.add(Fault::error(Some(at..at + 1), "missing closing quote").help(
+        "a quoted word must end on the line on which it begins; a `\\` at the end of that line continues it on the next",
+    ));
+    (false, unclosed(text))
+}
+
+/// Returns the length of the line break that a text begins with, and of the `\` before it; 0 if it begins with none.
+fn continued(text: &str) -> usize {
+    ["\\\n", "\\\r\n"].into_iter().find(|end| text.starts_with(end)).map_or(0, str::len)
+}
+
+/// Returns the length of what was probably meant to be in quotes, in a text that begins with a quote which is not closed
+/// on its line: up to a later quote that closes; without one, the line, unless a brace is in it; and otherwise a word.
+fn unclosed(text: &str) -> usize {
+    let line = text.find('\n').unwrap_or(text.len());
+    if let Some(length) = text[line..].find(['"', '{', '}', '#'])
+        && text[line + length..].starts_with('"')
+        && !text[..line + length].ends_with(char::is_whitespace)
+    {
+        return line + length + 1;
+    }
+    let line = text[..line].trim_end();
+    if line.contains(['{', '}', '#']) { word_end(text, 1) } else { line.len() }
 }
 
 /// Returns what is written between quotes: `\\` and `\"` stand for a backslash and for a quote, and other escape sequences
-/// for nothing.
-fn unescaped(text: &str) -> Cow<'_, str> {
+/// for nothing. For a `\` at the end of a line there are as many spaces as bytes, so that what follows keeps its place.
+pub fn unescaped(text: &str) -> Cow<'_, str> {
     if !text.contains('\\') {
         return Cow::Borrowed(text);
     }
-    let mut word = String::new();
-    let mut letters = text.chars();
-    while let Some(letter) = letters.next() {
-        match letter {
-            '\\' => word.extend(letters.next().filter(|letter| matches!(letter, '"' | '\\'))),
-            letter => word.push(letter),
-        }
+    let (mut word, mut rest) = (String::with_capacity(text.len()), text);
+    while let Some(at) = rest.find('\\') {
+        word += &rest[..at];
+        let (length, stands_for) = match (continued(&rest[at..]), rest[at + 1..].chars().next()) {
+            (0, None) => (1, ""),
+            (0, Some('"')) => (2, "\""),
+            (0, Some('\\')) => (2, "\\"),
+            (0, Some(letter)) => (1 + letter.len_utf8(), ""),
+            (length, _) => (length, &"   "[..length]),
+        };
+        word += stands_for;
+        rest = &rest[at + length..];
     }
+    word += rest;
     Cow::Owned(word)
 }
