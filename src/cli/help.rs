@@ -62,7 +62,9 @@ mod tests {
         collect(&command, &mut all);
         for explained in all.into_iter().filter(|command| command.get_name() != "lsp") {
             let text = explained.get_after_long_help().map(ToString::to_string).unwrap_or_default();
-            let (_, examples) = text.split_once("Examples:\n").expect(explained.get_name());
+            let Some((_, examples)) = text.split_once("Examples:\n") else {
+                panic!("`{}` has no examples", explained.get_name());
+            };
             for line in examples.lines() {
                 let words = line.split(['#', '>', '<']).next().expect("a line").split_whitespace();
                 let fault = command.clone().try_get_matches_from(words).err();

