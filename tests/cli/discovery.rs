@@ -98,6 +98,17 @@ fn bash_completes_commands_options_and_entity_types() {
     assert_eq!(completed(&["list", "tiled"]), "tiled_plane");
 }
 
+/// Returns the names of the commands, as the help lists them in groups.
+fn commands() -> Vec<String> {
+    let help = printed(&["--help"]);
+    let (_, rest) = help.split_once("Rendering:\n").expect("the commands");
+    let (groups, _) = rest.split_once("\nOptions:\n").expect("the options");
+    let lines = groups.lines().filter_map(|line| line.strip_prefix("  "));
+    let names: Vec<_> = lines.filter_map(|line| Some(line.split_whitespace().next()?.to_owned())).collect();
+    assert!(names.len() > 20, "{names:?}");
+    names
+}
+
 #[test]
 fn every_command_has_its_page() {
     let folder = folder();
@@ -105,10 +116,7 @@ fn every_command_has_its_page() {
     assert_eq!(status, 0, "{err}");
     let pages = names_in(&folder.path().join("share/man/man1"));
     assert_eq!(err, format!("wrote {} pages to share/man/man1\n", pages.len()));
-    let help = printed(&["--help"]);
-    let (_, commands) = help.split_once("Commands:\n").expect("the commands");
-    let commands = commands.lines().take_while(|line| !line.is_empty());
-    for command in commands.map(|line| line.split_whitespace().next().expect("a name")) {
+    for command in commands() {
         let page = format!("tabray-{command}.1");
         assert!(command == "help" || pages.contains(&page), "there is no {page}: {pages:?}");
     }
@@ -119,10 +127,7 @@ fn every_command_has_its_page() {
 #[test]
 fn the_readme_names_every_command() {
     let readme = fs::read_to_string(root().join("README.md")).expect("the README");
-    let help = printed(&["--help"]);
-    let (_, commands) = help.split_once("Commands:\n").expect("the commands");
-    for line in commands.lines().take_while(|line| !line.is_empty()) {
-        let command = line.split_whitespace().next().expect("a name");
+    for command in commands() {
         let is_told = [' ', '`'].iter().any(|end| readme.contains(&format!("`tabray {command}{end}")));
         assert!(is_told, "the README has no {command}");
     }
