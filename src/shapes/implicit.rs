@@ -25,6 +25,10 @@ use std::ops::Range;
 /// The number of plain rays that take as long as a search: that in a torus takes 25, that in a heart 60.
 const RAYS_PER_SEARCH: u32 = 32;
 
+/// The number of pieces that are judged of a ray that is rounded by more than the size of the shape: `f64` can hardly tell
+/// where it is hit, however many pieces there are.
+const FEW_PIECES: usize = 256;
+
 /// An implicit surface, in coordinates of its own.
 pub trait Implicit: Send + Sync {
     /// Whether the box may be far larger than the shape, so that most of a ray in the box is far from the surface.
@@ -214,12 +218,19 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
 
     fn first_hit(&self, range: &RayRange) -> Found {
         let stretch = self.stretch();
+        let ImplicitShape { low, high, .. } = self.shape;
+        let is_lost = self.blur > (*high - *low).max_element();
+        let pieces = if is_lost { FEW_PIECES } else { taylor::MAX_PIECES };
+        let first_root = |range: &RayRange| {
+            let (shortest, mut pieces) = (shortest(&stretch.outer), pieces);
+            taylor::first_root_within(self, &stretch, self.closest, range, shortest, &mut pieces)
+        };
         if !T::IS_CUT {
-            return taylor::first_root(self, &stretch, self.closest, range, shortest(&stretch.outer));
+            return first_root(range);
         }
         let (mut range, mut all_certain) = (*range, true);
         loop {
-            let found = taylor::first_root(self, &stretch, self.closest, &range, shortest(&stretch.outer));
+            let found = first_root(&range);
             let (is_kept, is_certain) = found.root.map_or((true, true), |root| self.kept(root));
             all_certain &= found.is_certain && is_certain;
             match found.root {

@@ -48,7 +48,7 @@ pub struct Found {
 }
 
 /// The largest number of pieces that are judged before the proof is given up; only the wildest functions take more.
-const MAX_PIECES: usize = 16_384;
+pub const MAX_PIECES: usize = 16_384;
 
 /// The largest number of pieces that are left to [`undecided`](FunctionOnLine::undecided) in one search, which takes up to
 /// 0.1 ms for each. Only a line that is rounded by more than the size of a shape has more; it has no root beyond them.

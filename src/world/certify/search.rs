@@ -11,6 +11,9 @@ use crate::numeric::scalar::per_axis;
 /// functions take a long time.
 const JUMP: f64 = f64::EPSILON / 16.0;
 
+/// The number of pieces after which the search for a shape is given up that is smaller than the line's rounding.
+const FEW_PIECES: usize = 16;
+
 /// Finds the first hit with t > 0. The search is given up after `pieces` pieces of the line. With `leaves`, the line's
 /// true start lies on the surface, and is not a hit.
 pub fn first_hit<F: Float>(
@@ -36,6 +39,10 @@ pub fn first_hit<F: Float>(
     // The parameter counts from near the shape, so that a piece of the line is not a small difference of large numbers.
     let base = Interval::point(from + F::of(0.5) * (to - from));
     let near = Line { origin: line.at(base), dir: line.dir };
+    // Where rounding moves the line by more than the shape's size, a hit cannot be told, and a miss, if at all, at once.
+    let [low, high] = shape.extent();
+    let is_lost = (0..3).any(|axis| near.origin[axis].width() > F::of(high[axis] - low[axis]));
+    let pieces = if is_lost { pieces.min(FEW_PIECES) } else { pieces };
     let (from, to) = ((Interval::point(from) - base).low, (Interval::point(to) - base).high);
     // A piece shorter than about 8 ulps of the whole is too short to split.
     let shortest = F::of(8.0) * F::EPSILON * (to - from);
@@ -240,6 +247,19 @@ mod tests {
         fn extent(&self) -> [DVec3; 2] {
             [DVec3::NEG_ONE, DVec3::ONE]
         }
+    }
+
+    #[test]
+    fn a_shape_smaller_than_rounding_is_in_doubt_after_a_few_pieces() {
+        let step = Step(Cell::new(0));
+        let third = |x| Interval::<f256>::constant(x) / Interval::constant(3.0);
+        let line = Line {
+            origin: [third(1e90), third(0.5), third(0.5)],
+            dir: [third(-1.0), third(0.0), third(0.0)],
+        };
+        let found = first_hit(&step, &line, false, 2000);
+        assert!(matches!(found, Found::Doubtful(_)), "{found:?}");
+        assert!(step.0.get() < 100, "{} evaluations", step.0.get());
     }
 
     #[test]
