@@ -66,7 +66,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 #SBATCH --signal=B:INT@60
 # A part whose node fails is queued again, and --resume renders what is left of it. A minute before the time limit, the
 # program is interrupted and keeps what is done.
-echo \"part $SLURM_ARRAY_TASK_ID of {parts}, on $(hostname), start ${{SLURM_RESTART_COUNT:-0}}\" >&2
+echo \"part $SLURM_ARRAY_TASK_ID of {parts}, on ${{SLURMD_NODENAME:-$(hostname)}}, start ${{SLURM_RESTART_COUNT:-0}}\" >&2
 exec {program} render {scene} -o {image_word} --part \"$SLURM_ARRAY_TASK_ID/{parts}\" --resume \\
     --threads \"${{SLURM_CPUS_PER_TASK:-1}}\"{words}
 ",

@@ -11,7 +11,7 @@ use super::stop::Stop;
 use super::{aov, full_range, memory, messages, resume};
 use crate::output::aov::{Aov, Setting};
 use crate::output::aov_values::Values;
-use crate::output::part::{self, Label, What, Writer};
+use crate::output::part::{self, Label, MOST_PARTS, What, Writer};
 use crate::output::picture::Format;
 use crate::parallel;
 use crate::render::division::{self, Grid};
@@ -24,9 +24,6 @@ use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-
-/// The maximum number of parts.
-const MOST: usize = 100_000;
 
 /// The message if a part is stopped of which nothing is kept.
 const UNKEPT: &str = "the part was not finished, and nothing is written";
@@ -44,10 +41,11 @@ pub struct Args {
 
 fn share(text: &str) -> Result<[usize; 2], String> {
     let (number, of) = text.split_once('/').unwrap_or_default();
-    let wrong = || format!("give a part as `3/16`: its number, from 1, and of how many parts, up to {MOST}");
+    let wrong =
+        || format!("give a part as `3/16`: its number, from 1, and of how many parts, up to {MOST_PARTS}");
     let [number, of]: [usize; 2] = [number.parse().map_err(|_| wrong())?, of.parse().map_err(|_| wrong())?];
     match (number, of) {
-        (_, 0) | (_, MOST..) if of != MOST => Err(wrong()),
+        (_, 0) | (_, MOST_PARTS..) if of != MOST_PARTS => Err(wrong()),
         (0, _) => Err(format!("parts are counted from 1: the first is `1/{of}`")),
         _ if number > of => Err(format!("the last of {of} parts is `{of}/{of}`")),
         _ => Ok([number, of]),

@@ -18,6 +18,9 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::ops::Range;
 
+/// The maximum number of parts of an image.
+pub const MOST_PARTS: usize = 100_000;
+
 /// The first line of each file.
 const FIRST: &[u8] = b"tabray part 1\n";
 
@@ -152,6 +155,7 @@ impl Label {
         let pixels = self.size[0].checked_mul(self.size[1]);
         let is_small = self.size.iter().all(|side| *side <= 100_000) && pixels.is_some_and(|all| all > 0);
         is_small
+            && of <= MOST_PARTS
             && (1..=of).contains(&number)
             && self.tiles[0] < self.tiles[1]
             && self.tiles[1] <= self.grid().len()

@@ -201,6 +201,14 @@ fn parts_that_do_not_belong_together_are_refused_with_the_reason() {
         fs::write(&seventh, bytes).expect("a file");
         refused(&[], "cannot read `a.png.part-7-of-8`: it is");
     }
+    // So many parts as nobody has, with a checksum that is right.
+    let label = good.iter().position(|byte| *byte == b'{').expect("a label");
+    let text = String::from_utf8_lossy(&good[label..]).replace("\"part\":[7,8]", "\"part\":[7,100000000000]");
+    fs::write(&seventh, [&good[..label], text.as_bytes()].concat()).expect("a file");
+    refused(
+        &[],
+        "cannot read `a.png.part-7-of-8`: it is damaged: its beginning says nothing that makes sense",
+    );
     let mut other = good.clone();
     let end = other.len();
     other[end - 1] ^= 1;

@@ -15,5 +15,6 @@ mod gallery;
 mod performance;
 mod plugins;
 mod same;
+mod slurm;
 mod stop;
 mod truth;
