@@ -12,7 +12,9 @@ use super::serve::connections::{Answer, Connections, Limits};
 use super::size::Part;
 use super::watch::answer::{self, JOBS};
 use super::watch::board::Board;
+use super::watch::desk::Desk;
 use super::watch::frame::Frame;
+use super::watch::tries::Tries;
 use crate::output::checkpoint::{self, Identity};
 use crate::output::picture::Format;
 use crate::render::tiles::{Band, TILE, Tiles};
@@ -118,7 +120,7 @@ impl Server {
     ///
     /// # Errors
     /// Those of the system.
-    pub fn watch(loaded: Loaded) -> io::Result<Self> {
+    pub fn watch(registry: &'static Registry, loaded: Loaded) -> io::Result<Self> {
         let frame = Arc::new(Frame {
             version: 1,
             name: "scene.ray".to_owned(),
@@ -131,9 +133,15 @@ impl Server {
         let work = Work::new(JOBS);
         Self::new(async move |request: Request<Bytes>| {
             // Events end with their board.
-            let board = Board::new();
-            board.show(&frame);
-            ControlFlow::Continue(answer::answer(&request, &board, &work).await)
+            let desk = Desk {
+                board: Board::new(),
+                tries: Tries::default(),
+                registry,
+                path: PathBuf::from("there/is/no/scene.ray"),
+                changed: Box::new(|| {}),
+            };
+            desk.board.show(&frame);
+            ControlFlow::Continue(answer::answer(&request, &desk, &work).await)
         })
     }
 

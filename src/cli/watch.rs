@@ -3,9 +3,12 @@
 pub(super) mod answer;
 pub(super) mod board;
 mod browser;
+pub(super) mod desk;
 mod events;
+mod fields;
 mod files;
 pub(super) mod frame;
+pub(super) mod tries;
 
 use super::failure::{Failure, tell};
 use super::serve::{Server, Work};
@@ -19,6 +22,7 @@ use crate::scene::registry::Registry;
 use crate::text;
 use crate::world::accuracy::Accuracy;
 use board::Board;
+use desk::Desk;
 use events::Fault;
 use files::Files;
 use frame::{Frame, lines};
@@ -32,6 +36,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread;
 use std::time::{Duration, Instant, SystemTime};
+use tries::Tries;
 
 /// The maximum number of pixels of an image on a page: all of it is in memory, here and in the browser.
 const MAX_PIXELS: usize = 1 << 24;
@@ -72,7 +77,7 @@ enum News {
     ServerFailed(String),
 }
 
-pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+pub fn run(registry: &'static Registry, args: Args) -> Result<(), Failure> {
     if input::is_standard(&args.scene) {
         return Err(Failure::Usage(
             "standard input cannot be watched".to_owned(),
@@ -89,14 +94,20 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let url = server.url();
     interrupt::catch_and(teller(&sender, || News::Interrupted))?;
 
-    let board = Arc::new(Board::new());
-    let frames = painter(board.clone())?;
+    let desk = Arc::new(Desk {
+        board: Board::new(),
+        tries: Tries::default(),
+        registry,
+        path: args.scene.clone(),
+        changed: Box::new(teller(&sender, || News::Changed)),
+    });
+    let frames = painter(desk.clone())?;
     thread::spawn({
-        let board = board.clone();
+        let desk = desk.clone();
         move || {
             let work = Work::new(answer::JOBS);
             let run = server.run(async move |request: Request<Bytes>| {
-                ControlFlow::Continue(answer::answer(&request, &board, &work).await)
+                ControlFlow::Continue(answer::answer(&request, &desk, &work).await)
             });
             if let Err(error) = run {
                 let reason = text::reason(&error);
@@ -121,7 +132,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         version: 0,
     };
     loop {
-        watched.read(&board, &frames, &mut files)?;
+        watched.read(&desk, &frames, &mut files)?;
         match next(&news) {
             News::Changed => {}
             News::Interrupted => return Ok(()),
@@ -152,20 +163,21 @@ fn next(news: &Receiver<News>) -> News {
 }
 
 /// Starts the thread that renders images, one scene after another.
-fn painter(board: Arc<Board>) -> Result<Sender<Arc<Frame>>, Failure> {
+fn painter(desk: Arc<Desk>) -> Result<Sender<Arc<Frame>>, Failure> {
     let renderer = Renderer::new(0)?;
     let (sender, frames) = mpsc::channel::<Arc<Frame>>();
     thread::spawn(move || {
+        let board = &desk.board;
         for frame in frames {
             let start = Instant::now();
             let part = |area, colours: Vec<_>| board.add(&frame, events::part(&frame, &area, &colours));
             let painted = crash::catch(|| {
-                progressive::render(&renderer, &Plan::for_picture(&frame.model), part, || frame.check())
+                progressive::render(&renderer, &mut Plan::for_picture(&frame.model), part, || frame.check())
             });
             match painted {
                 Ok(ControlFlow::Continue(())) => board.add(&frame, events::done(&frame, start.elapsed())),
                 Ok(ControlFlow::Break(())) => {}
-                Err(failure) => crashed(&board, &frame.name, &frame.text, &failure),
+                Err(failure) => crashed(board, &frame.name, &frame.text, &failure),
             }
         }
     });
@@ -180,6 +192,17 @@ fn stamp(file: &Path) -> Option<Stamp> {
     Some((meta.modified().ok()?, meta.len()))
 }
 
+/// What an image was made from.
+#[derive(PartialEq)]
+struct Read {
+    /// The scene.
+    bytes: Vec<u8>,
+    /// The values that are set beside it.
+    sets: Vec<String>,
+    /// The stamps of the files that it names.
+    stamps: Vec<Option<Stamp>>,
+}
+
 /// The file of a scene, which is read again and again.
 struct Watched<'r> {
     registry: &'r Registry,
@@ -189,15 +212,16 @@ struct Watched<'r> {
     accuracy: Option<Accuracy>,
     /// The files that the scene names.
     named: Vec<PathBuf>,
-    /// What was read last: the scene, and the stamps of the files that it names.
-    last: Option<(Vec<u8>, Vec<Option<Stamp>>)>,
+    /// What was read last.
+    last: Option<Read>,
     /// The number of times that the scene was valid.
     version: u64,
 }
 
 impl Watched<'_> {
     /// Reads the current scene, shows it or its faults, and watches all files that it names.
-    fn read(&mut self, board: &Board, frames: &Sender<Arc<Frame>>, files: &mut Files) -> Result<(), Failure> {
+    fn read(&mut self, desk: &Desk, frames: &Sender<Arc<Frame>>, files: &mut Files) -> Result<(), Failure> {
+        let board = &desk.board;
         let (name, bytes) = match input::read(&self.path) {
             Ok(read) => read,
             Err(Failure::Usage(message, _) | Failure::Unread(message, _)) => {
@@ -211,15 +235,16 @@ impl Watched<'_> {
         };
         // One save may cause several events. The stamps of the files are taken before the files are read, so that a
         // change in the meantime is noticed.
-        let now = (bytes, self.named.iter().map(|file| stamp(file)).collect());
+        let sets = [&self.sets[..], &desk.tries.sets()].concat();
+        let now = Read { bytes, sets, stamps: self.named.iter().map(|file| stamp(file)).collect() };
         if self.last.as_ref() == Some(&now) {
             return Ok(());
         }
-        let (bytes, _) = self.last.insert(now);
+        let Read { bytes, sets, .. } = self.last.insert(now);
         let text = String::from_utf8_lossy(bytes);
         let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
         let folder = self.path.parent().unwrap_or(&self.path);
-        let chosen = Chosen { above_all: self.accuracy, sets: &self.sets, ..Chosen::default() };
+        let chosen = Chosen { above_all: self.accuracy, sets, ..Chosen::default() };
         let read = match crash::catch(|| reader::read_by(self.registry, &name, folder, bytes, chosen)) {
             Ok(read) => read,
             Err(failure) => {

@@ -36,4 +36,4 @@ pub use project::{Files, Found, Group, definitions, group, renamed, usages};
 pub use read::read;
 pub use signature::signature;
 pub use text::{Position, Text};
-pub use view::View;
+pub use view::{Attribute as Given, View};

@@ -227,6 +227,24 @@ impl View {
         }
     }
 
+    /// Returns the entity of a name that stands in the text once, and is not repeated.
+    pub fn entity(&self, name: &str) -> Option<&Entity> {
+        let mut found = self.items.iter().filter_map(|item| match item {
+            Item::Entity(entity) if entity.name.is_some_and(|word| self.word(word) == name) => Some(entity),
+            _ => None,
+        });
+        found.next().filter(|_| found.next().is_none())
+    }
+
+    /// Tells whether a text computes a value of an attribute of numbers.
+    pub fn computes(&self, entity: &Entity, attribute: &str) -> bool {
+        let mut given = entity
+            .attributes
+            .iter()
+            .filter(|given| given.known.is_some_and(|known| known.name() == attribute));
+        given.any(|given| given.values.iter().any(|word| word.form != Form::Bare))
+    }
+
     /// Tells whether anything in the text is a scene's: a file in TOML may be about something else.
     pub fn is_scene(&self) -> bool {
         self.syntax == Syntax::Notes

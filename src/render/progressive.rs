@@ -1,4 +1,4 @@
-//! Progressive rendering: the whole image coarsely, then tile by tile.
+//! Progressive rendering: the whole image coarsely, then tile by tile with one ray for each pixel, then with all samples.
 
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::parallel;
@@ -29,6 +29,8 @@ pub struct Area {
     /// The width and height of a block in pixels. Each block has one colour; blocks at the right and lower edges may be
     /// smaller.
     pub block: usize,
+    /// Whether the colours are those of the image, with all samples.
+    pub is_final: bool,
 }
 
 impl Area {
@@ -73,35 +75,35 @@ impl Area {
     }
 }
 
-/// Lists the areas of an image in the order in which they are rendered: those of the coarse pass, then those of the
-/// fine one.
-fn passes([width, height]: [usize; 2]) -> [Vec<Area>; 2] {
-    let areas = |wide: usize, block: usize| {
-        let corners = (0..height)
-            .step_by(AREA_SIZE)
-            .flat_map(move |top| (0..width).step_by(wide).map(move |left| [left, top]));
-        corners
-            .map(|[left, top]| Area {
-                corner: [left, top],
-                size: [wide.min(width - left), AREA_SIZE.min(height - top)],
-                block,
-            })
-            .collect()
+/// Lists the areas of a pass over an image in the order in which they are rendered: with blocks of pixels, or with single
+/// ones.
+fn areas([width, height]: [usize; 2], block: usize, is_final: bool) -> Vec<Area> {
+    let wide = if block > 1 { width } else { AREA_SIZE };
+    let corners =
+        (0..height).step_by(AREA_SIZE).flat_map(|top| (0..width).step_by(wide).map(move |left| [left, top]));
+    let area = |[left, top]: [usize; 2]| {
+        let size = [wide.min(width - left), AREA_SIZE.min(height - top)];
+        Area { corner: [left, top], size, block, is_final }
     };
-    [areas(width, BLOCK), areas(AREA_SIZE, 1)]
+    corners.map(area).collect()
 }
 
 /// Renders an image and passes each area to `part` as it is finished, with the unclamped colours of its blocks in rows
-/// from the top, each from the left. All areas of the coarse pass come before those of the fine one.
+/// from the top, each from the left. The first pass is coarse, with one ray for a block; where pixels have several
+/// samples, the next one has one ray for each pixel; the last one has all samples.
 ///
 /// `check` is called before each packet of rays. Once it has returned `Break`, it must keep doing so.
 pub fn render(
     renderer: &Renderer,
-    plan: &Plan,
+    plan: &mut Plan,
     part: impl Fn(Area, Vec<Rgb>) + Sync,
     check: impl Fn() -> ControlFlow<()> + Sync,
 ) -> ControlFlow<()> {
-    for areas in passes(plan.camera.pixels) {
+    let (pixels, samples) = (plan.camera.pixels, plan.camera.samples);
+    let passes = [(BLOCK, 1), (1, 1), (1, samples)];
+    for (block, rays) in &passes[..if samples > 1 { 3 } else { 2 }] {
+        plan.camera.samples = *rays;
+        let (plan, areas) = (&*plan, areas(pixels, *block, *block == 1 && *rays == samples));
         // Each thread takes the next area, so that areas are finished roughly in their order.
         let work = |(): &mut (), index: usize| {
             let area: Area = areas[index];

@@ -395,7 +395,7 @@ pub const TO_REVIEW: [&str; 5] = [
 /// Connects to the server of `tabray watch`, which answers nothing without the token.
 pub fn watch(bytes: &[u8]) {
     thread_local! {
-        static SERVER: Server = Server::watch(small(8, 6)).expect("a server");
+        static SERVER: Server = Server::watch(*REGISTRY, small(8, 6)).expect("a server");
     }
     SERVER.with(|server| request(server, bytes, &[]));
 }

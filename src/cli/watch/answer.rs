@@ -1,6 +1,8 @@
 //! Answers the requests of the page: for itself, for its events, and for details of the image that it shows.
 
 use super::board::Board;
+use super::desk::Desk;
+use super::fields;
 use super::frame::Frame;
 use crate::cli::crash;
 use crate::cli::failure::tell;
@@ -8,6 +10,7 @@ use crate::cli::serve::{self, Body, Client, Work};
 use crate::output::aov::Aov;
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
+use crate::scene::registry::Registry;
 use crate::text;
 use crate::tools::probe;
 use clap::ValueEnum;
@@ -35,15 +38,27 @@ const QUIET: Duration = Duration::from_secs(60);
 const MAX_EXPLANATION: usize = 1 << 22;
 
 /// Answers a request.
-pub async fn answer(request: &Request<Bytes>, board: &Board, work: &Work) -> Response<Body> {
-    if request.method() != Method::GET {
-        return serve::text(StatusCode::METHOD_NOT_ALLOWED, "this server is read-only\n");
-    }
+pub async fn answer(request: &Request<Bytes>, desk: &Desk, work: &Work) -> Response<Body> {
     let path: Vec<_> = request.uri().path().split('/').skip(1).collect();
+    let board = &desk.board;
+    if request.method() == Method::POST {
+        return match path[..] {
+            ["try"] => desk.try_out(request.body()),
+            ["discard"] => desk.discard(),
+            ["write"] => desk.write(),
+            _ => serve::text(StatusCode::NOT_FOUND, "there is no such page\n"),
+        };
+    }
+    if request.method() != Method::GET {
+        return serve::text(StatusCode::METHOD_NOT_ALLOWED, "there is nothing of that kind to do\n");
+    }
     match path[..] {
         [""] => serve::content(StatusCode::OK, "text/html; charset=utf-8", PAGE),
         ["events"] => serve::stream("text/event-stream", events(board)),
         ["probe", version, x, y] => about(board, work, version, |frame| pixel(frame, x, y)).await,
+        ["object", version, x, y] => {
+            about(board, work, version, |frame| object(desk.registry, frame, x, y)).await
+        }
         ["layer", version, name] => about(board, work, version, |frame| layer(frame, name)).await,
         _ => serve::text(StatusCode::NOT_FOUND, "there is no such page\n"),
     }
@@ -101,6 +116,17 @@ type Job = Box<dyn FnOnce(&Client) -> io::Result<(&'static str, Vec<u8>)> + Send
 fn check(frame: &Frame, client: &Client) -> ControlFlow<()> {
     frame.check()?;
     client.check()
+}
+
+/// Finds the attributes of the object that a pixel shows.
+fn object(registry: &'static Registry, frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
+    let [width, height] = frame.model.camera.value.pixels;
+    let x = x.parse().ok().filter(|x| *x < width)?;
+    let y = y.parse().ok().filter(|y| *y < height)?;
+    Some(Box::new(move |_| {
+        let fields = fields::of_pixel(registry, &frame, [x, y]);
+        Ok(("application/json", text::json(&fields).into_bytes()))
+    }))
 }
 
 /// Explains a pixel, and finds the lines of the object that it shows.

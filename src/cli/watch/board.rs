@@ -71,6 +71,11 @@ impl Board {
         self.state.borrow().frame.clone().filter(|frame| frame.version == version)
     }
 
+    /// Returns the text of the last valid scene.
+    pub fn text(&self) -> Option<String> {
+        self.state.borrow().frame.as_ref().map(|frame| frame.text.clone())
+    }
+
     /// Makes a reader that has received no event yet.
     pub fn reader(&self) -> Reader {
         Reader { state: self.state.subscribe(), version: 0, events: 0, faults: 0 }

@@ -38,16 +38,18 @@ struct Scene<'s> {
     warnings: &'s str,
 }
 
-/// Sends a part of a scene's image: the area and its colours, red, green and blue of each block.
+/// Sends a part of a scene's image: the area, 1 if it is final and 0 if not, and its colours, red, green and blue of each block.
 pub fn part(frame: &Frame, area: &Area, colours: &[Rgb]) -> Bytes {
-    let Area { corner: [left, top], size: [width, height], block } = area;
+    let Area { corner: [left, top], size: [width, height], block, is_final } = area;
+    let pass = u8::from(*is_final);
     let bytes: Vec<u8> = colours
         .iter()
         .flat_map(|colour| colour.to_array())
         .flat_map(|channel| single(channel).to_le_bytes())
         .collect();
     let base64 = STANDARD.encode(bytes);
-    format!("event: part\ndata: {} {left} {top} {width} {height} {block} {base64}\n\n", frame.version).into()
+    format!("event: part\ndata: {} {left} {top} {width} {height} {block} {pass} {base64}\n\n", frame.version)
+        .into()
 }
 
 /// Announces that all parts of a scene's image have been sent.

@@ -168,6 +168,101 @@ fn the_screenshot_of_the_docs() {
     let browser = Browser::open(&watching.url("")).expect("a browser");
     shown(&browser, 1);
     click(&browser, [300, 150]);
-    browser.wait(&format!("!{TOLD}.hidden"));
+    browser.wait(&format!("!{TOLD}.hidden && !document.querySelector('#fields').hidden"));
     fs::write(root().join("docs/watch.png"), browser.screenshot()).expect("a file");
+}
+
+/// Changes the number in a field of the page, as typing does.
+fn type_in(browser: &Browser, field: &str, value: &str) {
+    browser.wait(&format!("document.querySelector('{field}')"));
+    browser.run(&format!(
+        "const box = document.querySelector('{field}'); box.focus(); box.value = '{value}';
+         box.dispatchEvent(new Event('input', {{ bubbles: true }}))"
+    ));
+}
+
+#[test]
+fn a_value_that_is_tried_shows_and_is_written_into_the_scene_alone() {
+    let text = ball("9 0 0").replace("radius 2", "radius   2 # its size");
+    assert!(text.contains("# its size"), "{text}");
+    let Some((watching, browser)) = opened(&text) else { return };
+    click(&browser, [40, 30]);
+    type_in(&browser, "#field-radius-0", "1.25");
+    shown(&browser, 2);
+    let smaller = text.replace("radius   2 #", "radius   1.25 #");
+    assert!(canvas(&browser) == render(&model(&smaller)));
+    assert_eq!(fs::read_to_string(watching.scene()).expect("a scene"), text, "nothing is written yet");
+    browser.run("document.querySelector('#write').click()");
+    browser.wait("document.querySelector('#fields p span').textContent === 'written'");
+    assert_eq!(fs::read_to_string(watching.scene()).expect("a scene"), smaller);
+}
+
+#[test]
+fn what_is_discarded_leaves_the_scene_as_it_was() {
+    let text = ball("9 0 0");
+    let Some((watching, browser)) = opened(&text) else { return };
+    click(&browser, [40, 30]);
+    type_in(&browser, "#field-radius-0", "-1");
+    browser.wait("!document.querySelector('#report').hidden");
+    browser.run("document.querySelector('#discard').click()");
+    shown(&browser, 2);
+    assert!(canvas(&browser) == render(&model(&text)));
+    assert_eq!(fs::read_to_string(watching.scene()).expect("a scene"), text);
+}
+
+#[test]
+fn a_scene_that_was_changed_elsewhere_is_not_overwritten() {
+    let text = ball("9 0 0");
+    let Some((watching, browser)) = opened(&text) else { return };
+    click(&browser, [40, 30]);
+    type_in(&browser, "#field-radius-0", "1.5");
+    shown(&browser, 2);
+    // An error, so that the page still shows the scene before.
+    let broken = text.replace("radius", "raduis");
+    watching.save(&broken);
+    browser.wait("!document.querySelector('#report').hidden");
+    browser.run("document.querySelector('#write').click()");
+    browser.wait("document.querySelector('#fields p span').textContent.includes('has changed')");
+    assert_eq!(fs::read_to_string(watching.scene()).expect("a scene"), broken);
+}
+
+/// `cargo test --release --test cli -- --ignored --nocapture from_a_slider_to_the_image`
+#[test]
+#[ignore = "measures"]
+fn from_a_slider_to_the_image() {
+    let folder = TempDir::new().expect("a folder");
+    fs::copy(root().join("scenes/gallery/marbles.ray"), folder.path().join("scene.ray")).expect("a copy");
+    let watching = Watching::start(folder, &["--port", "0"]);
+    let browser = Browser::open(&watching.url("")).expect("a browser");
+    shown(&browser, 1);
+    click(&browser, [300, 150]);
+    browser.wait("document.querySelector('#field-radius-0')");
+    // The page itself takes the times, from the event of the slider to the first pixels of the image that follows.
+    browser.run(
+        "window.times = []
+         const root = document.documentElement, slider = document.querySelector('#fields input[type=range]')
+         slider.focus()
+         const move = (left) => {
+           const from = performance.now(), before = root.dataset.begun
+           slider.value = 3 + left % 50 / 10
+           slider.dispatchEvent(new Event('input', { bubbles: true }))
+           const look = () => {
+             if (root.dataset.begun === before) return requestAnimationFrame(look)
+             window.times.push(performance.now() - from)
+             if (left > 1) move(left - 1); else root.dataset.measured = 1
+           }
+           look()
+         }
+         move(100)",
+    );
+    browser.wait("document.documentElement.dataset.measured");
+    let times = browser.run("return window.times.sort((a, b) => a - b)");
+    let times: Vec<f64> =
+        times.as_array().expect("numbers").iter().filter_map(serde_json::Value::as_f64).collect();
+    println!(
+        "{} moves: median {:.0} ms, worst {:.0} ms",
+        times.len(),
+        times[times.len() / 2],
+        times[times.len() - 1]
+    );
 }

@@ -169,13 +169,15 @@ pub struct Part {
     pub width: usize,
     pub height: usize,
     pub block: usize,
+    /// Whether the colours have all samples.
+    pub is_final: bool,
     pub channels: Vec<f32>,
 }
 
 impl Part {
     fn read(data: &str) -> Self {
         let words: Vec<_> = data.split(' ').collect();
-        let [_, left, top, width, height, block, base64] = words[..] else { panic!("{data}") };
+        let [_, left, top, width, height, block, is_final, base64] = words[..] else { panic!("{data}") };
         let number = |word: &str| word.parse().expect("a number");
         let bytes = STANDARD.decode(base64).expect("base64");
         let (fours, rest) = bytes.as_chunks();
@@ -186,6 +188,7 @@ impl Part {
             width: number(width),
             height: number(height),
             block: number(block),
+            is_final: is_final == "1",
             channels: fours.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect(),
         }
     }

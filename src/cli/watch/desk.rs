@@ -1,0 +1,76 @@
+//! What the page of a scene shows, and what it may change: the values that it tries out, and the scene's text.
+
+use super::board::Board;
+use super::tries::Tries;
+use crate::cli::failure::Failure;
+use crate::cli::output;
+use crate::cli::serve::{self, Body};
+use crate::scene::registry::Registry;
+use hyper::{Response, StatusCode};
+use std::fs;
+use std::path::PathBuf;
+
+/// The state that the program and its pages share.
+pub struct Desk {
+    /// What the pages show.
+    pub board: Board,
+    /// The values that a page tries out.
+    pub tries: Tries,
+    /// The entity types.
+    pub registry: &'static Registry,
+    /// The file of the scene.
+    pub path: PathBuf,
+    /// Tells the program that the values have changed.
+    pub changed: Box<dyn Fn() + Send + Sync>,
+}
+
+impl Desk {
+    /// Tries out other values of an attribute.
+    pub fn try_out(&self, body: &[u8]) -> Response<Body> {
+        match self.tries.set(body) {
+            Some(()) => self.done("tried\n"),
+            None => serve::text(StatusCode::BAD_REQUEST, "these are no numbers\n"),
+        }
+    }
+
+    /// Returns to the values of the text.
+    pub fn discard(&self) -> Response<Body> {
+        self.tries.clear();
+        self.done("discarded\n")
+    }
+
+    /// Writes the values that are tried out into the scene's file, unless the file is another than the page shows.
+    pub fn write(&self) -> Response<Body> {
+        let refuse = |reason: String| serve::text(StatusCode::CONFLICT, &reason);
+        let text = match fs::read(&self.path).map(String::from_utf8) {
+            Ok(Ok(text)) => text,
+            Ok(Err(_)) => return refuse("the scene is not in UTF-8: change it in an editor\n".to_owned()),
+            Err(error) => {
+                return refuse(format!("the scene cannot be read: {}\n", crate::text::reason(&error)));
+            }
+        };
+        let shown = self.board.text();
+        if shown.as_deref() != Some(text.strip_prefix('\u{feff}').unwrap_or(&text)) {
+            return refuse("the scene has changed since: try again\n".to_owned());
+        }
+        let file = self.path.display().to_string();
+        let written = match self.tries.written(self.registry, &file, &text) {
+            Ok(written) => written,
+            Err(name) => {
+                return refuse(format!("`{name}` has no place of its own in the text: change the text\n"));
+            }
+        };
+        match output::replace(&self.path, written.as_bytes()) {
+            Ok(()) => {}
+            Err(Failure::Failed(reason)) => return refuse(format!("{reason}\n")),
+            Err(_) => return refuse("the scene cannot be written\n".to_owned()),
+        }
+        self.tries.clear();
+        self.done("written\n")
+    }
+
+    fn done(&self, what: &str) -> Response<Body> {
+        (self.changed)();
+        serve::text(StatusCode::OK, what)
+    }
+}

@@ -1,0 +1,155 @@
+//! The values that a page tries out beside a scene's text, and how they are written into it.
+
+use crate::editor::{self, Text, View};
+use crate::scene::registry::Registry;
+use crate::scene::syntax::Syntax;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// A value that is tried out, as a page sends it.
+#[derive(Deserialize)]
+pub struct Try {
+    /// The name of the object.
+    name: String,
+    /// The name of the attribute.
+    attribute: String,
+    /// All its values, as a scene writes them.
+    values: Vec<String>,
+}
+
+/// The values of all attributes that are tried out.
+#[derive(Default)]
+pub struct Tries(Mutex<BTreeMap<(String, String), Vec<String>>>);
+
+impl Tries {
+    fn all(&self) -> MutexGuard<'_, BTreeMap<(String, String), Vec<String>>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Tries out other values of an attribute. Returns `None` if they are no numbers.
+    pub fn set(&self, body: &[u8]) -> Option<()> {
+        let Try { name, attribute, values } = serde_json::from_slice(body).ok()?;
+        let are_numbers = values.iter().all(|value| value.parse::<f64>().is_ok()) && !values.is_empty();
+        are_numbers.then(|| self.all().insert((name, attribute), values)).map(drop)
+    }
+
+    /// Returns to the values of the text.
+    pub fn clear(&self) {
+        self.all().clear();
+    }
+
+    /// Returns the values as `--set` takes them.
+    pub fn sets(&self) -> Vec<String> {
+        let set = |((name, attribute), values): (&(String, String), &Vec<String>)| {
+            format!("{}.{attribute}={}", Syntax::Notes.key(name), values.join(" "))
+        };
+        self.all().iter().map(set).collect()
+    }
+
+    /// Writes the values into a scene's text, and changes nothing else in it.
+    ///
+    /// # Errors
+    /// The name of an object that the text does not define in one place.
+    pub fn written(&self, registry: &Registry, file: &str, text: &str) -> Result<String, String> {
+        let mut text = Text::new(text);
+        for ((name, attribute), values) in self.all().iter() {
+            let view = editor::read(registry, file, text);
+            text = write(&view, name, attribute, values).ok_or_else(|| name.clone())?;
+        }
+        Ok(text.as_str().to_owned())
+    }
+}
+
+/// Writes the values of one attribute.
+fn write(view: &View, name: &str, attribute: &str, values: &[String]) -> Option<Text> {
+    let entity = view.entity(name)?;
+    let is_meant = |given: &&editor::Given| given.known.is_some_and(|known| known.name() == attribute);
+    let Some(given) = entity.attributes.iter().find(is_meant) else {
+        let usage = match (view.syntax, values) {
+            (Syntax::Notes, values) => format!("{attribute} {}", values.join(" ")),
+            (Syntax::Toml, [value]) => format!("{attribute} = {value}"),
+            (Syntax::Toml, values) => format!("{attribute} = [{}]", values.join(", ")),
+        };
+        let (at, is_first) = match entity.attributes.last() {
+            Some(last) => (last.end, false),
+            None => (entity.body.start, true),
+        };
+        let is_on_lines = view.slice(entity.place.clone()).contains('\n');
+        let before = view.slice(0..at);
+        let line = &before[before.rfind('\n').map_or(0, |end| end + 1)..];
+        let indent = &line[..line.len() - line.trim_start().len()];
+        let between = match view.syntax {
+            _ if is_on_lines => format!("\n{indent}"),
+            Syntax::Toml if !is_first => ", ".to_owned(),
+            _ => "  ".to_owned(),
+        };
+        return Some(view.text.edited(at..at, &format!("{between}{usage}")));
+    };
+    let (first, last) = (given.values.first()?, given.values.last()?);
+    if given.values.len() == values.len() {
+        let mut text = view.text.clone();
+        for (word, value) in given.values.iter().zip(values).rev() {
+            text = text.edited(word.place(), value);
+        }
+        return Some(text);
+    }
+    let joined = match view.syntax {
+        Syntax::Notes => values.join(" "),
+        Syntax::Toml if given.values.len() == 1 => format!("[{}]", values.join(", ")),
+        Syntax::Toml => values.join(", "),
+    };
+    Some(view.text.edited(first.start..last.end, &joined))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn written(file: &str, text: &str, tries: &[(&str, &str, &[&str])]) -> Result<String, String> {
+        let all = Tries::default();
+        for (name, attribute, values) in tries {
+            let body =
+                serde_json::json!({ "name": name, "attribute": attribute, "values": values }).to_string();
+            all.set(body.as_bytes()).expect("numbers");
+        }
+        all.written(Registry::get().expect("plugins"), file, text)
+    }
+
+    #[test]
+    fn what_is_tried_is_written_and_nothing_else_changes() {
+        let text = "# two\nsphere ball { center 1   2 # up\n 3  radius 1 material red } # end\n";
+        let tries: &[(&str, &str, &[&str])] =
+            &[("ball", "radius", &["2.5"]), ("ball", "center", &["4", "5", "6"])];
+        let after = "# two\nsphere ball { center 4   5 # up\n 6  radius 2.5 material red } # end\n";
+        assert_eq!(written("a.ray", text, tries), Ok(after.to_owned()));
+        let text = "[sphere.ball]\ncenter = [1, 2, 3] # here\nradius = 1\n";
+        let after = "[sphere.ball]\ncenter = [4, 5, 6] # here\nradius = 2.5\n";
+        assert_eq!(written("a.toml", text, tries), Ok(after.to_owned()));
+    }
+
+    #[test]
+    fn an_attribute_that_the_text_lacks_is_added_to_it() {
+        let tries: &[(&str, &str, &[&str])] = &[("t", "shininess", &["9"])];
+        let on_one = written("a.ray", "material t { diffuse 1 1 1 }", tries);
+        assert_eq!(on_one, Ok("material t { diffuse 1 1 1  shininess 9 }".to_owned()));
+        let on_lines = written("a.ray", "material t\n{\n    diffuse 1 1 1\n}\n", tries);
+        assert_eq!(on_lines, Ok("material t\n{\n    diffuse 1 1 1\n    shininess 9\n}\n".to_owned()));
+        let toml = written("a.toml", "[material.t]\ndiffuse = [1, 1, 1]\n", tries);
+        assert_eq!(toml, Ok("[material.t]\ndiffuse = [1, 1, 1]\nshininess = 9\n".to_owned()));
+    }
+
+    #[test]
+    fn what_the_text_repeats_is_not_written() {
+        let text = "repeat i 2 { sphere ball { radius 1 } }";
+        assert_eq!(written("a.ray", text, &[("ball", "radius", &["2"])]), Err("ball".to_owned()));
+    }
+
+    #[test]
+    fn only_numbers_are_tried() {
+        for values in ["[]", "[\"1; rm\"]", "[\"1\\\"\"]", "7"] {
+            let body = format!("{{\"name\":\"a\",\"attribute\":\"b\",\"values\":{values}}}");
+            assert_eq!(Tries::default().set(body.as_bytes()), None, "{body}");
+        }
+    }
+}
