@@ -1,12 +1,18 @@
-//! What an image was made of and with, for a PNG to carry: the same for images that must be the same.
+//! What an image was made of and with, for a PNG to carry: the same for images that must be the same. So a frame that is
+//! there already is known by it.
 
 use super::input::Source;
 use super::set;
 use super::size::Part;
+use crate::files;
 use crate::scene::choice::Choice;
 use crate::text;
 use crate::world::accuracy::Accuracy;
 use crate::world::film::{Adaptive, Film};
+use std::env;
+use std::fs;
+use std::io::{self, BufReader};
+use std::path::{Path, PathBuf};
 
 /// Returns the texts of an image, each with its keyword: the version of the program, the hash of the scene's text, and
 /// the options with which the program makes the same image of the scene. Threads, the level of CPU instructions and
@@ -17,6 +23,39 @@ pub fn texts(source: &Source, set: &set::Args, camera: &Film, part: &Part) -> Ve
         ("tabray scene", source.hash()),
         ("tabray options", options(camera, part) + &set.words()),
     ]
+}
+
+/// Tells whether an image is there already, whole: a PNG that has these texts, and is newer than the program and than the
+/// files that its scene names. Their content is not in the texts.
+pub fn is_there(path: &Path, texts: &[(&str, String)], named: &[PathBuf]) -> bool {
+    let changed = |path: &Path| fs::metadata(path).and_then(|meta| meta.modified()).ok();
+    let made = changed(path);
+    // What has no time is not known to be older.
+    let is_older = |file: &Path| changed(file).zip(made).is_some_and(|(file, made)| file < made);
+    let is_newer =
+        env::current_exe().is_ok_and(|program| is_older(&program)) && named.iter().all(|file| is_older(file));
+    is_newer && matches!(is_whole(path, texts), Ok(true))
+}
+
+/// Tells whether a file is an undamaged PNG with these texts, that no pixel is missing of.
+fn is_whole(path: &Path, texts: &[(&str, String)]) -> io::Result<bool> {
+    let mut png = png::Decoder::new(BufReader::with_capacity(1 << 16, files::open(path)?));
+    png.ignore_checksums(false);
+    let mut png = png.read_info()?;
+    let info = png.info();
+    let has = |(keyword, text): &(&str, String)| {
+        let plain = info.uncompressed_latin1_text.iter().any(|of| of.keyword == *keyword && of.text == *text);
+        // A compressed text might be a thousand times longer than the file.
+        let mut others = info.utf8_text.iter().filter(|of| of.keyword == *keyword && !of.compressed);
+        plain || others.any(|of| of.get_text().is_ok_and(|of| of == *text))
+    };
+    // What a stopped render leaves is transparent where pixels are missing.
+    if info.color_type != png::ColorType::Rgb || !texts.iter().all(has) {
+        return Ok(false);
+    }
+    while png.next_row()?.is_some() {}
+    png.finish()?;
+    Ok(true)
 }
 
 fn options(camera: &Film, part: &Part) -> String {

@@ -10,7 +10,7 @@ use super::size::Part;
 use super::stats::{self, Stats};
 use super::stop::{self, Stop};
 use super::{
-    aov, cpu, debug, frames, full_range, input, keep, made, messages, method, output, part, progress,
+    aov, cpu, debug, frames, full_range, input, keep, made, messages, method, output, part, progress, resume,
     samples, set, several, size,
 };
 use crate::output::aov::Aov;
@@ -125,6 +125,14 @@ pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
     })
 }
 
+impl Args {
+    /// Tells whether an image that is there already is not rendered again: a frame with `--resume`, that is not begun.
+    fn skips(&self, path: &Path, model: &Model) -> Result<bool, Failure> {
+        let is_resumed = self.frames.frames.is_some() && self.stop.resume && !resume::beside(path).exists();
+        Ok(is_resumed && aov::wanted(&self.aov, model)?.is_empty())
+    }
+}
+
 /// Renders one image of a scene to a path.
 fn one(
     registry: &Registry,
@@ -141,7 +149,8 @@ fn one(
     let source = Source::read(scene, &args.set)?;
     let memory = args.stop.left();
     let chosen = |accuracy| Chosen { above_all: accuracy, memory, ..Chosen::default() };
-    let Loaded { mut model, building, .. } = input::told(source.load_by(registry, chosen(accuracy)))?;
+    let Loaded { mut model, building, warnings, .. } =
+        input::told(source.load_by(registry, chosen(accuracy)))?;
     let mut stats = Stats { reading: start.elapsed() - building, building, ..Stats::default() };
     let camera = &mut model.camera.value;
     args.samples.apply(camera)?;
@@ -159,6 +168,10 @@ fn one(
             (stop, stats),
             (number, &made),
         );
+    }
+    if args.skips(&path, &model)? && made::is_there(&path, &made, warnings.files()) {
+        messages::note(&format!("{} is there already", path.display()));
+        return Ok(());
     }
     let output = Output::open(&path)?;
     let main = if full_range.is_some() { path.with_extension("png") } else { path.clone() };

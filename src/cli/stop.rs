@@ -39,7 +39,7 @@ const NOT_FINISHED: &str = "the image was not finished";
 #[command(next_help_heading = "Limits")]
 pub struct Args {
     /// Continue from the checkpoint that was left beside the image when its render was stopped; if there is none, start
-    /// from the beginning
+    /// from the beginning. Parts and frames that are there already are not rendered again
     #[arg(long)]
     pub resume: bool,
     /// Stop after this time, such as 90s, 5m or 1.5h, as Ctrl-C does: write what is done, and beside it a checkpoint

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 use tempfile::TempDir;
 
 const SCENE: &str = "gallery/three-lamps.ray";
@@ -49,6 +49,14 @@ fn is_the_same(folder: &TempDir) {
     }
 }
 
+/// Returns the options for one or the other level of CPU instructions, if this CPU has more than one.
+fn cpu(turn: usize) -> Vec<&'static str> {
+    match cfg!(target_arch = "x86_64") && std::arch::is_x86_feature_detected!("avx2") {
+        true => vec!["--cpu", ["baseline", "avx2"][turn / 3 % 2]],
+        false => Vec::new(),
+    }
+}
+
 /// Shuffled, some of them made twice, with other instructions and other numbers of threads.
 #[test]
 fn an_image_of_parts_has_the_bytes_of_one_render() {
@@ -59,12 +67,8 @@ fn an_image_of_parts_has_the_bytes_of_one_render() {
         // 7 has no factor in common with the numbers of parts.
         let all = (0..of).map(|index| 7 * index % of + 1);
         for (index, part) in all.chain([of, 1]).enumerate() {
-            let levels = ["baseline", "avx2"];
             let threads = ["1", "3"][index % 2];
-            let mut options = [&size[..], &["--threads", threads]].concat();
-            if cfg!(target_arch = "x86_64") && std::arch::is_x86_feature_detected!("avx2") {
-                options.extend(["--cpu", levels[index % 2]]);
-            }
+            let options = [&size[..], &["--threads", threads], &cpu(index)].concat();
             render(&folder, name, &options, [part], of);
         }
         succeeds(&folder, &["merge", name]);
@@ -118,10 +122,12 @@ fn a_part_that_is_killed_or_stopped_is_resumed() {
         }
     }
     assert!(kept > 0, "the part was not stopped in its midst");
-    for turn in 0..50_u64 {
+    // 50 are killed, and 13 interrupted.
+    for turn in 0..63_u64 {
         let part = format!("{}/4", turn % 4 + 1);
         let mut child = Command::new(assert_cmd::cargo::cargo_bin!("tabray"))
             .args(arguments(&part))
+            .args(cpu(turn as usize))
             .current_dir(folder.path())
             .stderr(Stdio::null())
             .spawn()
@@ -292,6 +298,60 @@ fn frames_have_values_that_change_and_names_by_their_numbers() {
         let (status, said) = run(&folder, &[&["render", "a.ray"], options].concat());
         assert!(status == 2 && said.contains(says), "{options:?}: {said}");
     }
+}
+
+/// Changes when a file was changed last.
+fn date(path: &Path, seconds_ago: u64) {
+    let file = fs::File::options().write(true).open(path).expect("a file");
+    file.set_modified(SystemTime::now() - Duration::from_secs(seconds_ago)).expect("a time");
+}
+
+#[test]
+fn a_frame_that_is_there_is_not_rendered_again() {
+    let folder = folder();
+    let place = |name: &str| folder.path().join(name);
+    let text = "camera eye { pixeldim 40 30 worlddim 8 6 viewpoint 4 3 6 }
+include materials.ray
+texture t { filename picture }
+texplane p { material m normal 0 0 1 point 0 0 -1 dimensions 3 3 texname t xdir 1 0 0 mode 0 }
+";
+    fs::write(place("a.ray"), text).expect("a scene");
+    let materials =
+        |green: &str| fs::write(place("materials.ray"), format!("material m {{ ambient 1 {green} 1 }}\n"));
+    materials("1").expect("a scene");
+    fs::write(place("picture"), b"P6 1 1 255\n\xff\x80\x40").expect("a picture");
+    ["materials.ray", "picture"].iter().for_each(|name| date(&place(name), 60));
+    let film = ["render", "a.ray", "-o", "film.png", "--frames", "1..5", "--sweep", "m.ambient=0..1 1 1"];
+    let names: Vec<_> = (1..=5).map(|number| format!("film-{number:04}.png")).collect();
+    let resumes = |options: &[&str]| {
+        let said = succeeds(&folder, &[&film[..], &["--resume"], options].concat());
+        let is_there = |name: &&String| said.contains(&format!("{name} is there already"));
+        names.iter().filter(is_there).cloned().collect::<Vec<_>>()
+    };
+    let read = || names.iter().map(|name| fs::read(place(name)).expect("a frame")).collect::<Vec<_>>();
+    succeeds(&folder, &film);
+    let first = read();
+    assert_eq!(resumes(&[]), names);
+    damage(&place(&names[1]), |len| len - 30);
+    fs::write(place(&names[2]), &first[2][..first[2].len() - 8]).expect("a frame");
+    fs::write(place(&names[3]), &first[4]).expect("a frame");
+    fs::remove_file(place(&names[4])).expect("a frame");
+    assert_eq!(resumes(&[]), names[..1]);
+    assert!(read() == first, "the frames are as before");
+    assert_eq!(resumes(&[]), names);
+    // Images beside a frame are not known to be of it.
+    assert!(resumes(&["--aov", "depth"]).is_empty());
+    assert!(resumes(&["--size", "20"]).is_empty());
+    assert!(resumes(&[]).is_empty());
+    assert!(read() == first, "the frames are as before");
+    fs::write(place("picture"), b"P6 1 1 255\n\x10\x80\x40").expect("a picture");
+    date(&place("picture"), 0);
+    assert!(resumes(&[]).is_empty());
+    assert!(read() != first, "the texture has changed");
+    fs::write(place("picture"), b"P6 1 1 255\n\xff\x80\x40").expect("a picture");
+    assert!(resumes(&[]).is_empty());
+    materials("0.5").expect("a scene");
+    assert!(resumes(&[]).is_empty());
 }
 
 /// The scripts are run here as Slurm runs them, task by task.
