@@ -2,9 +2,12 @@
 
 use crate::prelude::*;
 
-static INDEX: Pparm<f64> =
-    Pparm::or("index", "the refractive index inside, relative to outside: 1.5 is glass, 1.33 water", 1.5)
-        .between(1.0, 4.0);
+static INDEX: Pparm<f64> = Pparm::or(
+    "index",
+    "the refractive index inside, relative to outside: 1.5 is glass, 1.33 water, 0.75 air in water",
+    1.5,
+)
+.between(0.25, 4.0);
 static COLOUR: Pparm<Rgb> = Pparm::or(
     "colour",
     "the tint of light that passes through a wall, scaled so that its strongest channel is 1",

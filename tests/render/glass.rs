@@ -60,6 +60,21 @@ proptest! {
             prop_assert!(crossing.onward.is_some());
         }
     }
+
+    #[test]
+    fn a_bubble_is_entered_as_its_surroundings_are_left(index in 1.05..4.0_f64, dir in unit(), normal in unit()) {
+        let normal = if dir.dot(normal) > 0.0 { -normal } else { normal };
+        let cosine = -dir.dot(normal);
+        // At the critical angle, rounding decides.
+        prop_assume!((index * index * (1.0 - cosine * cosine) - 1.0).abs() > 1e-3);
+        let enters = interface(1.0 / index).cross(dir, normal, Side::Outside);
+        let leaves = interface(index).cross(dir, normal, Side::Inside);
+        prop_assert!((enters.reflected - leaves.reflected).abs() < 1e-9, "{enters:?} {leaves:?}");
+        prop_assert_eq!(enters.onward.is_some(), leaves.onward.is_some());
+        if let (Some(enters), Some(leaves)) = (enters.onward, leaves.onward) {
+            prop_assert!((enters - leaves).length() < 1e-9, "{enters} {leaves}");
+        }
+    }
 }
 
 #[test]
