@@ -1,7 +1,7 @@
 //! Completion: what can be written at a position.
 
 use super::hover::about;
-use super::names::{Names, Sort};
+use super::names::Sort;
 use super::project::Group;
 use super::snippet::Snippet;
 use super::types::{Wanted, truths, wanted};
@@ -301,7 +301,7 @@ impl At<'_> {
     fn names(&self, kind: Kind) -> Vec<String> {
         let mut names = Vec::new();
         for (index, (_, view)) in self.group.iter().enumerate().rev() {
-            let all = Names::of(view);
+            let all = view.names();
             let usable = all.definitions.iter().filter(|definition| {
                 let is_visible =
                     definition.scope.as_ref().is_none_or(|scope| index == 0 && scope.contains(&self.at));
@@ -322,7 +322,7 @@ impl At<'_> {
         let mut all: Vec<_> =
             variables.iter().chain(&["pi"]).map(|name| plain(name, What::Number, &place)).collect();
         for (index, (_, view)) in self.group.iter().enumerate() {
-            let names = Names::of(view);
+            let names = view.names();
             let usable = names.definitions.iter().filter(|definition| {
                 let is_visible =
                     definition.scope.as_ref().is_none_or(|scope| index == 0 && scope.contains(&self.at));

@@ -176,7 +176,7 @@ pub struct Meant {
 
 /// Returns the name at a position.
 pub fn meant(view: &View, at: usize) -> Option<Meant> {
-    let names = Names::of(view);
+    let names = view.names();
     let (name, _) = names.at(at)?;
     Some(Meant { what: told(name.sort), text: name.text.clone(), place: name.place.clone() })
 }

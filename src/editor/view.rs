@@ -1,5 +1,6 @@
 //! What a text says, as far as it can be told: entities, attributes and values with their places, in either syntax.
 
+use super::names::Names;
 use super::text::Text;
 use crate::scene::entity;
 use crate::scene::pparm;
@@ -7,6 +8,7 @@ use crate::scene::reader::tokens;
 use crate::scene::syntax::Syntax;
 use std::borrow::Cow;
 use std::ops::Range;
+use std::sync::OnceLock;
 use toml_parser::decoder::Encoding;
 use toml_parser::{ParseError, Raw, Span};
 
@@ -156,9 +158,19 @@ pub struct View {
     pub items: Vec<Item>,
     /// Where the text is not as a scene is written; empty if its form is sound.
     pub breaks: Vec<Break>,
+    names: OnceLock<Names>,
 }
 
 impl View {
+    pub fn new(text: Text, syntax: Syntax, (items, breaks): (Vec<Item>, Vec<Break>)) -> Self {
+        Self { text, syntax, items, breaks, names: OnceLock::new() }
+    }
+
+    /// Returns the names of the text, which are found once.
+    pub fn names(&self) -> &Names {
+        self.names.get_or_init(|| Names::of(self))
+    }
+
     /// Returns the text of a range; of one that is not in the text, nothing.
     pub fn slice(&self, place: Range<usize>) -> &str {
         self.text.as_str().get(place).unwrap_or_default()
