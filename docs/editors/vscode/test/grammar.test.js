@@ -73,7 +73,7 @@ test("in scenes without errors each type and each number has its scope", () => {
     const { entities } = JSON.parse(execFileSync(program, ["list", "--json"], { encoding: "utf8" }));
     const types = new Set(entities.flatMap((entity) => [entity.name, ...entity.aliases]));
     let count = 0;
-    for (const folder of ["gallery", "language", "notes", "sphere", "light"]) {
+    for (const folder of ["gallery", "notes", "sphere", "light"]) {
         for (const file of files(path.join(scenes, folder))) {
             const text = fs.readFileSync(file, "utf8");
             // An entity begins a line, is followed by a name without quotes, and opens its brace on the same line.
