@@ -441,7 +441,7 @@ fn faults_after_random_edits_are_those_of_the_text_opened_anew() {
     ];
     let scenes: Vec<_> = ["ray", "toml"]
         .iter()
-        .flat_map(|end| glob_scenes(end))
+        .flat_map(|end| scenes_ending_in(end))
         .filter_map(|path| fs::read_to_string(path).ok())
         .filter(|text| text.len() < 2000 && !text.contains("include"))
         .collect();
@@ -484,11 +484,12 @@ fn faults_after_random_edits_are_those_of_the_text_opened_anew() {
         }
     }
     assert!(with_faults > 0, "random edits make faults");
-    [typing, anew].map(Client::end);
+    typing.end();
+    anew.end();
 }
 
 /// Returns the scenes of the repository whose names have this end.
-fn glob_scenes(end: &str) -> Vec<PathBuf> {
+fn scenes_ending_in(end: &str) -> Vec<PathBuf> {
     let folders = ["language", "notes", "toml", "sphere", "wrong", "light"]
         .map(|name| root().join("scenes").join(name));
     let entries = folders.iter().filter_map(|folder| folder.read_dir().ok()).flatten();
