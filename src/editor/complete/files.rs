@@ -1,6 +1,6 @@
 //! The files and folders that a scene can name.
 
-use super::{At, Completion, What, plain};
+use super::proposal::{At, Completion, What, plain};
 use std::path::Path;
 
 /// The most files of a folder that are proposed.

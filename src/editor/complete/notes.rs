@@ -1,6 +1,6 @@
 //! What can be written at a position of a text in the notes' syntax.
 
-use super::{At, Completion};
+use super::proposal::{At, Completion};
 use crate::editor::types::{Wanted, wanted};
 use crate::editor::view::{Entity, Form, Item};
 use crate::scene::reader::keyword::Keyword;

@@ -1,6 +1,6 @@
 //! What can be written at a position of a text in TOML.
 
-use super::{At, Completion};
+use super::proposal::{At, Completion};
 use crate::editor::view::{Attribute, Entity, Item};
 use crate::scene::reader::keyword::Keyword;
 

@@ -1,6 +1,6 @@
 //! The types of entities, and the words that begin something else.
 
-use super::{At, Completion, What, plain};
+use super::proposal::{At, Completion, What, plain};
 use crate::editor::snippet::Snippet;
 use crate::scene::reader::keyword::Keyword;
 use crate::scene::syntax::Syntax;

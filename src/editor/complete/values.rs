@@ -1,6 +1,6 @@
 //! The attributes of an entity that are not given yet, and the values of one that is.
 
-use super::{At, Completion, What, plain};
+use super::proposal::{At, Completion, What, plain};
 use crate::editor::hover::about;
 use crate::editor::names::Sort;
 use crate::editor::snippet::Snippet;

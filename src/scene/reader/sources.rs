@@ -1,7 +1,6 @@
 //! The texts that a scene is read from: its own, those of the files that it includes, and the options that set values.
 //! They stand one after the other in one text, so that a place is a range of it.
 
-use super::check::Chosen;
 use super::encoding;
 use super::fault::Fault;
 use super::parts::Part;
@@ -54,7 +53,7 @@ impl<'t> Sources<'t> {
         (name, folder): (&str, &Path),
         text: &'t str,
         syntax: Syntax,
-        Chosen { sets, open, .. }: Chosen<'_>,
+        (sets, open): (&[String], &[(PathBuf, Arc<str>)]),
         room: u64,
     ) -> Self {
         let own = 0..text.len();
