@@ -11,9 +11,11 @@ use crate::scene::registry::Registry;
 use answers::Server;
 use documents::Documents;
 use faults::Faults;
-use lsp_server::{Connection, ErrorCode, Message, Request, Response};
-use protocol::capabilities;
-use serde_json::json;
+use lsp_server::{ErrorCode, Message, Request};
+use protocol::{answered, capabilities, refused, told};
+use serde_json::{Value, json};
+use std::io::{self, StdinLock, Write};
+use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread;
 
 /// Serve editors: the Language Server Protocol on standard input and output
@@ -28,69 +30,106 @@ pub struct Args {
 }
 
 pub fn run(registry: &Registry) -> Result<(), Failure> {
-    let (connection, threads) = Connection::stdio();
-    let failed = |error: &dyn std::fmt::Display| Failure::Failed(format!("the editor broke off: {error}"));
-    let (id, parameters) = connection.initialize_start().map_err(|error| failed(&error))?;
-    let result = json!({
-        "capabilities": capabilities(),
-        "serverInfo": { "name": super::program::name(), "version": env!("CARGO_PKG_VERSION") },
-    });
-    connection.initialize_finish(id, result).map_err(|error| failed(&error))?;
+    // What is written waits for the editor on a thread of its own, so that the editor never waits for itself.
+    let (sender, texts) = mpsc::channel();
+    let writer = thread::spawn(|| write(texts));
+    let mut input = io::stdin().lock();
+    let parameters = begin(&mut input, &sender)?;
     let faults = Faults::default();
-    let sender = connection.sender.clone();
     let outcome = thread::scope(|scope| {
-        scope.spawn(|| faults.work(registry, &|message| sender.send(message).is_ok()));
+        scope.spawn(|| faults.work(registry, &|text| sender.send(text).is_ok()));
         let mut server = Server::new(Documents::new(registry), &faults, &parameters);
-        let outcome = serve(&connection, &mut server);
+        let outcome = serve(&mut input, &sender, &mut server);
         faults.end();
         outcome
     });
-    drop((connection, sender));
+    drop(sender);
     if outcome.is_ok() {
-        let _ = threads.join();
+        let _ = writer.join();
     }
     outcome
 }
 
+/// Writes messages until the editor no longer reads, or there are no more.
+fn write(texts: Receiver<String>) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    for text in texts {
+        write!(out, "Content-Length: {}\r\n\r\n", text.len())?;
+        out.write_all(text.as_bytes())?;
+        out.flush()?;
+    }
+    Ok(())
+}
+
+fn gone() -> Failure {
+    Failure::Failed("the editor broke off".to_owned())
+}
+
+/// Reads the next message.
+fn next(input: &mut StdinLock<'_>) -> Result<Message, Failure> {
+    match Message::read(input) {
+        Ok(message) => message.ok_or_else(gone),
+        Err(error) => Err(Failure::Failed(format!("the editor broke off: {error}"))),
+    }
+}
+
+fn send(sender: &Sender<String>, text: String) -> Result<(), Failure> {
+    sender.send(text).map_err(|_| gone())
+}
+
+/// Answers the first request of an editor, and returns what it says of itself.
+fn begin(input: &mut StdinLock<'_>, sender: &Sender<String>) -> Result<Value, Failure> {
+    loop {
+        match next(input)? {
+            Message::Request(Request { id, method, params }) if method == "initialize" => {
+                let result = json!({
+                    "capabilities": capabilities(),
+                    "serverInfo": { "name": super::program::name(), "version": env!("CARGO_PKG_VERSION") },
+                });
+                send(sender, answered(&id, &result.to_string()))?;
+                return Ok(params);
+            }
+            Message::Request(Request { id, .. }) => {
+                send(sender, refused(&id, ErrorCode::ServerNotInitialized, "`initialize` comes first"))?;
+            }
+            Message::Notification(notification) if notification.method == "exit" => return Err(gone()),
+            _ => {}
+        }
+    }
+}
+
 /// Answers until the editor says that it ends.
-fn serve(connection: &Connection, server: &mut Server<'_>) -> Result<(), Failure> {
-    let gone = || Failure::Failed("the editor broke off".to_owned());
-    for message in &connection.receiver {
-        match message {
+fn serve(input: &mut StdinLock<'_>, sender: &Sender<String>, server: &mut Server<'_>) -> Result<(), Failure> {
+    loop {
+        match next(input)? {
             Message::Request(request) if request.method == "shutdown" => {
-                return match connection.handle_shutdown(&request) {
-                    Ok(_) => Ok(()),
-                    Err(error) => Err(Failure::Failed(format!("the editor broke off: {error}"))),
+                send(sender, answered(&request.id, "null"))?;
+                return match next(input)? {
+                    Message::Notification(notification) if notification.method == "exit" => Ok(()),
+                    _ => Err(gone()),
                 };
             }
-            Message::Request(request) => {
-                let response = answer(server, request);
-                connection.sender.send(response.into()).map_err(|_| gone())?;
-            }
+            Message::Request(request) => send(sender, answer(server, request))?,
             Message::Notification(notification) if notification.method == "exit" => return Err(gone()),
             Message::Notification(notification) => {
                 let handled = crash::catch(|| server.note(&notification.method, notification.params));
                 if let Err(Failure::Failed(said)) = handled {
-                    let parameters = json!({ "type": 1, "message": said });
-                    let told = lsp_server::Notification::new("window/logMessage".to_owned(), parameters);
-                    connection.sender.send(told.into()).map_err(|_| gone())?;
+                    send(sender, told("window/logMessage", &json!({ "type": 1, "message": said })))?;
                 }
             }
             Message::Response(_) => {}
         }
     }
-    Err(gone())
 }
 
-fn answer(server: &mut Server<'_>, request: Request) -> Response {
+/// Writes the answer to a question.
+fn answer(server: &mut Server<'_>, request: Request) -> String {
     let Request { id, method, params } = request;
     match crash::catch(|| server.answer(&method, params)) {
-        Ok(Ok(Some(result))) => Response::new_ok(id, result),
-        Ok(Ok(None)) => {
-            Response::new_err(id, ErrorCode::MethodNotFound as i32, format!("`{method}` is not known"))
-        }
-        Ok(Err(said)) => Response::new_err(id, ErrorCode::RequestFailed as i32, said),
-        Err(Failure::Failed(said)) => Response::new_err(id, ErrorCode::InternalError as i32, said),
-        Err(_) => Response::new_err(id, ErrorCode::InternalError as i32, "no answer".to_owned()),
+        Ok(Ok(Some(result))) => answered(&id, &result),
+        Ok(Ok(None)) => refused(&id, ErrorCode::MethodNotFound, &format!("`{method}` is not known")),
+        Ok(Err(said)) => refused(&id, ErrorCode::RequestFailed, &said),
+        Err(Failure::Failed(said)) => refused(&id, ErrorCode::InternalError, &said),
+        Err(_) => refused(&id, ErrorCode::InternalError, "no answer"),
     }
 }

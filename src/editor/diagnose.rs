@@ -1,10 +1,12 @@
 //! The faults of a scene, as the loader tells them, in the files in which they are.
 
 use super::text::{Position, Text};
-use crate::scene::reader::{self, Fault, Report, Severity};
+use crate::files::plain;
+use crate::scene::reader::{self, Chosen, Fault, Report, Severity};
 use crate::scene::registry::Registry;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A fault in a file.
 #[derive(Clone, Debug)]
@@ -32,14 +34,22 @@ pub struct Remark {
     pub text: String,
 }
 
-/// Reads a scene as a render does, and returns its faults.
-pub fn diagnose(registry: &Registry, path: &Path, text: &str) -> Vec<Diagnosis> {
+/// Reads a scene as a render does, but files that it includes as they are in the editor where they are `open`, and returns
+/// its faults.
+pub fn diagnose(
+    registry: &Registry,
+    path: &Path,
+    text: &str,
+    open: &[(PathBuf, Arc<str>)],
+) -> Vec<Diagnosis> {
     let folder = path.parent().unwrap_or(path);
     let name = path.display().to_string();
-    let report = match reader::read(registry, &name, folder, text.as_bytes(), None) {
-        Ok(loaded) => loaded.warnings,
-        Err(report) => report,
-    };
+    let report =
+        match reader::read_by(registry, &name, folder, text.as_bytes(), Chosen { open, ..Chosen::default() })
+        {
+            Ok(loaded) => loaded.warnings,
+            Err(report) => report,
+        };
     let mut texts = HashMap::new();
     report.faults().iter().map(|fault| told(&report, fault, &mut texts)).collect()
 }
@@ -52,7 +62,7 @@ fn told<'r>(report: &'r Report, fault: &'r Fault, texts: &mut HashMap<&'r str, T
         .map(|located| {
             let text = texts.entry(located.name).or_insert_with(|| Text::new(located.text));
             let range = [located.place.start, located.place.end].map(|at| text.position(at));
-            Remark { path: PathBuf::from(located.name), range, text: located.label.to_owned() }
+            Remark { path: plain(Path::new(located.name)), range, text: located.label.to_owned() }
         })
         .collect();
     let first = remarks.remove(0);

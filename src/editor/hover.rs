@@ -1,6 +1,6 @@
 //! What a word means, in Markdown.
 
-use super::names::{Names, told};
+use super::names::told;
 use super::project::{Group, definitions};
 use super::types::{Wanted, value_name, wanted};
 use super::view::{Attribute, Entity, Item, View, Word};
@@ -95,11 +95,11 @@ fn value(
 
 /// Shows what has the name at a position.
 fn name(group: &Group, view: &View, at: usize) -> Option<Hover> {
-    let names = Names::of(view);
+    let names = view.names();
     let (name, _) = names.at(at)?;
     let found = definitions(group, at).into_iter().next()?;
     let (path, other) = group.iter().find(|(path, _)| *path == found.path)?;
-    let all = Names::of(other);
+    let all = other.names();
     let definition = all.definitions.iter().find(|definition| definition.name.place == found.place)?;
     let whole = other.slice(definition.whole.clone()).trim_end();
     let mut lines: Vec<_> = whole.lines().take(MOST_LINES + 1).collect();

@@ -10,6 +10,7 @@ mod format_toml;
 mod formulas;
 mod hints;
 mod hover;
+mod named;
 mod names;
 mod notes;
 mod outline;
@@ -23,6 +24,7 @@ mod text;
 mod toml;
 mod types;
 mod view;
+mod word;
 
 pub use colours::{Swatch, colours, presented};
 pub use complete::{Completion, What, completions};

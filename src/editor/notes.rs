@@ -234,17 +234,17 @@ impl<'a> Reader<'a> {
     ) -> bool {
         let max = known.map_or(1, |known| known.arity().most());
         let raw = self.tokens.raw(token);
-        let is_attribute = entity.is_some_and(|entity| attribute(entity, raw).is_some());
+        let is_attribute = || entity.is_some_and(|entity| attribute(entity, raw).is_some());
         match known.map(|known| known.value_type()) {
             // A name may look like an attribute, but on another line it is one.
             Some(value_type) if !matches!(value_type, Type::Number | Type::Whole) => {
                 let is_below = self.tokens.text[self.before..token.start].contains('\n');
-                already < max && !(is_attribute && is_below)
+                already < max && !(is_below && is_attribute())
             }
             _ => {
                 looks_like_number(raw)
                     || already < max
-                        && !is_attribute
+                        && !is_attribute()
                         && !entity.is_some_and(|entity| self.is_misspelt(entity, raw))
             }
         }

@@ -2,8 +2,9 @@
 
 use super::names::{Definition, Name, Names, Sort, Stands, check_name, written};
 use super::view::{Item, View};
+use crate::files::plain;
 use std::ops::Range;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The most files of a scene that are read.
@@ -47,21 +48,6 @@ fn with_included(files: &dyn Files, root: &Path) -> Group {
     group
 }
 
-/// Returns a path without `..` where the folder before it is named.
-fn plain(path: &Path) -> PathBuf {
-    let mut plain = PathBuf::new();
-    for part in path.components() {
-        match part {
-            Component::ParentDir if matches!(plain.components().next_back(), Some(Component::Normal(_))) => {
-                plain.pop();
-            }
-            Component::CurDir => {}
-            part => plain.push(part),
-        }
-    }
-    plain
-}
-
 /// Returns a file, those that it includes, and those of the scenes among `scenes` that include it.
 pub fn group(files: &dyn Files, path: &Path, scenes: &[PathBuf]) -> Group {
     let mut group = with_included(files, path);
@@ -82,7 +68,7 @@ pub fn group(files: &dyn Files, path: &Path, scenes: &[PathBuf]) -> Group {
 type Id = (usize, usize);
 
 /// Returns the definition that a name in a file means, and how many letters of it are the numbers of rounds.
-fn resolved(names: &[Names], file: usize, name: &Name) -> Option<(Id, usize)> {
+fn resolved(names: &[&Names], file: usize, name: &Name) -> Option<(Id, usize)> {
     let mut text = name.text.as_str();
     let mut rounds = 0;
     loop {
@@ -116,13 +102,13 @@ fn resolved(names: &[Names], file: usize, name: &Name) -> Option<(Id, usize)> {
 }
 
 /// Returns the definition of the name at a position of the first file.
-fn definition(names: &[Names], at: usize) -> Option<Id> {
+fn definition(names: &[&Names], at: usize) -> Option<Id> {
     let (name, given) = names.first()?.at(at)?;
     given.map_or_else(|| resolved(names, 0, name).map(|(id, _)| id), |index| Some((0, index)))
 }
 
-fn all_names(group: &Group) -> Vec<Names> {
-    group.iter().map(|(_, view)| Names::of(view)).collect()
+fn all_names(group: &Group) -> Vec<&Names> {
+    group.iter().map(|(_, view)| view.names()).collect()
 }
 
 /// Returns where the name at a position of the group's first file is given.
@@ -147,7 +133,7 @@ fn included(group: &Group, at: usize) -> Option<Found> {
 /// A use of a name: the file, the name, the letters at its end that are the numbers of rounds.
 type Use<'n> = (usize, &'n Name, usize);
 
-fn uses(names: &[Names], id: Id, with_definition: bool) -> Vec<Use<'_>> {
+fn uses<'n>(names: &[&'n Names], id: Id, with_definition: bool) -> Vec<Use<'n>> {
     let defined = &names[id.0].definitions[id.1];
     let mut found = Vec::new();
     if with_definition {
@@ -187,7 +173,7 @@ pub fn renamed(group: &Group, at: usize, new: &str) -> Result<Vec<(Found, String
     if new == defined.name.text {
         return Ok(Vec::new());
     }
-    let is_taken = |(file, all): (usize, &Names)| {
+    let is_taken = |(file, all): (usize, &&Names)| {
         all.named(defined.name.sort, new).iter().any(|index| {
             let other = &all.definitions[*index];
             let may_meet = |scope: &Range<usize>| file == id.0 && scope.contains(&defined.name.place.start);

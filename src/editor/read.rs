@@ -12,9 +12,9 @@ pub fn read(registry: &Registry, name: &str, text: Text) -> View {
         Some(Syntax::Toml) => Syntax::Toml,
         _ => Syntax::of_text(text.as_str()),
     };
-    let (items, breaks) = match syntax {
+    let read = match syntax {
         Syntax::Notes => notes::read(registry, text.as_str()),
         Syntax::Toml => toml::read(registry, text.as_str()),
     };
-    View { text, syntax, items, breaks }
+    View::new(text, syntax, read)
 }

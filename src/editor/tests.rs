@@ -156,7 +156,7 @@ fn a_name_that_is_changed_there_and_back_leaves_the_text_as_it_was() {
             continue;
         }
         let first = open(&[(&path, &text)]);
-        let all = names::Names::of(&first.0[&path]);
+        let all = first.0[&path].names();
         for definition in all.definitions.iter().take(20) {
             // Lights may share a name, and quotes that a name does not need are not written again.
             let at = definition.name.place.start;

@@ -1,61 +1,17 @@
 //! What a text says, as far as it can be told: entities, attributes and values with their places, in either syntax.
 
+use super::named::Names;
 use super::text::Text;
+pub use super::word::{Form, Word};
 use crate::scene::entity;
 use crate::scene::pparm;
 use crate::scene::reader::tokens;
 use crate::scene::syntax::Syntax;
 use std::borrow::Cow;
 use std::ops::Range;
+use std::sync::OnceLock;
 use toml_parser::decoder::Encoding;
 use toml_parser::{ParseError, Raw, Span};
-
-/// A word of a text.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Word {
-    /// The first byte, that of the quote if it has one.
-    pub start: usize,
-    /// The first byte after it.
-    pub end: usize,
-    /// How it is quoted.
-    pub form: Form,
-}
-
-/// How a word is quoted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
-    /// Not at all.
-    Bare,
-    /// By quotes that this many bytes at each end are, with escape sequences in between.
-    Quoted(u8),
-    /// Likewise, without escape sequences.
-    Literal(u8),
-    /// By a quote at its beginning alone.
-    Unclosed,
-}
-
-impl Word {
-    /// Returns the range of the word with its quotes.
-    pub fn place(self) -> Range<usize> {
-        self.start..self.end
-    }
-
-    /// Returns the range of the word within its quotes.
-    pub fn inner(self) -> Range<usize> {
-        let (before, after) = match self.form {
-            Form::Bare => (0, 0),
-            Form::Quoted(quote) | Form::Literal(quote) => (quote.into(), quote.into()),
-            Form::Unclosed => (1, 0),
-        };
-        let start = (self.start + before).min(self.end);
-        start..(self.end - after).max(start)
-    }
-
-    /// Tells whether a cursor is at the word: in it, or at one of its ends.
-    pub fn has(self, at: usize) -> bool {
-        (self.start..=self.end).contains(&at)
-    }
-}
 
 /// What a scene consists of.
 #[derive(Debug)]
@@ -156,9 +112,15 @@ pub struct View {
     pub items: Vec<Item>,
     /// Where the text is not as a scene is written; empty if its form is sound.
     pub breaks: Vec<Break>,
+    /// The names, once they are found.
+    pub(super) names: OnceLock<Names>,
 }
 
 impl View {
+    pub fn new(text: Text, syntax: Syntax, (items, breaks): (Vec<Item>, Vec<Break>)) -> Self {
+        Self { text, syntax, items, breaks, names: OnceLock::new() }
+    }
+
     /// Returns the text of a range; of one that is not in the text, nothing.
     pub fn slice(&self, place: Range<usize>) -> &str {
         self.text.as_str().get(place).unwrap_or_default()

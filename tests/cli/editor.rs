@@ -4,11 +4,13 @@ use crate::common::program::{folder, outcome, tabray};
 use crate::common::root;
 use insta::Settings;
 use lsp_server::{Message, Notification, Request};
+use rand_pcg::Pcg64Mcg;
+use rand_pcg::rand_core::{Rng, SeedableRng};
 use serde_json::{Value, json};
 use std::collections::VecDeque;
 use std::fs;
 use std::io::BufReader;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use tempfile::TempDir;
 
@@ -344,4 +346,176 @@ fn fmt_leaves_a_scene_whose_form_has_errors() {
     let mut input = tabray(&folder);
     let (status, out, _) = outcome(input.args(["fmt", "-"]).write_stdin(b"\xff".as_slice()));
     assert_eq!((status, out.len()), (2, 0));
+}
+
+#[test]
+fn a_scene_has_the_faults_of_an_included_file_as_it_is_open() {
+    let folder = folder();
+    fs::write(folder.path().join("colours.inc"), "material red { ambient 1 0 0 }\n").expect("room");
+    let mut client = Client::start(&folder);
+    let [scene, colours] = ["a.ray", "colours.inc"].map(|name| uri(folder.path(), name));
+    let seen = "sphere s { material red  center 4 3 -4  radius 1 }\n";
+    client.open(
+        &scene,
+        &format!("include colours.inc\ncamera eye {{ pixeldim 8 6  worlddim 8 6  viewpoint 4 3 6 }}\n{seen}"),
+    );
+    assert_eq!(client.faults(&scene), json!([]));
+    client.open(&colours, "material crimson { ambient 1 0 0 }\n");
+    let told = client.faults(&scene);
+    assert!(told[0]["message"].as_str().is_some_and(|message| message.contains("`red`")), "{told}");
+    let text = "material red { ambiend 1 0 0 }\n";
+    let document = json!({ "uri": colours, "version": 2 });
+    client.note(
+        "textDocument/didChange",
+        json!({ "textDocument": document, "contentChanges": [{ "text": text }] }),
+    );
+    let told = client.faults(&colours);
+    assert!(told[0]["message"].as_str().is_some_and(|message| message.contains("`ambiend`")), "{told}");
+    // What is stored counts again.
+    client.note("textDocument/didClose", json!({ "textDocument": { "uri": colours } }));
+    client.told.clear();
+    assert_eq!(client.faults(&scene), json!([]));
+    client.end();
+}
+
+/// A text as an editor keeps it.
+struct Typed(Vec<char>);
+
+impl Typed {
+    /// Returns the position of a character: lines and UTF-16 units, counted from the beginning.
+    fn position(&self, at: usize) -> Value {
+        let (mut line, mut character) = (0, 0);
+        for (index, letter) in self.0[..at].iter().enumerate() {
+            if *letter == '\n' || *letter == '\r' && self.0.get(index + 1) != Some(&'\n') {
+                (line, character) = (line + 1, 0);
+            } else {
+                character += letter.len_utf16();
+            }
+        }
+        json!({ "line": line, "character": character })
+    }
+
+    /// Replaces a part of the text, and returns the change as an editor tells it.
+    fn change(&mut self, start: usize, end: usize, text: &str) -> Value {
+        // No position is between the two characters of a line's end.
+        let is_within = |at: &usize| *at > 0 && self.0[at - 1] == '\r' && self.0.get(*at) == Some(&'\n');
+        let [start, end] = [start, end].map(|at| if is_within(&at) { at - 1 } else { at });
+        let range = json!({ "start": self.position(start), "end": self.position(end) });
+        self.0.splice(start..end, text.chars());
+        json!({ "range": range, "text": text })
+    }
+}
+
+/// TABRAY_EDITS edits, or 300.
+#[test]
+fn faults_after_random_edits_are_those_of_the_text_opened_anew() {
+    let edits = std::env::var("TABRAY_EDITS").map_or(300, |edits| edits.parse().expect("a number"));
+    let words = [
+        "{",
+        "}",
+        "\"",
+        "#",
+        "\n",
+        " ",
+        "[",
+        "]",
+        "=",
+        ".",
+        ",",
+        "'",
+        "let ",
+        "repeat i 2 {",
+        "sphere b {",
+        "[sphere.b]\n",
+        "material ",
+        "center ",
+        "1e5",
+        "\\",
+        "ß",
+        "\u{1f600}",
+        "\r\n",
+        "\r",
+        "\u{a0}",
+        "-",
+        "7",
+    ];
+    let scenes: Vec<_> = ["ray", "toml"]
+        .iter()
+        .flat_map(|end| scenes_ending_in(end))
+        .filter_map(|path| fs::read_to_string(path).ok())
+        .filter(|text| text.len() < 2000 && !text.contains("include"))
+        .collect();
+    let folder = folder();
+    let [mut typing, mut anew] = [Client::start(&folder), Client::start(&folder)];
+    let mut random = Pcg64Mcg::seed_from_u64(21);
+    let mut next = move |below: usize| (random.next_u64() % below.max(1) as u64) as usize;
+    let (mut made, mut with_faults) = (0, 0);
+    while made < edits {
+        let scene = &scenes[next(scenes.len())];
+        // Other scenes stand in other files, so that nothing is left of them.
+        let end = if scene.contains("\n[") { "toml" } else { "ray" };
+        let uri = uri(folder.path(), &format!("{made}.{end}"));
+        let mut typed = Typed(scene.chars().collect());
+        typing.open(&uri, scene);
+        typing.faults(&uri);
+        for version in 2..22 {
+            let changes: Vec<_> = (0..1 + next(3))
+                .map(|_| {
+                    let start = next(typed.0.len() + 1);
+                    let end = (start + if next(3) == 0 { 0 } else { next(12) }).min(typed.0.len());
+                    typed.change(start, end, if next(4) == 0 { "" } else { words[next(words.len())] })
+                })
+                .collect();
+            made += changes.len();
+            let document = json!({ "uri": uri, "version": version });
+            typing.note(
+                "textDocument/didChange",
+                json!({ "textDocument": document, "contentChanges": changes }),
+            );
+            let text: String = typed.0.iter().collect();
+            anew.open(&uri, &text);
+            let [now, fresh] = [&mut typing, &mut anew].map(|client| client.faults(&uri));
+            assert_eq!(now, fresh, "{text:?}");
+            with_faults += usize::from(now != json!([]));
+        }
+        for client in [&mut typing, &mut anew] {
+            client.note("textDocument/didClose", json!({ "textDocument": { "uri": uri } }));
+            assert_eq!(client.faults(&uri), json!([]));
+        }
+    }
+    assert!(with_faults > 0, "random edits make faults");
+    typing.end();
+    anew.end();
+}
+
+/// Returns the scenes of the repository whose names have this end.
+fn scenes_ending_in(end: &str) -> Vec<PathBuf> {
+    let folders = ["language", "notes", "toml", "sphere", "wrong", "light"]
+        .map(|name| root().join("scenes").join(name));
+    let entries = folders.iter().filter_map(|folder| folder.read_dir().ok()).flatten();
+    let mut paths: Vec<_> = entries.map(|entry| entry.expect("an entry").path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|other| other == end));
+    paths.sort();
+    paths
+}
+
+/// The tests of docs/editors/vscode: the grammar in the engine of Visual Studio Code, and a session of its client library.
+#[test]
+fn the_extension_of_visual_studio_code_passes_its_tests() {
+    let folder = root().join("docs/editors/vscode");
+    let has_node = Command::new("node").arg("--version").output().is_ok_and(|output| output.status.success());
+    if !has_node || !folder.join("node_modules/vscode-textmate").is_dir() {
+        eprintln!(
+            "SKIPPED: `node` or its modules are missing; `npm install` in {} installs these",
+            folder.display()
+        );
+        return;
+    }
+    let output = Command::new("npm")
+        .args(["test", "--silent"])
+        .current_dir(&folder)
+        .env("TABRAY", env!("CARGO_BIN_EXE_tabray"))
+        .output()
+        .expect("npm starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
 }

@@ -2,12 +2,14 @@
 
 use super::documents::{Document, Documents};
 use super::faults::{Faults, diagnostic};
-use super::protocol::{Question, markdown, path, range, span};
-use crate::editor::{self, Files, Found, Group, Position, Symbol, View, What};
-use crate::scene::kind::Kind;
+use super::protocol::{
+    Entry, FoldedLines, HintedValue, Question, Span, Swatch, markdown, path, range, span, text_of,
+};
+use crate::editor::{self, Files, Found, Group, Position, View, What};
 use crate::scene::syntax::Syntax;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -28,6 +30,15 @@ struct Asked {
     question: Question,
 }
 
+impl Asked {
+    /// Returns the range that the question is about, in bytes.
+    fn range(&self) -> Range<usize> {
+        let Span { start, end } = self.question.range;
+        let [start, end] = [start, end].map(|position: Position| self.view.text.offset(position));
+        start..end.max(start)
+    }
+}
+
 impl<'r> Server<'r> {
     /// Begins with what an editor says of itself.
     pub fn new(documents: Documents<'r>, faults: &'r Faults, parameters: &Value) -> Self {
@@ -44,46 +55,60 @@ impl<'r> Server<'r> {
         match method {
             "textDocument/didOpen" => {
                 self.documents.open(document.uri, document.version, document.text);
-                self.read(&path, false);
+                self.read(&path);
             }
             "textDocument/didChange" => {
                 self.documents.change(&path, document.version, &content_changes);
-                self.read(&path, false);
+                self.read(&path);
             }
-            "textDocument/didSave" => self.read(&path, true),
+            "textDocument/didSave" => self.read(&path),
             "textDocument/didClose" => {
                 self.documents.close(&path);
                 self.faults.read(&path, &document.uri, 0, None);
+                self.read(&path);
             }
             "workspace/didChangeWatchedFiles" => {
-                self.documents.paths().iter().for_each(|path| self.read(path, true));
+                self.documents.paths().iter().for_each(|path| self.read(path));
             }
             _ => {}
         }
     }
 
-    /// Has a scene read. One that an open scene includes is read with that one, as it is stored.
-    fn read(&self, path: &Path, is_stored: bool) {
+    /// Has a scene read. Of a file that open scenes include, these are read.
+    fn read(&self, path: &Path) {
         let scenes = self.documents.paths();
         let includes = |scene: &&PathBuf| {
             *scene != path && editor::group(&self.documents, scene, &[]).iter().any(|(file, _)| file == path)
         };
-        let outer: Vec<_> = scenes.iter().filter(includes).collect();
-        for scene in outer.iter().copied().filter(|_| is_stored).map(PathBuf::as_path).chain(
-            // A file in TOML may be about something else.
-            Some(path).filter(|_| outer.is_empty()),
-        ) {
-            let Some(Document { uri, version, text, .. }) = self.documents.get(scene) else { continue };
-            let is_scene = self.documents.view(scene).is_some_and(|view| view.is_scene());
-            self.faults.read(scene, uri, *version, is_scene.then(|| text.shared()));
+        let outer: Vec<_> = scenes.iter().filter(includes).map(PathBuf::as_path).collect();
+        let read = if outer.is_empty() { vec![path] } else { outer };
+        for path in read {
+            if let Some(Document { uri, version, .. }) = self.documents.get(path) {
+                self.faults.read(path, uri, *version, self.documents.scene(path));
+            }
         }
     }
 
-    /// Answers a question; `None` where it is not known.
+    /// Answers a question in JSON; `None` where it is not known.
     ///
     /// # Errors
     /// Why there is no answer.
-    pub fn answer(&mut self, method: &str, parameters: Value) -> Result<Option<Value>, String> {
+    pub fn answer(&mut self, method: &str, parameters: Value) -> Result<Option<String>, String> {
+        // A large scene has thousands of these, so they are written without a tree of values in between.
+        let large: Option<fn(&Asked) -> String> = match method {
+            "textDocument/documentSymbol" => Some(Self::symbols),
+            "textDocument/foldingRange" => Some(Self::folds),
+            "textDocument/documentColor" => Some(Self::colours),
+            "textDocument/inlayHint" => Some(Self::hints),
+            _ => None,
+        };
+        if let Some(answer) = large {
+            return Ok(Some(
+                self.asked(parameters)?
+                    .filter(|asked| asked.view.is_scene())
+                    .map_or_else(|| text_of(&Value::Null), |asked| answer(&asked)),
+            ));
+        }
         let answer = match method {
             "textDocument/completion" => Self::completion,
             "textDocument/hover" => Self::hover,
@@ -93,23 +118,23 @@ impl<'r> Server<'r> {
             "textDocument/documentHighlight" => Self::highlights,
             "textDocument/prepareRename" => Self::prepare_rename,
             "textDocument/rename" => Self::rename,
-            "textDocument/documentSymbol" => Self::symbols,
-            "textDocument/foldingRange" => Self::folds,
             "textDocument/formatting" => Self::format,
-            "textDocument/documentColor" => Self::colours,
             "textDocument/colorPresentation" => Self::presentations,
-            "textDocument/inlayHint" => Self::hints,
             "textDocument/codeAction" => Self::actions,
             _ => return Ok(None),
         };
+        let asked = self.asked(parameters)?;
+        let asked = asked.filter(|asked| asked.view.is_scene() || method == "textDocument/completion");
+        asked.map_or(Ok(Value::Null), |asked| answer(self, &asked)).map(|answer| Some(text_of(&answer)))
+    }
+
+    /// Reads a question; `None` where its text is not known.
+    fn asked(&self, parameters: Value) -> Result<Option<Asked>, String> {
         let question: Question = serde_json::from_value(parameters).map_err(|error| error.to_string())?;
         let path = path(&question.text_document.uri);
-        let Some(view) = self.documents.view(&path) else { return Ok(Some(Value::Null)) };
-        if !view.is_scene() && method != "textDocument/completion" {
-            return Ok(Some(Value::Null));
-        }
+        let Some(view) = self.documents.view(&path) else { return Ok(None) };
         let at = view.text.offset(question.position);
-        answer(self, &Asked { path, view, at, question }).map(Some)
+        Ok(Some(Asked { path, view, at, question }))
     }
 
     fn group(&self, asked: &Asked) -> Group {
@@ -217,40 +242,13 @@ impl<'r> Server<'r> {
         Ok(json!({ "changes": changes }))
     }
 
-    fn symbols(&self, asked: &Asked) -> Result<Value, String> {
-        fn symbol(view: &View, entry: &Symbol) -> Value {
-            let kind = match entry.kind {
-                Some(Kind::Camera) => 8,
-                Some(Kind::Material) => 7,
-                Some(Kind::Texture) => 1,
-                Some(Kind::Light) => 24,
-                Some(_) => 19,
-                None if entry.detail == "repeat" => 18,
-                None if entry.detail == "include" => 2,
-                None => 14,
-            };
-            json!({
-                "name": entry.name,
-                "detail": entry.detail,
-                "kind": kind,
-                "range": range(&view.text, &entry.place),
-                "selectionRange": range(&view.text, &entry.name_place),
-                "children": entry.inner.iter().map(|entry| symbol(view, entry)).collect::<Vec<_>>(),
-            })
-        }
-        Ok(editor::outline(&asked.view).iter().map(|entry| symbol(&asked.view, entry)).collect())
+    fn symbols(asked: &Asked) -> String {
+        let outline = editor::outline(&asked.view);
+        text_of(&outline.iter().map(|entry| Entry::of(&asked.view.text, entry)).collect::<Vec<_>>())
     }
 
-    fn folds(&self, asked: &Asked) -> Result<Value, String> {
-        let fold = |fold: &editor::Fold| {
-            let [start, end] = fold.lines;
-            let mut told = json!({ "startLine": start, "endLine": end });
-            if fold.is_comment {
-                told["kind"] = "comment".into();
-            }
-            told
-        };
-        Ok(editor::folds(&asked.view).iter().map(fold).collect())
+    fn folds(asked: &Asked) -> String {
+        text_of(&editor::folds(&asked.view).iter().map(FoldedLines::of).collect::<Vec<_>>())
     }
 
     fn format(&self, asked: &Asked) -> Result<Value, String> {
@@ -273,19 +271,13 @@ impl<'r> Server<'r> {
         Ok(json!([{ "range": range(&asked.view.text, &place), "newText": new_rest[..new_rest.len() - end] }]))
     }
 
-    fn colours(&self, asked: &Asked) -> Result<Value, String> {
-        let colour = |swatch: editor::Swatch| {
-            let [red, green, blue] = swatch.colour;
-            json!({
-                "range": range(&asked.view.text, &swatch.place),
-                "color": { "red": red, "green": green, "blue": blue, "alpha": 1.0 },
-            })
-        };
-        Ok(editor::colours(&asked.view).into_iter().map(colour).collect())
+    fn colours(asked: &Asked) -> String {
+        let colours = editor::colours(&asked.view);
+        text_of(&colours.iter().map(|swatch| Swatch::of(&asked.view.text, swatch)).collect::<Vec<_>>())
     }
 
     fn presentations(&self, asked: &Asked) -> Result<Value, String> {
-        let place = self.asked_range(asked);
+        let place = asked.range();
         let colour = asked.question.color;
         let text = editor::presented(&asked.view, &place, [colour.red, colour.green, colour.blue]);
         let edit =
@@ -293,27 +285,14 @@ impl<'r> Server<'r> {
         Ok(json!([{ "label": text, "textEdit": edit }]))
     }
 
-    fn asked_range(&self, asked: &Asked) -> std::ops::Range<usize> {
-        let offset = |position: Position| asked.view.text.offset(position);
-        let start = offset(asked.question.range.start);
-        start..offset(asked.question.range.end).max(start)
-    }
-
-    fn hints(&self, asked: &Asked) -> Result<Value, String> {
-        let hint = |hint: &editor::Hint| {
-            json!({
-                "position": asked.view.text.position(hint.at),
-                "label": format!("{}:", hint.name),
-                "kind": 2,
-                "paddingRight": true,
-            })
-        };
-        Ok(editor::hints(&asked.view, &self.asked_range(asked)).iter().map(hint).collect())
+    fn hints(asked: &Asked) -> String {
+        let hints = editor::hints(&asked.view, &asked.range());
+        text_of(&hints.iter().map(|hint| HintedValue::of(&asked.view.text, hint)).collect::<Vec<_>>())
     }
 
     /// Returns what would put right the faults in a range.
     fn actions(&self, asked: &Asked) -> Result<Value, String> {
-        let wanted = self.asked_range(asked);
+        let wanted = asked.range();
         let mut actions = Vec::new();
         for fault in self.faults.in_file(&asked.path) {
             let place = asked.view.text.offset(fault.range[0])..asked.view.text.offset(fault.range[1]);

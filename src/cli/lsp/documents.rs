@@ -4,12 +4,12 @@ use super::protocol::{Change, path};
 use crate::editor::{self, Files, Text, View};
 use crate::files;
 use crate::scene::registry::Registry;
-use std::cell::{OnceCell, RefCell};
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::time::SystemTime;
 
 /// The largest file that is read beside the open ones, in bytes.
@@ -21,7 +21,31 @@ pub struct Document {
     pub uri: String,
     pub version: i64,
     pub text: Text,
-    view: OnceCell<Arc<View>>,
+    view: SharedView,
+}
+
+/// What a text says, which is found once, by the first thread that asks.
+type SharedView = Arc<OnceLock<Arc<View>>>;
+
+/// A scene as it is in the editor, to be read by another thread.
+pub struct Scene {
+    /// The scene's text.
+    pub text: Text,
+    /// All open texts, by their paths.
+    pub open: Vec<(PathBuf, Arc<str>)>,
+    view: SharedView,
+}
+
+impl Scene {
+    /// Tells whether the text is a scene's at all: a file in TOML may be about something else.
+    pub fn is_scene(&self, registry: &Registry, path: &Path) -> bool {
+        read_once(&self.view, registry, path, &self.text).is_scene()
+    }
+}
+
+fn read_once(shared: &OnceLock<Arc<View>>, registry: &Registry, path: &Path, text: &Text) -> Arc<View> {
+    let view = || Arc::new(editor::read(registry, &path.to_string_lossy(), text.clone()));
+    shared.get_or_init(view).clone()
 }
 
 /// A file as it was read: when it was last changed, and what it says.
@@ -47,7 +71,7 @@ impl<'r> Documents<'r> {
     /// Opens a text, or replaces it.
     pub fn open(&mut self, uri: String, version: i64, text: String) -> PathBuf {
         let path = path(&uri);
-        let document = Document { uri, version, text: Text::new(text), view: OnceCell::new() };
+        let document = Document { uri, version, text: Text::new(text), view: SharedView::default() };
         self.open.insert(path.clone(), document);
         path
     }
@@ -65,7 +89,7 @@ impl<'r> Documents<'r> {
             };
         }
         document.version = version;
-        document.view = OnceCell::new();
+        document.view = SharedView::default();
     }
 
     pub fn close(&mut self, path: &Path) {
@@ -74,6 +98,13 @@ impl<'r> Documents<'r> {
 
     pub fn get(&self, path: &Path) -> Option<&Document> {
         self.open.get(path)
+    }
+
+    /// Returns an open text as a scene that another thread reads.
+    pub fn scene(&self, path: &Path) -> Option<Scene> {
+        let document = self.open.get(path)?;
+        let open = self.open.iter().map(|(path, other)| (path.clone(), other.text.shared())).collect();
+        Some(Scene { text: document.text.clone(), open, view: document.view.clone() })
     }
 
     /// Returns the paths of the open texts.
@@ -105,8 +136,6 @@ impl<'r> Documents<'r> {
 impl Files for Documents<'_> {
     fn view(&self, path: &Path) -> Option<Arc<View>> {
         let Some(document) = self.open.get(path) else { return self.read(path) };
-        let name = path.to_string_lossy();
-        let view = || Arc::new(editor::read(self.registry, &name, document.text.clone()));
-        Some(document.view.get_or_init(view).clone())
+        Some(read_once(&document.view, self.registry, path, &document.text))
     }
 }

@@ -1,27 +1,30 @@
 //! The faults of the open scenes: each is read on a thread of its own whenever its text changes.
 
-use super::protocol::{span, uri};
+use super::documents;
+use super::protocol::{self, span, uri};
 use crate::cli::crash;
 use crate::editor::{Diagnosis, diagnose};
 use crate::scene::reader::Severity;
 use crate::scene::registry::Registry;
-use lsp_server::{Message, Notification};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 /// The longest time for which a text must have been left alone before it is read. A scene that is read in less is left
 /// alone for as long as that takes.
 const SETTLED: Duration = Duration::from_millis(300);
 
+/// A scene that is read in this time is read at once: somebody who types does not wait for its faults.
+const AT_ONCE: Duration = Duration::from_millis(200);
+
 /// A scene to be read.
 struct Job {
     uri: String,
     version: i64,
-    /// The text; `None` where the scene is no longer open.
-    text: Option<Arc<str>>,
+    /// What it says; `None` where the scene is no longer open.
+    scene: Option<documents::Scene>,
 }
 
 /// The faults of a scene.
@@ -52,8 +55,8 @@ impl Faults {
     }
 
     /// Has a scene read, in place of an older text of it that is waiting.
-    pub fn read(&self, path: &Path, uri: &str, version: i64, text: Option<Arc<str>>) {
-        self.state().jobs.insert(path.to_owned(), Job { uri: uri.to_owned(), version, text });
+    pub fn read(&self, path: &Path, uri: &str, version: i64, scene: Option<documents::Scene>) {
+        self.state().jobs.insert(path.to_owned(), Job { uri: uri.to_owned(), version, scene });
         self.changed.notify_all();
     }
 
@@ -75,7 +78,7 @@ impl Faults {
     }
 
     /// Reads scenes and tells the editor their faults until there is no more to do.
-    pub fn work(&self, registry: &Registry, tell: &dyn Fn(Message) -> bool) {
+    pub fn work(&self, registry: &Registry, tell: &dyn Fn(String) -> bool) {
         let mut took = Duration::ZERO;
         loop {
             let mut state = self.state();
@@ -83,7 +86,8 @@ impl Faults {
                 state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
             }
             // While somebody types on, only the last text is read.
-            let until = Instant::now() + took.min(SETTLED);
+            let wait = if took <= AT_ONCE { Duration::ZERO } else { took.min(SETTLED) };
+            let until = Instant::now() + wait;
             while !state.is_over
                 && let Some(left) =
                     until.checked_duration_since(Instant::now()).filter(|left| !left.is_zero())
@@ -100,12 +104,17 @@ impl Faults {
                 continue;
             };
             let start = Instant::now();
-            let read = |text: &Arc<str>| {
+            let read = |scene: &documents::Scene| {
                 crash::about(&path.display().to_string());
+                let faults = || {
+                    let faults = diagnose(registry, &path, scene.text.as_str(), &scene.open);
+                    let is_scene = faults.is_empty() || scene.is_scene(registry, &path);
+                    if is_scene { faults } else { Vec::new() }
+                };
                 // A scene that ends in an internal error has no faults that could be told.
-                crash::catch(|| diagnose(registry, &path, text)).unwrap_or_default()
+                crash::catch(faults).unwrap_or_default()
             };
-            let faults = job.text.as_ref().map(read).unwrap_or_default();
+            let faults = job.scene.as_ref().map(read).unwrap_or_default();
             took = start.elapsed();
             if !self.keep(path, job, faults).into_iter().all(tell) {
                 return;
@@ -114,9 +123,9 @@ impl Faults {
     }
 
     /// Keeps the faults of a scene, and returns what the editor is to be told.
-    fn keep(&self, path: PathBuf, job: Job, faults: Vec<Diagnosis>) -> Vec<Message> {
+    fn keep(&self, path: PathBuf, job: Job, faults: Vec<Diagnosis>) -> Vec<String> {
         let mut state = self.state();
-        let is_open = job.text.is_some();
+        let is_open = job.scene.is_some();
         let scene = Scene { uri: job.uri, version: job.version, faults };
         let mut touched: BTreeSet<PathBuf> = scene.faults.iter().map(|fault| fault.path.clone()).collect();
         let mut addresses = BTreeMap::from([(path.clone(), (scene.uri.clone(), scene.version))]);
@@ -139,7 +148,7 @@ impl Faults {
                     Some((uri, version)) => json!({ "uri": uri, "version": version, "diagnostics": told }),
                     None => json!({ "uri": uri(&path), "diagnostics": told }),
                 };
-                Notification::new("textDocument/publishDiagnostics".to_owned(), parameters).into()
+                protocol::told("textDocument/publishDiagnostics", &parameters)
             })
             .collect()
     }

@@ -1,7 +1,9 @@
 //! The Language Server Protocol, as far as it is used here: what an editor asks, and what it is told.
 
-use crate::editor::{Position, Text};
-use serde::Deserialize;
+use crate::editor::{self, Fold, Hint, Position, Symbol, Text};
+use crate::scene::kind::Kind;
+use lsp_server::{ErrorCode, RequestId};
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -27,7 +29,7 @@ pub struct Document {
     pub text: String,
 }
 
-#[derive(Clone, Copy, Default, Deserialize)]
+#[derive(Clone, Copy, Default, Deserialize, Serialize)]
 #[serde(default)]
 pub struct Span {
     pub start: Position,
@@ -75,9 +77,129 @@ pub fn capabilities() -> Value {
     })
 }
 
+/// An entry of the outline.
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Entry<'s> {
+    name: &'s str,
+    detail: &'s str,
+    kind: u8,
+    range: Span,
+    selection_range: Span,
+    children: Vec<Entry<'s>>,
+}
+
+impl<'s> Entry<'s> {
+    pub fn of(text: &Text, symbol: &'s Symbol) -> Self {
+        let kind = match symbol.kind {
+            Some(Kind::Camera) => 8,
+            Some(Kind::Material) => 7,
+            Some(Kind::Texture) => 1,
+            Some(Kind::Light) => 24,
+            Some(_) => 19,
+            None if symbol.detail == "repeat" => 18,
+            None if symbol.detail == "include" => 2,
+            None => 14,
+        };
+        Self {
+            name: &symbol.name,
+            detail: &symbol.detail,
+            kind,
+            range: Span::of(text, &symbol.place),
+            selection_range: Span::of(text, &symbol.name_place),
+            children: symbol.inner.iter().map(|inner| Self::of(text, inner)).collect(),
+        }
+    }
+}
+
+/// Lines that can be folded.
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct FoldedLines {
+    start_line: usize,
+    end_line: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    kind: Option<&'static str>,
+}
+
+impl FoldedLines {
+    pub fn of(fold: &Fold) -> Self {
+        let [start_line, end_line] = fold.lines;
+        Self { start_line, end_line, kind: fold.is_comment.then_some("comment") }
+    }
+}
+
+/// A colour in a text.
+#[derive(Serialize)]
+pub struct Swatch {
+    range: Span,
+    color: Rgba,
+}
+
+#[derive(Serialize)]
+struct Rgba {
+    red: f64,
+    green: f64,
+    blue: f64,
+    alpha: f64,
+}
+
+impl Swatch {
+    pub fn of(text: &Text, swatch: &editor::Swatch) -> Self {
+        let [red, green, blue] = swatch.colour;
+        Self { range: Span::of(text, &swatch.place), color: Rgba { red, green, blue, alpha: 1.0 } }
+    }
+}
+
+/// The name of a value, shown before it.
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct HintedValue {
+    position: Position,
+    label: String,
+    kind: u8,
+    padding_right: bool,
+}
+
+impl HintedValue {
+    pub fn of(text: &Text, hint: &Hint) -> Self {
+        let label = format!("{}:", hint.name);
+        Self { position: text.position(hint.at), label, kind: 2, padding_right: true }
+    }
+}
+
+/// Writes a value in JSON.
+pub fn text_of(value: &impl Serialize) -> String {
+    serde_json::to_string(value).unwrap_or_else(|_| "null".to_owned())
+}
+
+/// Writes an answer, whose result is in JSON.
+pub fn answered(id: &RequestId, result: &str) -> String {
+    format!(r#"{{"jsonrpc":"2.0","id":{},"result":{result}}}"#, text_of(id))
+}
+
+/// Writes why there is no answer.
+pub fn refused(id: &RequestId, code: ErrorCode, message: &str) -> String {
+    json!({ "jsonrpc": "2.0", "id": id, "error": { "code": code as i32, "message": message } }).to_string()
+}
+
+/// Writes what an editor is told without having asked.
+pub fn told(method: &str, parameters: &Value) -> String {
+    json!({ "jsonrpc": "2.0", "method": method, "params": parameters }).to_string()
+}
+
+impl Span {
+    /// Returns the positions of a range of a text.
+    fn of(text: &Text, place: &Range<usize>) -> Self {
+        let [start, end] = [place.start, place.end].map(|at| text.position(at));
+        Self { start, end }
+    }
+}
+
 /// Writes a range of a text.
 pub fn range(text: &Text, place: &Range<usize>) -> Value {
-    span([place.start, place.end].map(|at| text.position(at)))
+    let Span { start, end } = Span::of(text, place);
+    span([start, end])
 }
 
 /// Writes the range between two positions.

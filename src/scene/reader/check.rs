@@ -76,6 +76,9 @@ pub struct Chosen<'s> {
     pub memory: Option<u64>,
     /// The values that are set beside the text, each as `NAME.ATTRIBUTE=VALUES` or `NUMBER=VALUE`.
     pub sets: &'s [String],
+    /// The texts of files that are open in an editor, by their paths: where such a file is included, they stand in place
+    /// of what is stored.
+    pub open: &'s [(PathBuf, Arc<str>)],
 }
 
 pub(super) struct Check<'r, 't> {

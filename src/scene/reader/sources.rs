@@ -15,6 +15,7 @@ use std::collections::HashMap;
 use std::io::{self, Read};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use toml::de::{DeTable, DeValue};
 
 /// The maximum length of all texts together, in bytes.
@@ -49,11 +50,10 @@ struct Reading {
 impl<'t> Sources<'t> {
     /// Reads the files that a scene includes, and adds the options.
     pub fn read(
-        name: &str,
-        folder: &Path,
+        (name, folder): (&str, &Path),
         text: &'t str,
         syntax: Syntax,
-        sets: &[String],
+        (sets, open): (&[String], &[(PathBuf, Arc<str>)]),
         room: u64,
     ) -> Self {
         let own = 0..text.len();
@@ -75,7 +75,7 @@ impl<'t> Sources<'t> {
         let mut at = 0;
         while at < readings.len() {
             for (place, file) in included(syntax, &sources.text, sources.parts[at].range.clone()) {
-                let read = sources.include(&mut readings, at, &file, syntax, &mut room);
+                let read = sources.include(&mut readings, at, &file, (syntax, open), &mut room);
                 let read = read.map_err(|(message, help)| {
                     let fault = Fault::error(Some(place.clone()), message);
                     Fault { help, ..fault }
@@ -112,7 +112,7 @@ impl<'t> Sources<'t> {
         readings: &mut Vec<Reading>,
         includer: usize,
         file: &str,
-        syntax: Syntax,
+        (syntax, open): (Syntax, &[(PathBuf, Arc<str>)]),
         room: &mut u64,
     ) -> Result<usize, (String, Option<String>)> {
         let path = readings[includer].path.with_file_name(file);
@@ -141,7 +141,16 @@ impl<'t> Sources<'t> {
             return Err((format!("`{file}` has another syntax than the scene"), Some(help.to_owned())));
         }
         let mut bytes = Vec::new();
-        let read = files::open(&path).and_then(|opened| opened.take(*room + 1).read_to_end(&mut bytes));
+        let plain = files::plain(&path);
+        let read = match open.iter().find(|(known, _)| *known == plain) {
+            Some((_, text)) => {
+                bytes.extend_from_slice(text.as_bytes());
+                Ok(())
+            }
+            None => {
+                files::open(&path).and_then(|opened| opened.take(*room + 1).read_to_end(&mut bytes)).map(drop)
+            }
+        };
         if let Err(error) = read {
             let near = nearest_file(&path).filter(|_| error.kind() == io::ErrorKind::NotFound);
             let near = near.map(|near| Path::new(file).with_file_name(near));

@@ -1,6 +1,7 @@
 //! The syntax errors of a scene in TOML, and the pieces in which one that has some is parsed.
 
 use super::fault::Fault;
+use crate::parallel;
 use std::ops::Range;
 use toml::de::{DeTable, Error};
 
@@ -108,11 +109,11 @@ pub fn is_sound(text: &str) -> bool {
         }
         fits
     });
-    let has_errors = |part: Range<usize>| {
-        let (_, errors) = DeTable::parse_recoverable(&text[part]);
+    let has_errors = |part: usize| {
+        let (_, errors) = DeTable::parse_recoverable(&text[parts[part].clone()]);
         !errors.iter().all(is_duplicate)
     };
-    text.len() <= PART || !parts.into_iter().any(has_errors)
+    text.len() <= PART || parallel::first(parts.len(), has_errors).is_none()
 }
 
 /// Splits a text: before each line that is a title, and before other lines where no title comes for a long time.

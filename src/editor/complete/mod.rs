@@ -1,0 +1,50 @@
+//! Completion: what can be written at a position.
+
+mod files;
+mod notes;
+mod proposal;
+mod toml;
+mod types;
+mod values;
+
+use super::project::Group;
+use super::view::View;
+use crate::scene::registry::Registry;
+use crate::scene::syntax::Syntax;
+use proposal::At;
+pub use proposal::{Completion, What};
+
+/// Returns what can be written at a position of the group's first file.
+pub fn completions(registry: &Registry, group: &Group, at: usize) -> Vec<Completion> {
+    let Some((path, view)) = group.first() else { return Vec::new() };
+    let at = crate::text::boundary(view.text.as_str(), at);
+    let here = At { registry, view, group, folder: path.parent().unwrap_or(path), at };
+    if in_comment(view, at) {
+        return Vec::new();
+    }
+    match view.syntax {
+        Syntax::Notes => here.in_notes(),
+        Syntax::Toml => here.in_toml(),
+    }
+}
+
+/// Tells whether a position is in a comment: after a `#` that begins a word and is in no quotes.
+fn in_comment(view: &View, at: usize) -> bool {
+    let text = view.text.as_str();
+    let line = text[..at].rfind('\n').map_or(0, |end| end + 1);
+    let mut is_quoted = false;
+    let mut before = ' ';
+    for letter in text[line..at].chars() {
+        match letter {
+            '"' if before != '\\' => is_quoted = !is_quoted,
+            '#' if !is_quoted
+                && (view.syntax == Syntax::Toml || before.is_whitespace() || "{}".contains(before)) =>
+            {
+                return true;
+            }
+            _ => {}
+        }
+        before = letter;
+    }
+    false
+}

@@ -1,0 +1,104 @@
+//! Proposals, and the position at which they are made.
+
+use crate::editor::names::Sort;
+use crate::editor::project::Group;
+use crate::editor::view::View;
+use crate::scene::kind::Kind;
+use crate::scene::registry::Registry;
+use crate::scene::syntax::Syntax;
+use std::ops::Range;
+use std::path::Path;
+
+/// What a proposal is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum What {
+    Type,
+    Attribute,
+    Choice,
+    Name,
+    File,
+    Folder,
+    Number,
+    Function,
+    Keyword,
+}
+
+/// A proposal of what to write.
+#[derive(Clone, Debug)]
+pub struct Completion {
+    /// What is shown, and compared with what was typed.
+    pub label: String,
+    pub what: What,
+    /// A few words beside the label.
+    pub detail: String,
+    /// More about it, in Markdown.
+    pub about: String,
+    /// What is written: places to fill in are as in `${1:N}`.
+    pub snippet: String,
+    /// Whether there are such places.
+    pub has_places: bool,
+    /// The range of the text that it replaces.
+    pub place: Range<usize>,
+}
+
+/// A position at which something is to be proposed.
+pub(super) struct At<'v> {
+    pub(super) registry: &'v Registry,
+    pub(super) view: &'v View,
+    pub(super) group: &'v Group,
+    pub(super) folder: &'v Path,
+    pub(super) at: usize,
+}
+
+/// Returns a proposal that is written as it is shown.
+pub(super) fn plain(label: &str, what: What, place: &Range<usize>) -> Completion {
+    Completion {
+        label: label.to_owned(),
+        what,
+        detail: String::new(),
+        about: String::new(),
+        snippet: label.to_owned(),
+        has_places: false,
+        place: place.clone(),
+    }
+}
+
+impl At<'_> {
+    /// Returns the range of the word that is being written.
+    pub(super) fn prefix(&self) -> Range<usize> {
+        let is_end = |c: char| {
+            let in_toml = self.view.syntax == Syntax::Toml && ".[]=,\"'".contains(c);
+            c.is_whitespace() || c == '{' || c == '}' || in_toml
+        };
+        let before = &self.view.text.as_str()[..self.at];
+        let start = before
+            .rfind(is_end)
+            .map_or(0, |end| end + before[end..].chars().next().map_or(1, char::len_utf8));
+        start..self.at
+    }
+
+    pub(super) fn is_in(&self, body: &Range<usize>) -> bool {
+        body.start <= self.at && self.at <= body.end && body.start < self.view.text.as_str().len() + 1
+    }
+
+    /// Tells whether a quote opens right before the word at the position.
+    pub(super) fn at_quote(&self) -> bool {
+        self.view.text.as_str()[..self.prefix().start].ends_with(['"', '\''])
+    }
+
+    /// Returns the names of the entities of a kind that are defined before the position, and those of other files.
+    pub(super) fn names(&self, kind: Kind) -> Vec<String> {
+        let mut names = Vec::new();
+        for (index, (_, view)) in self.group.iter().enumerate().rev() {
+            let all = view.names();
+            let usable = all.definitions.iter().filter(|definition| {
+                let is_visible =
+                    definition.scope.as_ref().is_none_or(|scope| index == 0 && scope.contains(&self.at));
+                let is_before = index > 0 || definition.whole.end <= self.at;
+                definition.name.sort == Sort::Entity(kind) && is_before && is_visible
+            });
+            names.extend(usable.map(|definition| definition.name.text.clone()));
+        }
+        names
+    }
+}

@@ -1,0 +1,75 @@
+//! The names of a text, to be looked up.
+
+use super::word::Word;
+use crate::scene::kind::Kind;
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// What has a name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Sort {
+    /// An entity of a kind.
+    Entity(Kind),
+    /// A number, of a `let` or of a `repeat`.
+    Number,
+}
+
+/// How a name stands in the text.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stands {
+    /// As a word that is a key, or a word of the notes' syntax.
+    Key(Word),
+    /// As a value.
+    Value(Word),
+    /// In a formula.
+    InFormula,
+}
+
+/// A name in a text.
+#[derive(Clone, Debug)]
+pub struct Name {
+    pub sort: Sort,
+    pub text: String,
+    /// Its range, without quotes.
+    pub place: Range<usize>,
+    pub stands: Stands,
+}
+
+/// Where a name is given.
+#[derive(Clone, Debug)]
+pub struct Definition {
+    pub name: Name,
+    /// Where else the same name is written for the same thing.
+    pub again: Vec<Name>,
+    /// The range of what has the name.
+    pub whole: Range<usize>,
+    /// The range in which it can be used as it is, if that is what is repeated; otherwise it can be used everywhere.
+    pub scope: Option<Range<usize>>,
+    /// By how many `repeat` it is repeated.
+    pub depth: usize,
+}
+
+/// The names of a text.
+#[derive(Debug, Default)]
+pub struct Names {
+    pub definitions: Vec<Definition>,
+    pub uses: Vec<Name>,
+    pub(super) by_name: HashMap<(Sort, String), Vec<usize>>,
+}
+
+impl Names {
+    /// Returns the indices of the definitions of exactly this name.
+    pub fn named(&self, sort: Sort, text: &str) -> &[usize] {
+        self.by_name.get(&(sort, text.to_owned())).map_or(&[], Vec::as_slice)
+    }
+
+    /// Returns the name at a position, and the index of its definition if it is given there.
+    pub fn at(&self, at: usize) -> Option<(&Name, Option<usize>)> {
+        let has = |name: &Name| name.place.start <= at && at <= name.place.end;
+        let given = self.definitions.iter().enumerate().find_map(|(index, definition)| {
+            let mut all = std::iter::once(&definition.name).chain(&definition.again);
+            all.find(|name| has(name)).map(|name| (name, Some(index)))
+        });
+        given.or_else(|| self.uses.iter().find(|name| has(name)).map(|name| (name, None)))
+    }
+}
