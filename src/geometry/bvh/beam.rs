@@ -26,11 +26,12 @@ const LEAST_SLACK: f64 = 1e-100;
 /// so do the rays before anything was rounded.
 #[derive(Clone, Copy)]
 pub struct Beam {
-    /// The bounds of the origins: the high one is measured from to low planes, and the low one to high planes.
-    pub from: [DVec3; 2],
-    /// The reciprocals of the components of the directions: the largest component's for low planes, and the smallest
-    /// one's for high planes.
-    pub inverse: [DVec3; 2],
+    /// The bounds of the origins along each axis, those from which near planes are measured first: the high one to low
+    /// planes, and the low one to high planes. Of four numbers the last is 0.
+    pub from: [[f64; 4]; 2],
+    /// The reciprocals of the components of the directions, likewise: the largest component's for low planes, and the
+    /// smallest one's for high planes.
+    pub inverse: [[f64; 4]; 2],
     /// The side of a box that the rays reach first along each axis, [`LOW`] or [`HIGH`].
     pub near: [usize; 3],
     /// Whether some rays rise along the axis and others fall. They enter a box through either plane, and may never leave
@@ -96,12 +97,21 @@ impl Beam {
             near[axis] = usize::from(falls == [true, true]);
             is_mixed[axis] = falls == [true, false];
         }
-        let steepest =
-            |inverse: f64| if inverse.abs() > STEEPEST { STEEPEST.copysign(inverse) } else { inverse };
-        let inverse = |dir: DVec3| dir.recip().map(steepest);
+        let from = [(high + slack).to_array(), (low - slack).to_array()];
+        let inverse = [greatest.recip().to_array(), least.recip().to_array()];
+        let mut sorted = ([[0.0; 4]; 2], [[0.0; 4]; 2]);
+        for axis in 0..3 {
+            for side in [LOW, HIGH] {
+                let plane = near[axis] ^ side;
+                let inverse = inverse[plane][axis];
+                let is_steep = inverse.abs() > STEEPEST;
+                sorted.0[side][axis] = from[plane][axis];
+                sorted.1[side][axis] = if is_steep { STEEPEST.copysign(inverse) } else { inverse };
+            }
+        }
         Self {
-            from: [high + slack, low - slack],
-            inverse: [inverse(greatest), inverse(least)],
+            from: sorted.0,
+            inverse: sorted.1,
             near,
             is_mixed,
             slack,

@@ -38,22 +38,27 @@ pub struct Node {
 /// lowest one for the first: 1 where it enters the box, and else 0.
 pub type Entered = ([f64; WIDTH], u64);
 
-/// Planes on a grid, as a beam meets them.
+/// The planes of a node's boxes, as a beam meets them: near and far ones, for each axis.
 struct Planes<'n> {
-    numbers: &'n [u8; WIDTH],
-    /// The distance to plane 0, in world units along the beam.
-    start: f64,
-    /// The distance from one plane to the next.
-    pace: f64,
+    numbers: [[&'n [u8; WIDTH]; 3]; 2],
+    /// The distances to the planes of number 0, in world units along the beam.
+    starts: [[f64; 4]; 2],
+    /// The distances from one plane to the next.
+    paces: [[f64; 4]; 2],
 }
 
 impl Planes<'_> {
-    /// Returns the distance to the plane of a child, in world units along the beam; NaN where nothing is known of it.
+    /// Returns the distance to a plane of a child, in world units along the beam; NaN where nothing is known of it.
     #[inline(always)]
-    fn distance(&self, child: usize) -> f64 {
-        self.start + f64::from(self.numbers[child]) * self.pace
+    fn distance(&self, side: usize, axis: usize, child: usize) -> f64 {
+        self.starts[side][axis] + f64::from(self.numbers[side][axis][child]) * self.paces[side][axis]
     }
 }
+
+/// The planes through which a beam enters boxes, unless it is mixed.
+const NEAR: usize = 0;
+/// The planes through which it leaves them.
+const FAR: usize = 1;
 
 impl Node {
     /// A node that is yet to be made.
@@ -110,17 +115,16 @@ impl Node {
         if beam.is_mixed != [false; 3] {
             return self.entered_by_mixed(beam, t_max);
         }
-        let near = [0, 1, 2].map(|axis: usize| self.planes(beam, axis, beam.near[axis]));
-        let far = [0, 1, 2].map(|axis: usize| self.planes(beam, axis, beam.near[axis] ^ 1));
+        let planes = self.planes(beam);
         let (mut enters, mut is_entered) = ([0.0; WIDTH], [0; WIDTH]);
         // One loop over all planes of a child, which the compiler takes eight children at a time.
         for child in 0..WIDTH {
-            let mut enter = larger(near[0].distance(child), 0.0);
-            enter = larger(near[1].distance(child), enter);
-            enter = larger(near[2].distance(child), enter);
-            let mut leave = smaller(far[0].distance(child), t_max);
-            leave = smaller(far[1].distance(child), leave);
-            leave = smaller(far[2].distance(child), leave);
+            let mut enter = larger(planes.distance(NEAR, 0, child), 0.0);
+            enter = larger(planes.distance(NEAR, 1, child), enter);
+            enter = larger(planes.distance(NEAR, 2, child), enter);
+            let mut leave = smaller(planes.distance(FAR, 0, child), t_max);
+            leave = smaller(planes.distance(FAR, 1, child), leave);
+            leave = smaller(planes.distance(FAR, 2, child), leave);
             enters[child] = enter;
             is_entered[child] = u8::from(enter <= leave * (1.0 + SLACK));
         }
@@ -131,13 +135,12 @@ impl Node {
     #[inline(always)]
     fn entered_by_mixed(&self, beam: &Beam, t_max: f64) -> Entered {
         let (mut enters, mut leaves, mut is_entered) = ([0.0; WIDTH], [t_max; WIDTH], [0; WIDTH]);
+        let planes = self.planes(beam);
         for axis in 0..3 {
-            let near = self.planes(beam, axis, beam.near[axis]);
-            let far = self.planes(beam, axis, beam.near[axis] ^ 1);
             let is_mixed = beam.is_mixed[axis];
             for child in 0..WIDTH {
-                let distance = far.distance(child);
-                enters[child] = larger(near.distance(child), enters[child]);
+                let distance = planes.distance(FAR, axis, child);
+                enters[child] = larger(planes.distance(NEAR, axis, child), enters[child]);
                 enters[child] = larger(if is_mixed { distance } else { 0.0 }, enters[child]);
                 leaves[child] = smaller(if is_mixed { t_max } else { distance }, leaves[child]);
             }
@@ -154,15 +157,24 @@ impl Node {
         (enters, u64::from_le_bytes(is_entered) & (u64::MAX >> (u64::BITS - 8 * u32::from(self.children))))
     }
 
-    /// Returns the planes of all children on one side, as a beam meets them.
+    /// Returns the planes of all children, as a beam meets them.
     #[inline(always)]
-    fn planes(&self, beam: &Beam, axis: usize, side: usize) -> Planes<'_> {
-        let inverse = beam.inverse[side][axis];
-        Planes {
-            numbers: &self.planes[axis][side],
-            start: (self.corner[axis] - beam.from[side][axis]) * inverse,
-            pace: exp2(self.exponents[axis]) * inverse,
+    fn planes(&self, beam: &Beam) -> Planes<'_> {
+        let DVec3 { x, y, z } = self.corner;
+        let [a, b, c] = self.exponents;
+        let (corner, steps) = ([x, y, z, 0.0], [exp2(a), exp2(b), exp2(c), 0.0]);
+        let (mut starts, mut paces) = ([[0.0; 4]; 2], [[0.0; 4]; 2]);
+        for side in [NEAR, FAR] {
+            for axis in 0..4 {
+                let inverse = beam.inverse[side][axis];
+                starts[side][axis] = (corner[axis] - beam.from[side][axis]) * inverse;
+                paces[side][axis] = steps[axis] * inverse;
+            }
         }
+        let [x, y, z] = &self.planes;
+        let [a, b, c] = beam.near;
+        let numbers = [[&x[a], &y[b], &z[c]], [&x[a ^ 1], &y[b ^ 1], &z[c ^ 1]]];
+        Planes { numbers, starts, paces }
     }
 
     /// Returns whether a child is a node, and its place among all nodes or among all objects.
