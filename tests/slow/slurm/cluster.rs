@@ -194,6 +194,7 @@ SwitchType=switch/none
 ReturnToService=2
 SlurmdTimeout=5
 KillWait=2
+MinJobAge=86400
 SchedulerParameters=sched_interval=1,sched_min_interval=0,batch_sched_delay=0
 PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 ",
