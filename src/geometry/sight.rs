@@ -163,11 +163,17 @@ impl Within {
 /// numbers make it 0, so that a ray along a plane is told from one that meets it far away.
 #[inline(always)]
 pub(crate) fn direction(viewpoint: DVec3, at: DVec2, last: DVec2, size: DVec2) -> DVec3 {
-    let mut toward = (at / last * size).extend(0.0) - viewpoint;
+    let mut toward = toward(viewpoint, at, last, size);
     if (toward.x == 0.0) | (toward.y == 0.0) {
         toward = unless_cancelled(toward, viewpoint, at, last, size);
     }
     toward.normalize()
+}
+
+/// Returns the vector from a viewpoint to a point of the image plane, in plain arithmetic.
+#[inline(always)]
+pub(crate) fn toward(viewpoint: DVec3, at: DVec2, last: DVec2, size: DVec2) -> DVec3 {
+    (at / last * size).extend(0.0) - viewpoint
 }
 
 /// Returns a vector from a viewpoint to a point of the image plane with what is left of the components that rounding makes
