@@ -139,7 +139,7 @@ impl Solid {
             trees.push(one.tree.moved(parts.len()));
             parts.extend(one.parts);
         }
-        Self { parts, tree: Tree::Combined(operation, trees) }
+        Self { parts, tree: Tree::Combined(operation, trees.into()) }
     }
 }
 

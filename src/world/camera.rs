@@ -17,6 +17,12 @@ pub trait Camera: fmt::Debug + Send + Sync + 'static {
     /// the unit disc, (0, 0) its centre, which only cameras whose lens has a size take into account.
     fn ray(&self, at: &ImagePoint, lens: DVec2) -> Ray;
 
+    /// Returns what [`ray`](Self::ray) does; where that takes more than plain arithmetic, a direction whose x or y is 0 may
+    /// stand for it. Of many rays, these alone are asked for again.
+    fn plain_ray(&self, at: &ImagePoint, lens: DVec2) -> Ray {
+        self.ray(at, lens)
+    }
+
     /// Returns a ball that holds the origins of all rays to places in an image with this width and height in pixels, and
     /// up to two pixels outside of it.
     fn origins(&self, pixels: [usize; 2]) -> Origins;

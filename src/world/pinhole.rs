@@ -28,6 +28,12 @@ impl Camera for Pinhole {
         Ray { origin: self.viewpoint, dir: sight::direction(self.viewpoint, at, last, self.screen) }
     }
 
+    #[inline(always)]
+    fn plain_ray(&self, at: &ImagePoint, _lens: DVec2) -> Ray {
+        let (at, last) = place(at);
+        Ray { origin: self.viewpoint, dir: sight::toward(self.viewpoint, at, last, self.screen).normalize() }
+    }
+
     fn origins(&self, _pixels: [usize; 2]) -> Origins {
         Origins::at(self.viewpoint)
     }

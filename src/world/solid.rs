@@ -1,6 +1,7 @@
 //! How closed shapes are combined to a solid: which of them a point must lie in.
 
 use crate::geometry::aabb::Aabb;
+use std::sync::Arc;
 
 /// A way in which solids are combined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,7 +22,7 @@ pub enum Tree {
     /// To lie in a part.
     Part(usize),
     /// That of an operation on several of them.
-    Combined(Operation, Vec<Tree>),
+    Combined(Operation, Arc<[Tree]>),
 }
 
 impl Tree {
@@ -34,7 +35,7 @@ impl Tree {
             Self::Combined(Operation::Union, of) => any(of, inside),
             Self::Combined(Operation::Intersection, of) => {
                 let mut all = Some(true);
-                for one in of {
+                for one in of.iter() {
                     match one.holds(inside) {
                         Some(true) => {}
                         Some(false) => return Some(false),
@@ -69,52 +70,93 @@ impl Tree {
         }
     }
 
-    /// Returns what is left of the condition for points that lie outside of some parts.
+    /// Returns how many operations lie within each other in the condition, at most.
+    pub fn depth(&self) -> usize {
+        match self {
+            Self::Known(_) | Self::Part(_) => 0,
+            Self::Combined(_, of) => 1 + of.iter().map(Self::depth).max().unwrap_or(0),
+        }
+    }
+
+    /// Returns what is left of the condition for points that lie outside of some parts. What stays as it is, is shared.
     pub fn without(&self, is_outside: &dyn Fn(usize) -> bool) -> Self {
-        let (operation, of) = match self {
-            Self::Part(part) if is_outside(*part) => return Self::Known(false),
-            Self::Known(_) | Self::Part(_) => return self.clone(),
-            Self::Combined(operation, of) => (*operation, of),
+        self.changed(is_outside).unwrap_or_else(|| self.clone())
+    }
+
+    /// Returns what [`without`](Self::without) does, or `None` where that is the condition itself.
+    fn changed(&self, is_outside: &dyn Fn(usize) -> bool) -> Option<Self> {
+        let (operation, all) = match self {
+            Self::Part(part) => return is_outside(*part).then_some(Self::Known(false)),
+            Self::Known(_) => return None,
+            Self::Combined(operation, all) => (*operation, all),
         };
-        let mut of: Vec<_> = of.iter().map(|one| one.without(is_outside)).collect();
+        let mut changed: Option<Vec<Self>> = None;
+        for (index, one) in all.iter().enumerate() {
+            match (one.changed(is_outside), &mut changed) {
+                (Some(new), of) => of.get_or_insert_with(|| all[..index].to_vec()).push(new),
+                (None, Some(of)) => of.push(one.clone()),
+                (None, None) => {}
+            }
+        }
+        let mut of = changed?;
         match operation {
             Operation::Union => of.retain(|one| *one != Self::Known(false)),
-            Operation::Intersection if of.contains(&Self::Known(false)) => return Self::Known(false),
+            Operation::Intersection if of.contains(&Self::Known(false)) => return Some(Self::Known(false)),
             Operation::Intersection => {}
-            Operation::Difference if of.first() == Some(&Self::Known(false)) => return Self::Known(false),
+            Operation::Difference if of.first() == Some(&Self::Known(false)) => {
+                return Some(Self::Known(false));
+            }
             Operation::Difference => {
                 let first = of.remove(0);
                 of.retain(|one| *one != Self::Known(false));
                 of.insert(0, first);
             }
         }
-        match of.len() {
+        Some(match of.len() {
             0 => Self::Known(false),
             1 => of.remove(0),
-            _ => Self::Combined(operation, of),
-        }
+            _ => Self::Combined(operation, of.into()),
+        })
     }
 
-    /// Adds to `needed` the conditions on other parts, each with whether it must hold, under which the surface of a part
-    /// is that of the solid. Returns whether the solid lies on the outer side of the part; `None` if the condition does
-    /// not name the part.
-    pub fn surface_of(&self, part: usize, needed: &mut Vec<(Self, bool)>) -> Option<bool> {
+    /// Returns the way to a part through the condition, and whether the solid lies on the outer side of the part; `None`
+    /// if the condition does not name the part. The way has the index of what the part lies in, in each operation, from
+    /// the innermost one outward.
+    pub fn way_to(&self, part: usize) -> Option<(Vec<usize>, bool)> {
         let (operation, of) = match self {
             Self::Known(_) => return None,
-            Self::Part(own) => return (*own == part).then_some(false),
+            Self::Part(own) => return (*own == part).then_some((Vec::new(), false)),
             Self::Combined(operation, of) => (*operation, of),
         };
-        let (index, is_outer) =
-            of.iter().enumerate().find_map(|(index, one)| Some((index, one.surface_of(part, needed)?)))?;
-        for (other, one) in of.iter().enumerate().filter(|(other, _)| *other != index) {
+        let (index, (mut way, is_outer)) =
+            of.iter().enumerate().find_map(|(index, one)| Some((index, one.way_to(part)?)))?;
+        way.push(index);
+        Some((way, is_outer != (operation == Operation::Difference && index > 0)))
+    }
+
+    /// Tells whether the surface of the part at the end of a [way](Self::way_to) is that of the solid at a point, of which
+    /// `inside` tells whether it lies in another part; `None` where that is open.
+    pub fn is_bare(&self, way: &[usize], inside: &mut dyn FnMut(usize) -> Option<bool>) -> Option<bool> {
+        let (Self::Combined(operation, of), Some((own, inner))) = (self, way.split_last()) else {
+            return Some(true);
+        };
+        let mut all = of[*own].is_bare(inner, inside);
+        if all == Some(false) {
+            return all;
+        }
+        for (other, one) in of.iter().enumerate().filter(|(other, _)| other != own) {
             let must_hold = match operation {
                 Operation::Union => false,
                 Operation::Intersection => true,
                 Operation::Difference => other == 0,
             };
-            needed.push((one.clone(), must_hold));
+            match one.holds(inside) {
+                Some(holds) if holds == must_hold => {}
+                Some(_) => return Some(false),
+                None => all = None,
+            }
         }
-        Some(is_outer != (operation == Operation::Difference && index > 0))
+        all
     }
 
     /// Returns a box that holds all points where the condition holds; `None` if there is no such box.
@@ -199,18 +241,16 @@ mod tests {
 
     #[test]
     fn a_surface_is_the_solids_where_the_other_parts_allow_it() {
-        let tree = Tree::Combined(Difference, vec![parts(Union, &[0, 1]), parts(Difference, &[2, 3])]);
+        let tree = Tree::Combined(Difference, [parts(Union, &[0, 1]), parts(Difference, &[2, 3])].into());
         for part in 0..4 {
-            let mut needed = Vec::new();
-            let is_outer = tree.surface_of(part, &mut needed).expect("the part is there");
+            let (way, is_outer) = tree.way_to(part).expect("the part is there");
             assert_eq!(is_outer, part == 2, "{part}");
             for bits in 0..16_usize {
                 let inside: Vec<_> = (0..4).map(|part| bits >> part & 1 == 1).collect();
                 let mut beyond = inside.clone();
                 beyond[part] = !inside[part];
                 let holds = |inside: &[bool]| tree.holds(&mut |part| Some(inside[part]));
-                let is_seen =
-                    needed.iter().all(|(one, must)| one.holds(&mut |part| Some(inside[part])) == Some(*must));
+                let is_seen = tree.is_bare(&way, &mut |part| Some(inside[part])) == Some(true);
                 assert_eq!(is_seen, holds(&inside) != holds(&beyond), "{part} {bits:b}");
                 assert_eq!(tree.owner(&inside, &beyond).is_some(), is_seen, "{part} {bits:b}");
             }
@@ -231,9 +271,22 @@ mod tests {
 
     #[test]
     fn parts_far_away_are_left_out() {
-        let tree = Tree::Combined(Difference, vec![parts(Union, &[0, 1]), Tree::Part(2)]);
+        let tree = Tree::Combined(Difference, [parts(Union, &[0, 1]), Tree::Part(2)].into());
         assert_eq!(tree.without(&|part| part == 2), parts(Union, &[0, 1]));
         assert_eq!(tree.without(&|part| part > 0), Tree::Part(0));
         assert_eq!(tree.without(&|part| part < 2), Tree::Known(false));
+    }
+
+    #[test]
+    fn what_stays_as_it_is_takes_no_memory_again() {
+        let tree = Tree::Combined(Difference, [parts(Union, &[0, 1]), parts(Union, &[2, 3])].into());
+        let shares = |one: &Tree, other: &Tree| match (one, other) {
+            (Tree::Combined(_, one), Tree::Combined(_, other)) => Arc::ptr_eq(one, other),
+            _ => false,
+        };
+        assert!(shares(&tree.without(&|_| false), &tree));
+        let Tree::Combined(_, of) = &tree else { panic!("{tree:?}") };
+        let Tree::Combined(_, left) = tree.without(&|part| part == 0) else { panic!("{tree:?}") };
+        assert!(shares(&left[1], &of[1]) && left[0] == Tree::Part(1), "{left:?}");
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::common::{load, model, root, scenes};
 use assert_cmd::cargo::cargo_bin_cmd;
-use tabray::render::Plan;
+use tabray::render::{Plan, trace};
 use tabray::tools::verify::{self, Verdict};
 use tabray::world::certify::{Enclosure, Precision};
 use tempfile::TempDir;
@@ -164,6 +164,23 @@ fn scenes_of_any_scale_are_proven() {
         ));
         let [_, ties, contradicted] = counts(&model, 1);
         assert_eq!((ties, contradicted), (0, 0), "{scale}");
+    }
+}
+
+/// In f64, 6 times 8/15 is the viewer's 3.2, and a ray straight ahead never meets the wall at x = 0. In the numbers of the
+/// scene it does, some 1e17 units away, and hides the background.
+#[test]
+fn a_ray_that_rounding_makes_parallel_to_a_plane_meets_it() {
+    for (viewpoint, is_met) in [("3.2 4 7", true), ("3.1999999999999997 4 7", false)] {
+        let text = format!(
+            "camera eye {{ pixeldim 16 12 worlddim 8 6 viewpoint {viewpoint} }} material m {{ ambient 1 1 1 }}
+             plane wall {{ material m normal 1 0 0 point 0 0 -6 }}"
+        );
+        let model = model(&text);
+        let sight = model.camera.value.sight(6.0, 3.0);
+        assert_eq!(trace::first_hit(&Plan::new(&model), &sight).is_some(), is_met, "{viewpoint}");
+        let [_, ties, contradicted] = counts(&model, 1);
+        assert_eq!((ties, contradicted), (0, 0), "{viewpoint}");
     }
 }
 

@@ -102,6 +102,20 @@ fn a_hundred_thousand_rounds_are_read_quickly_and_many_more_are_refused() {
 }
 
 #[test]
+fn rounds_within_rounds_without_end_are_refused_quickly() {
+    let nested = |depth: usize| {
+        let opened: String = (0..depth).map(|index| format!("repeat i{index} 1 {{\n")).collect();
+        let closed = "}".repeat(depth);
+        format!("{HEAD}{opened} sphere s {{ material m center 4 3 -4 radius 1 }}\n{closed}\n")
+    };
+    assert_eq!(model(&nested(32)).objects.len(), 1);
+    let start = Instant::now();
+    let said = refused(Path::new(""), "scene", &nested(50_000));
+    assert!(said.contains("`repeat i32` is one `repeat` too deep"), "{said}");
+    assert!(start.elapsed() < Duration::from_secs(5), "{:?}", start.elapsed());
+}
+
+#[test]
 fn many_unknown_names_are_told_quickly() {
     let numbers: String = (0..20_000).map(|index| format!("let n{index} {index}\n")).collect();
     let wrong: String = (0..20_000)

@@ -1,7 +1,10 @@
 //! Solids: what rays hit of shapes that are combined, also where their surfaces coincide, and how they look.
 
-use crate::common::{model, render};
+use crate::common::{model, registry, render};
+use std::fmt::Write;
+use std::path::Path;
 use tabray::render::{Plan, trace};
+use tabray::scene;
 use tabray::tools::verify::{self, Verdict};
 
 /// A viewer who looks along -z from z = 6 through the middle of the only pixel.
@@ -221,4 +224,41 @@ fn solids_of_classic_scenes_are_made_of_exact_parts() {
     let sight = model.camera.value.sight(0.0, 0.0);
     let hit = trace::first_hit(&Plan::new(&model), &sight).expect("a hit");
     assert_eq!(hit.distance, 7.5);
+}
+
+/// Returns the messages about a scene that must be refused.
+fn refused(text: &str) -> String {
+    match scene::read(registry(), "scene", Path::new(""), text.as_bytes(), None) {
+        Ok(_) => panic!("it is read: {text}"),
+        Err(report) => report.to_string(),
+    }
+}
+
+/// Each solid of a chain has all parts of those before it, and each part has conditions on the others.
+#[test]
+fn a_chain_of_solids_is_read_and_one_without_end_is_refused() {
+    let chain = |links: usize| {
+        let mut text = format!(
+            "{VIEWER}sphere d0 {{ material m center 4 3 -2 radius 2 }} box cut {{ material m center 4 3 0 size 1 1 1 }}\n"
+        );
+        for link in 1..=links {
+            writeln!(text, "difference d{link} {{ objects d{} cut }}", link - 1).expect("a string");
+        }
+        text
+    };
+    assert_eq!(model(&chain(256)).patterns.len(), 257);
+    let said = refused(&chain(2000));
+    assert!(said.contains("difference `d257` has more than 256 solids within each other"), "{said}");
+}
+
+#[test]
+fn of_too_many_objects_it_is_their_number_that_is_told() {
+    let (mut text, mut names) = (VIEWER.to_owned(), String::new());
+    for index in 0..300 {
+        writeln!(text, "sphere s{index} {{ material m center {index} 3 -2 radius 2 }}").expect("a string");
+        write!(names, " s{index}").expect("a string");
+    }
+    let said = refused(&format!("{text} union u {{ objects{names} material m }}"));
+    assert!(said.contains("`objects` of union `u` takes 2 to 256 object names, not 300 values"), "{said}");
+    assert_eq!(said.matches("error: ").count(), 1, "{said}");
 }

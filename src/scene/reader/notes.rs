@@ -327,10 +327,8 @@ fn is_value(
             already < max && !is_attribute
         }
         // A name may look like anything, even like a number or an attribute: `material material`.
-        // The names of a list end where the next attribute begins.
-        Some(Type::Name(_)) if max > 1 => {
-            already < max && table.is_none_or(|table| table.find(word).is_none())
-        }
+        // The names of a list end where the next attribute begins, however many there are.
+        Some(Type::Name(_)) if max > 1 => table.is_none_or(|table| table.find(word).is_none()),
         Some(Type::Word | Type::File | Type::Name(_) | Type::Choice(_) | Type::Formula(_) | Type::Truth) => {
             already < max
         }

@@ -14,6 +14,9 @@ use std::ops::Range;
 const MOST: usize = 1_000_000;
 const MOST_BYTES: usize = 1 << 28;
 
+/// The maximum number of `repeat`s within each other. Where each has two rounds or more, 20 of them have too many already.
+const DEEPEST: usize = 32;
+
 /// The rounds of a scene's `repeat`s.
 #[derive(Default)]
 pub struct Rounds<'a> {
@@ -82,6 +85,12 @@ impl<'a> Rounds<'a> {
         report: &mut Report<'_>,
     ) -> bool {
         let names = self.numbers.len();
+        let is_too_deep = self.open.len() >= DEEPEST;
+        if is_too_deep {
+            let message = format!("`repeat {}` is one `repeat` too deep", name.text);
+            let help = format!("there are at most {DEEPEST} of them within each other");
+            report.add(Fault::error(name.place.clone(), message).help(help));
+        }
         let number = self.numbers.number(count, report);
         let rounds = number.map_or(0.0, |number| number);
         if rounds < 0.0 || rounds.fract() != 0.0 || rounds > MOST as f64 {
@@ -95,7 +104,7 @@ impl<'a> Rounds<'a> {
             if number.is_some() && rounds >= 0.0 && rounds <= MOST as f64 { rounds as u64 } else { 1 };
         let place = name.place.clone();
         self.open.push(Round { place, index: 0, count, names, start, errors, entities });
-        count > 0
+        count > 0 && !is_too_deep
     }
 
     /// Ends a round whose body ends at `end`. Returns the position of the body if there is another round; otherwise the

@@ -17,6 +17,9 @@ use std::sync::Arc;
 /// The largest number of parts of a solid. Each of them may have to be compared with all others.
 const MOST_PARTS: usize = 1024;
 
+/// The largest number of solids within each other. The name of a part tells all of them.
+const DEEPEST: usize = 256;
+
 /// The objects of which a solid is made.
 pub type Objects = List<NamedBody, 2, 256>;
 
@@ -39,6 +42,8 @@ enum NoSolid {
     Open(Arc<str>, &'static str),
     /// There are too many parts.
     TooMany,
+    /// There are too many solids within each other.
+    TooDeep,
     /// No point lies in the solid.
     Empty,
 }
@@ -55,6 +60,10 @@ impl NoSolid {
             Self::TooMany => (
                 format!("has more than {MOST_PARTS} parts"),
                 "a `union` of what does not overlap can be left out: the objects are seen without it",
+            ),
+            Self::TooDeep => (
+                format!("has more than {DEEPEST} solids within each other"),
+                "a solid takes up to 256 objects at once: `difference rest { objects block one two three }`",
             ),
             Self::Empty => (
                 "encloses nothing: its objects do not meet as they would have to".to_owned(),
@@ -124,6 +133,9 @@ impl Body {
         if solid.parts.len() > MOST_PARTS {
             return Err(NoSolid::TooMany);
         }
+        if solid.tree.depth() > DEEPEST {
+            return Err(NoSolid::TooDeep);
+        }
         if let Some(material) = material {
             solid.parts.iter_mut().for_each(|part| part.material = material.clone());
         }
@@ -149,10 +161,9 @@ fn seen(solid: &Solid) -> Vec<Body> {
             return None;
         }
         let tree = solid.tree.without(&|other| other != index && !meets(other));
-        let mut needed = Vec::new();
-        let is_outer = tree.surface_of(index, &mut needed)?;
+        let (way, is_outer) = tree.way_to(index)?;
         let around = common(around, tree.bounds(&|part| bounds[part]));
-        let shape = Trimmed::new(&parts, &bounds, (index, is_outer), tree, needed, around);
+        let shape = Trimmed::new(&parts, &bounds, (index, is_outer), (tree, way), around);
         let part = &parts[index];
         let shader = PartShader(part.body.clone());
         let body = Body::shaded(Shape::new(shape).by::<ByPackets, ByParts>(), shader);

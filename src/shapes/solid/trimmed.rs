@@ -41,8 +41,8 @@ pub struct Trimmed {
     pub(super) is_outer: bool,
     /// What a point near this surface must lie in to lie in the solid.
     pub(super) tree: Tree,
-    /// The conditions under which the surface is the solid's, each with whether it must hold.
-    needed: Vec<(Tree, bool)>,
+    /// The way to the part through the tree.
+    way: Vec<usize>,
     bounds: Option<Aabb>,
 }
 
@@ -52,12 +52,11 @@ impl Trimmed {
         parts: &Arc<[Part]>,
         around: &Arc<[Option<Aabb>]>,
         (index, is_outer): (usize, bool),
-        tree: Tree,
-        needed: Vec<(Tree, bool)>,
+        (tree, way): (Tree, Vec<usize>),
         bounds: Option<Aabb>,
     ) -> Self {
         let (parts, around) = (parts.clone(), around.clone());
-        Self { parts, around, index, is_outer, tree, needed, bounds }
+        Self { parts, around, index, is_outer, tree, way, bounds }
     }
 
     /// Returns the shape of the part.
@@ -72,7 +71,7 @@ impl Trimmed {
 
     /// Tells whether all of the part's surface is the solid's.
     pub(super) fn is_whole(&self) -> bool {
-        self.needed.is_empty()
+        self.way.is_empty()
     }
 
     /// Returns a side of the solid as a side of the part, and the other way round.
@@ -94,15 +93,7 @@ impl Trimmed {
     /// Tells whether a hit of the part is the solid's; `None` where the surface of another part may be within an error in
     /// world units.
     fn is_bare(&self, at: DVec3, error: f64) -> Option<bool> {
-        let mut all = Some(true);
-        for (tree, must_hold) in &self.needed {
-            match tree.holds(&mut |part| self.holds(part, at, error)) {
-                Some(holds) if holds == *must_hold => {}
-                Some(_) => return Some(false),
-                None => all = None,
-            }
-        }
-        all
+        self.tree.is_bare(&self.way, &mut |part| self.holds(part, at, error))
     }
 
     /// Tells whether a hit of the part is the solid's by what lies on both sides of it, at a distance that is a multiple
@@ -276,11 +267,11 @@ impl Hittable for Trimmed {
 
     fn method(&self) -> String {
         let Part { name, body, .. } = &self.parts[self.index];
-        let others = self.needed.len();
         let own = body.shape.method();
-        match others {
-            0 => format!("all of part `{name}`: {own}"),
-            _ => format!("part `{name}` where the others allow it: {own}"),
+        if self.is_whole() {
+            format!("all of part `{name}`: {own}")
+        } else {
+            format!("part `{name}` where the others allow it: {own}")
         }
     }
 

@@ -55,8 +55,16 @@ kernels! {
     fn look[T: Camera](camera: &T, pixels: [usize; 2], x: &[f64], y: &[f64]) => dirs {
         let count = x.len();
         let (y, mut dirs) = (&y[..count], dirs.first(count));
+        let mut zeros = 0;
         for lane in 0..count {
-            dirs.set(lane, camera.ray(&ImagePoint { at: [x[lane], y[lane]], pixels }, DVec2::ZERO).dir);
+            let dir = camera.plain_ray(&ImagePoint { at: [x[lane], y[lane]], pixels }, DVec2::ZERO).dir;
+            zeros |= u64::from((dir.x == 0.0) | (dir.y == 0.0));
+            dirs.set(lane, dir);
+        }
+        if zeros != 0 {
+            for lane in 0..count {
+                dirs.set(lane, camera.ray(&ImagePoint { at: [x[lane], y[lane]], pixels }, DVec2::ZERO).dir);
+            }
         }
     }
 
