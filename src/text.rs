@@ -155,7 +155,8 @@ pub fn and(words: &[&str]) -> String {
 
 /// Returns the article of a word: `a` or `an`.
 pub fn article(word: &str) -> &'static str {
-    if word.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" }
+    // As `union`, which begins as `you` does.
+    if word.starts_with(['a', 'e', 'i', 'o', 'u']) && !word.starts_with("uni") { "an" } else { "a" }
 }
 
 /// Writes a number that is not below 0 to about three significant digits.
