@@ -59,6 +59,17 @@ pub async fn answer(request: &Request<Bytes>, desk: &Desk, work: &Work) -> Respo
         ["object", version, x, y] => {
             about(board, work, version, |frame| object(desk.registry, frame, x, y)).await
         }
+        ["entities", version] => {
+            let all = |frame: Arc<Frame>| -> Option<Job> {
+                Some(Box::new(move |_| {
+                    Ok(("application/json", text::json(&fields::all(&frame)).into_bytes()))
+                }))
+            };
+            about(board, work, version, all).await
+        }
+        ["entity", version, order] => {
+            about(board, work, version, |frame| entity(desk.registry, frame, order)).await
+        }
         ["layer", version, name] => about(board, work, version, |frame| layer(frame, name)).await,
         _ => serve::text(StatusCode::NOT_FOUND, "there is no such page\n"),
     }
@@ -125,6 +136,15 @@ fn object(registry: &'static Registry, frame: Arc<Frame>, x: &str, y: &str) -> O
     let y = y.parse().ok().filter(|y| *y < height)?;
     Some(Box::new(move |_| {
         let fields = fields::of_pixel(registry, &frame, [x, y]);
+        Ok(("application/json", text::json(&fields).into_bytes()))
+    }))
+}
+
+/// Finds the attributes of an entity by its index.
+fn entity(registry: &'static Registry, frame: Arc<Frame>, order: &str) -> Option<Job> {
+    let order = order.parse().ok()?;
+    Some(Box::new(move |_| {
+        let fields = fields::of_entity(registry, &frame, order);
         Ok(("application/json", text::json(&fields).into_bytes()))
     }))
 }

@@ -1,4 +1,4 @@
-//! The attributes of the object that a pixel shows, as a page offers them to be changed.
+//! The numbers of a scene's entities, as a page offers them to be changed.
 
 use super::frame::Frame;
 use crate::editor::{self, Text};
@@ -6,17 +6,27 @@ use crate::render::plan::Plan;
 use crate::render::trace;
 use crate::scene::pparm::Attribute;
 use crate::scene::registry::Registry;
+use crate::scene::store::Record;
 use crate::scene::syntax::Syntax;
-use crate::scene::value::Type;
+use crate::scene::value::{Datum, Type};
 use serde::Serialize;
 
-/// An object and those of its attributes that are numbers.
+/// An entity of a scene.
 #[derive(Serialize)]
-pub struct Fields {
-    /// The name of the object.
-    name: String,
+pub struct Named {
+    /// Its index among the scene's entities, from 0.
+    order: usize,
     /// Its entity type.
     kind: &'static str,
+    /// Its name.
+    name: String,
+}
+
+/// An entity and those of its attributes that are numbers.
+#[derive(Serialize)]
+pub struct Fields {
+    #[serde(flatten)]
+    entity: Named,
     /// Its attributes.
     attributes: Vec<Field>,
 }
@@ -40,13 +50,50 @@ struct Field {
     fixed: Option<&'static str>,
 }
 
+/// The maximum number of entities that a page lists.
+const MOST: usize = 1000;
+
+/// Returns the entities of a scene: the camera, the lights, the background, the materials and the objects.
+fn records(frame: &Frame) -> impl Iterator<Item = &Record> {
+    let model = &frame.model;
+    let lights = model.lights.iter().map(|light| &light.args);
+    let background = model.background.iter().map(|background| &background.args);
+    let materials = model.materials.iter().map(|material| &material.args);
+    let objects = model.objects.iter().map(|object| &object.args);
+    [&model.camera.args].into_iter().chain(lights).chain(background).chain(materials).chain(objects)
+}
+
+fn named(record: &Record) -> Named {
+    Named { order: record.order(), kind: record.entity().name, name: record.name().to_owned() }
+}
+
+/// Lists the entities of a scene that have numbers, or the first of them.
+pub fn all(frame: &Frame) -> Vec<Named> {
+    let has_numbers = |record: &&Record| record.entity().attributes().any(is_number);
+    records(frame).filter(has_numbers).take(MOST).map(named).collect()
+}
+
 /// Returns the attributes of the object that the centre of a pixel shows; `None` where it shows none.
 pub fn of_pixel(registry: &Registry, frame: &Frame, [x, y]: [usize; 2]) -> Option<Fields> {
     let sight = frame.model.camera.value.sight(x as f64, y as f64);
     let hit = trace::first_hit(&Plan::new(&frame.model), &sight)?;
-    let (entity, args) = (hit.object.args.entity(), hit.object.args.args());
+    Some(of(registry, frame, &hit.object.args))
+}
+
+/// Returns the attributes of an entity by its index; `None` if the scene has none.
+pub fn of_entity(registry: &Registry, frame: &Frame, order: usize) -> Option<Fields> {
+    let record = records(frame).find(|record| record.order() == order)?;
+    Some(of(registry, frame, record))
+}
+
+fn is_number(attribute: &'static dyn Attribute) -> bool {
+    matches!(attribute.value_type(), Type::Number | Type::Whole) && attribute.arity().most() <= 16
+}
+
+fn of(registry: &Registry, frame: &Frame, record: &Record) -> Fields {
+    let args = record.args();
     let view = editor::read(registry, &frame.name, Text::new(frame.text.clone()));
-    let (name, written) = (hit.object.args.name(), view.entity(hit.object.args.name()));
+    let written = view.entity(record.name());
     let field = |attribute: &'static dyn Attribute, values: Vec<String>| {
         let fixed = match &written {
             None => Some("it is repeated or included: change the text"),
@@ -67,10 +114,9 @@ pub fn of_pixel(registry: &Registry, frame: &Frame, [x, y]: [usize; 2]) -> Optio
             fixed,
         }
     };
-    let numbers = args.values().filter(|(attribute, _)| {
-        matches!(attribute.value_type(), Type::Number | Type::Whole) && attribute.arity().most() <= 16
-    });
+    let numbers =
+        args.values().filter(|(attribute, datum)| is_number(*attribute) && !matches!(datum, Datum::Absent));
     let attributes =
         numbers.map(|(attribute, datum)| field(attribute, Syntax::Notes.values(datum))).collect();
-    Some(Fields { name: name.to_owned(), kind: entity.name, attributes })
+    Fields { entity: named(record), attributes }
 }

@@ -198,6 +198,27 @@ fn a_value_that_is_tried_shows_and_is_written_into_the_scene_alone() {
 }
 
 #[test]
+fn the_camera_has_values_too_and_they_stay_while_the_image_follows() {
+    let text = ball("9 0 0");
+    let Some((watching, browser)) = opened(&text) else { return };
+    browser.run("document.querySelector('#values').click()");
+    type_in(&browser, "#field-viewpoint-0", "5");
+    shown(&browser, 2);
+    assert!(canvas(&browser) == render(&model(&text.replace("viewpoint 4", "viewpoint 5"))));
+    browser.run(
+        "const select = document.querySelector('#fields select'); select.value = 'material paint';
+         select.dispatchEvent(new Event('change', { bubbles: true }))",
+    );
+    type_in(&browser, "#field-ambient-1", "7");
+    shown(&browser, 3);
+    assert_eq!(browser.text("return document.querySelector('#fields select').value"), "material paint");
+    browser.run("document.querySelector('#write').click()");
+    browser.wait("document.querySelector('#fields p span').textContent === 'written'");
+    let written = text.replace("viewpoint 4", "viewpoint 5").replace("ambient 9 0 0", "ambient 9 7 0");
+    assert_eq!(fs::read_to_string(watching.scene()).expect("a scene"), written);
+}
+
+#[test]
 fn what_is_discarded_leaves_the_scene_as_it_was() {
     let text = ball("9 0 0");
     let Some((watching, browser)) = opened(&text) else { return };
