@@ -27,7 +27,19 @@ pub fn named(command: Command) -> Command {
     if name() == LIBRARY {
         return command;
     }
-    command.name(name()).version(concat!("(", env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION"), ")"))
+    let version = concat!("(", env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION"), ")");
+    with_named_examples(command).name(name()).version(version)
+}
+
+/// Gives the examples of a command and of its subcommands the program's name.
+fn with_named_examples(command: Command) -> Command {
+    let help = command.get_after_long_help().map(ToString::to_string);
+    let command = command.mut_subcommands(with_named_examples);
+    match help {
+        Some(help) => command
+            .after_long_help(help.replace(concat!(env!("CARGO_PKG_NAME"), " "), &format!("{} ", name()))),
+        None => command,
+    }
 }
 
 /// Returns the command line for shells and manuals, with the entity types as possible values. The program itself
