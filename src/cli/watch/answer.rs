@@ -25,7 +25,24 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio::time::timeout;
 
-const PAGE: &str = include_str!("page.html");
+/// The page is one file, so that nothing of it can be missing.
+const PAGE: &str = concat!(
+    include_str!("page/head.html"),
+    "<style>\n",
+    include_str!("page/style.css"),
+    "</style>\n",
+    include_str!("page/body.html"),
+    "<script>\n",
+    include_str!("page/state.js"),
+    include_str!("page/events.js"),
+    include_str!("page/image.js"),
+    include_str!("page/zoom.js"),
+    include_str!("page/explain.js"),
+    include_str!("page/fields.js"),
+    include_str!("page/text.js"),
+    include_str!("page/keys.js"),
+    "</script>\n",
+);
 
 /// The maximum number of pixels and layers that are computed at the same time, for all pages.
 pub const JOBS: usize = 4;

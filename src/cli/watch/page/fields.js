@@ -1,0 +1,125 @@
+// The values of an entity, and what is tried out.
+
+/// What is tried out and not yet written, by object and attribute.
+const tried = new Set()
+/// The entity whose values are shown: its name and its index in the scene.
+let shown = null
+
+const key = ({ kind, name }) => `${kind} ${name}`
+const parsed = (text) => text && JSON.parse(text)
+
+/// Shows the values of the object at a pixel.
+const fetchFields = async ([x, fromTop]) => {
+  const of = version
+  const object = await ask(`object/${of}/${x}/${height - 1 - fromTop}`, 'text').then(parsed)
+  if (of !== version || mark?.[0] !== x || mark[1] !== fromTop) return
+  if (object) open(object, await list(of))
+}
+
+/// The entities that have values.
+const list = (of) => fetch(`entities/${of}${token}`).then((answer) => answer.ok ? answer.json() : []).catch(() => [])
+
+/// Shows the values of an entity again, as they are in the scene that came last, or those of the camera.
+const refresh = async () => {
+  const of = version, all = await list(of)
+  const wanted = all.find((one) => shown && key(one) === key(shown)) ?? shown ?? all[0]
+  if (of !== version || !wanted) return
+  const entity = await fetch(`entity/${of}/${wanted.order}${token}`).then((answer) => answer.json()).catch(() => null)
+  if (of === version && entity) open(entity, all)
+}
+
+const open = (entity, all) => {
+  // While it is being changed, its fields stay as they are.
+  if ($('#fields select').value === key(entity) && $('#fields form').contains(document.activeElement)) return
+  shown = entity
+  $('#fields').hidden = false
+  $('aside').classList.add('explains')
+  const select = $('#fields select')
+  if (!all.some((one) => key(one) === key(entity))) all.push(entity)
+  select.replaceChildren(...all.map((one) => new Option(key(one), key(one), false, key(one) === key(entity))))
+  showFields(entity)
+}
+
+const showFields = ({ name, attributes }) => {
+  $('#fields form').replaceChildren(...attributes.flatMap((attribute) => {
+    const { name: of, about, each, values, range, whole, fixed } = attribute
+    const boxes = []
+    const send = () => tryOut(name, of, boxes.map((box) => box.value))
+    return values.flatMap((value, index) => {
+      const label = document.createElement('label'), box = document.createElement('input')
+      const which = values.length > 1 ? ` ${each[index] ?? 'xyz'[index] ?? index + 1}` : ''
+      label.textContent = of + which
+      label.title = box.title = about
+      label.htmlFor = box.id = `field-${of}-${index}`
+      if (fixed) {
+        const words = document.createElement('span')
+        words.className = 'fixed'
+        words.textContent = `${value} (${fixed})`
+        label.removeAttribute('for')
+        return [label, words]
+      }
+      const slider = document.createElement('input'), number = +value
+      const reach = Math.max(1, 2 * Math.abs(number))
+      const [low, high] = range && range[1] - range[0] < 1e4 ? range : [number - reach, number + reach]
+      Object.assign(slider, { type: 'range', min: low, max: high, step: whole ? 1 : (high - low) / 400, value, title: about })
+      slider.setAttribute('aria-label', of + which)
+      Object.assign(box, { type: 'number', step: whole ? 1 : 'any', value })
+      if (tried.has(`${name} ${of}`)) box.classList.add('tried')
+      const change = (from, to) => () => {
+        if (from.value === '' || Number.isNaN(+from.value)) return
+        to.value = from === slider && !whole ? +(+from.value).toPrecision(4) : from.value
+        for (const other of boxes) other.classList.add('tried')
+        send()
+      }
+      slider.addEventListener('input', change(slider, box))
+      box.addEventListener('input', change(box, slider))
+      boxes.push(box)
+      return [label, slider, box]
+    })
+  }))
+}
+
+const post = (path, body) => fetch(path + token, { method: 'POST', body }).catch(() => null)
+
+// Of the values that come while the program takes in the ones before, only the last are sent.
+let sending = false, wanted = null
+const tryOut = async (name, attribute, values) => {
+  tried.add(`${name} ${attribute}`)
+  wanted = JSON.stringify({ name, attribute, values })
+  if (sending) return
+  sending = true
+  while (wanted) {
+    const body = wanted
+    wanted = null
+    await post('try', body)
+  }
+  sending = false
+}
+
+const settle = async (verb) => {
+  const answer = await post(verb, '')
+  const said = answer ? (await answer.text()).trim() : 'tabray is not running'
+  $('#fields p span').textContent = said
+  if (!answer?.ok) return
+  tried.clear()
+  document.activeElement?.blur()
+  for (const box of document.querySelectorAll('#fields .tried')) box.classList.remove('tried')
+}
+$('#write').addEventListener('click', () => settle('write'))
+$('#discard').addEventListener('click', () => settle('discard'))
+$('#values').addEventListener('click', refresh)
+$('#fields select').addEventListener('change', (event) => {
+  const [kind, ...name] = event.target.value.split(' ')
+  shown = { kind, name: name.join(' ') }
+  event.target.focus()
+  refresh()
+})
+$('#fields form').addEventListener('submit', (event) => event.preventDefault())
+
+const close = () => {
+  mark = null
+  shown = null
+  $('#mark').hidden = $('#told').hidden = $('#fields').hidden = true
+  $('aside').classList.remove('explains')
+  markLines(null)
+}

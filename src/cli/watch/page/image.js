@@ -1,0 +1,88 @@
+// The image, and the layers of it.
+
+const resize = ([wide, high]) => {
+  if (wide === width && high === height) return
+  ;[width, height] = [canvas.width, canvas.height] = [wide, high]
+  colours = new Float32Array(3 * width * height)
+  close()
+  fit()
+}
+
+/// Takes in an area of the picture, each block of it in one colour.
+const part = (left, top, wide, high, block, isFinal, given) => {
+  const across = Math.ceil(wide / block)
+  for (let y = 0; y < high; y++) {
+    for (let x = 0; x < wide; x++) {
+      const from = 3 * (Math.floor(y / block) * across + Math.floor(x / block))
+      const to = 3 * ((top + y) * width + left + x)
+      colours[to] = given[from]
+      colours[to + 1] = given[from + 1]
+      colours[to + 2] = given[from + 2]
+    }
+  }
+  if (root.dataset.begun !== `${version}`) root.dataset.begun = version
+  if (isFinal) {
+    if (!ready) began = performance.now()
+    ready += wide * high
+  }
+  if (root.dataset.state === 'rendering') state('rendering', `rendering, ${Math.floor(100 * ready / (width * height))} %${timeLeft()}`)
+  if (layer === 'picture') expose(left, top, wide, high)
+}
+
+/// How long the image still takes, once that can be told.
+const timeLeft = () => {
+  const took = (performance.now() - began) / 1000, part = ready / (width * height)
+  if (!ready || took < 1) return ''
+  return `, ${Math.ceil(took * (1 - part) / part)} s left`
+}
+
+/// Puts an area on the canvas, with the exposure: a channel of 1 is white, and what is between is cut.
+const expose = (left, top, wide, high) => {
+  if (!wide || !high) return
+  const image = new ImageData(wide, high), factor = 255 * 2 ** stops
+  for (let y = 0, to = 0; y < high; y++) {
+    for (let from = 3 * ((top + y) * width + left), end = from + 3 * wide; from < end; from++) {
+      const value = factor * colours[from]
+      image.data[to++] = value >= 255 ? 255 : value > 0 ? Math.trunc(value) : 0
+      if (to % 4 === 3) image.data[to++] = 255
+    }
+  }
+  paper.putImageData(image, left, top)
+}
+
+const fetchLayer = async () => {
+  const of = version, name = layer
+  waits = true
+  tell()
+  const answer = await ask(`layer/${of}/${name}`, 'arrayBuffer')
+  // One of a scene that changed meanwhile is asked for again when the new one comes.
+  if (!answer || of !== version || name !== layer) return
+  const bytes = new Uint8Array(answer)
+  const image = new ImageData(width, height)
+  for (let from = 0, to = 0; from < bytes.length; from += 3, to += 4) {
+    image.data.set([bytes[from], bytes[from + 1], bytes[from + 2], 255], to)
+  }
+  paper.putImageData(image, 0, 0)
+  waits = false
+  tell()
+  root.dataset.layer = `${of} ${name}`
+}
+
+const choose = (name) => {
+  layer = name
+  $(`#layers [value=${name}]`).checked = true
+  $('#exposure input').disabled = name !== 'picture'
+  delete root.dataset.layer
+  waits = false
+  tell()
+  if (name === 'picture') expose(0, 0, width, height)
+  else if (version) fetchLayer()
+}
+
+const setExposure = (value) => {
+  const slider = $('#exposure input')
+  slider.value = value
+  stops = +slider.value
+  $('#exposure output').textContent = stops > 0 ? `+${stops}` : stops
+  if (layer === 'picture') expose(0, 0, width, height)
+}

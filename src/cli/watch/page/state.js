@@ -1,0 +1,19 @@
+'use strict'
+const $ = (selector) => document.querySelector(selector)
+const root = document.documentElement, stage = $('#stage'), sheet = $('#sheet'), canvas = $('canvas')
+const paper = canvas.getContext('2d')
+
+// The picture: its colours, linear and not clamped, and how many of its pixels are final.
+let version = 0, width = 0, height = 0, colours = new Float32Array(0), ready = 0
+// When the first pixels became final.
+let began = 0
+// Whether the text is the one that the picture was made from.
+let textIsThePicture = false
+let layer = 'picture', stops = 0
+
+let words = ''
+// Whether another picture than the one chosen is on the canvas.
+let waits = false
+
+const tell = () => { $('#state').textContent = waits ? `loading ${layer}` : words }
+const state = (name, said) => { root.dataset.state = name; words = said; tell() }
