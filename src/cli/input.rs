@@ -12,6 +12,7 @@ use crate::world::accuracy::Accuracy;
 use sha2::{Digest, Sha256};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 /// The maximum size of a scene, in bytes: far more than written scenes have, and far less than memory holds.
 const LARGEST: u64 = 1 << 30;
@@ -37,10 +38,19 @@ pub fn load(
     told(Source::read(path, sets)?.load(registry, accuracy)).map(|loaded| loaded.model)
 }
 
-/// Prints the warnings of a scene that was loaded.
+/// The warnings that were printed last.
+static TOLD: Mutex<String> = Mutex::new(String::new());
+
+/// Prints the warnings of a scene that was loaded, unless they are those of the scene before: the frames of a film
+/// mostly have the same.
 pub fn told(loaded: Result<Loaded, Report>) -> Result<Loaded, Failure> {
     let loaded = loaded.map_err(Failure::Scene)?;
-    messages::report(&loaded.warnings);
+    let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
+    let warnings = loaded.warnings.short();
+    if *told != warnings {
+        messages::report(&loaded.warnings);
+        *told = warnings;
+    }
     Ok(loaded)
 }
 

@@ -126,9 +126,15 @@ pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
 }
 
 impl Args {
+    /// Tells whether an image is rendered from its checkpoint on. Most frames of a film have none: they are complete or
+    /// not begun.
+    fn continues(&self, path: &Path) -> bool {
+        self.stop.resume && (self.frames.frames.is_none() || resume::beside(path).exists())
+    }
+
     /// Tells whether an image that is there already is not rendered again: a frame with `--resume`, that is not begun.
     fn skips(&self, path: &Path, model: &Model) -> Result<bool, Failure> {
-        let is_resumed = self.frames.frames.is_some() && self.stop.resume && !resume::beside(path).exists();
+        let is_resumed = self.stop.resume && !self.continues(path);
         Ok(is_resumed && aov::wanted(&self.aov, model)?.is_empty())
     }
 }
@@ -181,7 +187,7 @@ fn one(
     if full_range.is_some() && args.stop.resume {
         return Err(full_range::refuse(&path, "resumed"));
     }
-    let begun = Begun::open(args.stop.resume, &model, &part, &path, &output)?;
+    let begun = Begun::open(args.continues(&path), &model, &part, &path, &output)?;
     debug::print(&model, &args.debug)?;
     let threads = args.threads.unwrap_or(0).into();
     let start = Instant::now();

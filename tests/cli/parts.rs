@@ -300,6 +300,24 @@ fn frames_have_values_that_change_and_names_by_their_numbers() {
     }
 }
 
+#[test]
+fn the_warnings_of_a_film_are_told_once_and_where_they_change() {
+    let folder = folder();
+    let text = "camera eye { pixeldim 4 3 worlddim 8 6 viewpoint 4 3 6 }\nmaterial m { ambient 1 1 1 }
+sphere s { material m center 4 3 -2 radius 1 }\n";
+    fs::write(folder.path().join("a.ray"), text).expect("a scene");
+    // From the third frame on the ball is behind the viewer.
+    let film = ["render", "a.ray", "-o", "film.png", "--frames", "1..5", "--sweep", "s.center=4 3 -2..18"];
+    let said = succeeds(&folder, &[&film[..], &["--resume"]].concat());
+    assert_eq!(said.matches("warning").count(), 1, "{said}");
+    assert!(!said.contains("checkpoint"), "{said}");
+    let third = said.find("film-0003.png").expect("a frame");
+    assert!(
+        said.find("film-0002.png") < said.find("warning") && said.find("warning") < Some(third),
+        "{said}"
+    );
+}
+
 /// Changes when a file was changed last.
 fn date(path: &Path, seconds_ago: u64) {
     let file = fs::File::options().write(true).open(path).expect("a file");
