@@ -4,7 +4,7 @@
 //! the image of the same plan in the same way.
 
 use crate::parallel;
-use crate::render::observer::{Event, TraceObserver};
+use crate::render::observer::{Count, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::render::tiles::TILE;
@@ -153,11 +153,11 @@ fn work(plan: &Plan, x: usize, y: usize) -> u64 {
 struct Rays(u64);
 
 impl TraceObserver for Rays {
-    const SEES: bool = true;
+    const SEES: bool = false;
 
-    fn see(&mut self, event: Event) {
-        if let Event::Search(_) = event {
-            self.0 += 1;
+    fn count(&mut self, count: Count) {
+        if let Count::Rays(_, rays) = count {
+            self.0 += rays as u64;
         }
     }
 }
