@@ -11,7 +11,7 @@ BEGIN {
     noticed = 300           # until a dead node is noticed and its task is queued again: Slurm's default
     away = 1800             # until it is back: assumed
     merging = 5.1; each = 2.2e-5    # of 3.6 GB, and of each part: measured
-    start["a ball"] = 0.03; start["10^6 spheres"] = 8.6     # CPU time of a part beside its rays: measured
+    start["a ball"] = 0.03; start["10^6 spheres"] = 5.1     # CPU time of a part beside its rays: measured
     print "| scene | nodes | parts per node | 1 | 2 | 4 | 8 | 16 | 32 | 64 |"
     print "|---|---:|---|---:|---:|---:|---:|---:|---:|---:|"
     count = split("a ball,10^6 spheres", scenes, ",")
