@@ -3,8 +3,9 @@
 mod certain;
 mod sampling;
 
-use super::failure::{Failure, print};
-use super::{cpu, input, method, set};
+use crate::cli::files::input;
+use crate::cli::options::{cpu, method, set};
+use crate::cli::process::failure::{Failure, print};
 use crate::scene::model::Model;
 use crate::scene::reader;
 use crate::scene::registry::Registry;

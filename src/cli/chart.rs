@@ -1,11 +1,12 @@
 //! `tabray chart`: what each choice costs in a scene, and how wrong it is.
 
-use super::failure::{self, Failure, print};
-use super::input::{self, Source};
-use super::interrupt::{self, Manner};
 use super::measuring::{Work, wait};
-use super::output::{self, Output};
-use super::{messages, progress, set, stop};
+use crate::cli::files::input::{self, Source};
+use crate::cli::files::output::{self, Output};
+use crate::cli::options::{set, stop};
+use crate::cli::process::failure::{self, Failure, print};
+use crate::cli::process::interrupt::{self, Manner};
+use crate::cli::process::{messages, progress};
 use crate::scene::choice::Choice;
 use crate::scene::model::Model;
 use crate::scene::registry::Registry;

@@ -1,7 +1,9 @@
 //! `tabray check`: reports the faults of scenes.
 
-use super::failure::{Failure, status, tell};
-use super::{input, messages, set};
+use crate::cli::files::input;
+use crate::cli::options::set;
+use crate::cli::process::failure::{Failure, status, tell};
+use crate::cli::process::messages;
 use crate::scene::registry::Registry;
 use std::path::PathBuf;
 

@@ -1,11 +1,12 @@
 //! `tabray choose`: chooses accuracy and samples for a maximum error or time.
 
 use super::chart::all_accuracies;
-use super::failure::{self, Failure, print};
-use super::input::{self, Source};
-use super::interrupt::{self, Manner};
 use super::measuring::{Work, wait};
-use super::{program, set, stop};
+use crate::cli::files::input::{self, Source};
+use crate::cli::options::{set, stop};
+use crate::cli::process::failure::{self, Failure, print};
+use crate::cli::process::interrupt::{self, Manner};
+use crate::cli::process::program;
 use crate::scene::choice::Choice;
 use crate::scene::registry::Registry;
 use crate::tools::chart::{self, Estimate, Estimates, Goal};

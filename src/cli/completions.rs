@@ -1,7 +1,7 @@
 //! `tabray completions`: scripts with which shells complete the command line.
 
-use super::failure::{Failure, print};
-use super::program;
+use crate::cli::process::failure::{Failure, print};
+use crate::cli::process::program;
 use crate::scene::registry::Registry;
 use clap_complete::Shell;
 

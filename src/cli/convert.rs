@@ -1,7 +1,9 @@
 //! `tabray convert`: writes a scene in the other syntax.
 
-use super::failure::{Failure, print};
-use super::{input, messages, output, set};
+use crate::cli::files::{input, output};
+use crate::cli::options::set;
+use crate::cli::process::failure::{Failure, print};
+use crate::cli::process::messages;
 use crate::scene::dump;
 use crate::scene::model::Model;
 use crate::scene::reader;

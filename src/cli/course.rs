@@ -1,7 +1,7 @@
 //! Says where the default differs from the course's own methods, after an image was rendered with these.
 
-use super::input::Source;
-use super::messages;
+use crate::cli::files::input::Source;
+use crate::cli::process::messages;
 use crate::geometry::ray::Side;
 use crate::scene::model::{Model, Object};
 use crate::scene::registry::Registry;

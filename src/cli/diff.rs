@@ -1,10 +1,11 @@
 //! `tabray diff`: compares two images.
 
 use super::explain::Place;
-use super::failure::{Failure, print, tell};
-use super::picture::Picture;
 use super::report::{Change, Item, Page};
-use super::{input, set};
+use crate::cli::files::input;
+use crate::cli::files::picture::Picture;
+use crate::cli::options::set;
+use crate::cli::process::failure::{Failure, print, tell};
 use crate::output::compare::{Comparison, FullRangeComparison, Pixel};
 use crate::scene::registry::Registry;
 use std::path::PathBuf;

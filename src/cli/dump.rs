@@ -1,7 +1,8 @@
 //! `tabray dump`: a scene as the program understands it.
 
-use super::failure::{Failure, print};
-use super::{input, set};
+use crate::cli::files::input;
+use crate::cli::options::set;
+use crate::cli::process::failure::{Failure, print};
 use crate::scene::dump;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;

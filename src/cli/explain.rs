@@ -1,6 +1,6 @@
 //! Explanations of an image's pixel by `probe`, for reports: from this program, and from an older one.
 
-use super::set;
+use crate::cli::options::set;
 use crate::output::compare::Pixel;
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;

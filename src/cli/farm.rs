@@ -1,7 +1,7 @@
 //! `tabray farm`: writes scripts with which an engine that is there already renders the parts of an image.
 
-use super::failure::{self, Failure};
-use super::output;
+use crate::cli::files::output;
+use crate::cli::process::failure::{self, Failure};
 use crate::text;
 use std::env;
 use std::fmt::Write;

@@ -1,9 +1,10 @@
 //! `tabray film`: puts frames together to a contact sheet and to an animation.
 
-use super::failure::Failure;
-use super::output::{self, Output};
-use super::progress::Progress;
-use super::{memory, messages, picture};
+use crate::cli::files::output::{self, Output};
+use crate::cli::files::picture;
+use crate::cli::process::failure::Failure;
+use crate::cli::process::progress::Progress;
+use crate::cli::process::{memory, messages};
 use crate::output::deflate::Compression;
 use crate::output::picture::Format;
 use crate::text;

@@ -1,7 +1,8 @@
 //! `tabray fmt`: formats scenes.
 
-use super::failure::{Failure, print, tell};
-use super::{input, messages, output};
+use crate::cli::files::{input, output};
+use crate::cli::process::failure::{Failure, print, tell};
+use crate::cli::process::messages;
 use crate::editor::{self, Text, formatted, problem};
 use crate::scene::reader::{Fault, Report};
 use crate::scene::registry::Registry;

@@ -4,17 +4,17 @@
 //! sockets, and checkpoints without an image. They are compiled without `cfg(fuzzing)`, under which the decoder of PNGs
 //! would check nothing, and `cargo test --test slow fuzz` runs them with the library as it is published.
 
-use super::resume::{self, Begun};
 use super::review::decide::Review;
 use super::serve::Work;
 use super::serve::access::Access;
 use super::serve::connections::{Answer, Connections, Limits};
-use super::size::Part;
 use super::watch::answer::{self, JOBS};
 use super::watch::board::Board;
 use super::watch::desk::Desk;
 use super::watch::frame::Frame;
 use super::watch::tries::Tries;
+use crate::cli::options::size::Part;
+use crate::cli::rendering::resume::{self, Begun};
 use crate::output::checkpoint::{self, Identity};
 use crate::output::picture::Format;
 use crate::render::tiles::{Band, TILE, Tiles};

@@ -1,6 +1,6 @@
 //! `tabray grammar`: a grammar with which editors colour scenes in the notes' syntax.
 
-use super::failure::{Failure, print};
+use crate::cli::process::failure::{Failure, print};
 use crate::scene::grammar;
 use crate::scene::registry::Registry;
 use crate::text;

@@ -1,7 +1,7 @@
 //! `tabray list`: the entity types and their attributes, from their tables.
 
-use super::failure::{Failure, print};
-use super::program;
+use crate::cli::process::failure::{Failure, print};
+use crate::cli::process::program;
 use crate::scene::entity::Entity;
 use crate::scene::list_json::Tables;
 use crate::scene::pparm::Attribute;

@@ -5,8 +5,8 @@ mod documents;
 mod faults;
 mod protocol;
 
-use super::crash;
-use super::failure::Failure;
+use crate::cli::process::crash;
+use crate::cli::process::failure::Failure;
 use crate::scene::registry::Registry;
 use answers::Server;
 use documents::Documents;
@@ -84,7 +84,7 @@ fn begin(input: &mut StdinLock<'_>, sender: &Sender<String>) -> Result<Value, Fa
             Message::Request(Request { id, method, params }) if method == "initialize" => {
                 let result = json!({
                     "capabilities": capabilities(),
-                    "serverInfo": { "name": super::program::name(), "version": env!("CARGO_PKG_VERSION") },
+                    "serverInfo": { "name": crate::cli::process::program::name(), "version": env!("CARGO_PKG_VERSION") },
                 });
                 send(sender, answered(&id, &result.to_string()))?;
                 return Ok(params);

@@ -1,7 +1,8 @@
 //! `tabray man`: manual pages, as packages install them.
 
-use super::failure::Failure;
-use super::{messages, output, program};
+use crate::cli::files::output;
+use crate::cli::process::failure::Failure;
+use crate::cli::process::{messages, program};
 use crate::scene::registry::Registry;
 use clap::Command;
 use clap_mangen::Man;

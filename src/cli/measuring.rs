@@ -1,9 +1,9 @@
 //! The progress of a measurement: a bar on a terminal, and lines elsewhere. An interruption ends it, and so does a time
 //! limit.
 
-use super::interrupt::{self, Manner};
-use super::messages;
-use super::progress::Progress;
+use crate::cli::process::interrupt::{self, Manner};
+use crate::cli::process::messages;
+use crate::cli::process::progress::Progress;
 use crate::tools::chart::{self, Panel};
 use std::io::{self, IsTerminal};
 use std::ops::ControlFlow;

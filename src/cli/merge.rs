@@ -1,10 +1,11 @@
 //! `tabray merge`: puts an image together from its parts.
 
-use super::failure::Failure;
-use super::output::{self, Output};
-use super::part_files::{Parts, cannot_read, open, refuse};
-use super::progress::Progress;
-use super::{aov, full_range, memory, messages};
+use crate::cli::files::output::{self, Output};
+use crate::cli::process::failure::Failure;
+use crate::cli::process::progress::Progress;
+use crate::cli::process::{memory, messages};
+use crate::cli::rendering::part_files::{Parts, cannot_read, open, refuse};
+use crate::cli::rendering::{aov, full_range};
 use crate::output::aov::Aov;
 use crate::output::aov_values::Values;
 use crate::output::full_range::FullRange;

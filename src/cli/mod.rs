@@ -1,76 +1,49 @@
-//! The command line: one file per subcommand, and the code that they share.
+//! The command line: one file per subcommand, and in folders what they share: `rendering`, `files`, `options` and, below
+//! all of it, `process`.
 
-mod aov;
-mod arguments;
 mod bench;
 mod chart;
 mod check;
 mod choose;
-mod color;
 mod completions;
 mod convert;
 mod course;
-mod cpu;
-mod crash;
-mod debug;
 mod diff;
 mod dump;
 mod explain;
-mod failure;
 mod farm;
+mod files;
 mod film;
 mod fmt;
-mod frames;
-mod full_range;
 #[doc(hidden)]
 pub mod fuzz;
 mod grammar;
-mod help;
-mod input;
-mod interrupt;
-mod job;
-mod keep;
 mod list;
 mod lsp;
-mod made;
 mod man;
 mod measuring;
-mod memory;
 mod merge;
-mod messages;
-mod method;
 mod new;
 mod notes;
-mod output;
-mod part;
-mod part_begun;
-mod part_files;
-mod picture;
+mod options;
 mod plan;
 mod probe;
-mod program;
-mod progress;
+mod process;
 mod render;
+mod rendering;
 mod report;
-mod resume;
 mod review;
-mod samples;
 mod schema;
 mod serve;
-mod set;
-mod several;
-mod size;
-mod stats;
-mod stop;
-mod temporary;
 mod verify;
 mod watch;
 
 use crate::scene::registry::Registry;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
-use failure::{Failure, tell};
 #[cfg(target_os = "linux")]
 use nix::sys::signal::{SigSet, Signal};
+use process::failure::{Failure, tell};
+use process::{arguments, color, crash, help, memory, messages, program};
 use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
 

@@ -1,13 +1,13 @@
 //! Without a subcommand: the notes' program, a filter from a scene to its dump and its image.
 
-use super::failure::Failure;
-use super::input::{self, Source};
-use super::interrupt::{self, Manner};
-use super::job::Job;
-use super::output::Output;
-use super::set;
-use super::size::Part;
-use super::stop::Stop;
+use crate::cli::files::input::{self, Source};
+use crate::cli::files::output::Output;
+use crate::cli::options::set;
+use crate::cli::options::size::Part;
+use crate::cli::options::stop::Stop;
+use crate::cli::process::failure::Failure;
+use crate::cli::process::interrupt::{self, Manner};
+use crate::cli::rendering::job::Job;
 use crate::output::picture::Format;
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;

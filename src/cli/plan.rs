@@ -1,7 +1,8 @@
 //! `tabray plan`: how a scene would be rendered, and why.
 
-use super::failure::{Failure, print};
-use super::{input, keep, method, samples, set};
+use crate::cli::files::input;
+use crate::cli::options::{keep, method, samples, set};
+use crate::cli::process::failure::{Failure, print};
 use crate::render::decisions::{self, Decision};
 use crate::scene::registry::Registry;
 use crate::simd::cpu::Cpu;

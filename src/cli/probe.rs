@@ -1,7 +1,8 @@
 //! `tabray probe`: explains one pixel.
 
-use super::failure::Failure;
-use super::{input, method, set};
+use crate::cli::files::input;
+use crate::cli::options::{method, set};
+use crate::cli::process::failure::Failure;
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;

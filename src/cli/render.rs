@@ -1,18 +1,18 @@
 //! `tabray render`: renders a scene's image.
 
 use super::course::Differences;
-use super::failure::Failure;
-use super::input::Source;
-use super::job::Job;
-use super::output::{Output, named};
-use super::resume::Begun;
-use super::size::Part;
-use super::stats::{self, Stats};
-use super::stop::{self, Stop};
-use super::{
-    aov, cpu, debug, frames, full_range, input, keep, made, messages, method, output, part, progress, resume,
-    samples, set, several, size,
-};
+use crate::cli::files::input::Source;
+use crate::cli::files::output::{Output, named};
+use crate::cli::files::{input, made, output, several};
+use crate::cli::options::size::Part;
+use crate::cli::options::stop::{self, Stop};
+use crate::cli::options::{cpu, frames, keep, method, samples, set, size};
+use crate::cli::process::failure::Failure;
+use crate::cli::process::{messages, progress};
+use crate::cli::rendering::job::Job;
+use crate::cli::rendering::resume::Begun;
+use crate::cli::rendering::stats::{self, Stats};
+use crate::cli::rendering::{aov, debug, full_range, part, resume};
 use crate::output::aov::Aov;
 use crate::output::deflate::Compression;
 use crate::output::full_range::FullRange;

@@ -1,9 +1,9 @@
 //! The page that shows changes: one self-contained file, which works without a network.
 
 use super::explain::Explanation;
-use super::failure::Failure;
-use super::messages;
-use super::output::Output;
+use crate::cli::files::output::Output;
+use crate::cli::process::failure::Failure;
+use crate::cli::process::messages;
 use crate::output::compare::{Comparison, Pixel};
 use crate::text;
 use base64::Engine;

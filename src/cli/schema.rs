@@ -1,6 +1,6 @@
 //! `tabray schema`: a schema with which editors check and complete scenes in TOML.
 
-use super::failure::{Failure, print};
+use crate::cli::process::failure::{Failure, print};
 use crate::scene::registry::Registry;
 use crate::scene::schema;
 use crate::text;

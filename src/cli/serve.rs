@@ -9,7 +9,7 @@ pub use connections::Answer;
 pub use response::{Body, content, stream, text};
 pub use work::{Client, Work};
 
-use super::failure::Failure;
+use crate::cli::process::failure::Failure;
 use crate::text;
 use access::Access;
 use connections::{Connections, Limits};

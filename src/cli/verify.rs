@@ -2,11 +2,12 @@
 
 mod colours;
 
-use super::failure::{Failure, print};
-use super::interrupt::{self, Manner};
-use super::output::{self, Output, named};
-use super::progress::Progress;
-use super::{input, method, set};
+use crate::cli::files::input;
+use crate::cli::files::output::{self, Output, named};
+use crate::cli::options::{method, set};
+use crate::cli::process::failure::{Failure, print};
+use crate::cli::process::interrupt::{self, Manner};
+use crate::cli::process::progress::Progress;
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::registry::Registry;

@@ -10,9 +10,11 @@ mod files;
 pub(super) mod frame;
 pub(super) mod tries;
 
-use super::failure::{Failure, tell};
 use super::serve::{Server, Work};
-use super::{crash, input, interrupt, messages, method, set};
+use crate::cli::files::input;
+use crate::cli::options::{method, set};
+use crate::cli::process::failure::{Failure, tell};
+use crate::cli::process::{crash, interrupt, messages};
 use crate::render::plan::Plan;
 use crate::render::progressive;
 use crate::render::renderer::Renderer;

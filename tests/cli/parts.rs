@@ -117,7 +117,7 @@ fn a_part_that_is_killed_or_stopped_is_resumed() {
         kept += usize::from(said.contains("% of part 1/4 to a.png.part-1-of-4.checkpoint"));
         match status {
             0 => break,
-            130 => limit += limit / 4,
+            130 => limit += limit / 10,
             _ => panic!("{said}"),
         }
     }

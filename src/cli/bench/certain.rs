@@ -1,6 +1,6 @@
 //! `bench --sampling certain`: what `--max-error --certain` proves, whether samples contradict it, and what it costs.
 
-use crate::cli::failure::{Failure, print};
+use crate::cli::process::failure::{Failure, print};
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
 use crate::text::short;

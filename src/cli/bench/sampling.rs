@@ -1,7 +1,7 @@
 //! `bench --sampling`: what numbers of samples per pixel cost, and how wrong they leave an image.
 
-use crate::cli::failure::{Failure, print};
-use crate::cli::output;
+use crate::cli::files::output;
+use crate::cli::process::failure::{Failure, print};
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
 use crate::text::{self, short};

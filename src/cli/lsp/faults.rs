@@ -2,7 +2,7 @@
 
 use super::documents;
 use super::protocol::{self, span, uri};
-use crate::cli::crash;
+use crate::cli::process::crash;
 use crate::editor::{Diagnosis, diagnose};
 use crate::scene::reader::Severity;
 use crate::scene::registry::Registry;

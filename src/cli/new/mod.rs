@@ -3,7 +3,7 @@
 mod plugin;
 mod scene;
 
-use super::failure::Failure;
+use crate::cli::process::failure::Failure;
 use crate::scene::registry::Registry;
 
 /// Write a scene or a plugin to start from

@@ -1,7 +1,8 @@
 //! `tabray new plugin`: a working plugin, and its scenes.
 
-use crate::cli::failure::Failure;
-use crate::cli::{messages, output};
+use crate::cli::files::output;
+use crate::cli::process::failure::Failure;
+use crate::cli::process::messages;
 use crate::scene::choice::Choice;
 use crate::scene::profile::Profile;
 use crate::scene::registry::Registry;

@@ -1,7 +1,8 @@
 //! `tabray new scene`: a commented scene.
 
-use crate::cli::failure::Failure;
-use crate::cli::{messages, output, program};
+use crate::cli::files::output;
+use crate::cli::process::failure::Failure;
+use crate::cli::process::{messages, program};
 use crate::scene::syntax::Syntax;
 use std::path::PathBuf;
 

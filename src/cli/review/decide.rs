@@ -2,9 +2,10 @@
 
 use super::items::items;
 use super::pending::{self, Pending};
-use crate::cli::failure::{Failure, tell};
+use crate::cli::process::failure::{Failure, tell};
+use crate::cli::process::messages;
+use crate::cli::report;
 use crate::cli::serve::{self, Answer, Server, Work};
-use crate::cli::{messages, report};
 use crate::scene::registry::Registry;
 use crate::text;
 use hyper::body::Bytes;

@@ -2,9 +2,11 @@
 
 use super::pending::{self, Content, Pending};
 use crate::cli::explain::Place;
-use crate::cli::failure::{Failure, tell};
+use crate::cli::files::{input, picture};
+use crate::cli::options::set;
+use crate::cli::process::crash;
+use crate::cli::process::failure::{Failure, tell};
 use crate::cli::report::{Change, Decision, Item};
-use crate::cli::{crash, input, picture, set};
 use crate::output::compare::Comparison;
 use crate::scene::registry::Registry;
 use crate::text::quoted;

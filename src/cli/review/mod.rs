@@ -4,9 +4,9 @@ pub(super) mod decide;
 mod items;
 mod pending;
 
-use super::failure::Failure;
-use super::messages;
 use super::report::Page;
+use crate::cli::process::failure::Failure;
+use crate::cli::process::messages;
 use crate::scene::registry::Registry;
 use pending::Pending;
 use std::path::PathBuf;

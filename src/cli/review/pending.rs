@@ -4,8 +4,8 @@
 //! the snapshot is binary, its content is in a separate file, `ball.snap.png` for `ball.snap` and `ball.snap.new.png`
 //! for `ball.snap.new`.
 
-use crate::cli::failure::Failure;
-use crate::cli::output;
+use crate::cli::files::output;
+use crate::cli::process::failure::Failure;
 use crate::files;
 use crate::text;
 use std::fs;

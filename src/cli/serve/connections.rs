@@ -6,7 +6,7 @@
 
 use super::access::Access;
 use super::response::{Body, guard, text};
-use crate::cli::messages;
+use crate::cli::process::messages;
 use crate::text;
 use http_body_util::{BodyExt, Limited};
 use hyper::body::{Bytes, Incoming};

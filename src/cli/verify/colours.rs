@@ -1,10 +1,10 @@
 //! `tabray verify --colours`: proves the bytes of an image.
 
-use crate::cli::failure::{Failure, print};
-use crate::cli::messages;
-use crate::cli::output::{self, Output};
-use crate::cli::progress::Progress;
-use crate::cli::stop;
+use crate::cli::files::output::{self, Output};
+use crate::cli::options::stop;
+use crate::cli::process::failure::{Failure, print};
+use crate::cli::process::messages;
+use crate::cli::process::progress::Progress;
 use crate::output::picture::Format;
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;

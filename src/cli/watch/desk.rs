@@ -2,8 +2,8 @@
 
 use super::board::Board;
 use super::tries::Tries;
-use crate::cli::failure::Failure;
-use crate::cli::output;
+use crate::cli::files::output;
+use crate::cli::process::failure::Failure;
 use crate::cli::serve::{self, Body};
 use crate::scene::registry::Registry;
 use hyper::{Response, StatusCode};

@@ -1,6 +1,6 @@
 //! Watches the files that a scene is read from.
 
-use super::super::failure::Failure;
+use crate::cli::process::failure::Failure;
 use crate::text;
 use notify::event::{AccessKind, AccessMode, EventKind, ModifyKind};
 use notify::{ErrorKind, Event, RecommendedWatcher, RecursiveMode, Watcher};

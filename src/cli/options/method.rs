@@ -1,6 +1,6 @@
 //! `--method` and `--accuracy`: the accuracy of a render, overriding the scene's own.
 
-use super::failure::Failure;
+use crate::cli::process::failure::Failure;
 use crate::scene::choice::{Choice, ChoiceName};
 use crate::text;
 use crate::world::accuracy::Accuracy;

@@ -1,6 +1,6 @@
 //! The end of a command: its output, or a failure.
 
-use super::{messages, progress, temporary};
+use crate::cli::process::{messages, progress, temporary};
 use crate::scene::reader::Report;
 use crate::text;
 use std::io::{self, Write};

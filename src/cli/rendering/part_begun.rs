@@ -1,7 +1,7 @@
 //! Parts of images that are there already, whole or in part, when a part is to be rendered with `--resume`.
 
-use super::failure::Failure;
-use super::messages;
+use crate::cli::process::failure::Failure;
+use crate::cli::process::messages;
 use crate::files;
 use crate::output::part::{self, Label, Reader};
 use crate::text;

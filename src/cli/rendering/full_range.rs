@@ -1,12 +1,13 @@
 //! Renders an image into a file of full range: colours before they are clamped and rounded to levels.
 
-use super::failure::Failure;
-use super::output::{self, Output};
-use super::progress::Progress;
-use super::size::Part;
-use super::stats::Stats;
-use super::stop::Stop;
-use super::{job, memory, messages};
+use crate::cli::files::output::{self, Output};
+use crate::cli::options::size::Part;
+use crate::cli::options::stop::Stop;
+use crate::cli::process::failure::Failure;
+use crate::cli::process::progress::Progress;
+use crate::cli::process::{memory, messages};
+use crate::cli::rendering::job;
+use crate::cli::rendering::stats::Stats;
 use crate::output::full_range::FullRange;
 use crate::render::plan::Plan;
 use crate::render::ray_stats::RayStats;

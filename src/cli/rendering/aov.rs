@@ -1,9 +1,9 @@
 //! `tabray render --aov`: auxiliary images beside the main one, and exact numbers.
 
-use super::failure::Failure;
-use super::messages;
-use super::output::{self, Output};
-use super::progress::Progress;
+use crate::cli::files::output::{self, Output};
+use crate::cli::process::failure::Failure;
+use crate::cli::process::messages;
+use crate::cli::process::progress::Progress;
 use crate::output::aov::{Aov, Layer};
 use crate::output::picture::Format;
 use crate::render::plan::Plan;

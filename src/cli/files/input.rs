@@ -1,7 +1,8 @@
 //! Reads scenes from files and from standard input.
 
-use super::failure::Failure;
-use super::{crash, memory, messages, set};
+use crate::cli::options::set;
+use crate::cli::process::failure::Failure;
+use crate::cli::process::{crash, memory, messages};
 use crate::files;
 use crate::scene::model::Model;
 use crate::scene::reader::{self, Chosen, Loaded, Report};

@@ -1,6 +1,6 @@
 //! Reads images, to compare them.
 
-use super::failure::Failure;
+use crate::cli::process::failure::Failure;
 use crate::files::{self, ImageBytes};
 use crate::output::full_range::{self, FullRange};
 use crate::text;

@@ -1,13 +1,13 @@
 //! Renders an image and writes it, or stops and leaves what a later render can continue from.
 
-use super::failure::{self, Failure};
-use super::output::{Output, finished};
-use super::progress::Progress;
-use super::resume::{self, Begun};
-use super::size::Part;
-use super::stats::Stats;
-use super::stop::Stop;
-use super::{memory, messages};
+use crate::cli::files::output::{Output, finished};
+use crate::cli::options::size::Part;
+use crate::cli::options::stop::Stop;
+use crate::cli::process::failure::{self, Failure};
+use crate::cli::process::progress::Progress;
+use crate::cli::process::{memory, messages};
+use crate::cli::rendering::resume::{self, Begun};
+use crate::cli::rendering::stats::Stats;
 use crate::output::packing::PIECE;
 use crate::output::picture::Format;
 use crate::render::limits::MAX_RAYS;

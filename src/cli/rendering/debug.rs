@@ -1,7 +1,7 @@
 //! `tabray render --debug`: the notes' debug lines, for some pixels or for all.
 
-use super::failure::Failure;
-use super::probe;
+use crate::cli::probe;
+use crate::cli::process::failure::Failure;
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;

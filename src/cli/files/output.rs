@@ -1,8 +1,9 @@
 //! Writes images beside their targets first and then replaces the targets, so that a target never holds half an image.
 
-use super::failure::Failure;
-use super::temporary::Temporary;
-use super::{input, messages};
+use crate::cli::files::input;
+use crate::cli::process::failure::Failure;
+use crate::cli::process::messages;
+use crate::cli::process::temporary::Temporary;
 use crate::output::picture::Format;
 use crate::scene::kind::Kind;
 use crate::scene::model::{Item, Model};

@@ -1,6 +1,6 @@
 //! `tabray render --frames --sweep`: one image for each frame, with values that change from frame to frame.
 
-use super::failure::Failure;
+use crate::cli::process::failure::Failure;
 use crate::text;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};

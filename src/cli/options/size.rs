@@ -1,6 +1,6 @@
 //! `--size`, `--quick` and `--crop`: the size of the image, and the part of it that is rendered.
 
-use super::failure::Failure;
+use crate::cli::process::failure::Failure;
 use crate::world::film::Film;
 use std::ops::Range;
 

@@ -1,7 +1,7 @@
 //! Parses the command line, and says what was probably meant where that fails.
 
-use super::failure::Failure;
-use super::{color, program};
+use crate::cli::process::failure::Failure;
+use crate::cli::process::{color, program};
 use crate::scene::syntax::Syntax;
 use crate::text::{nearest, quoted};
 use clap::error::{ContextKind, ContextValue, ErrorKind};

@@ -1,9 +1,9 @@
 //! What an image was made of and with, for a PNG to carry: the same for images that must be the same. So a frame that is
 //! there already is known by it.
 
-use super::input::Source;
-use super::set;
-use super::size::Part;
+use crate::cli::files::input::Source;
+use crate::cli::options::set;
+use crate::cli::options::size::Part;
 use crate::files;
 use crate::scene::choice::Choice;
 use crate::text;

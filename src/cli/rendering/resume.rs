@@ -1,9 +1,9 @@
 //! Checkpoints beside images: written where a render stops, and continued from by `--resume`.
 
-use super::failure::Failure;
-use super::messages;
-use super::output::{self, Output};
-use super::size::Part;
+use crate::cli::files::output::{self, Output};
+use crate::cli::options::size::Part;
+use crate::cli::process::failure::Failure;
+use crate::cli::process::messages;
 use crate::files;
 use crate::output::checkpoint::{self, Checkpoint, Identity};
 use crate::output::picture::Format;

@@ -1,6 +1,6 @@
 //! `--cpu`: the level of CPU instructions.
 
-use super::failure::Failure;
+use crate::cli::process::failure::Failure;
 use crate::simd::cpu::{Cpu, Level};
 use crate::text;
 

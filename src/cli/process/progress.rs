@@ -1,6 +1,6 @@
 //! Shows progress on a terminal.
 
-use super::messages;
+use crate::cli::process::messages;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};

@@ -1,14 +1,15 @@
 //! `tabray render --part`: renders a part of an image into a file beside it, from which `tabray merge` makes the image.
 
-use super::failure::{self, Failure};
-use super::job::{tell_proofs, warn_of};
-use super::output::{self, Output};
-use super::part_begun::{Begun, is_there};
-use super::progress::Progress;
-use super::size::Part;
-use super::stats::Stats;
-use super::stop::Stop;
-use super::{aov, full_range, memory, messages, resume};
+use crate::cli::files::output::{self, Output};
+use crate::cli::options::size::Part;
+use crate::cli::options::stop::Stop;
+use crate::cli::process::failure::{self, Failure};
+use crate::cli::process::progress::Progress;
+use crate::cli::process::{memory, messages};
+use crate::cli::rendering::job::{tell_proofs, warn_of};
+use crate::cli::rendering::part_begun::{Begun, is_there};
+use crate::cli::rendering::stats::Stats;
+use crate::cli::rendering::{aov, full_range, resume};
 use crate::output::aov::{Aov, Setting};
 use crate::output::aov_values::Values;
 use crate::output::part::{self, Label, MOST_PARTS, What, Writer};

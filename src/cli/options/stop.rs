@@ -1,8 +1,8 @@
 //! Stops a render before its image is finished: at an interruption, or at a limit of time or memory.
 
-use super::failure::Failure;
-use super::interrupt::{self, Manner};
-use super::{memory, messages};
+use crate::cli::process::failure::Failure;
+use crate::cli::process::interrupt::{self, Manner};
+use crate::cli::process::{memory, messages};
 use crate::render::tiles::{BAND, TILE};
 use crate::text;
 use bytesize::ByteSize;

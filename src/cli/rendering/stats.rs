@@ -1,6 +1,6 @@
 //! `--stats`: statistics of a render: rays, tests, time and memory.
 
-use super::memory;
+use crate::cli::process::memory;
 use crate::render::observer::RayKind;
 use crate::render::ray_stats::{Cuts, Proofs, RayStats, TestCounts};
 use crate::scene::model::Model;

@@ -1,9 +1,8 @@
 //! Several scenes for one command: the names of their images, what is said about all of them, and the exit status.
 
-use super::failure::{Failure, status, tell};
-use super::input;
-use super::output;
-use super::progress;
+use crate::cli::files::{input, output};
+use crate::cli::process::failure::{Failure, status, tell};
+use crate::cli::process::progress;
 use crate::text::{self, list};
 use std::collections::HashMap;
 use std::path::{self, Path, PathBuf};
@@ -73,7 +72,10 @@ pub fn each(scenes: &[PathBuf], mut one: impl FnMut(usize) -> Result<(), Failure
     let all = scenes.len();
     if failed.is_empty() {
         let seconds = start.elapsed().as_secs_f64();
-        super::messages::note(&format!("rendered {} in {seconds:.2} s", text::count(all, "scene")));
+        crate::cli::process::messages::note(&format!(
+            "rendered {} in {seconds:.2} s",
+            text::count(all, "scene")
+        ));
         return Ok(());
     }
     let named = list(failed.iter().take(NAMED).map(String::as_str));
@@ -81,6 +83,6 @@ pub fn each(scenes: &[PathBuf], mut one: impl FnMut(usize) -> Result<(), Failure
     let more = if more > 0 { format!(" and {more} more") } else { String::new() };
     let message =
         format!("{} of {} could not be rendered: {named}{more}", failed.len(), text::count(all, "scene"));
-    super::messages::error(&message, None);
+    crate::cli::process::messages::error(&message, None);
     Err(Failure::Several(worst))
 }

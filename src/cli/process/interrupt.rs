@@ -1,8 +1,8 @@
 //! Ctrl-C: a command that keeps nothing ends at once; a command that keeps what is done notes the interruption and
 //! stops soon. A second interruption ends the program at once.
 
-use super::failure::{self, Failure};
-use super::temporary;
+use crate::cli::process::failure::{self, Failure};
+use crate::cli::process::temporary;
 use std::ops::ControlFlow;
 use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};

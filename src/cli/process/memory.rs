@@ -1,7 +1,7 @@
 //! The memory of the program: what the system provides, and, on systems that report it, what is used: Linux.
 
-use super::crash;
-use super::failure::{self, Failure};
+use crate::cli::process::crash;
+use crate::cli::process::failure::{self, Failure};
 use crate::heap;
 use bytesize::ByteSize;
 use std::fs;

@@ -1,6 +1,6 @@
 //! `--samples`, `--max-error` and `--sampler`: how many samples the pixels of an image take, and where.
 
-use super::failure::Failure;
+use crate::cli::process::failure::Failure;
 use crate::world::accuracy::Accuracy;
 use crate::world::film::{Adaptive, Film};
 use crate::world::sample::Sampler;

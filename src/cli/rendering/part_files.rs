@@ -1,7 +1,8 @@
 //! Finds the parts of an image, and refuses parts that do not belong together.
 
-use super::failure::Failure;
-use super::{input, part, resume};
+use crate::cli::files::input;
+use crate::cli::process::failure::Failure;
+use crate::cli::rendering::{part, resume};
 use crate::files;
 use crate::output::checkpoint::Identity;
 use crate::output::part::{Label, Reader, What};

@@ -1,0 +1,10 @@
+//! Options that several commands have.
+
+pub mod cpu;
+pub mod frames;
+pub mod keep;
+pub mod method;
+pub mod samples;
+pub mod set;
+pub mod size;
+pub mod stop;
