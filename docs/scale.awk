@@ -5,7 +5,7 @@
 # A task is taken by the first free node. Times are in seconds.
 BEGIN {
     work = 1000 * 3600      # of one node, for the whole image
-    spread = 0.12           # standard deviation of the logarithm of a part's time: 16 parts took 0.27 to 0.40 s
+    spread = 0.25           # standard deviation of the logarithm of a part's time: of marbles
     slow = 0.02             # the share of nodes that take twice as long: assumed
     lives = 30 * 86400      # the mean time between the failures of a node: assumed
     noticed = 300           # until a dead node is noticed and its task is queued again: Slurm's default

@@ -1,10 +1,10 @@
 //! Divides the tiles of an image into parts of about the same work, which several machines may render.
 //!
-//! The work is known from a quick look: rays are counted at some pixels, and no clock is read. So every machine divides
-//! the image of the same plan in the same way.
+//! The work is known from a quick look: rays and tests are counted at some pixels, and no clock is read. So every machine
+//! divides the image of the same plan in the same way.
 
 use crate::parallel;
-use crate::render::observer::{Count, TraceObserver};
+use crate::render::observer::{Count, RayKind, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::render::tiles::TILE;
@@ -76,8 +76,13 @@ const LOOKED_AT: [usize; 2] = [256, 1 << 14];
 /// times as long as rendering them, and is to take about a hundredth of the time of a part.
 const SAMPLES_PER_LOOK: usize = 500;
 
-/// The work of a sample beside its rays, as a number of rays.
+/// The work of a sample beside its rays, of a primary or shadow ray, of a ray that goes on at a mirror or through glass,
+/// and of the test of an object for one ray. With these weights the times of 16 parts of the gallery's scenes spread by 9
+/// to 25 %, and with the number of rays alone by 12 to 38 % (the standard deviation of their logarithms).
 const BESIDE: u64 = 1;
+const RAY: u64 = 2;
+const RAY_ONWARD: u64 = 4;
+const TEST: u64 = 1;
 
 /// Divides an image, or a part of one, into `parts` runs of tiles, and returns the ends of all runs, beginning with 0.
 /// Each has at least one tile, so there must be as many. `columns` count from the left and `rows` from the top.
@@ -143,22 +148,25 @@ impl Look {
     }
 }
 
-/// Counts the rays of a pixel.
+/// Counts the work of a pixel.
 fn work(plan: &Plan, x: usize, y: usize) -> u64 {
-    let mut rays = Rays(BESIDE);
-    trace::observe_colour(plan, &plan.camera.sight(x as f64, y as f64), None, &mut rays);
-    u64::from(trace::samples(plan, x, y).0.max(1)) * rays.0
+    let mut work = Work(BESIDE);
+    trace::observe_colour(plan, &plan.camera.sight(x as f64, y as f64), None, &mut work);
+    u64::from(trace::samples(plan, x, y).0.max(1)) * work.0
 }
 
-struct Rays(u64);
+struct Work(u64);
 
-impl TraceObserver for Rays {
+impl TraceObserver for Work {
     const SEES: bool = false;
 
     fn count(&mut self, count: Count) {
-        if let Count::Rays(_, rays) = count {
-            self.0 += rays as u64;
-        }
+        self.0 += match count {
+            Count::Rays(RayKind::Primary | RayKind::Shadow, rays) => RAY * rays as u64,
+            Count::Rays(RayKind::Reflected | RayKind::Transmitted, rays) => RAY_ONWARD * rays as u64,
+            Count::Tested(_, tests) => TEST * tests as u64,
+            _ => 0,
+        };
     }
 }
 
