@@ -14,9 +14,10 @@ static SCALE: Pparm<DVec3> = Pparm::or("scale", "the scale factors along the fil
     });
 static ROTATION: Pparm<Rotation> = Pparm::or(
     "rotation",
-    "the angles by which the scaled mesh is rotated around x, then y, then z, counterclockwise",
+    "the angles by which the scaled mesh is rotated around x, then y, then z, or an axis and the angle around it, counterclockwise",
     Rotation::NONE,
-);
+)
+.must("around an axis that is not zero", Rotation::has_axis);
 static TRANSLATION: Pparm<DVec3> =
     Pparm::or("translation", "where the file's origin lies", DVec3::ZERO).unit("world coordinates");
 static SMOOTH: Pparm<i64> =
@@ -59,7 +60,7 @@ fn surface(args: &Args) -> Result<Surface, Refusal> {
             "a mesh is an OBJ, PLY or STL file, and its name is relative to the scene's folder",
         )
     })?;
-    let placement = ToWorld::new(args.get(&SCALE), args.get(&ROTATION).degrees, args.get(&TRANSLATION));
+    let placement = ToWorld::new(args.get(&SCALE), args.get(&ROTATION), args.get(&TRANSLATION));
     Surface::new(model, &placement, args.get(&SMOOTH) == 1).map_err(|unfit| match unfit {
         Unfit::TooLarge => refusal(
             "has coordinates so large that their squares overflow".to_owned(),

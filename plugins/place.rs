@@ -12,9 +12,10 @@ static SCALE: Pparm<DVec3> =
         .must("positive in each dimension", |scale: &DVec3| scale.min_element() > 0.0);
 static ROTATION: Pparm<Rotation> = Pparm::or(
     "rotation",
-    "the angles by which the scaled object is rotated around x, then y, then z, counterclockwise",
+    "the angles by which the scaled object is rotated around x, then y, then z, or an axis and the angle around it, counterclockwise",
     Rotation::NONE,
-);
+)
+.must("around an axis that is not zero", Rotation::has_axis);
 static TRANSLATION: Pparm<DVec3> =
     Pparm::or("translation", "where the object's origin lies", DVec3::ZERO).unit("world coordinates");
 

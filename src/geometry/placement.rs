@@ -1,6 +1,6 @@
 //! Placements: where a copy of a shape lies in the world.
 
-use crate::numeric::scalar::{Scalar, per_axis};
+use crate::numeric::scalar::{Scalar, cross, dot, per_axis};
 use glam::{DMat3, DVec3};
 
 /// π as a sum: of four numbers, the last of which is known to [`PI_ERROR`].
@@ -14,19 +14,43 @@ const PI: [f64; 4] = [
 /// A bound on what [`PI`] lacks.
 const PI_ERROR: f64 = 1e-64;
 
-/// A rotation around x, then y, then z.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Rotation {
-    /// The angles in degrees, counterclockwise as seen from the axis's end.
-    pub degrees: DVec3,
+/// A rotation, counterclockwise as seen from the end of the axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rotation {
+    /// Around x, then y, then z, by these angles in degrees.
+    Angles(DVec3),
+    /// Around an axis, a vector of any length but 0, by an angle in degrees.
+    Around {
+        /// The axis.
+        axis: DVec3,
+        /// The angle.
+        degrees: f64,
+    },
 }
 
 impl Rotation {
     /// The rotation that turns nothing.
-    pub const NONE: Self = Self { degrees: DVec3::ZERO };
+    pub const NONE: Self = Self::Angles(DVec3::ZERO);
+
+    /// Tells whether the axis, where there is one, has a direction.
+    pub fn has_axis(&self) -> bool {
+        !matches!(self, Self::Around { axis: DVec3::ZERO, .. })
+    }
+
+    /// Returns the angles around x, y and z in degrees, where the rotation is given by them or around one of these axes.
+    pub fn angles(self) -> Option<DVec3> {
+        match self {
+            Self::Angles(degrees) => Some(degrees),
+            Self::Around { axis, degrees } => {
+                let index = (0..3).find(|index| axis[*index] != 0.0)?;
+                let along = DVec3::AXES[index] * axis[index];
+                (along == axis).then(|| DVec3::AXES[index] * degrees * axis[index].signum())
+            }
+        }
+    }
 }
 
-/// A scaling along the axes, then a rotation around x, then y, then z, and then a translation, as the scene gives them.
+/// A scaling along the axes, then a rotation, and then a translation, as the scene gives them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
     /// The scale factors along the shape's own axes, all positive.
@@ -52,10 +76,16 @@ impl Placement {
 
     /// Takes a vector from the world to the shape's own coordinates.
     pub fn vector<N: Scalar>(&self, vector: [N; 3]) -> [N; 3] {
-        let [x, y, z] = vector;
-        let (x, y) = turned_back(self.rotation.degrees.z, x, y);
-        let (z, x) = turned_back(self.rotation.degrees.y, z, x);
-        let (y, z) = turned_back(self.rotation.degrees.x, y, z);
+        let [x, y, z] = match (self.rotation.angles(), self.rotation) {
+            (None, Rotation::Around { axis, degrees }) => turned_back_around(axis, degrees, vector),
+            (angles, _) => {
+                let (angles, [x, y, z]) = (angles.unwrap_or_default(), vector);
+                let (x, y) = turned_back(angles.z, x, y);
+                let (z, x) = turned_back(angles.y, z, x);
+                let (y, z) = turned_back(angles.x, y, z);
+                [x, y, z]
+            }
+        };
         let part = |part: N, scale: f64| if scale == 1.0 { part } else { part / N::constant(scale) };
         [part(x, self.scale.x), part(y, self.scale.y), part(z, self.scale.z)]
     }
@@ -77,6 +107,18 @@ fn turned_back<N: Scalar>(degrees: f64, x: N, y: N) -> (N, N) {
     }
 }
 
+/// Rotates a vector clockwise around an axis, a vector of any length but 0, by an angle in degrees.
+fn turned_back_around<N: Scalar>(axis: DVec3, degrees: f64, vector: [N; 3]) -> [N; 3] {
+    // Times a power of two, so that the squares stay in range.
+    let exponent = libm::ilogb(axis.abs().max_element());
+    let axis = per_axis(|index| N::constant(libm::scalbn(axis[index], -exponent)));
+    let length = dot(axis, axis).sqrt();
+    let axis = axis.map(|part| part / length);
+    let (cos, sin) = turned_back(-degrees, N::constant(1.0), N::constant(0.0));
+    let (along, across) = (dot(axis, vector) * (N::constant(1.0) - cos), cross(vector, axis));
+    per_axis(|index| cos * vector[index] + sin * across[index] + along * axis[index])
+}
+
 /// Returns an angle in radians that is given in degrees.
 pub(crate) fn radians<N: Scalar>(degrees: f64) -> N {
     let [a, b, c, d] = PI;
@@ -88,6 +130,7 @@ pub(crate) fn radians<N: Scalar>(degrees: f64) -> N {
 mod tests {
     use super::*;
     use crate::numeric::interval::{Float, Interval, Wide};
+    use glam::DQuat;
 
     #[test]
     fn half_a_turn_is_enclosed() {
@@ -104,12 +147,59 @@ mod tests {
         for turns in -9..=9_i32 {
             let placement = Placement {
                 scale: DVec3::new(1.0, 2.0, 4.0),
-                rotation: Rotation { degrees: DVec3::new(0.0, 90.0 * f64::from(turns), 0.0) },
+                rotation: Rotation::Angles(DVec3::new(0.0, 90.0 * f64::from(turns), 0.0)),
                 translation: DVec3::ZERO,
             };
             let own = placement.to_own() * DVec3::X;
             let expected = [DVec3::X, 0.25 * DVec3::Z, -DVec3::X, -0.25 * DVec3::Z];
             assert_eq!(own, expected[turns.rem_euclid(4) as usize], "{turns}");
+        }
+    }
+
+    fn around(axis: DVec3, degrees: f64) -> Placement {
+        let rotation = Rotation::Around { axis, degrees };
+        Placement { scale: DVec3::ONE, rotation, translation: DVec3::ZERO }
+    }
+
+    #[test]
+    fn a_rotation_around_x_y_or_z_is_the_one_by_an_angle() {
+        for (index, axis) in DVec3::AXES.into_iter().enumerate() {
+            for (length, degrees) in [(1.0, 30.0), (-4.0, 30.0), (1e300, -123.4), (-5e-324, 90.0)] {
+                let mut angles = DVec3::ZERO;
+                angles[index] = degrees * f64::signum(length);
+                let placement = around(length * axis, degrees);
+                let expected = Placement { rotation: Rotation::Angles(angles), ..placement };
+                assert_eq!(placement.to_own(), expected.to_own(), "{axis} {length} {degrees}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_rotation_around_any_axis_is_that_of_a_quaternion() {
+        let mut axes = vec![DVec3::ONE, DVec3::new(1e200, 2e200, -3e200), DVec3::new(3e-310, 0.0, 4e-310)];
+        axes.extend(
+            (0..50).map(|n| DVec3::new(f64::from(n).sin(), f64::from(2 * n).cos(), f64::from(n % 7) - 3.0)),
+        );
+        for (n, axis) in axes.into_iter().enumerate() {
+            let degrees = 37.0 * n as f64 - 400.0;
+            let long = axis / axis.abs().max_element();
+            let quaternion = DQuat::from_axis_angle(long.normalize(), degrees.to_radians());
+            let to_world = around(axis, degrees).to_own().transpose();
+            assert!(to_world.abs_diff_eq(DMat3::from_quat(quaternion), 4e-15), "{axis} {degrees}");
+        }
+    }
+
+    #[test]
+    fn a_rotation_around_any_axis_is_enclosed() {
+        let axis = DVec3::new(1.0, -2.0, 2.0);
+        let there = |vector, degrees| around(axis, degrees).vector::<Wide>(vector);
+        let vector = [0.1, 0.7, -3.0].map(Wide::constant);
+        // A third of a turn, three times.
+        let back = (0..3).fold(vector, |vector, _| there(vector, 120.0));
+        let along = there([1.0, -2.0, 2.0].map(Wide::constant), 77.0);
+        for axis_of in 0..3 {
+            assert!((back[axis_of] - vector[axis_of]).has_zero() && back[axis_of].width().to_f64() < 1e-58);
+            assert!((along[axis_of] - Wide::constant(axis[axis_of])).has_zero(), "the axis stays");
         }
     }
 }

@@ -5,18 +5,28 @@ use crate::scene::counts::Counts;
 use crate::scene::value::{Datum, Type, Value};
 use glam::DVec3;
 
-/// A rotation, written as its three angles in degrees: around x, then y, then z.
+/// A rotation, written as its three angles in degrees, around x, then y, then z, or as an axis and the angle around it.
 impl Value for Rotation {
     const TYPE: Type = Type::Rotation;
-    const ARITY: Counts = Counts::Of(&[3]);
-    const EACH: &[&str] = DVec3::EACH;
+    const ARITY: Counts = Counts::Of(&[3, 4]);
+    const EACH: &[&str] = &["x", "y", "z", "angle"];
 
     fn to_datum(&self) -> Datum {
-        self.degrees.to_datum()
+        match self {
+            Self::Angles(degrees) => degrees.to_datum(),
+            Self::Around { axis, degrees } => Datum::Numbers([&axis.to_array()[..], &[*degrees]].concat()),
+        }
     }
 
     fn from_datum(datum: &Datum) -> Option<Self> {
-        DVec3::from_datum(datum).map(|degrees| Self { degrees })
+        match datum {
+            Datum::Numbers(numbers) => match numbers[..] {
+                [x, y, z] => Some(Self::Angles(DVec3::new(x, y, z))),
+                [x, y, z, degrees] => Some(Self::Around { axis: DVec3::new(x, y, z), degrees }),
+                _ => None,
+            },
+            _ => None,
+        }
     }
 }
 

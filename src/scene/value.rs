@@ -34,7 +34,7 @@ pub enum Type {
     Formula(&'static [&'static str]),
     /// Yes or no.
     Truth,
-    /// The angles of a rotation around x, then y, then z, in degrees.
+    /// The angles of a rotation around x, then y, then z, in degrees, or an axis and the angle around it.
     Rotation,
 }
 

@@ -1,5 +1,6 @@
 //! Polygons in a plane: cut into triangles, or extended to prisms.
 
+use crate::geometry::placement::Rotation;
 use crate::numeric::double_double::DoubleDouble;
 use crate::shapes::mesh::read::Model;
 use crate::shapes::mesh::{Mesh, Surface, ToWorld, Unfit};
@@ -116,7 +117,8 @@ pub fn prism(corners: &[DVec2], [low, high]: [f64; 2], is_open: bool) -> Option<
 /// Why there is none.
 pub fn body(vertices: Vec<DVec3>, faces: Vec<[u32; 3]>, accuracy: Accuracy) -> Result<Body, Unfit> {
     let model = Model { vertices, faces, ..Model::default() };
-    let surface = Arc::new(Surface::new(model, &ToWorld::new(DVec3::ONE, DVec3::ZERO, DVec3::ZERO), false)?);
+    let surface =
+        Arc::new(Surface::new(model, &ToWorld::new(DVec3::ONE, Rotation::NONE, DVec3::ZERO), false)?);
     Ok(match accuracy {
         Accuracy::Draft => Body::plain(Mesh::<Draft>::shape(surface, accuracy)),
         Accuracy::Strict => Body::plain(Mesh::<Strict>::shape(surface, accuracy)),

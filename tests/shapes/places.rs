@@ -47,6 +47,16 @@ fn a_placed_object_looks_as_the_same_object_written_out() {
                 vertex3 2.585786437626905 2.414213562373095 -2 }",
         ),
         (
+            "triangle o { material red vertex1 0 -1 0 vertex2 -1 0 -2 vertex3 1.5 1 -1 }",
+            "place p { object o material red rotation 1 1 1 120 translation 4.013 2.027 -3 }",
+            "triangle p { material red vertex1 4.013 2.027 -4 vertex2 2.013 1.027 -3 vertex3 3.013 3.527 -2 }",
+        ),
+        (
+            "mesh o { material red file scenes/models/knot.obj }",
+            "place p { object o material red rotation 0 -3 4 77 translation 4 3 -2 }",
+            "mesh p { material red file scenes/models/knot.obj rotation 0 -3 4 77 translation 4 3 -2 }",
+        ),
+        (
             "torus o { material red center 0 0 0 radius 1 tube 0.3 }",
             "place p { object o material red rotation 90 0 0 translation 4 2 -2 }",
             "torus p { material red center 4 2 -2 direction 0 0 1 radius 1 tube 0.3 }",

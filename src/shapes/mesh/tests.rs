@@ -5,6 +5,7 @@ use super::hits::{Last, NOTHING};
 use super::known::Known;
 use super::search::Aims;
 use super::{Mesh, Surface, ToWorld, read::Model};
+use crate::geometry::placement::Rotation;
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{PACKET_SIZE, RayPacket};
 use crate::geometry::sight::Sight;
@@ -87,7 +88,7 @@ proptest! {
         (rows, scale, rotation) in (3..9_u32, scale(), -180.0..180.0),
         toward in prop::collection::vec((any::<prop::sample::Index>(), 0.0..1.0, direction()), 40),
     ) {
-        let placement = ToWorld::new(scale, DVec3::splat(rotation), DVec3::new(3.0, 2.0, -1.0));
+        let placement = ToWorld::new(scale, Rotation::Angles(DVec3::splat(rotation)), DVec3::new(3.0, 2.0, -1.0));
         let surface = Arc::new(surface(closed(&bumps, rows), &placement));
         prop_assert_eq!(surface.open_edges, 0);
         let (inside, shape) = (placement.place(DVec3::ZERO), shape(&surface));
@@ -118,7 +119,7 @@ proptest! {
         (rows, scale, rotation) in (3..7_u32, scale(), -180.0..180.0),
         rays in prop::collection::vec((direction(), direction(), any::<prop::sample::Index>(), 0.1..1e3), 40),
     ) {
-        let placement = ToWorld::new(scale, DVec3::splat(rotation), DVec3::new(3.0, 2.0, -1.0));
+        let placement = ToWorld::new(scale, Rotation::Angles(DVec3::splat(rotation)), DVec3::new(3.0, 2.0, -1.0));
         let surface = Arc::new(surface(closed(&bumps, rows), &placement));
         let shape = shape(&surface);
         for (from, dir, index, far) in rays {
@@ -159,7 +160,7 @@ fn a_ray_through_a_vertex_hits_the_first_face_of_the_file() {
         faces.rotate_left(first);
         let model =
             Model { vertices: vertices.map(DVec3::from).to_vec(), faces: faces.clone(), ..Model::default() };
-        let surface = Arc::new(surface(model, &ToWorld::new(PLAIN, DVec3::ZERO, DVec3::ZERO)));
+        let surface = Arc::new(surface(model, &ToWorld::new(PLAIN, Rotation::NONE, DVec3::ZERO)));
         assert_eq!(surface.open_edges, 4);
         let ray = Ray { origin: DVec3::Z, dir: -DVec3::Z };
         assert_eq!(shape(&surface).distance(&ray, &RayRange::ALL), 1.0);
@@ -180,7 +181,7 @@ fn equal_vertices_are_one_and_faces_without_an_area_are_left_out() {
     let vertices: Vec<_> = corners.chain(extra).collect();
     let alone = (0..vertices.len() as u32 / 3).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]).collect();
     let model = Model { vertices, faces: alone, ..Model::default() };
-    let surface = surface(model, &ToWorld::new(PLAIN, DVec3::ZERO, DVec3::ZERO));
+    let surface = surface(model, &ToWorld::new(PLAIN, Rotation::NONE, DVec3::ZERO));
     assert_eq!((surface.face_count(), surface.degenerate, surface.open_edges), (faces.len(), 2, 0));
     assert!(surface.vertices.len() < faces.len());
 }
@@ -192,7 +193,7 @@ proptest! {
         (rows, scale) in (3..9_u32, scale()),
         ways in prop::collection::vec((direction(), any::<prop::sample::Index>(), 0.0..1.0), 40),
     ) {
-        let surface = surface(closed(&bumps, rows), &ToWorld::new(scale, DVec3::ZERO, DVec3::ZERO));
+        let surface = surface(closed(&bumps, rows), &ToWorld::new(scale, Rotation::NONE, DVec3::ZERO));
         let mut known = 0;
         for (from, to, along) in ways {
             // Toward an edge, a vertex or the inside of a face.
@@ -222,7 +223,7 @@ proptest! {
         ways in prop::collection::vec((direction(), any::<prop::sample::Index>(), 0.0..1.0), 1..PACKET_SIZE),
         (leaves, drift) in (any::<bool>(), prop_oneof![Just(0.0), Just(1e-9)]),
     ) {
-        let surface = surface(closed(&bumps, rows), &ToWorld::new(scale, DVec3::ZERO, DVec3::ZERO));
+        let surface = surface(closed(&bumps, rows), &ToWorld::new(scale, Rotation::NONE, DVec3::ZERO));
         let reach = surface.reach();
         let count = ways.len().next_multiple_of(LANES);
         let (mut origin, mut dir) = (Vectors::<PACKET_SIZE>::ZERO, Vectors::<PACKET_SIZE>::ZERO);
@@ -267,7 +268,7 @@ proptest! {
 fn a_face_that_only_another_ray_within_the_drift_hits_is_not_missed() {
     let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
     let model = Model { vertices, faces: vec![[0, 1, 2]], ..Model::default() };
-    let surface = surface(model, &ToWorld::new(PLAIN, DVec3::ZERO, DVec3::ZERO));
+    let surface = surface(model, &ToWorld::new(PLAIN, Rotation::NONE, DVec3::ZERO));
     let ray = Ray { origin: DVec3::new(-1e-6, 0.5, 2.0), dir: DVec3::NEG_Z };
     for cpu in Cpu::all() {
         let (exactly, _) = surface.bracket::<Exact>(cpu, &ray, &RayRange::ALL, NOTHING, &mut Last::none());
@@ -281,19 +282,22 @@ fn a_face_that_only_another_ray_within_the_drift_hits_is_not_missed() {
 
 #[test]
 fn a_placement_scales_then_rotates_then_moves() {
-    let placement =
-        ToWorld::new(DVec3::new(2.0, 3.0, 4.0), DVec3::new(0.0, 0.0, 90.0), DVec3::new(10.0, 0.0, 0.0));
+    let placement = ToWorld::new(
+        DVec3::new(2.0, 3.0, 4.0),
+        Rotation::Angles(DVec3::new(0.0, 0.0, 90.0)),
+        DVec3::new(10.0, 0.0, 0.0),
+    );
     assert_eq!(placement.place(DVec3::new(1.0, 1.0, 1.0)), DVec3::new(7.0, 2.0, 4.0));
     assert!(!placement.is_mirrored());
-    assert!(ToWorld::new(DVec3::new(1.0, 1.0, -1.0), DVec3::ZERO, DVec3::ZERO).is_mirrored());
-    let turned = ToWorld::new(PLAIN, DVec3::new(90.0, 90.0, 0.0), DVec3::ZERO);
+    assert!(ToWorld::new(DVec3::new(1.0, 1.0, -1.0), Rotation::NONE, DVec3::ZERO).is_mirrored());
+    let turned = ToWorld::new(PLAIN, Rotation::Angles(DVec3::new(90.0, 90.0, 0.0)), DVec3::ZERO);
     // Around x first: y becomes z, which becomes x around y.
     assert_eq!(turned.place(DVec3::Y), DVec3::X);
 }
 
 #[test]
 fn the_memory_of_a_mesh_is_far_below_150_bytes_for_each_face() {
-    let surface = surface(closed(&[1.0, 1.1, 0.9], 200), &ToWorld::new(PLAIN, DVec3::ZERO, DVec3::ZERO));
+    let surface = surface(closed(&[1.0, 1.1, 0.9], 200), &ToWorld::new(PLAIN, Rotation::NONE, DVec3::ZERO));
     let each = surface.bytes() as f64 / surface.face_count() as f64;
     assert!(each < 75.0, "{each} bytes");
 }
@@ -306,7 +310,7 @@ fn no_doubled_face_at_an_outline_is_seen_from_behind() {
         [turned.clone().chain(faces.clone()).collect(), faces.iter().copied().chain(turned).collect()]
     {
         let model = Model { vertices: vertices.clone(), faces: doubled, ..Model::default() };
-        let surface = Arc::new(surface(model, &ToWorld::new(PLAIN, DVec3::ZERO, DVec3::ZERO)));
+        let surface = Arc::new(surface(model, &ToWorld::new(PLAIN, Rotation::NONE, DVec3::ZERO)));
         let (shape, mut seen) = (shape(&surface), 0);
         for view in 0..40 {
             let angle = f64::from(view);
@@ -358,7 +362,7 @@ fn faces_of_which_none_lies_beside_another_are_found() {
         });
         let faces = (0..COUNT as u32).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]).collect();
         let model = Model { vertices: vertices.collect(), faces, ..Model::default() };
-        let surface = surface(model, &ToWorld::new(PLAIN, DVec3::ZERO, DVec3::ZERO));
+        let surface = surface(model, &ToWorld::new(PLAIN, Rotation::NONE, DVec3::ZERO));
         // Toward the middles of some faces, each from a place that is as far away as the face is large.
         let (mut origin, mut dir) = (Vectors::<LANES>::ZERO, Vectors::<LANES>::ZERO);
         for lane in 0..LANES {

@@ -1,5 +1,6 @@
 //! Where a mesh is placed: scaled, rotated and moved.
 
+use crate::geometry::placement::{Placement, Rotation};
 use glam::{DMat3, DVec3};
 
 /// A scaling along the axes, followed by a rotation and a translation.
@@ -13,14 +14,9 @@ pub struct ToWorld {
 }
 
 impl ToWorld {
-    /// Makes a placement. `rotation` holds the angles in degrees by which the mesh is rotated around the x, then the y
-    /// and then the z axis, counterclockwise as seen from the axis's end.
-    pub fn new(scale: DVec3, rotation: DVec3, translation: DVec3) -> Self {
-        let [x, y, z] = rotation.to_array().map(sin_cos);
-        let around_x = DMat3::from_cols(DVec3::X, DVec3::new(0.0, x.1, x.0), DVec3::new(0.0, -x.0, x.1));
-        let around_y = DMat3::from_cols(DVec3::new(y.1, 0.0, -y.0), DVec3::Y, DVec3::new(y.0, 0.0, y.1));
-        let around_z = DMat3::from_cols(DVec3::new(z.1, z.0, 0.0), DVec3::new(-z.0, z.1, 0.0), DVec3::Z);
-        let linear = around_z * around_y * around_x * DMat3::from_diagonal(scale);
+    /// Makes a placement.
+    pub fn new(scale: DVec3, rotation: Rotation, translation: DVec3) -> Self {
+        let linear = turned(rotation) * DMat3::from_diagonal(scale);
         Self { linear, translation, is_plain: linear == DMat3::IDENTITY }
     }
 
@@ -35,6 +31,19 @@ impl ToWorld {
     pub fn is_mirrored(&self) -> bool {
         self.linear.determinant() < 0.0
     }
+}
+
+/// Returns the matrix of a rotation.
+fn turned(rotation: Rotation) -> DMat3 {
+    let Some(angles) = rotation.angles() else {
+        let placement = Placement { scale: DVec3::ONE, rotation, translation: DVec3::ZERO };
+        return placement.to_own().transpose();
+    };
+    let [x, y, z] = angles.to_array().map(sin_cos);
+    let around_x = DMat3::from_cols(DVec3::X, DVec3::new(0.0, x.1, x.0), DVec3::new(0.0, -x.0, x.1));
+    let around_y = DMat3::from_cols(DVec3::new(y.1, 0.0, -y.0), DVec3::Y, DVec3::new(y.0, 0.0, y.1));
+    let around_z = DMat3::from_cols(DVec3::new(z.1, z.0, 0.0), DVec3::new(-z.0, z.1, 0.0), DVec3::Z);
+    around_z * around_y * around_x
 }
 
 /// Returns the sine and the cosine of an angle in degrees, exact for multiples of 90.
