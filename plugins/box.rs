@@ -18,7 +18,7 @@ inventory::submit! {
         let (low, high) = (center - half, center + half);
         let corners = [(low.x, low.z), (high.x, low.z), (high.x, high.z), (low.x, high.z)].map(DVec2::from);
         let solid = outline::prism(&corners, [low.y, high.y], false);
-        let body = solid.and_then(|(vertices, faces)| outline::body(vertices, faces, args.accuracy()).ok());
+        let body = solid.and_then(|solid| outline::body(solid, args.accuracy()).ok());
         body.ok_or(Refusal {
             attribute: Some("size"),
             message: "is too small for where it is: its sides coincide, or are too far away".to_owned(),

@@ -25,7 +25,7 @@ inventory::submit! {
         let corners: Vec<_> =
             args.get(&POINTS).0.iter().map(|point| *point + DVec2::new(base.x, base.z)).collect();
         let solid = outline::prism(&corners, [base.y, base.y + args.get(&HEIGHT)], args.get(&OPEN));
-        let body = solid.and_then(|(vertices, faces)| outline::body(vertices, faces, args.accuracy()).ok());
+        let body = solid.and_then(|solid| outline::body(solid, args.accuracy()).ok());
         body.ok_or(Refusal {
             attribute: Some("points"),
             message: "is too small for where it is: some of its edges meet, or are too far away".to_owned(),

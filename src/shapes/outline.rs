@@ -91,9 +91,9 @@ pub fn triangles(corners: &[DVec2]) -> Option<Vec<[u32; 3]>> {
     Some(all)
 }
 
-/// Returns the corners and faces of the prism above a polygon in x and z, from one height to another; without its two
-/// ends if it is open. `None` if the polygon is not simple.
-pub fn prism(corners: &[DVec2], [low, high]: [f64; 2], is_open: bool) -> Option<(Vec<DVec3>, Vec<[u32; 3]>)> {
+/// Returns the prism above a polygon in x and z, from one height to another; without its two ends if it is open. Its sides
+/// come first, then the lower end and the upper one. `None` if the polygon is not simple.
+pub fn prism(corners: &[DVec2], [low, high]: [f64; 2], is_open: bool) -> Option<Model> {
     let mut corners = corners.to_vec();
     if is_simple(&corners) && !is_counterclockwise(&unit_corners(&corners)) {
         corners.reverse();
@@ -102,21 +102,26 @@ pub fn prism(corners: &[DVec2], [low, high]: [f64; 2], is_open: bool) -> Option<
     let count = corners.len() as u32;
     let at = |y: f64| corners.iter().map(move |corner| DVec3::new(corner.x, y, corner.y));
     // From x to z is clockwise as seen from above.
-    let sides = (0..count).flat_map(|from| {
+    let around = (0..count).flat_map(|from| {
         let to = (from + 1) % count;
-        [[from, from + count, to + count], [from, to + count, to]]
+        [(from, [from, from + count, to + count]), (from, [from, to + count, to])]
     });
-    let top = ends.iter().map(|[a, b, c]| [c + count, b + count, a + count]);
-    let ends = ends.iter().copied().chain(top).filter(|_| !is_open);
-    Some((at(low).chain(at(high)).collect(), sides.chain(ends).collect()))
+    let bottom = ends.iter().map(|corners| (count, *corners));
+    let top = ends.iter().map(|[a, b, c]| (count + 1, [c + count, b + count, a + count]));
+    let (sides, faces) = around.chain(bottom.chain(top).filter(|_| !is_open)).unzip();
+    Some(Model { vertices: at(low).chain(at(high)).collect(), faces, sides, ..Model::default() })
+}
+
+/// Returns the triangles of a flat polygon.
+pub fn polygon(vertices: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Model {
+    Model { sides: vec![0; faces.len()], vertices, faces, ..Model::default() }
 }
 
 /// Makes an object of triangles.
 ///
 /// # Errors
 /// Why there is none.
-pub fn body(vertices: Vec<DVec3>, faces: Vec<[u32; 3]>, accuracy: Accuracy) -> Result<Body, Unfit> {
-    let model = Model { vertices, faces, ..Model::default() };
+pub fn body(model: Model, accuracy: Accuracy) -> Result<Body, Unfit> {
     let surface =
         Arc::new(Surface::new(model, &ToWorld::new(DVec3::ONE, Rotation::NONE, DVec3::ZERO), false)?);
     Ok(match accuracy {

@@ -108,7 +108,7 @@ impl<A: Bounded> Hittable for Mesh<A> {
     }
 
     fn face(&self, at: DVec3) -> Option<u32> {
-        u32::try_from(self.surface.face_at(at)).ok()
+        Some(self.surface.order[self.surface.face_at(at)])
     }
 
     fn bounds(&self) -> Option<Aabb> {

@@ -35,7 +35,7 @@ pub struct Surface {
     pub(super) vertices: Vec<DVec3>,
     /// The corners of each face, in the order of the tree, counterclockwise as seen from the outside.
     pub(super) faces: Vec<[u32; 3]>,
-    /// For each face, its index in the file.
+    /// For each face, its index in the file, or that of the flat side of which it is a part.
     pub(super) order: Vec<u32>,
     /// For each face, the index of its material plus 1; 0 for none. Empty where no face has any.
     pub(super) slots: Vec<u16>,
@@ -73,7 +73,7 @@ impl Surface {
         if model.faces.len() > MAX_FACES {
             return Err(Unfit::TooMany);
         }
-        let Model { vertices, mut faces, materials, slots } = model;
+        let Model { vertices, mut faces, materials, slots, sides } = model;
         let vertices = merge(vertices, &mut faces, placement);
         let is_far = |at: DVec3| !at.is_finite() || at.abs().max_element() > MOST_LENGTH;
         if parallel::first(vertices.len(), |vertex| is_far(vertices[vertex])).is_some() {
@@ -97,9 +97,12 @@ impl Surface {
         let sorted = tree.take_order();
         let mut faces: Vec<_> = sorted.iter().map(|face| kept[*face as usize]).collect();
         let (vertices, normals) = in_order_of_use(&vertices, &normals, &mut faces);
-        let order: Vec<_> = sorted.iter().map(|face| order[*face as usize]).collect();
+        let mut order: Vec<_> = sorted.iter().map(|face| order[*face as usize]).collect();
         let slots =
             if slots.is_empty() { slots } else { order.iter().map(|face| slots[*face as usize]).collect() };
+        if !sides.is_empty() {
+            order.iter_mut().for_each(|face| *face = sides[*face as usize]);
+        }
         let bounds = Aabb::around(&vertices);
         let id = 1 + SURFACES.fetch_add(1, Ordering::Relaxed);
         Ok(Self {

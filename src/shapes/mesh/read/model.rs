@@ -19,6 +19,8 @@ pub struct Model {
     pub materials: Vec<String>,
     /// The material of each face, as an index of `materials` plus 1; 0 for none. Empty where no face has any.
     pub slots: Vec<u16>,
+    /// The index of the flat side of which each triangle is a part, rising; empty where each is a side of its own.
+    pub sides: Vec<u32>,
 }
 
 /// Why a file cannot be read: where, and what is wrong there.
