@@ -11,6 +11,7 @@ static WORLDDIM: Pparm<DVec2> = Pparm::required("worlddim", "the width and heigh
     .dumped("world_dim", " \n");
 static VIEWPOINT: Pparm<DVec3> = Pparm::required("viewpoint", "the position of the viewer")
     .alias(&["view_point"])
+    .pose(Pose::Position)
     .unit("world coordinates")
     .must("in front of the image plane (z above 0)", |at: &DVec3| at.z > 0.0)
     .dumped("view_point", "\n");

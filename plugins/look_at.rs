@@ -4,11 +4,14 @@ use crate::prelude::*;
 use std::sync::Arc;
 
 pub static POSITION: Pparm<DVec3> =
-    Pparm::required("position", "the position of the viewer").unit("world coordinates");
+    Pparm::required("position", "the position of the viewer").unit("world coordinates").pose(Pose::Position);
 pub static TARGET: Pparm<DVec3> =
-    Pparm::required("target", "the point that is seen in the middle of the image").unit("world coordinates");
+    Pparm::required("target", "the point that is seen in the middle of the image")
+        .unit("world coordinates")
+        .pose(Pose::Target);
 pub static UP: Pparm<DVec3> = Pparm::or("up", "a direction that points up in the image", DVec3::Y)
-    .must("a nonzero vector", |up: &DVec3| up.try_normalize().is_some());
+    .must("a nonzero vector", |up: &DVec3| up.try_normalize().is_some())
+    .pose(Pose::Up);
 pub static ANGLE: Pparm<f64> = Pparm::or("angle", "the angle of view across the width of the image", 50.0)
     .unit("degrees")
     .between(0.001, 179.0);

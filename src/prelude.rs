@@ -7,7 +7,7 @@
 pub use crate::scene::counts::OneOf;
 pub use crate::scene::entity::{Args, Entity, Refusal};
 pub use crate::scene::list::List;
-pub use crate::scene::pparm::{Attributes, Derived, LEAST_LENGTH, Pparm, Row, Table};
+pub use crate::scene::pparm::{Attributes, Derived, LEAST_LENGTH, Pose, Pparm, Row, Table};
 pub use crate::scene::value::{COLOUR, Datum, PerChannel, Value};
 pub use inventory;
 

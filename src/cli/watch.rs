@@ -3,6 +3,7 @@
 pub(super) mod answer;
 pub(super) mod board;
 mod browser;
+mod camera;
 pub(super) mod desk;
 mod events;
 mod fields;

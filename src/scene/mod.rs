@@ -27,7 +27,7 @@ pub use entity::{Args, Entity, Refusal};
 pub use kind::Kind;
 pub use list::List;
 pub use model::Model;
-pub use pparm::{Attribute, Derived, Pparm, Row, Table};
+pub use pparm::{Attribute, Derived, Pose, Pparm, Row, Table};
 pub use profile::Profile;
 pub use reader::{Fault, Loaded, Parsed, Place, Report, Severity, build, read};
 pub use registry::Registry;

@@ -55,8 +55,24 @@ pub trait Attribute: Sync {
     fn rule(&self) -> Cow<'static, str>;
     /// Returns the least and the greatest number that each value may be, where there are such numbers.
     fn range(&self) -> Option<[f64; 2]>;
+    /// Returns what the values say of where a camera stands, if they say anything of it.
+    fn pose(&self) -> Option<Pose>;
     /// Tells whether values of the right type and number satisfy the rule.
     fn allows(&self, datum: &Datum) -> bool;
+}
+
+/// What an attribute says of where a camera stands: by this, cameras of any type are moved on a page.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pose {
+    /// The point where the viewer is. A camera without a [`Target`](Self::Target) looks through an image plane that stays
+    /// in its place when the viewer moves.
+    Position,
+    /// The point at which the viewer looks.
+    Target,
+    /// The direction that points up in the image.
+    Up,
+    /// The size in world units of what the image shows, if the rays are parallel.
+    Extent,
 }
 
 impl dyn Attribute + '_ {
@@ -120,6 +136,7 @@ pub struct Pparm<T: Value> {
     rule: &'static str,
     keeps: fn(&T) -> bool,
     range: Option<[f64; 2]>,
+    pose: Option<Pose>,
     /// The beginning of the attribute's line in the notes' dump; `None` where the dump leaves it out.
     label: Option<&'static str>,
     ending: &'static str,
@@ -148,6 +165,7 @@ impl<T: Value> Pparm<T> {
             rule: "",
             keeps: |_| true,
             range: None,
+            pose: None,
             label: Some(name),
             ending: " \n",
             shown: None,
@@ -183,6 +201,12 @@ impl<T: Value> Pparm<T> {
     /// Sets the range of each number, ends included. It is part of the rule: "from 0 to 1".
     pub const fn between(mut self, least: f64, most: f64) -> Self {
         self.range = Some([least, most]);
+        self
+    }
+
+    /// Sets what the values say of where a camera stands.
+    pub const fn pose(mut self, pose: Pose) -> Self {
+        self.pose = Some(pose);
         self
     }
 
@@ -248,6 +272,10 @@ impl<T: Value> Attribute for Pparm<T> {
 
     fn range(&self) -> Option<[f64; 2]> {
         self.range
+    }
+
+    fn pose(&self) -> Option<Pose> {
+        self.pose
     }
 
     fn allows(&self, datum: &Datum) -> bool {

@@ -6,6 +6,7 @@ pub mod chart;
 pub mod colours;
 pub mod contract;
 pub mod debug;
+pub mod navigation;
 pub mod probe;
 pub mod sampling;
 pub mod verify;

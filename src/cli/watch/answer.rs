@@ -1,6 +1,7 @@
 //! Answers the requests of the page: for itself, for its events, and for details of the image that it shows.
 
 use super::board::Board;
+use super::camera;
 use super::desk::Desk;
 use super::fields;
 use super::frame::Frame;
@@ -37,9 +38,11 @@ const PAGE: &str = concat!(
     include_str!("page/events.js"),
     include_str!("page/image.js"),
     include_str!("page/zoom.js"),
+    include_str!("page/camera.js"),
     include_str!("page/explain.js"),
     include_str!("page/fields.js"),
     include_str!("page/text.js"),
+    include_str!("page/pointer.js"),
     include_str!("page/keys.js"),
     "</script>\n",
 );
@@ -61,6 +64,7 @@ pub async fn answer(request: &Request<Bytes>, desk: &Desk, work: &Work) -> Respo
     if request.method() == Method::POST {
         return match path[..] {
             ["try"] => desk.try_out(request.body()),
+            ["move"] => camera::go(desk, request.body()),
             ["discard"] => desk.discard(),
             ["write"] => desk.write(),
             _ => serve::text(StatusCode::NOT_FOUND, "there is no such page\n"),
@@ -76,6 +80,8 @@ pub async fn answer(request: &Request<Bytes>, desk: &Desk, work: &Work) -> Respo
         ["object", version, x, y] => {
             about(board, work, version, |frame| object(desk.registry, frame, x, y)).await
         }
+        ["camera"] => camera::hold(desk),
+        ["point", version, x, y] => about(board, work, version, |frame| point(frame, x, y)).await,
         ["entities", version] => {
             let all = |frame: Arc<Frame>| -> Option<Job> {
                 Some(Box::new(move |_| {
@@ -148,13 +154,23 @@ fn check(frame: &Frame, client: &Client) -> ControlFlow<()> {
 
 /// Finds the attributes of the object that a pixel shows.
 fn object(registry: &'static Registry, frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
-    let [width, height] = frame.model.camera.value.pixels;
-    let x = x.parse().ok().filter(|x| *x < width)?;
-    let y = y.parse().ok().filter(|y| *y < height)?;
+    let at = place(&frame, x, y)?;
     Some(Box::new(move |_| {
-        let fields = fields::of_pixel(registry, &frame, [x, y]);
+        let fields = fields::of_pixel(registry, &frame, at);
         Ok(("application/json", text::json(&fields).into_bytes()))
     }))
+}
+
+/// Finds the point that a pixel shows.
+fn point(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
+    let at = place(&frame, x, y)?;
+    Some(Box::new(move |_| Ok(("application/json", text::json(&camera::point(&frame, at)).into_bytes()))))
+}
+
+/// Reads the column and the row of a pixel of an image.
+fn place(frame: &Frame, x: &str, y: &str) -> Option<[usize; 2]> {
+    let [width, height] = frame.model.camera.value.pixels;
+    Some([x.parse().ok().filter(|x| *x < width)?, y.parse().ok().filter(|y| *y < height)?])
 }
 
 /// Finds the attributes of an entity by its index.
@@ -168,9 +184,7 @@ fn entity(registry: &'static Registry, frame: Arc<Frame>, order: &str) -> Option
 
 /// Explains a pixel, and finds the lines of the object that it shows.
 fn pixel(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
-    let [width, height] = frame.model.camera.value.pixels;
-    let x = x.parse().ok().filter(|x| *x < width)?;
-    let y = y.parse().ok().filter(|y| *y < height)?;
+    let [x, y] = place(&frame, x, y)?;
     Some(Box::new(move |client| {
         Renderer::new(1)?.run(|| {
             let mut told = Bounded { text: Vec::new(), check: || check(&frame, client) };

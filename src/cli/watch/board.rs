@@ -71,6 +71,11 @@ impl Board {
         self.state.borrow().frame.clone().filter(|frame| frame.version == version)
     }
 
+    /// Returns the last valid scene, if there is one.
+    pub fn last(&self) -> Option<Arc<Frame>> {
+        self.state.borrow().frame.clone()
+    }
+
     /// Returns the text of the last valid scene.
     pub fn text(&self) -> Option<String> {
         self.state.borrow().frame.as_ref().map(|frame| frame.text.clone())

@@ -69,7 +69,8 @@ impl Desk {
         self.done("written\n")
     }
 
-    fn done(&self, what: &str) -> Response<Body> {
+    /// Tells the program that the values have changed, and the page that it was done.
+    pub fn done(&self, what: &str) -> Response<Body> {
         (self.changed)();
         serve::text(StatusCode::OK, what)
     }

@@ -1,7 +1,7 @@
 //! The numbers of a scene's entities, as a page offers them to be changed.
 
 use super::frame::Frame;
-use crate::editor::{self, Text};
+use crate::editor::{self, Text, View};
 use crate::render::plan::Plan;
 use crate::render::trace;
 use crate::scene::pparm::Attribute;
@@ -90,18 +90,19 @@ fn is_number(attribute: &'static dyn Attribute) -> bool {
     matches!(attribute.value_type(), Type::Number | Type::Whole) && attribute.arity().most() <= 16
 }
 
+/// Returns why the values of an entity's attribute cannot be changed in the text; `None` where they can be.
+pub fn fixed(view: &View, name: &str, attribute: &dyn Attribute) -> Option<&'static str> {
+    match view.entity(name) {
+        None => Some("it is repeated or included: change the text"),
+        Some(entity) if view.computes(entity, attribute.name()) => Some("it is a formula: change the text"),
+        Some(_) => None,
+    }
+}
+
 fn of(registry: &Registry, frame: &Frame, record: &Record) -> Fields {
     let args = record.args();
     let view = editor::read(registry, &frame.name, Text::new(frame.text.clone()));
-    let written = view.entity(record.name());
     let field = |attribute: &'static dyn Attribute, values: Vec<String>| {
-        let fixed = match &written {
-            None => Some("it is repeated or included: change the text"),
-            Some(entity) if view.computes(entity, attribute.name()) => {
-                Some("it is a formula: change the text")
-            }
-            Some(_) => None,
-        };
         let parts = [attribute.meaning(), attribute.unit(), &attribute.rule()];
         let about: Vec<_> = parts.into_iter().filter(|part| !part.is_empty()).collect();
         Field {
@@ -111,7 +112,7 @@ fn of(registry: &Registry, frame: &Frame, record: &Record) -> Fields {
             values,
             range: attribute.range(),
             whole: matches!(attribute.value_type(), Type::Whole),
-            fixed,
+            fixed: fixed(&view, record.name(), attribute),
         }
     };
     let numbers =

@@ -3,6 +3,7 @@
 use crate::editor::{self, Text, View};
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
+use crate::scene::value::Datum;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -32,6 +33,19 @@ impl Tries {
         let Try { name, attribute, values } = serde_json::from_slice(body).ok()?;
         let are_numbers = values.iter().all(|value| value.parse::<f64>().is_ok()) && !values.is_empty();
         are_numbers.then(|| self.all().insert((name, attribute), values)).map(drop)
+    }
+
+    /// Tries out other numbers of an attribute.
+    pub fn put(&self, name: &str, attribute: &str, numbers: &[f64]) {
+        let values = Syntax::Notes.values(&Datum::Numbers(numbers.to_vec()));
+        self.all().insert((name.to_owned(), attribute.to_owned()), values);
+    }
+
+    /// Returns the numbers of an attribute that are tried out, if there are any.
+    pub fn get(&self, name: &str, attribute: &str) -> Option<Vec<f64>> {
+        let all = self.all();
+        let values = all.get(&(name.to_owned(), attribute.to_owned()))?;
+        values.iter().map(|value| value.parse().ok()).collect()
     }
 
     /// Returns to the values of the text.

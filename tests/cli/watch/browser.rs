@@ -100,6 +100,34 @@ impl Browser {
         );
     }
 
+    /// Presses a button of the mouse (0 left, 2 right) at a position in the window, moves to others and lets go, while a key
+    /// is held.
+    pub fn drag(&self, button: u8, key: Option<char>, places: &[[i64; 2]]) {
+        let [first, rest @ ..] = places else { return };
+        let move_to = |[x, y]: &[i64; 2]| json!({ "type": "pointerMove", "x": x, "y": y, "duration": 20 });
+        let down = json!({ "type": "pointerDown", "button": button });
+        let mut mouse = vec![move_to(first), down];
+        mouse.extend(rest.iter().map(move_to));
+        mouse.push(json!({ "type": "pointerUp", "button": button }));
+        let mut keys = vec![json!({ "type": "pause" })];
+        if let Some(key) = key {
+            keys = vec![json!({ "type": "keyDown", "value": key })];
+            keys.resize(mouse.len(), json!({ "type": "pause" }));
+            keys.push(json!({ "type": "keyUp", "value": key }));
+        }
+        let actions = json!([
+            { "type": "key", "id": "keys", "actions": keys },
+            { "type": "pointer", "id": "mouse", "actions": mouse },
+        ]);
+        self.post("/actions", json!({ "actions": actions }));
+    }
+
+    /// Turns the wheel at a position in the window, by this many pixels down.
+    pub fn wheel(&self, [x, y]: [i64; 2], down: i64) {
+        let turn = json!({ "type": "scroll", "x": x, "y": y, "deltaX": 0, "deltaY": down });
+        self.post("/actions", json!({ "actions": [{ "type": "wheel", "id": "wheel", "actions": [turn] }] }));
+    }
+
     pub fn press(&self, key: char) {
         let actions = json!([{ "type": "keyDown", "value": key }, { "type": "keyUp", "value": key }]);
         self.post("/actions", json!({ "actions": [{ "type": "key", "id": "keys", "actions": actions }] }));

@@ -5,6 +5,7 @@ use crate::common::{load, model, render, root};
 use crate::watch::browser::Browser;
 use crate::watch::program::{Watching, ball};
 use image::RgbImage;
+use serde_json::Value;
 use std::fs;
 use std::time::{SystemTime, UNIX_EPOCH};
 use tabray::render::Plan;
@@ -12,7 +13,7 @@ use tabray::tools::probe;
 use tempfile::TempDir;
 
 /// Opens the page of a scene in a browser, and waits for the whole image.
-fn opened(text: &str) -> Option<(Watching, Browser)> {
+pub fn opened(text: &str) -> Option<(Watching, Browser)> {
     let watching = Watching::text(text);
     let browser = Browser::open(&watching.url(""))?;
     shown(&browser, 1);
@@ -20,12 +21,12 @@ fn opened(text: &str) -> Option<(Watching, Browser)> {
 }
 
 /// Waits for the whole image of a version.
-fn shown(browser: &Browser, version: u64) {
+pub fn shown(browser: &Browser, version: u64) {
     browser.wait(&format!("document.documentElement.dataset.shown === '{version}'"));
 }
 
 /// Returns the pixels of the page's image.
-fn canvas(browser: &Browser) -> RgbImage {
+pub fn canvas(browser: &Browser) -> RgbImage {
     let pixels = browser.run(
         "const c = document.querySelector('canvas');
          return [c.width, c.height, ...c.getContext('2d').getImageData(0, 0, c.width, c.height).data]",
@@ -38,7 +39,7 @@ fn canvas(browser: &Browser) -> RgbImage {
 }
 
 /// Clicks on the centre of a pixel: column from the left, row from the bottom.
-fn click(browser: &Browser, [x, y]: [u32; 2]) {
+pub fn click(browser: &Browser, [x, y]: [u32; 2]) {
     let place = browser.run(&format!(
         "const c = document.querySelector('canvas'), box = c.getBoundingClientRect();
          return [box.left + box.width * ({x} + 0.5) / c.width, box.bottom - box.height * ({y} + 0.5) / c.height]"
@@ -277,13 +278,12 @@ fn from_a_slider_to_the_image() {
          move(100)",
     );
     browser.wait("document.documentElement.dataset.measured");
-    let times = browser.run("return window.times.sort((a, b) => a - b)");
-    let times: Vec<f64> =
-        times.as_array().expect("numbers").iter().filter_map(serde_json::Value::as_f64).collect();
-    println!(
-        "{} moves: median {:.0} ms, worst {:.0} ms",
-        times.len(),
-        times[times.len() / 2],
-        times[times.len() - 1]
-    );
+    println!("{}", told(&browser.run("return window.times.sort((a, b) => a - b)")));
+}
+
+/// Tells the median and the worst of sorted times in milliseconds.
+pub fn told(times: &Value) -> String {
+    let times: Vec<f64> = times.as_array().expect("numbers").iter().filter_map(Value::as_f64).collect();
+    let (median, worst) = (times[times.len() / 2], times[times.len() - 1]);
+    format!("{} moves: median {median:.0} ms, worst {worst:.0} ms", times.len())
 }

@@ -27,7 +27,7 @@ const follow = () => {
     write(scene.text)
     report(scene.warnings, true)
     state('rendering', 'rendering')
-    if (mark) explain(mark)
+    if (mark && !drag?.gesture) explain(mark)
     if (shown) refresh()
     if (layer !== 'picture') fetchLayer()
   })

@@ -97,6 +97,7 @@ const tryOut = async (name, attribute, values) => {
 }
 
 const settle = async (verb) => {
+  await queue
   const answer = await post(verb, '')
   const said = answer ? (await answer.text()).trim() : 'tabray is not running'
   $('#fields p span').textContent = said

@@ -1,0 +1,105 @@
+//! The camera, as a page moves it.
+
+use super::desk::Desk;
+use super::fields;
+use super::frame::Frame;
+use crate::cli::serve::{self, Body};
+use crate::editor::{self, Text};
+use crate::render::plan::Plan;
+use crate::render::trace;
+use crate::scene::registry::Registry;
+use crate::scene::store::Record;
+use crate::text;
+use crate::tools::navigation::{self, Movement, Stand};
+use glam::DVec3;
+use hyper::{Response, StatusCode};
+use serde::{Deserialize, Serialize};
+
+/// A camera that is about to be moved.
+#[derive(Serialize)]
+struct Held<'c> {
+    /// The camera's name.
+    name: &'c str,
+    /// Where it stands, with the values that are tried out.
+    stand: Stand,
+    /// Whether its image plane stays in its place when the viewer moves.
+    is_window: bool,
+}
+
+/// A movement of the camera, as a page sends it.
+#[derive(Deserialize)]
+struct Move {
+    /// Where the camera stood before it.
+    stand: Stand,
+    /// The point around which it goes, in world coordinates.
+    around: [f64; 3],
+    /// As in [`Movement`].
+    orbit: [f64; 2],
+    pan: [f64; 2],
+    dolly: f64,
+}
+
+/// Returns the point that a pixel shows, in world coordinates; where it shows none, one that is as far away as the camera
+/// looks.
+pub fn point(frame: &Frame, [x, y]: [usize; 2]) -> [f64; 3] {
+    let film = &frame.model.camera.value;
+    let hit = trace::first_hit(&Plan::new(&frame.model), &film.sight(x as f64, y as f64));
+    let far = || film.ray(x as f64, y as f64).at(navigation::reach(&frame.model.camera.args.args()));
+    hit.map_or_else(far, |hit| hit.point).to_array()
+}
+
+/// Tells where the camera stands, or why it cannot be moved.
+pub fn hold(desk: &Desk) -> Response<Body> {
+    let Some(frame) = desk.board.last() else {
+        return serve::text(StatusCode::CONFLICT, "there is no camera yet\n");
+    };
+    let record = &frame.model.camera.args;
+    if let Some(reason) = fixed(desk.registry, &frame, record) {
+        return serve::text(StatusCode::CONFLICT, &format!("{reason}\n"));
+    }
+    let (name, camera) = (record.name(), record.args());
+    let mut stand = navigation::stand(&camera);
+    for (attribute, values) in &mut stand {
+        let tried = desk.tries.get(name, attribute);
+        *values = tried.filter(|tried| tried.len() == values.len()).unwrap_or_else(|| values.clone());
+    }
+    let held = Held { name, stand, is_window: navigation::is_window(&camera) };
+    serve::content(StatusCode::OK, "application/json", text::json(&held))
+}
+
+/// Returns why a camera cannot be moved; `None` where it can be.
+fn fixed(registry: &Registry, frame: &Frame, camera: &Record) -> Option<String> {
+    let (name, args) = (camera.name(), camera.args());
+    let view = editor::read(registry, &frame.name, Text::new(frame.text.clone()));
+    let mut moves = navigation::attributes(&args).map(|(attribute, _)| attribute).peekable();
+    if moves.peek().is_none() {
+        return Some(format!("a {} does not say where it stands: change the text", args.entity.name));
+    }
+    if view.entity(name).is_none() {
+        return Some(format!("`{name}` is repeated or included: change the text"));
+    }
+    let reason = |attribute| Some((attribute, fields::fixed(&view, name, attribute)?));
+    moves.find_map(reason).map(|(attribute, reason)| {
+        format!("the camera cannot be moved by its `{}`: {reason}", attribute.name())
+    })
+}
+
+/// Moves the camera: its new values are tried out.
+pub fn go(desk: &Desk, body: &[u8]) -> Response<Body> {
+    let (Ok(wanted), Some(frame)) = (serde_json::from_slice::<Move>(body), desk.board.last()) else {
+        return serve::text(StatusCode::BAD_REQUEST, "this is no movement\n");
+    };
+    let Move { stand, around, orbit, pan, dolly } = wanted;
+    let (record, around) = (&frame.model.camera.args, DVec3::from(around));
+    let movement = Movement { orbit, pan, dolly };
+    let after = (dolly > 0.0).then(|| navigation::moved(&record.args(), &stand, &movement, around)).flatten();
+    let Some(after) = after else {
+        return serve::text(StatusCode::CONFLICT, "the camera cannot go there\n");
+    };
+    for (attribute, values) in &after {
+        if stand.get(attribute) != Some(values) || desk.tries.get(record.name(), attribute).is_some() {
+            desk.tries.put(record.name(), attribute, values);
+        }
+    }
+    desk.done("moved\n")
+}

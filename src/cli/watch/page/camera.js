@@ -1,0 +1,115 @@
+// The camera by pointer and keys: it goes around a point, aside, and nearer.
+
+// Whether dragging moves the camera.
+let steers = false
+// The point around which it goes, and whether it was clicked: the middle of the image is another one after a pan.
+let around = null, isClicked = false
+// Whether the camera's image plane stays in its place.
+let isWindow = false
+
+// By how many degrees the scene turns when the pointer moves by a pixel of the screen.
+const TURN = 0.3
+// How long a turn of the wheel or a key belongs to the one before, in milliseconds.
+const TOGETHER = 400
+
+// Why the camera stays where it is.
+let complaint = ''
+
+const hint = () => complaint ? complaint : !steers ? 'click a pixel to explain it, use the wheel to zoom, drag to pan'
+  : `drag to orbit, Shift+drag to pan, use the wheel to go nearer; click the point to go around${isWindow ? '; the image plane stays: from nearer, more is seen through it' : ''}`
+
+/// The point that a pixel shows, or will show when the image that comes has come.
+const pointAt = async (at) => {
+  for (let tries = 0; tries < 10; tries++) {
+    const answer = await fetch(`point/${version}/${at[0]}/${height - 1 - at[1]}${token}`).catch(() => null)
+    if (answer?.ok) return answer.json()
+    await new Promise((soon) => setTimeout(soon, 50))
+  }
+  return null
+}
+
+/// Lets the camera go around the point that a pixel shows.
+const turnAround = async (at) => {
+  around = pointAt(at)
+  isClicked = true
+}
+
+/// Begins a movement of the camera by one drag, or by turns of the wheel or keys that follow one another.
+const grip = (how) => {
+  complaint = ''
+  return { how, from: null, wanted: null, isQueued: false, isRefused: false }
+}
+
+let queue = Promise.resolve()
+const send = async (gesture) => {
+  around ??= pointAt([width >> 1, height >> 1])
+  const point = await around
+  if (!gesture.from) {
+    const answer = await fetch(`camera${token}`).catch(() => null)
+    gesture.isRefused = !answer?.ok
+    if (gesture.isRefused) return complain(answer)
+    gesture.from = await answer.json()
+    isWindow = gesture.from.is_window
+    for (const attribute of Object.keys(gesture.from.stand)) tried.add(`${gesture.from.name} ${attribute}`)
+  }
+  while (gesture.wanted) {
+    const body = JSON.stringify({ stand: gesture.from.stand, around: point, ...gesture.wanted })
+    gesture.wanted = null
+    const answer = await post('move', body)
+    await complain(answer)
+  }
+  if (gesture.how === 'pan' && !isClicked) around = null
+}
+
+/// Says why the camera stays, if it does.
+const complain = async (answer) => {
+  complaint = answer?.ok ? '' : answer ? (await answer.text()).trim() : 'tabray is not running'
+  $('#under').textContent = hint()
+  $('#fields p span').textContent = complaint
+}
+
+/// Moves the camera by this many pixels of the screen since the gesture began, and to a distance divided by a factor. Of the
+/// movements that come while the program takes in the ones before, only the last is sent.
+const steer = (gesture, [right, down], factor) => {
+  const by = (scale) => [right * scale, -down * scale]
+  const isPan = gesture.how === 'pan'
+  gesture.wanted = { orbit: isPan ? [0, 0] : by(TURN), pan: isPan ? by(1 / zoom) : [0, 0], dolly: factor }
+  if (gesture.isQueued || gesture.isRefused) return
+  gesture.isQueued = true
+  queue = queue.then(() => send(gesture)).catch(() => {}).then(() => { gesture.isQueued = false })
+}
+
+/// Moves the camera further, as part of the same gesture if the last push was a moment ago.
+let pushed = null
+const push = (how, by, factor) => {
+  const now = performance.now()
+  if (pushed?.gesture.how !== how || now - pushed.at > TOGETHER) pushed = { gesture: grip(how), by: [0, 0], factor: 1 }
+  pushed.at = now
+  pushed.by = pushed.by.map((before, side) => before + by[side])
+  pushed.factor *= factor
+  steer(pushed.gesture, pushed.by, pushed.factor)
+}
+
+/// Moves the camera by a key, if the key is one that does.
+const nudge = ({ key, shiftKey }) => {
+  const step = steps[key]
+  if (step && document.activeElement === stage) push(shiftKey ? 'pan' : 'orbit', step.map((side) => side * 10), 1)
+  else if (key === '+') push('dolly', [0, 0], 1.1)
+  else if (key === '-') push('dolly', [0, 0], 1 / 1.1)
+  else return false
+  return true
+}
+
+const toggleSteering = () => {
+  steers = !steers
+  $('#steer').setAttribute('aria-pressed', steers)
+  stage.classList.toggle('steers', steers)
+  if (!isClicked) around = null
+  complaint = ''
+  $('#under').textContent = hint()
+  if (!steers) return
+  // The camera's values are those that change.
+  shown = null
+  refresh()
+  stage.focus()
+}

@@ -1,0 +1,299 @@
+//! Moves a camera around a point: orbit, pan and dolly, for every type of camera whose table says where it stands.
+
+use crate::scene::entity::{Args, Construct};
+use crate::scene::pparm::{Attribute, Pose};
+use crate::scene::value::Datum;
+use crate::world::film::Film;
+use glam::{DMat3, DVec3};
+use std::collections::BTreeMap;
+
+/// The greatest angle in degrees by which a viewer who goes up or down looks down or up: straight up and down, there would
+/// be no side of the image at which `up` is.
+const MOST_ELEVATION: f64 = 89.0;
+
+/// The number of digits before which a coordinate is rounded, counted from the first one of the viewer's distance from
+/// the point: less than a pixel of an image.
+const DIGITS: i32 = 5;
+
+/// A movement of a camera, from where it stands.
+#[derive(Clone, Copy, Debug)]
+pub struct Movement {
+    /// By how many degrees what is seen turns: to the right, and up.
+    pub orbit: [f64; 2],
+    /// By how many pixels what is seen moves: to the right, and up.
+    pub pan: [f64; 2],
+    /// By what the distance from the point is divided.
+    pub dolly: f64,
+}
+
+/// Where a camera stands: the values of those attributes that a movement changes, by their names.
+pub type Stand = BTreeMap<String, Vec<f64>>;
+
+/// Lists the attributes of a camera that a movement may change, with what they say. Other things have none.
+pub fn attributes(camera: &Args) -> impl Iterator<Item = (&'static dyn Attribute, Pose)> {
+    let poses = camera.values().filter_map(|(attribute, _)| Some((attribute, attribute.pose()?)));
+    poses.filter(|(_, pose)| *pose != Pose::Up)
+}
+
+/// Returns where a camera stands.
+pub fn stand(camera: &Args) -> Stand {
+    let values = |(attribute, _): (&'static dyn Attribute, Pose)| match camera.find(attribute.name()) {
+        Some(Datum::Numbers(numbers)) => Some((attribute.name().to_owned(), numbers.clone())),
+        _ => None,
+    };
+    attributes(camera).filter_map(values).collect()
+}
+
+/// Moves a camera that stands there around a point, and returns where it stands then; `None` where its table or its
+/// constructor does not allow that.
+///
+/// A viewer goes around the point at the same distance, and stays upright. What is seen moves with the hand: a camera
+/// with a target goes the other way. A viewer before an image plane that stays goes with the hand, as that moves what is
+/// behind the image plane.
+pub fn moved(camera: &Args, from: &Stand, movement: &Movement, around: DVec3) -> Option<Stand> {
+    let mut camera = camera.clone();
+    let film = placed(&mut camera, from)?;
+    let after = Rig::of(&camera, &film, around)?.moved(movement);
+    placed(&mut camera, &after)?;
+    Some(after)
+}
+
+/// Returns the film of a camera that is put where it stands then.
+fn placed(camera: &mut Args, stand: &Stand) -> Option<Film> {
+    for (attribute, datum, is_given) in camera.values_mut() {
+        let Some(values) = stand.get(attribute.name()) else { continue };
+        let new = Datum::Numbers(values.clone());
+        if !values.iter().all(|value| value.is_finite())
+            || !attribute.allows(&new)
+            || attribute.beyond_squares(&new).is_some()
+        {
+            return None;
+        }
+        (*datum, *is_given) = (new, true);
+    }
+    let Construct::Camera(construct) = camera.entity.construct else { return None };
+    Some(camera.film(construct(camera).ok()?))
+}
+
+/// A camera and the point around which it moves.
+struct Rig<'c> {
+    camera: &'c Args,
+    around: DVec3,
+    position: DVec3,
+    target: Option<DVec3>,
+    is_parallel: bool,
+    /// The unit vector in which the viewer looks.
+    forward: DVec3,
+    /// The unit vector around which the viewer goes to the sides.
+    up: DVec3,
+    /// How far pixels are apart at the distance of the point, in world units: to the right, and up.
+    pixel: [DVec3; 2],
+}
+
+impl<'c> Rig<'c> {
+    fn of(camera: &'c Args, film: &Film, around: DVec3) -> Option<Self> {
+        let (position, target) = (point(camera, Pose::Position)?, point(camera, Pose::Target));
+        let forward = (target.unwrap_or(around) - position).try_normalize()?;
+        let depth = (around - position).dot(forward).abs();
+        let [x, y] = film.pixels.map(|side| 0.5 * (side as f64 - 1.0));
+        let seen = |right: f64, up: f64| film.ray(x + right, y + up).at(depth);
+        let pixel = [seen(0.5, 0.0) - seen(-0.5, 0.0), seen(0.0, 0.5) - seen(0.0, -0.5)];
+        let up = point(camera, Pose::Up).unwrap_or(pixel[1]).try_normalize()?;
+        let is_parallel = attributes(camera).any(|(_, pose)| pose == Pose::Extent);
+        Some(Self { camera, around, position, target, is_parallel, forward, up, pixel })
+    }
+
+    /// Returns where the camera stands after a movement.
+    fn moved(&self, movement: &Movement) -> Stand {
+        let hand = if self.target.is_some() { -1.0 } else { 1.0 };
+        let [turn, rise] = movement.orbit.map(|degrees| hand * degrees);
+        let elevation = self.forward.dot(self.up).clamp(-1.0, 1.0).asin().to_degrees();
+        let most = MOST_ELEVATION.max(elevation.abs());
+        let rise = elevation - (elevation - rise).clamp(-most, most);
+        let right = self.forward.cross(self.up).try_normalize().unwrap_or(DVec3::X);
+        let turn = DMat3::from_axis_angle(self.up, turn.to_radians())
+            * DMat3::from_axis_angle(right, -rise.to_radians());
+        let pan = hand * (movement.pan[0] * self.pixel[0] + movement.pan[1] * self.pixel[1]);
+        let nearer = |point: DVec3| {
+            if !self.is_parallel {
+                return self.around + (point - self.around) / movement.dolly;
+            }
+            // Parallel rays show things as large from anywhere, but what is behind their start is not seen.
+            let aside = (self.around - self.position).reject_from_normalized(self.forward);
+            point + aside * (1.0 - 1.0 / movement.dolly)
+        };
+        let place = |point: DVec3| self.around + turn * (nearer(point) - self.around) + pan;
+
+        let distance = place(self.position).distance(self.around);
+        let size = |value: f64| value / movement.dolly;
+        let before = stand(self.camera);
+        let after = attributes(self.camera).filter_map(|(attribute, pose)| {
+            let before = before.get(attribute.name())?;
+            let after = match pose {
+                Pose::Position => place(self.position).to_array().to_vec(),
+                Pose::Target => place(self.target?).to_array().to_vec(),
+                Pose::Extent => before.iter().copied().map(size).collect(),
+                Pose::Up => before.clone(),
+            };
+            let of = |value: f64| if pose == Pose::Extent { value } else { distance };
+            let rounded = before.iter().zip(after).map(|(before, after)| rounded(after, *before, of(after)));
+            Some((attribute.name().to_owned(), rounded.collect()))
+        });
+        after.collect()
+    }
+}
+
+/// Rounds a number before the last of the digits that a size has, unless it is as good as what it was before.
+fn rounded(value: f64, before: f64, size: f64) -> f64 {
+    let exponent = |of: f64| of.abs().log10().floor() as i32;
+    if !size.is_normal() || !value.is_normal() {
+        return value;
+    }
+    let last = exponent(size) + 1 - DIGITS;
+    if (value - before).abs() < 0.5 * 10f64.powi(last) {
+        return before;
+    }
+    match usize::try_from(exponent(value) - last) {
+        Ok(digits) => format!("{value:.digits$e}").parse().unwrap_or(value),
+        Err(_) => 0.0,
+    }
+}
+
+/// Returns the distance in world units at which a camera has something to look at where it sees nothing: that of its
+/// target or, without one, of the world's origin.
+pub fn reach(camera: &Args) -> f64 {
+    let at = |pose: Pose| point(camera, pose).unwrap_or_default();
+    let distance = at(Pose::Position).distance(at(Pose::Target));
+    if distance > 0.0 { distance } else { 1.0 }
+}
+
+/// Tells whether a camera has an image plane that stays in its place when the viewer moves.
+pub fn is_window(camera: &Args) -> bool {
+    point(camera, Pose::Position).is_some() && point(camera, Pose::Target).is_none()
+}
+
+/// Returns the vector that a camera's attribute with this meaning gives.
+fn point(camera: &Args, wanted: Pose) -> Option<DVec3> {
+    let (_, datum) = camera.values().find(|(attribute, _)| attribute.pose() == Some(wanted))?;
+    match datum {
+        Datum::Numbers(numbers) => Some(DVec3::from_slice(numbers.get(..3)?)),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::kind::Kind;
+    use crate::scene::reader;
+    use crate::scene::registry::Registry;
+    use crate::world::camera::Projected;
+    use std::path::Path;
+
+    /// Returns the camera of each type, as in the scene of its type.
+    fn cameras() -> Vec<Args> {
+        let registry = Registry::get().expect("plugins");
+        let of_kind = registry.iter().filter(|entity| entity.kind() == Kind::Camera);
+        let scene = |name: &str| {
+            let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/entities");
+            let text = std::fs::read(folder.join(format!("{name}.ray"))).expect("a scene of the type");
+            let read = reader::read(registry, name, &folder, &text, None).expect("a valid scene");
+            read.model.camera.args.args()
+        };
+        of_kind.map(|entity| scene(entity.name)).collect()
+    }
+
+    const STILL: Movement = Movement { orbit: [0.0; 2], pan: [0.0; 2], dolly: 1.0 };
+
+    /// A point that the camera sees, behind its image plane if it has one.
+    fn seen(camera: &Args) -> DVec3 {
+        let film = placed(&mut camera.clone(), &stand(camera)).expect("as it was");
+        let [x, y] = film.pixels.map(|side| 0.45 * side as f64);
+        film.ray(x, y).at(if is_window(camera) { 2.0 } else { 0.7 } * reach(camera))
+    }
+
+    /// Where the camera that stands there shows a point; `None` where it does not say.
+    fn place(camera: &Args, stand: &Stand, point: DVec3) -> Option<[f64; 2]> {
+        match placed(&mut camera.clone(), stand).expect("it may stand there").project(point) {
+            Projected::At(place) => Some(place.into()),
+            Projected::Nowhere => panic!("the point is lost"),
+            Projected::Unknown => None,
+        }
+    }
+
+    fn near(one: [f64; 2], other: [f64; 2], most: f64) -> bool {
+        one.iter().zip(other).all(|(one, other)| (one - other).abs() < most)
+    }
+
+    #[test]
+    fn every_camera_moves_and_a_movement_by_nothing_changes_nothing() {
+        for camera in cameras() {
+            let before = stand(&camera);
+            let around = seen(&camera);
+            assert_eq!(
+                moved(&camera, &before, &STILL, around),
+                Some(before.clone()),
+                "{}",
+                camera.entity.name
+            );
+            for movement in [
+                Movement { orbit: [5.0, 2.0], ..STILL },
+                Movement { pan: [3.0, 2.0], ..STILL },
+                Movement { dolly: 1.1, ..STILL },
+            ] {
+                let after = moved(&camera, &before, &movement, around);
+                assert!(after.is_some_and(|after| after != before), "{} {movement:?}", camera.entity.name);
+            }
+        }
+    }
+
+    #[test]
+    fn the_point_stays_where_it_is_seen_and_a_pan_takes_it_along() {
+        for camera in cameras() {
+            let (before, around) = (stand(&camera), seen(&camera));
+            let Some(at) = place(&camera, &before, around) else { continue };
+            let after = |movement| {
+                let stand = moved(&camera, &before, &movement, around).expect("it may go there");
+                place(&camera, &stand, around).expect("it says where")
+            };
+            let nearer = after(Movement { dolly: 1.5, ..STILL });
+            assert!(near(nearer, at, 0.1), "{}: {at:?} {nearer:?}", camera.entity.name);
+            let panned = after(Movement { pan: [2.0, 1.0], ..STILL });
+            if is_window(&camera) {
+                assert!(panned[0] > at[0] && panned[1] > at[1], "{at:?} {panned:?}");
+                continue;
+            }
+            let around_it = after(Movement { orbit: [20.0, 10.0], ..STILL });
+            assert!(near(around_it, at, 0.1), "{}: {at:?} {around_it:?}", camera.entity.name);
+            // Far from the middle, the pixels of a fisheye are less far apart.
+            assert!(
+                near(panned, [at[0] + 2.0, at[1] + 1.0], 0.5),
+                "{}: {at:?} {panned:?}",
+                camera.entity.name
+            );
+        }
+    }
+
+    #[test]
+    fn nobody_goes_over_the_top_or_behind_the_image_plane() {
+        for camera in cameras() {
+            let (before, around) = (stand(&camera), seen(&camera));
+            let over = moved(&camera, &before, &Movement { orbit: [0.0, -400.0], ..STILL }, around);
+            let behind = moved(&camera, &before, &Movement { orbit: [170.0, 0.0], ..STILL }, around);
+            if is_window(&camera) {
+                assert_eq!(behind, None);
+            } else {
+                assert!(over.is_some() && behind.is_some(), "{}", camera.entity.name);
+            }
+        }
+    }
+
+    #[test]
+    fn numbers_have_few_digits_and_stay_where_they_are_as_good() {
+        assert_eq!(rounded(1.234_567_89, 7.0, 12.0), 1.235);
+        assert_eq!(rounded(1.234_567_89, 1.234_5, 12.0), 1.234_5);
+        assert_eq!(rounded(123_456_789.0, 0.0, 3e7), 123_457_000.0);
+        assert_eq!(rounded(4e-9, 7.0, 12.0), 0.0);
+        assert_eq!(rounded(0.1 + 0.2, 7.0, 1.0), 0.3);
+    }
+}
