@@ -70,6 +70,39 @@ impl Browser {
         self.post("/execute/sync", json!({ "script": script, "args": [] }))
     }
 
+    /// Runs JavaScript that passes a value to the function `done`, and returns this value.
+    pub fn run_until_done(&self, script: &str) -> Value {
+        let script = format!("const done = arguments[arguments.length - 1]; {script}");
+        self.post("/execute/async", json!({ "script": script, "args": [] }))
+    }
+
+    /// Shows the page as on a screen of this size in pixels, touched by fingers if so, in light or dark colours.
+    pub fn emulate(&self, [width, height]: [u32; 2], has_fingers: bool, scheme: &str) {
+        let set = |command: &str, params: Value| {
+            self.post("/goog/cdp/execute", json!({ "cmd": command, "params": params }));
+        };
+        let screen =
+            json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": has_fingers });
+        set("Emulation.setDeviceMetricsOverride", screen);
+        set("Emulation.setTouchEmulationEnabled", json!({ "enabled": has_fingers }));
+        let feature = json!({ "name": "prefers-color-scheme", "value": scheme });
+        set("Emulation.setEmulatedMedia", json!({ "features": [feature] }));
+    }
+
+    /// Puts fingers on the screen, each at the first of its places, moves them to the others and lifts them.
+    pub fn touch(&self, fingers: &[&[[i64; 2]]]) {
+        let finger = |(index, places): (usize, &&[[i64; 2]])| {
+            let to = |[x, y]: &[i64; 2]| json!({ "type": "pointerMove", "x": x, "y": y, "duration": 30 });
+            let mut actions: Vec<_> = places.iter().map(to).collect();
+            actions.insert(1, json!({ "type": "pointerDown", "button": 0 }));
+            actions.push(json!({ "type": "pointerUp", "button": 0 }));
+            let kind = json!({ "pointerType": "touch" });
+            json!({ "type": "pointer", "id": format!("finger{index}"), "parameters": kind, "actions": actions })
+        };
+        let actions: Vec<_> = fingers.iter().enumerate().map(finger).collect();
+        self.post("/actions", json!({ "actions": actions }));
+    }
+
     pub fn text(&self, script: &str) -> String {
         self.run(script).as_str().unwrap_or_default().to_owned()
     }

@@ -8,7 +8,7 @@ use std::fs;
 use tempfile::TempDir;
 
 /// A scene with another camera, on several lines and with comments.
-const LOOK_AT: &str = "look_at eye\n{\n    pixeldim 80 60 # small\n    position 4 3   6 # the viewer\n    \
+pub const LOOK_AT: &str = "look_at eye\n{\n    pixeldim 80 60 # small\n    position 4 3   6 # the viewer\n    \
     target   4 3 -3\n}\nmaterial paint { ambient 9 0 0 }\nsphere ball { material paint center 4 3 -3  radius 2 }\n";
 
 const SHIFT: char = '\u{e008}';
@@ -16,7 +16,7 @@ const RIGHT: char = '\u{e014}';
 const UNDER: &str = "document.querySelector('#under').textContent";
 
 /// Returns a position in the window: the middle of the image, and from there this many pixels of the screen right and down.
-fn middle(browser: &Browser, [right, down]: [i64; 2]) -> [i64; 2] {
+pub fn middle(browser: &Browser, [right, down]: [i64; 2]) -> [i64; 2] {
     let place = browser.run(
         "const box = document.querySelector('canvas').getBoundingClientRect();
          return [box.left + box.width / 2, box.top + box.height / 2]",
@@ -26,7 +26,7 @@ fn middle(browser: &Browser, [right, down]: [i64; 2]) -> [i64; 2] {
 }
 
 /// Writes what is tried out into the scene, waits for its image, and returns the text.
-fn written(watching: &Watching, browser: &Browser) -> String {
+pub fn written(watching: &Watching, browser: &Browser) -> String {
     browser.run(
         "document.querySelector('#fields p span').textContent = ''; document.querySelector('#write').click()",
     );
@@ -42,7 +42,7 @@ fn written(watching: &Watching, browser: &Browser) -> String {
 }
 
 /// Returns the numbers of an attribute that stands on a line of its own, or after another one.
-fn numbers<const N: usize>(text: &str, attribute: &str) -> [f64; N] {
+pub fn numbers<const N: usize>(text: &str, attribute: &str) -> [f64; N] {
     let (_, rest) = text.split_once(&format!("{attribute} ")).unwrap_or_else(|| panic!("{text}"));
     let mut words = rest.split_whitespace();
     [(); N].map(|()| {
@@ -52,7 +52,7 @@ fn numbers<const N: usize>(text: &str, attribute: &str) -> [f64; N] {
     })
 }
 
-fn distance(one: [f64; 3], other: [f64; 3]) -> f64 {
+pub fn distance(one: [f64; 3], other: [f64; 3]) -> f64 {
     one.iter().zip(other).map(|(one, other)| (one - other).powi(2)).sum::<f64>().sqrt()
 }
 

@@ -2,6 +2,8 @@
 
 pub mod browser;
 mod camera;
+mod everybody;
 mod page;
+mod pictures;
 pub mod program;
 mod server;

@@ -159,20 +159,6 @@ fn a_save_is_on_the_page_soon() {
     assert!(canvas(&browser) == render(&model(&ball("1 9 0"))));
 }
 
-/// `cargo test --release --test cli -- --ignored the_screenshot_of_the_docs`
-#[test]
-#[ignore = "writes docs/watch.png, for the README"]
-fn the_screenshot_of_the_docs() {
-    let folder = TempDir::new().expect("a folder");
-    fs::copy(root().join("scenes/gallery/marbles.ray"), folder.path().join("scene.ray")).expect("a copy");
-    let watching = Watching::start(folder, &["--port", "0"]);
-    let browser = Browser::open(&watching.url("")).expect("a browser");
-    shown(&browser, 1);
-    click(&browser, [300, 150]);
-    browser.wait(&format!("!{TOLD}.hidden && !document.querySelector('#fields').hidden"));
-    fs::write(root().join("docs/watch.png"), browser.screenshot()).expect("a file");
-}
-
 /// Changes the number in a field of the page, as typing does.
 fn type_in(browser: &Browser, field: &str, value: &str) {
     browser.wait(&format!("document.querySelector('{field}')"));

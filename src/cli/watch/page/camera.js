@@ -15,8 +15,14 @@ const TOGETHER = 400
 // Why the camera stays where it is.
 let complaint = ''
 
-const hint = () => complaint ? complaint : !steers ? 'click a pixel to explain it, use the wheel to zoom, drag to pan'
-  : `drag to orbit, Shift+drag to pan, use the wheel to go nearer; click the point to go around${isWindow ? '; the image plane stays: from nearer, more is seen through it' : ''}`
+const WINDOW = '; the image plane stays: from nearer, more is seen through it'
+const hint = () => {
+  if (complaint) return complaint
+  const [click, more, zoom] = matchMedia('(pointer: coarse)').matches
+    ? ['tap', 'with two fingers', 'pinch'] : ['click', 'with Shift', 'use the wheel']
+  if (!steers) return `${click} a pixel to explain it, ${zoom} to zoom, drag to pan`
+  return `drag to orbit, ${more} to pan, ${zoom} to go nearer; ${click} the point to go around${isWindow ? WINDOW : ''}`
+}
 
 /// The point that a pixel shows, or will show when the image that comes has come.
 const pointAt = async (at) => {
@@ -93,10 +99,8 @@ const push = (how, by, factor) => {
 /// Moves the camera by a key, if the key is one that does.
 const nudge = ({ key, shiftKey }) => {
   const step = steps[key]
-  if (step && document.activeElement === stage) push(shiftKey ? 'pan' : 'orbit', step.map((side) => side * 10), 1)
-  else if (key === '+') push('dolly', [0, 0], 1.1)
-  else if (key === '-') push('dolly', [0, 0], 1 / 1.1)
-  else return false
+  if (!step || document.activeElement !== stage) return false
+  push(shiftKey ? 'pan' : 'orbit', step.map((side) => side * 10), 1)
   return true
 }
 

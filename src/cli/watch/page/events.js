@@ -47,7 +47,7 @@ const follow = () => {
     textIsThePicture = false
     if (fault.text !== null) write(fault.text)
     for (const line of fault.lines) lineAt(line)?.classList.add('wrong')
-    lineAt(fault.lines[0])?.scrollIntoView({ block: 'nearest' })
+    reveal(fault.lines.slice(0, 1))
     report(fault.report, false)
     state('broken', version ? 'the last good image' : 'no image yet')
   })

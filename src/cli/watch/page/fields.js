@@ -13,6 +13,7 @@ const fetchFields = async ([x, fromTop]) => {
   const of = version
   const object = await ask(`object/${of}/${x}/${height - 1 - fromTop}`, 'text').then(parsed)
   if (of !== version || mark?.[0] !== x || mark[1] !== fromTop) return
+  announce(`pixel ${x} ${height - 1 - fromTop}: ${object ? key(object) : 'no object'}`)
   if (object) open(object, await list(of))
 }
 
@@ -38,6 +39,8 @@ const open = (entity, all) => {
   if (!all.some((one) => key(one) === key(entity))) all.push(entity)
   select.replaceChildren(...all.map((one) => new Option(key(one), key(one), false, key(one) === key(entity))))
   showFields(entity)
+  // There is less room for the text now.
+  reveal(marked)
 }
 
 const showFields = ({ name, attributes }) => {
@@ -118,6 +121,7 @@ $('#fields select').addEventListener('change', (event) => {
 $('#fields form').addEventListener('submit', (event) => event.preventDefault())
 
 const close = () => {
+  if ($('aside').contains(document.activeElement) && document.activeElement !== $('#text')) stage.focus()
   mark = null
   shown = null
   $('#mark').hidden = $('#told').hidden = $('#fields').hidden = true

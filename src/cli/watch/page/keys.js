@@ -5,9 +5,17 @@ new ResizeObserver(() => { if (isFit) fit() }).observe(stage)
 $('#layers').addEventListener('change', (event) => choose(event.target.value))
 $('#exposure input').addEventListener('input', (event) => setExposure(event.target.value))
 $('#fit').addEventListener('click', fit)
+$('#in').addEventListener('click', () => larger(1))
+$('#out').addEventListener('click', () => larger(-1))
 $('#steer').addEventListener('click', toggleSteering)
 $('#told button').addEventListener('click', close)
 $('#fields h2 button').addEventListener('click', close)
+
+/// Zooms in or out or, in the mode, takes the camera nearer or away.
+const larger = (way) => {
+  if (steers) push('dolly', [0, 0], 1.1 ** way)
+  else zoomAt(stage.clientWidth / 2, stage.clientHeight / 2, 2 ** way)
+}
 
 const layers = [...document.querySelectorAll('#layers input')].map((input) => input.value)
 const steps = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }
@@ -15,14 +23,13 @@ document.addEventListener('keydown', (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey) return
   if (event.target.matches?.('#fields input, #fields select') && event.key !== 'Escape') return
   const { key } = event
-  const middle = (factor) => zoomAt(stage.clientWidth / 2, stage.clientHeight / 2, factor)
   if (layers[key - 1]) choose(layers[key - 1])
   else if (key === '0') fit()
   else if (key === 'v') refresh()
   else if (key === 'c') toggleSteering()
   else if (steers && nudge(event)) { /* the camera moves */ }
-  else if (key === '+') middle(2)
-  else if (key === '-') middle(1 / 2)
+  else if (key === '+') larger(1)
+  else if (key === '-') larger(-1)
   else if (key === '[') setExposure(stops - 0.5)
   else if (key === ']') setExposure(stops + 0.5)
   else if (key === '=') setExposure(0)

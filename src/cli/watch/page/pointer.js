@@ -20,7 +20,7 @@ const begin = (event) => {
 }
 
 stage.addEventListener('pointerdown', (event) => {
-  if (event.target.closest('#report') || event.button === 1 || event.button === 2 && !steers) return
+  if (event.button === 1 || event.button === 2 && !steers) return
   stage.setPointerCapture(event.pointerId)
   fingers.set(event.pointerId, [event.clientX, event.clientY])
   begin(event)
@@ -42,14 +42,13 @@ const release = (event) => {
   if (!fingers.delete(event.pointerId)) return
   const at = event.type === 'pointerup' && !drag.moved && under(event)
   begin(event)
-  if (at) { turnAround(at); look(at) }
+  if (at) look(at)
   else if (!drag && steers && mark) explain(mark)
 }
 stage.addEventListener('pointerup', release)
 stage.addEventListener('pointercancel', release)
 stage.addEventListener('contextmenu', (event) => { if (steers) event.preventDefault() })
 stage.addEventListener('wheel', (event) => {
-  if (event.target.closest('#report')) return
   event.preventDefault()
   const box = stage.getBoundingClientRect(), factor = 2 ** (-event.deltaY / (event.deltaMode ? 8 : 240))
   if (steers) push('dolly', [0, 0], factor)

@@ -16,4 +16,13 @@ let words = ''
 let waits = false
 
 const tell = () => { $('#state').textContent = waits ? `loading ${layer}` : words }
-const state = (name, said) => { root.dataset.state = name; words = said; tell() }
+const state = (name, said) => {
+  root.dataset.state = name
+  words = said
+  tell()
+  // Progress is not read out; errors have a place of their own.
+  if (['done', 'lost'].includes(name)) announce(said)
+}
+
+/// Tells readers of the screen.
+const announce = (said) => { $('#said').textContent = said }

@@ -10,10 +10,24 @@ const write = (text) => {
   }))
 }
 
+// The first and the last line of the object that is explained.
+let marked = []
+
 const markLines = (lines) => {
+  marked = lines ?? []
   for (const row of document.querySelectorAll('#text .marked')) row.classList.remove('marked')
   if (!lines) return
   for (let line = lines[0]; line <= lines[1]; line++) lineAt(line)?.classList.add('marked')
-  lineAt(lines[1])?.scrollIntoView({ block: 'nearest' })
-  lineAt(lines[0])?.scrollIntoView({ block: 'nearest' })
+  reveal(lines)
+}
+
+/// Scrolls the text, and nothing around it, to lines, given by the first and the last.
+const reveal = (lines) => {
+  for (const row of [...lines].reverse().map(lineAt)) {
+    if (!row) continue
+    const pane = $('#text'), [its, all] = [row, pane].map((one) => one.getBoundingClientRect())
+    const margin = Math.min(64, all.height / 4)
+    if (its.top < all.top + margin) pane.scrollTop += its.top - all.top - margin
+    else if (its.bottom > all.bottom - margin) pane.scrollTop += its.bottom - all.bottom + margin
+  }
 }

@@ -1,0 +1,44 @@
+//! The images of the page in docs/.
+
+use crate::common::root;
+use crate::watch::browser::Browser;
+use crate::watch::camera::middle;
+use crate::watch::page::{click, shown};
+use crate::watch::program::Watching;
+use std::fs;
+use std::thread;
+use std::time::Duration;
+use tempfile::TempDir;
+
+/// `cargo test --release --test cli -- --ignored the_screenshots_of_the_docs`
+#[test]
+#[ignore = "writes docs/watch*.png"]
+fn the_screenshots_of_the_docs() {
+    let folder = TempDir::new().expect("a folder");
+    fs::copy(root().join("scenes/gallery/marbles.ray"), folder.path().join("scene.ray")).expect("a copy");
+    let watching = Watching::start(folder, &["--port", "0"]);
+    let browser = Browser::open(&watching.url("")).expect("a browser");
+    let write = |name: &str| fs::write(root().join("docs").join(name), browser.screenshot()).expect("a file");
+    shown(&browser, 1);
+
+    browser.emulate([1360, 850], false, "dark");
+    click(&browser, [300, 150]);
+    browser.wait("!document.querySelector('#told').hidden && document.querySelector('#field-radius-0')");
+    write("watch.png");
+
+    browser.emulate([390, 844], true, "dark");
+    browser.wait("document.querySelector('canvas').getBoundingClientRect().right < 390");
+    write("watch-phone.png");
+
+    browser.emulate([1360, 850], false, "light");
+    browser.press('\u{e00c}');
+    browser.press('c');
+    browser.wait("document.querySelector('#field-viewpoint-0')");
+    let [from, to] = [[0, 0], [-50, -30]].map(|by| middle(&browser, by));
+    browser.drag(0, None, &[from, to]);
+    browser.run_until_done("queue.then(done)");
+    // The image of the last movement is under way.
+    thread::sleep(Duration::from_millis(500));
+    browser.wait("document.documentElement.dataset.version === document.documentElement.dataset.shown");
+    write("watch-light.png");
+}
