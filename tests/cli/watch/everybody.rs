@@ -49,11 +49,11 @@ fn in_all_states(mut look: impl FnMut(&Browser, &str)) {
     }
 }
 
-/// `npm install axe-core && TABRAY_AXE=$PWD/node_modules/axe-core/axe.min.js cargo test --test cli -- --nocapture axe`
+/// docs/tools.md has the commands that install axe-core and run this test.
 #[test]
 fn axe_finds_nothing_serious_on_the_page() {
     let Some(path) = env::var_os("TABRAY_AXE") else {
-        eprintln!("SKIPPED: TABRAY_AXE does not name the file axe.min.js of axe-core (npm install axe-core)");
+        eprintln!("SKIPPED: TABRAY_AXE does not name the file axe.min.js of axe-core (see docs/tools.md)");
         return;
     };
     let axe = fs::read_to_string(path).expect("the library");
