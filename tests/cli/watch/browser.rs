@@ -76,17 +76,19 @@ impl Browser {
         self.post("/execute/async", json!({ "script": script, "args": [] }))
     }
 
+    /// Runs a command of the protocol of the browser's developer tools.
+    fn command(&self, name: &str, params: Value) {
+        self.post("/goog/cdp/execute", json!({ "cmd": name, "params": params }));
+    }
+
     /// Shows the page as on a screen of this size in pixels, touched by fingers if so, in light or dark colours.
     pub fn emulate(&self, [width, height]: [u32; 2], has_fingers: bool, scheme: &str) {
-        let set = |command: &str, params: Value| {
-            self.post("/goog/cdp/execute", json!({ "cmd": command, "params": params }));
-        };
         let screen =
             json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": has_fingers });
-        set("Emulation.setDeviceMetricsOverride", screen);
-        set("Emulation.setTouchEmulationEnabled", json!({ "enabled": has_fingers }));
+        self.command("Emulation.setDeviceMetricsOverride", screen);
+        self.command("Emulation.setTouchEmulationEnabled", json!({ "enabled": has_fingers }));
         let feature = json!({ "name": "prefers-color-scheme", "value": scheme });
-        set("Emulation.setEmulatedMedia", json!({ "features": [feature] }));
+        self.command("Emulation.setEmulatedMedia", json!({ "features": [feature] }));
     }
 
     /// Puts fingers on the screen, each at the first of its places, moves them to the others and lifts them.

@@ -160,7 +160,7 @@ fn a_save_is_on_the_page_soon() {
 }
 
 /// Changes the number in a field of the page, as typing does.
-fn type_in(browser: &Browser, field: &str, value: &str) {
+pub fn type_in(browser: &Browser, field: &str, value: &str) {
     browser.wait(&format!("document.querySelector('{field}')"));
     browser.run(&format!(
         "const box = document.querySelector('{field}'); box.focus(); box.value = '{value}';

@@ -50,6 +50,10 @@ let queue = Promise.resolve()
 const send = async (gesture) => {
   around ??= pointAt([width >> 1, height >> 1])
   const point = await around
+  if (!point) {
+    around = null
+    return complain(null)
+  }
   if (!gesture.from) {
     const answer = await fetch(`camera${token}`).catch(() => null)
     gesture.isRefused = !answer?.ok
