@@ -29,22 +29,9 @@ impl Browser {
             );
             return None;
         }
-        let mut driver = Command::new("chromedriver")
-            .arg("--port=0")
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("chromedriver runs");
-        let mut stdout = BufReader::new(driver.stdout.take().expect("its messages"));
-        let port = loop {
-            let mut line = String::new();
-            assert!(stdout.read_line(&mut line).expect("text") > 0, "chromedriver tells its port");
-            if let Some((_, port)) = line.split_once("started successfully on port ") {
-                break port.trim_end_matches(|c: char| !c.is_ascii_digit()).to_owned();
-            }
-        };
-        thread::spawn(move || stdout.read_to_end(&mut Vec::new()));
-
+        // Of several that start at the same time, one may find its port taken.
+        let started = (0..10).find_map(|_| start_driver());
+        let (driver, port) = started.expect("chromedriver tells its port");
         let mut browser = Self { driver, session: format!("http://127.0.0.1:{port}/session") };
         let args = ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=1360,850"];
         let options = json!({ "args": args, "binary": "/usr/bin/chromium" });
@@ -172,6 +159,29 @@ impl Browser {
     pub fn screenshot(&self) -> Vec<u8> {
         let answer = value(client().get(format!("{}/screenshot", self.session)).call());
         STANDARD.decode(answer.as_str().expect("text")).expect("base64")
+    }
+}
+
+/// Starts a driver, and returns it with its port, unless it ends before it has one.
+fn start_driver() -> Option<(Child, String)> {
+    let mut driver = Command::new("chromedriver")
+        .arg("--port=0")
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("chromedriver runs");
+    let mut stdout = BufReader::new(driver.stdout.take().expect("its messages"));
+    loop {
+        let mut line = String::new();
+        if stdout.read_line(&mut line).expect("text") == 0 {
+            driver.wait().expect("it has ended");
+            return None;
+        }
+        if let Some((_, port)) = line.split_once("started successfully on port ") {
+            let port = port.trim_end_matches(|c: char| !c.is_ascii_digit()).to_owned();
+            thread::spawn(move || stdout.read_to_end(&mut Vec::new()));
+            return Some((driver, port));
+        }
     }
 }
 

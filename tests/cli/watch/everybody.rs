@@ -11,8 +11,11 @@ const HIGH_PHONE: [u32; 2] = [390, 3000];
 const DESK: [u32; 2] = [1360, 850];
 const TAB: char = '\u{e004}';
 
-/// The states of the page, and what brings it from each of them to the next.
-const STATES: [(&str, fn(&Watching, &Browser)); 5] = [
+/// What brings the page from one state to the next.
+type Step = fn(&Watching, &Browser);
+
+/// The states of the page, one after another, each with the step that leads to it.
+const STATES: [(&str, Step); 5] = [
     ("plain", |_, _| {}),
     ("an explained pixel, and the values of its object", |_, browser| {
         click(browser, [40, 30]);

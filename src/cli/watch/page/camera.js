@@ -43,14 +43,14 @@ const turnAround = async (at) => {
 /// Begins a movement of the camera by one drag, or by turns of the wheel or keys that follow one another.
 const grip = (how) => {
   complaint = ''
-  return { how, from: null, wanted: null, isQueued: false, isRefused: false }
+  return { how, point: null, from: null, wanted: null, isQueued: false, isRefused: false }
 }
 
 let queue = Promise.resolve()
 const send = async (gesture) => {
   around ??= pointAt([width >> 1, height >> 1])
-  const point = await around
-  if (!point) {
+  gesture.point ??= await around
+  if (!gesture.point) {
     around = null
     return complain(null)
   }
@@ -63,7 +63,7 @@ const send = async (gesture) => {
     for (const attribute of Object.keys(gesture.from.stand)) tried.add(`${gesture.from.name} ${attribute}`)
   }
   while (gesture.wanted) {
-    const body = JSON.stringify({ stand: gesture.from.stand, around: point, ...gesture.wanted })
+    const body = JSON.stringify({ stand: gesture.from.stand, around: gesture.point, ...gesture.wanted })
     gesture.wanted = null
     const answer = await post('move', body)
     await complain(answer)
