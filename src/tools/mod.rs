@@ -1,4 +1,4 @@
-//! Tools that work on a model beside rendering it: charts, benchmarks, contracts, proofs.
+//! Tools that work on a model beside rendering it: charts, benchmarks, contracts, proofs, movements of the camera.
 
 pub mod bench;
 pub mod certain;
