@@ -171,18 +171,14 @@ fn start_driver() -> Option<(Child, String)> {
         .spawn()
         .expect("chromedriver runs");
     let mut stdout = BufReader::new(driver.stdout.take().expect("its messages"));
-    loop {
-        let mut line = String::new();
-        if stdout.read_line(&mut line).expect("text") == 0 {
-            driver.wait().expect("it has ended");
-            return None;
-        }
-        if let Some((_, port)) = line.split_once("started successfully on port ") {
-            let port = port.trim_end_matches(|c: char| !c.is_ascii_digit()).to_owned();
-            thread::spawn(move || stdout.read_to_end(&mut Vec::new()));
-            return Some((driver, port));
-        }
-    }
+    let started = |line: String| Some(line.split_once("started successfully on port ")?.1.to_owned());
+    let port = stdout.by_ref().lines().map_while(Result::ok).find_map(started);
+    let Some(port) = port else {
+        driver.wait().expect("it has ended");
+        return None;
+    };
+    thread::spawn(move || stdout.read_to_end(&mut Vec::new()));
+    Some((driver, port.trim_end_matches(|c: char| !c.is_ascii_digit()).to_owned()))
 }
 
 impl Drop for Browser {
