@@ -13,9 +13,10 @@ if [ -z "${TABRAY:-}" ]; then
     TABRAY=$(realpath "${CARGO_TARGET_DIR:-target}/release/tabray")
 fi
 for shape in implicit lathe box cylinder capsule disc polygon prism union intersection difference \
-    tiles rainbow checker image faces formula bumps glass background sky environment \
+    tiles rainbow checker image faces formula bumps glass metal background sky environment \
     look_at orthographic fisheye thin_lens; do
     samples=16
     [ "$shape" != thin_lens ] || samples=256
     "$TABRAY" render "scenes/entities/$shape.ray" --size 320x240 --samples "$samples" -o "docs/gallery/$shape.png"
 done
+"$TABRAY" render scenes/glass/bubbles.ray --size 320x240 --samples 16 -o docs/gallery/bubbles.png

@@ -34,6 +34,7 @@ inventory::submit! {
     })
 }
 
+#[derive(PartialEq)]
 struct Glass {
     index: f64,
 }
@@ -42,7 +43,7 @@ impl Interface for Glass {
     /// Follows Snell's law and Fresnel's equations for light that is not polarised.
     fn cross(&self, dir: DVec3, normal: DVec3, side: Side) -> Crossing {
         if self.index == 1.0 {
-            return Crossing { reflected: 0.0, onward: Some(dir) };
+            return Crossing { reflected: Rgb::ZERO, onward: Some(dir) };
         }
         let (from, to) = match side {
             Side::Outside => (1.0, self.index),
@@ -52,13 +53,13 @@ impl Interface for Glass {
         let cosine = (-dir.dot(normal)).clamp(0.0, 1.0);
         let below = 1.0 - ratio * ratio * (1.0 - cosine * cosine);
         if below <= 0.0 {
-            return Crossing { reflected: 1.0, onward: None };
+            return Crossing { reflected: Rgb::ONE, onward: None };
         }
         let onward = below.sqrt();
         let across = (from * cosine - to * onward) / (from * cosine + to * onward);
         let along = (to * cosine - from * onward) / (to * cosine + from * onward);
         Crossing {
-            reflected: 0.5 * (across * across + along * along),
+            reflected: Rgb::splat(0.5 * (across * across + along * along)),
             onward: Some((ratio * dir + (ratio * cosine - onward) * normal).normalize()),
         }
     }

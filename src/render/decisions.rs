@@ -12,7 +12,7 @@ use crate::scene::store::Record;
 use crate::text::{count, list, short};
 use crate::world::accuracy::Accuracy;
 use crate::world::film::{Adaptive, Film};
-use crate::world::material::Rgb;
+use crate::world::material::{Material, Rgb};
 use crate::world::sample::Sampler;
 use crate::world::texture::Texture;
 use std::fmt;
@@ -142,7 +142,8 @@ fn glass(plan: &Plan) -> String {
 }
 
 fn mirrors(plan: &Plan) -> String {
-    let mirrors = || kept(plan).filter(|(_, object)| object.material.specular != Rgb::ZERO);
+    let is_mirror = |material: &Material| material.specular != Rgb::ZERO || material.interface.is_some();
+    let mirrors = || kept(plan).filter(|(_, object)| is_mirror(&object.material));
     // As long as there is a bound on all light, rays that return none are not followed.
     let is_blind = |index: usize| {
         plan.depth

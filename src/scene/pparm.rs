@@ -4,7 +4,7 @@
 //! list` and the constructor all use that one place (the notes' "general attribute parser").
 
 use crate::scene::counts::{Counts, OneOf};
-use crate::scene::value::{Datum, Type, Value};
+use crate::scene::value::{COLOUR, Datum, Type, Value};
 use crate::text;
 use std::borrow::Cow;
 use std::panic::Location;
@@ -265,7 +265,11 @@ impl<T: Value> Attribute for Pparm<T> {
 
     fn rule(&self) -> Cow<'static, str> {
         let Some([least, most]) = self.range else { return self.rule.into() };
-        let of_each = if T::ARITY.most() > 1 { " in each dimension" } else { "" };
+        let of_each = match T::ARITY.most() {
+            1 => "",
+            _ if self.each == COLOUR => " in each channel",
+            _ => " in each dimension",
+        };
         let and = if self.rule.is_empty() { "" } else { ", and " };
         format!("{}{and}from {least} to {most}{of_each}", self.rule).into()
     }

@@ -1,12 +1,14 @@
 //! Interfaces: the trait for how light goes on where it meets a surface, which a material may have.
 
 use crate::geometry::ray::Side;
+use crate::world::material::Rgb;
 use glam::DVec3;
+use std::any::Any;
 use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// How light goes on at a surface: which part of it is reflected, and where the rest is transmitted to.
+/// How light goes on at a surface: which part of it is reflected, and where the rest is transmitted to, if it is.
 ///
 /// A material without one transmits light in a straight line, and reflects what its specular reflectivity says.
 pub trait Interface: Send + Sync {
@@ -18,19 +20,40 @@ pub trait Interface: Send + Sync {
 /// How a ray goes on at an interface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
-    /// The fraction of the light that is reflected as by a mirror, from 0 to 1.
-    pub reflected: f64,
-    /// The unit direction in which the rest is transmitted; `None` where all of it is reflected.
+    /// The fraction of the light that is reflected as by a mirror, from 0 to 1 in each channel.
+    pub reflected: Rgb,
+    /// The unit direction in which the rest is transmitted; `None` where it is not.
     pub onward: Option<DVec3>,
 }
 
 /// Any [`Interface`].
 #[derive(Clone)]
-pub struct AnyInterface(Arc<dyn Interface>);
+pub struct AnyInterface(Arc<dyn Comparable>);
+
+/// An interface that can be compared with any other.
+trait Comparable: Interface {
+    fn as_any(&self) -> &dyn Any;
+    fn is(&self, other: &dyn Any) -> bool;
+    fn as_interface(&self) -> &(dyn Interface + 'static);
+}
+
+impl<I: Interface + PartialEq + 'static> Comparable for I {
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+
+    fn is(&self, other: &dyn Any) -> bool {
+        other.downcast_ref() == Some(self)
+    }
+
+    fn as_interface(&self) -> &(dyn Interface + 'static) {
+        self
+    }
+}
 
 impl AnyInterface {
     /// Makes one of an interface.
-    pub fn new(interface: impl Interface + 'static) -> Self {
+    pub fn new(interface: impl Interface + PartialEq + 'static) -> Self {
         Self(Arc::new(interface))
     }
 }
@@ -39,14 +62,13 @@ impl Deref for AnyInterface {
     type Target = dyn Interface;
 
     fn deref(&self) -> &Self::Target {
-        &*self.0
+        self.0.as_interface()
     }
 }
 
-/// All are equal: the names of their materials tell them apart.
 impl PartialEq for AnyInterface {
-    fn eq(&self, _other: &Self) -> bool {
-        true
+    fn eq(&self, other: &Self) -> bool {
+        self.0.is(other.0.as_any())
     }
 }
 

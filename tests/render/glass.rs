@@ -1,4 +1,4 @@
-//! Glass: materials that bend light, and divide it into a reflected and a transmitted part.
+//! Glass and metal: materials that bend light, and divide it into a reflected and a transmitted or absorbed part.
 
 use crate::common::{model, render};
 use glam::DVec3;
@@ -18,10 +18,15 @@ fn picture(text: &str) -> RgbImage {
     render(&model(&format!("{EYE}{text}")))
 }
 
+/// Returns the interface of a material.
+fn of(material: &str) -> AnyInterface {
+    let model = model(&format!("{EYE} {material}"));
+    let interface = model.materials.iter().find_map(|item| item.value.interface.clone());
+    interface.expect("an interface")
+}
+
 fn interface(index: f64) -> AnyInterface {
-    let model = model(&format!("{EYE} glass g {{ index {index} }}"));
-    let glass = model.materials.iter().find_map(|item| item.value.interface.clone());
-    glass.expect("an interface")
+    of(&format!("glass g {{ index {index} }}"))
 }
 
 fn unit() -> impl Strategy<Value = DVec3> {
@@ -40,12 +45,12 @@ proptest! {
         prop_assume!(dir.dot(normal) < -1e-3);
         let Crossing { reflected, onward } = glass.cross(dir, normal, Side::Outside);
         let onward = onward.expect("from outside, some light passes");
-        prop_assert!((0.0..1.0).contains(&reflected));
+        prop_assert!((0.0..1.0).contains(&reflected.x) && reflected == DVec3::splat(reflected.x));
         let sines = [dir.cross(normal), index * onward.cross(normal)];
         prop_assert!((sines[0] - sines[1]).length() < 1e-12, "{sines:?}");
         let back = glass.cross(-onward, -normal, Side::Inside);
         prop_assert!(back.onward.is_some_and(|back| (back + dir).length() < 1e-6), "{back:?}");
-        prop_assert!((back.reflected - reflected).abs() < 1e-6);
+        prop_assert!((back.reflected - reflected).length() < 1e-6);
     }
 
     #[test]
@@ -55,7 +60,7 @@ proptest! {
         let dir = DVec3::new(sine, -(1.0 - sine * sine).sqrt(), 0.0);
         let crossing = interface(index).cross(dir, DVec3::Y, Side::Inside);
         if sine * index > 1.0 {
-            prop_assert_eq!(crossing, Crossing { reflected: 1.0, onward: None });
+            prop_assert_eq!(crossing, Crossing { reflected: DVec3::ONE, onward: None });
         } else {
             prop_assert!(crossing.onward.is_some());
         }
@@ -69,7 +74,7 @@ proptest! {
         prop_assume!((index * index * (1.0 - cosine * cosine) - 1.0).abs() > 1e-3);
         let enters = interface(1.0 / index).cross(dir, normal, Side::Outside);
         let leaves = interface(index).cross(dir, normal, Side::Inside);
-        prop_assert!((enters.reflected - leaves.reflected).abs() < 1e-9, "{enters:?} {leaves:?}");
+        prop_assert!((enters.reflected - leaves.reflected).length() < 1e-9, "{enters:?} {leaves:?}");
         prop_assert_eq!(enters.onward.is_some(), leaves.onward.is_some());
         if let (Some(enters), Some(leaves)) = (enters.onward, leaves.onward) {
             prop_assert!((enters - leaves).length() < 1e-9, "{enters} {leaves}");
@@ -80,7 +85,36 @@ proptest! {
 #[test]
 fn four_percent_are_reflected_by_glass_that_is_looked_at_straight() {
     let Crossing { reflected, onward } = interface(1.5).cross(DVec3::NEG_Z, DVec3::Z, Side::Outside);
-    assert!((reflected - 0.04).abs() < 1e-15 && onward == Some(DVec3::NEG_Z), "{reflected} {onward:?}");
+    assert!((reflected - 0.04).length() < 1e-15 && onward == Some(DVec3::NEG_Z), "{reflected} {onward:?}");
+}
+
+#[test]
+fn metal_reflects_its_colour_straight_on_and_all_light_at_the_rim() {
+    let gold = of("metal gold { colour 1 0.75 0.25 }");
+    let at = |dir: DVec3| gold.cross(dir, DVec3::Z, Side::Outside);
+    assert_eq!(at(DVec3::NEG_Z), Crossing { reflected: DVec3::new(1.0, 0.75, 0.25), onward: None });
+    assert_eq!(at(DVec3::X).reflected, DVec3::ONE);
+    let half = at(DVec3::new(0.75_f64.sqrt(), 0.0, -0.5)).reflected;
+    assert!((half.z - (0.25 + 0.75 / 32.0)).abs() < 1e-15, "{half}");
+}
+
+#[test]
+fn metal_mirrors_a_background_of_one_colour_in_its_own() {
+    // Straight on, in the middle of the image.
+    let scene =
+        "camera eye { pixeldim 64 48 worlddim 8 6 viewpoint 4 3 7 } background b { colour 0.5 0.5 0.5 }
+        metal gold { colour 1 0.75 0.25 } sphere ball { material gold center 4 3 -2 radius 2 }";
+    let pixel = render(&model(scene)).get_pixel(32, 24).0;
+    assert!(
+        [127, 95, 31].iter().zip(pixel).all(|(expected, byte)| byte.abs_diff(*expected) <= 1),
+        "{pixel:?}"
+    );
+}
+
+#[test]
+fn interfaces_are_equal_if_their_numbers_are() {
+    assert!(interface(1.5) == interface(1.5) && interface(1.5) != interface(1.25));
+    assert!(of("metal m { colour 1 1 1 }") != interface(1.5));
 }
 
 #[test]

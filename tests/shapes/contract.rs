@@ -356,11 +356,12 @@ impl Camera for Eye {
 }
 
 /// Reflects more than it receives.
+#[derive(PartialEq)]
 struct Amplifier;
 
 impl Interface for Amplifier {
     fn cross(&self, dir: DVec3, _normal: DVec3, _side: Side) -> Crossing {
-        Crossing { reflected: 1.5, onward: Some(dir) }
+        Crossing { reflected: DVec3::splat(1.5), onward: Some(dir) }
     }
 }
 

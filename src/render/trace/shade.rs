@@ -205,7 +205,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
 
     /// Adds transmitted and reflected light, in the fractions that an interface decides.
     ///
-    /// How deep reflected rays are followed depends on the fraction, rounded up to a power of two, so that it does not
+    /// How deep reflected rays are followed depends on the largest fraction, rounded up to a power of two, so that it does not
     /// depend on the other rays of the packet.
     fn add_split(
         &mut self,
@@ -221,34 +221,39 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let tints: Vec<Rgb> = (0..group.len)
             .map(|lane| {
                 let point = object.surface_point(surface.points.get(lane), surface.sides[lane]);
-                object.tint(&point) * (1.0 - crossings[lane].reflected)
+                object.tint(&point) * (Rgb::ONE - crossings[lane].reflected)
             })
             .collect();
         (0..group.len).for_each(|lane| colours.set(lane, kept * colours.get(lane)));
 
-        if W::SEES && crossings[0].onward.is_some() {
-            self.observer.see(Event::Begin(Purpose::Transmitted { tint: tints[0], kept }));
-        }
-        let flip = |sides: &mut [Side]| sides.iter_mut().for_each(|side| *side = side.opposite());
-        flip(&mut surface.sides[..count]);
-        let mut dir = shading.dir.resized(count);
-        for lane in 0..count {
-            dir.set(lane, crossings[lane].onward.unwrap_or(DVec3::NEG_Z));
-        }
         let is_through = |crossing: &Crossing| crossing.onward.is_some();
-        self.go(group, shading, RayKind::Transmitted, branches.through, &crossings, is_through);
-        flip(&mut shading.surface.sides[..count]);
-        for lane in 0..group.len {
-            colours.set(lane, colours.get(lane) + tints[lane] * shading.behind.get(lane));
+        if crossings[..group.len].iter().any(is_through) {
+            if W::SEES {
+                self.observer.see(Event::Begin(Purpose::Transmitted { tint: tints[0], kept }));
+            }
+            let flip = |sides: &mut [Side]| sides.iter_mut().for_each(|side| *side = side.opposite());
+            flip(&mut surface.sides[..count]);
+            let mut dir = shading.dir.resized(count);
+            for lane in 0..count {
+                dir.set(lane, crossings[lane].onward.unwrap_or(DVec3::NEG_Z));
+            }
+            self.go(group, shading, RayKind::Transmitted, branches.through, &crossings, is_through);
+            flip(&mut shading.surface.sides[..count]);
+            for lane in 0..group.len {
+                colours.set(lane, colours.get(lane) + tints[lane] * shading.behind.get(lane));
+            }
         }
 
         for number in 0..=STEPS {
-            let is_its = |crossing: &Crossing| crossing.reflected > 0.0 && step(crossing.reflected) == number;
+            let is_its = |crossing: &Crossing| {
+                let most = crossing.reflected.max_element();
+                most > 0.0 && step(most) == number
+            };
             if !crossings[..group.len].iter().any(is_its) {
                 continue;
             }
             if W::SEES {
-                let specular = Rgb::splat(crossings[0].reflected);
+                let specular = crossings[0].reflected;
                 self.observer.see(Event::Begin(Purpose::Reflected { specular }));
             }
             let surface = &mut shading.surface;

@@ -229,7 +229,8 @@ pub fn material(material: &Material, draw: &mut Draw) -> Result<(), Fault> {
             let crossing = interface.cross(dir, normal, side);
             let Crossing { reflected, onward } = crossing;
             let is_through = |onward: DVec3| onward.is_normalized() && onward.dot(normal) <= 0.0;
-            let is_sound = (0.0..=1.0).contains(&reflected) && onward.map_or(reflected == 1.0, is_through);
+            let is_fraction = reflected.to_array().iter().all(|part| (0.0..=1.0).contains(part));
+            let is_sound = is_fraction && onward.is_none_or(is_through);
             if !is_sound {
                 let found = format!("a ray along {dir} goes on from a normal {normal} as {crossing:?}");
                 return Err(Promise::LightGoesOn.fault(found));

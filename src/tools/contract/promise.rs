@@ -39,7 +39,7 @@ pub enum Promise {
     IsMet,
     /// Reflectivities are finite and not below 0.
     ReflectivityIsSound,
-    /// A material's interface reflects a fraction, and transmits the rest to the other side.
+    /// A material's interface reflects a fraction, and transmits the rest to the other side or absorbs it.
     LightGoesOn,
     /// A light's location, size and emission are finite.
     LightIsFinite,
@@ -124,7 +124,7 @@ impl Promise {
                 "look for a division by 0 or a root of a negative number, and clamp what may become negative"
             }
             Self::LightGoesOn => {
-                "clamp the reflected fraction, normalize the direction, and reflect all light where none is transmitted"
+                "clamp the reflected fraction, and normalize the direction in which the rest is transmitted"
             }
             Self::LightIsFinite => "return `None` where no light goes, including the light's own location",
             Self::BackgroundIsSound => {
@@ -168,7 +168,7 @@ impl fmt::Display for Promise {
                 "a reflectivity is finite, and not negative unless the material's is"
             }
             Self::LightGoesOn => {
-                "an interface reflects a fraction from 0 to 1, and transmits the rest to the other side"
+                "an interface reflects a fraction from 0 to 1, and transmits the rest to the other side or absorbs it"
             }
             Self::LightIsFinite => "a light's location, size and emission are finite",
             Self::BackgroundIsSound => {

@@ -20,7 +20,7 @@
 //! through glass are at most 1. Rays do not hit what lies behind the plane that they leave, nor the object that they
 //! leave if it cannot be hit again.
 //!
-//! **Interfaces.** Where the material has an interface, which divides light into a reflected fraction `r` and the rest, the
+//! **Interfaces.** Where the material has an interface, which divides each channel of light into a reflected fraction `r` and the rest, the
 //! sum is `kept * S / d + (1 - r) * tint * transmitted light + r * reflected light`, so that
 //!
 //! ```text
@@ -28,8 +28,8 @@
 //! ```
 //!
 //! and so for `P`, but with 0 for `kept_j * S_j` where nothing is kept. The reflected ray gets a quarter of the allowance,
-//! and the transmitted one the rest, or either one all where the other is none. The weight of the reflected branch is `r`,
-//! rounded up to a power of two.
+//! and the transmitted one the rest, or either one all where the other is none. The weight of the reflected branch is the
+//! largest `r` of a channel, rounded up to a power of two.
 //!
 //! The background counts as an object around everything, whose own light `S` is its brightest channel times
 //! [`MAX_DIST`](crate::render::limits::MAX_DIST): it is not divided by the path length `d`, but no ray leaves an object

@@ -1,0 +1,42 @@
+//! Metal: a coloured mirror that reflects more of the light that grazes it.
+
+use crate::prelude::*;
+
+static REFLECTANCE: Pparm<Rgb> = Pparm::or(
+    "colour",
+    "the fraction of the light along the normal that is reflected: 0.95 0.93 0.88 is silver, 1 0.77 0.34 is gold, 0.96 0.64 0.54 is copper",
+    Rgb::new(0.91, 0.92, 0.92),
+)
+.alias(&["color"])
+.each(COLOUR)
+.between(0.0, 1.0);
+static SHININESS: Pparm<f64> =
+    Pparm::or("shininess", "the exponent of the highlights of lights (larger is sharper, 0 is none)", 0.0)
+        .must("0 or more", |exponent| *exponent >= 0.0);
+
+const TABLE: Table = &[&REFLECTANCE, &SHININESS];
+
+inventory::submit! {
+    Entity::material("metal", "a coloured mirror that reflects more of the light that grazes it", &[TABLE], |args| {
+        let colour = args.get(&REFLECTANCE);
+        Ok(Material {
+            specular: colour,
+            shininess: args.get(&SHININESS),
+            interface: Some(AnyInterface::new(Metal { colour })),
+            ..Material::default()
+        })
+    })
+}
+
+#[derive(PartialEq)]
+struct Metal {
+    colour: Rgb,
+}
+
+impl Interface for Metal {
+    /// Follows Schlick's approximation of Fresnel's equations (1994), and absorbs what is not reflected.
+    fn cross(&self, dir: DVec3, normal: DVec3, _side: Side) -> Crossing {
+        let grazing = (1.0 + dir.dot(normal)).clamp(0.0, 1.0).powi(5);
+        Crossing { reflected: self.colour + (Rgb::ONE - self.colour) * grazing, onward: None }
+    }
+}
