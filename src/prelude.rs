@@ -4,10 +4,11 @@
 //! [`double_double`](crate::numeric::double_double).
 
 // Registration of an entity type: its table, its constructor, and the constructor's arguments.
+pub use crate::scene::attribute::{LEAST_LENGTH, Pose};
 pub use crate::scene::counts::OneOf;
 pub use crate::scene::entity::{Args, Entity, Refusal};
 pub use crate::scene::list::List;
-pub use crate::scene::pparm::{Attributes, Derived, LEAST_LENGTH, Pose, Pparm, Row, Table};
+pub use crate::scene::pparm::{Attributes, Derived, Pparm, Row, Table};
 pub use crate::scene::value::{COLOUR, Datum, PerChannel, Value};
 pub use inventory;
 

@@ -2,9 +2,9 @@
 
 use crate::cli::process::failure::{Failure, print};
 use crate::cli::process::program;
+use crate::scene::attribute::Attribute;
 use crate::scene::entity::Entity;
 use crate::scene::list_json::Tables;
-use crate::scene::pparm::Attribute;
 use crate::scene::reference;
 use crate::scene::registry::Registry;
 use crate::scene::value::Datum;

@@ -4,8 +4,8 @@ use super::names::told;
 use super::project::{Group, definitions};
 use super::types::{Wanted, value_name, wanted};
 use super::view::{Attribute, Entity, Item, View, Word};
+use crate::scene::attribute;
 use crate::scene::entity;
-use crate::scene::pparm;
 use crate::scene::reader::keyword::Keyword;
 use crate::scene::syntax::Syntax;
 use crate::scene::value::Datum;
@@ -61,7 +61,7 @@ fn value(
     view: &View,
     entity: &Entity,
     attribute: &Attribute,
-    known: &dyn pparm::Attribute,
+    known: &dyn attribute::Attribute,
     word: Word,
 ) -> Option<Hover> {
     let said = view.word(word);
@@ -152,7 +152,7 @@ fn about_type(syntax: Syntax, known: &'static entity::Entity) -> String {
 }
 
 /// Describes an attribute: its meaning, the type and the unit of its values, its rule and its default.
-pub fn about(syntax: Syntax, attribute: &dyn pparm::Attribute) -> String {
+pub fn about(syntax: Syntax, attribute: &dyn attribute::Attribute) -> String {
     let mut text = format!("{}\n\n", attribute.meaning());
     let unit = if attribute.unit().is_empty() { String::new() } else { format!(", in {}", attribute.unit()) };
     text += &format!("Takes {}{unit}", attribute.takes());

@@ -1,8 +1,8 @@
 //! Reads a text in the notes' syntax as far as possible.
 
 use super::view::{Attribute, Break, Entity, Form, Include, Item, Let, Repeat, Word};
+use crate::scene::attribute;
 use crate::scene::entity;
-use crate::scene::pparm;
 use crate::scene::reader::keyword::Keyword;
 use crate::scene::reader::tokens::{Token, TokenForm, Tokens};
 use crate::scene::reader::{Report, looks_like_number};
@@ -228,7 +228,7 @@ impl<'a> Reader<'a> {
     fn is_value(
         &mut self,
         entity: Option<&'static entity::Entity>,
-        known: Option<&'static dyn pparm::Attribute>,
+        known: Option<&'static dyn attribute::Attribute>,
         already: usize,
         token: Token,
     ) -> bool {
@@ -260,6 +260,6 @@ impl<'a> Reader<'a> {
 }
 
 /// Finds the attribute of a type by its name or by another one.
-pub fn attribute(entity: &'static entity::Entity, name: &str) -> Option<&'static dyn pparm::Attribute> {
+pub fn attribute(entity: &'static entity::Entity, name: &str) -> Option<&'static dyn attribute::Attribute> {
     entity.attributes().find(|known| known.name() == name || known.aliases().contains(&name))
 }

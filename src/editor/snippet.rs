@@ -2,8 +2,8 @@
 
 use super::types::{Wanted, value_name, wanted};
 use super::view::{Entity, View};
+use crate::scene::attribute::Attribute;
 use crate::scene::entity;
-use crate::scene::pparm::Attribute;
 use crate::scene::syntax::Syntax;
 
 /// The most alternatives of a place to fill in.

@@ -1,9 +1,9 @@
 //! What the values of an attribute are, for everything here that depends on it. A new type of values is told of here.
 
 use super::view::{Entity, View};
+use crate::scene::attribute::Attribute;
 use crate::scene::choice::Choices;
 use crate::scene::kind::Kind;
-use crate::scene::pparm::Attribute;
 use crate::scene::value::Type;
 
 /// What the values of an attribute are.

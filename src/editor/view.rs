@@ -3,8 +3,8 @@
 use super::named::Names;
 use super::text::Text;
 pub use super::word::{Form, Word};
+use crate::scene::attribute;
 use crate::scene::entity;
-use crate::scene::pparm;
 use crate::scene::reader::tokens;
 use crate::scene::syntax::Syntax;
 use std::borrow::Cow;
@@ -59,7 +59,7 @@ pub struct Entity {
 pub struct Attribute {
     pub name: Word,
     /// What the table of the entity's type says of it.
-    pub known: Option<&'static dyn pparm::Attribute>,
+    pub known: Option<&'static dyn attribute::Attribute>,
     /// The first byte after the `=` in TOML, or after the name otherwise; `None` where there is no `=` yet.
     pub values_from: Option<usize>,
     pub values: Vec<Word>,

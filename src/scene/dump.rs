@@ -1,9 +1,9 @@
 //! Writes a model as text: as the notes' program dumps it, or as a scene that loads again.
 
+use crate::scene::attribute::Attribute;
 use crate::scene::entity::Args;
 use crate::scene::kind::Kind;
 use crate::scene::model::Model;
-use crate::scene::pparm::Attribute;
 use crate::scene::store::Record;
 use crate::scene::syntax::Syntax;
 use crate::scene::value::Datum;

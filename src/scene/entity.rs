@@ -1,8 +1,9 @@
 //! Entity types: what a plugin registers, and what its constructor receives.
 
+use crate::scene::attribute::Attribute;
 use crate::scene::counts::OneOf;
 use crate::scene::kind::Kind;
-use crate::scene::pparm::{Attribute, Attributes, Given, Pparm, Row, Table};
+use crate::scene::pparm::{Attributes, Given, Pparm, Row, Table};
 use crate::scene::value::{Datum, Type};
 use crate::text;
 use crate::world::accuracy::Accuracy;

@@ -1,7 +1,7 @@
 //! A TextMate grammar of the notes' syntax, generated from the tables: editors colour scenes with it.
 
+use crate::scene::attribute::Attribute;
 use crate::scene::entity::Entity;
-use crate::scene::pparm::Attribute;
 use crate::scene::registry::Registry;
 use crate::scene::value::Type;
 use serde::Serialize;

@@ -2,11 +2,11 @@
 //!
 //! Fields are declared in the order in which they are written.
 
+use crate::scene::attribute;
 use crate::scene::choice::ChoiceName;
 use crate::scene::counts::Counts;
 use crate::scene::entity;
 use crate::scene::kind::Kind;
-use crate::scene::pparm;
 use crate::scene::profile::Profile;
 use crate::scene::reference::by_name;
 use crate::scene::registry::Registry;
@@ -158,7 +158,7 @@ impl Entity {
 }
 
 impl Attribute {
-    fn of(attribute: &'static dyn pparm::Attribute) -> Self {
+    fn of(attribute: &'static dyn attribute::Attribute) -> Self {
         let (value_type, refers_to, choices) = match attribute.value_type() {
             Type::Whole => ("whole number", None, None),
             Type::Number => ("number", None, None),

@@ -1,11 +1,11 @@
 //! Procedural shaders as values: an object names a shader of the scene, or a type of shader, which stands for that shader
 //! with its defaults.
 
+use crate::scene::attribute::Attribute;
 use crate::scene::choice::{Choice, ChoiceName, Choices};
 use crate::scene::counts::Counts;
 use crate::scene::entity::{Args, Construct, Entity, Refusal, SHADER};
 use crate::scene::kind::Kind;
-use crate::scene::pparm::Attribute;
 use crate::scene::value::{Datum, Type, Value};
 use crate::world::body::{Body, Paint};
 use std::collections::BTreeMap;

@@ -1,10 +1,10 @@
 //! The reference of the scene language: the meaning of its words, generated from the tables.
 
+use crate::scene::attribute::Attribute;
 use crate::scene::choice::{Choice, ChoiceName};
 use crate::scene::counts::OneOf;
 use crate::scene::entity::Entity;
 use crate::scene::kind::Kind;
-use crate::scene::pparm::Attribute;
 use crate::scene::profile::Profile;
 use crate::scene::registry::Registry;
 use crate::scene::value::Datum;

@@ -1,9 +1,9 @@
 //! The JSON Schema of scenes in TOML, generated from the tables: editors check and complete with it.
 
+use crate::scene::attribute::Attribute;
 use crate::scene::counts::Counts;
 use crate::scene::entity::Entity;
 use crate::scene::kind::Kind;
-use crate::scene::pparm::Attribute;
 use crate::scene::registry::Registry;
 use crate::scene::value::{Datum, Type};
 use serde::Serialize;

@@ -1,9 +1,9 @@
 //! The two syntaxes of a scene: how each writes names, attributes and values.
 
 use crate::numeric::formula::field::SPACE;
+use crate::scene::attribute::Attribute;
 use crate::scene::counts::OneOf;
 use crate::scene::entity::Entity;
-use crate::scene::pparm::Attribute;
 use crate::scene::value::{Datum, Type, yes_or_no};
 use crate::text::shortest;
 use clap::ValueEnum;

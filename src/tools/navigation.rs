@@ -1,7 +1,7 @@
 //! Moves a camera around a point: orbit, pan and dolly, for every type of camera whose table says where it stands.
 
+use crate::scene::attribute::{Attribute, Pose};
 use crate::scene::entity::{Args, Construct};
-use crate::scene::pparm::{Attribute, Pose};
 use crate::scene::value::Datum;
 use crate::world::film::Film;
 use glam::{DMat3, DVec3};

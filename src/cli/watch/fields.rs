@@ -4,7 +4,7 @@ use super::frame::Frame;
 use crate::editor::{self, Text, View};
 use crate::render::plan::Plan;
 use crate::render::trace;
-use crate::scene::pparm::Attribute;
+use crate::scene::attribute::Attribute;
 use crate::scene::registry::Registry;
 use crate::scene::store::Record;
 use crate::scene::syntax::Syntax;

@@ -1,8 +1,8 @@
 //! Finds attributes by their names, and guesses which attribute a misspelt word was meant to be.
 
+use crate::scene::attribute::Attribute;
 use crate::scene::counts::OneOf;
 use crate::scene::entity::Entity;
-use crate::scene::pparm::Attribute;
 use crate::scene::value::Type;
 use crate::text::{self, nearest};
 use std::collections::HashMap;

@@ -7,7 +7,7 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::Bvh;
 use crate::numeric::double_double::{exponent_to_one, times_power_of_two};
 use crate::parallel;
-use crate::scene::pparm::MOST_LENGTH;
+use crate::scene::attribute::MOST_LENGTH;
 use crate::shapes::triangle::Triangle;
 use crate::world::accuracy::Exact;
 use glam::DVec3;

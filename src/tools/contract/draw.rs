@@ -1,10 +1,10 @@
 //! Draws values for attributes by their types and rules, the same in every run.
 
 use crate::numeric::formula::HEIGHT;
+use crate::scene::attribute::Attribute;
 use crate::scene::choice::Choices;
 use crate::scene::entity::Entity;
 use crate::scene::kind::Kind;
-use crate::scene::pparm::Attribute;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
 use crate::scene::value::{Datum, Type};
