@@ -1,7 +1,6 @@
 //! Interfaces: the trait for how light goes on where it meets a surface, which a material may have.
 
 use crate::geometry::ray::Side;
-use crate::world::material::Rgb;
 use glam::DVec3;
 use std::any::Any;
 use std::fmt;
@@ -20,8 +19,8 @@ pub trait Interface: Send + Sync {
 /// How a ray goes on at an interface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
-    /// The fraction of the light that is reflected as by a mirror, from 0 to 1 in each channel.
-    pub reflected: Rgb,
+    /// The fraction of the light that is reflected as by a mirror, from 0 to 1, in red, green and blue.
+    pub reflected: DVec3,
     /// The unit direction in which the rest is transmitted; `None` where it is not.
     pub onward: Option<DVec3>,
 }
