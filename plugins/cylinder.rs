@@ -50,6 +50,10 @@ impl Implicit for Cylinder {
         self.is_open.then_some("its two ends are left out")
     }
 
+    fn extruded(&self) -> Option<f64> {
+        (!self.is_open).then_some(self.height)
+    }
+
     fn bounds(&self) -> [DVec3; 2] {
         // The box must not touch the surface, or it would be in doubt on which side of it a hit is.
         let Self { radius, height, .. } = *self;

@@ -1,6 +1,7 @@
 //! Frames: where a shape's own coordinate system lies in the world.
 
 use crate::geometry::aabb::Aabb;
+use crate::geometry::facet::Facet;
 use crate::geometry::ray::Ray;
 use crate::geometry::sight::{Line, Sight};
 use crate::numeric::double_double::{DoubleDouble, offset};
@@ -43,6 +44,11 @@ impl Frame {
         // Scaling by a power of two loses no digit, and keeps squares from overflowing.
         let scale = 2.0_f64.powi(-(axis.abs().max_element().log2() as i32).clamp(-1000, 1000));
         Self { origin, axes: DMat3::from_cols(axes[0], axes[1], axes[2]), axis: Some(axis * scale) }
+    }
+
+    /// Returns the facet at a height on the y axis of a shape that ends there, upward or downward.
+    pub fn facet(&self, height: f64, is_upward: bool) -> Facet {
+        Facet::above(self.origin, self.axis.unwrap_or(DVec3::Y), height, is_upward)
     }
 
     /// Transforms a direction from the world to the shape's own coordinates.

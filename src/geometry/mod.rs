@@ -2,6 +2,7 @@
 
 pub(crate) mod aabb;
 pub(crate) mod bvh;
+pub(crate) mod facet;
 pub(crate) mod frame;
 pub(crate) mod image_point;
 pub(crate) mod placement;
@@ -13,6 +14,7 @@ pub(crate) mod view_frame;
 
 pub use aabb::{Aabb, clearance};
 pub use bvh::{Bvh, Stack};
+pub use facet::Facet;
 pub use frame::Frame;
 pub use image_point::ImagePoint;
 pub use placement::{Placement, Rotation};

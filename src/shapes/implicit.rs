@@ -4,6 +4,7 @@
 //! ray's first hit by interval arithmetic, and [`Dual`] numbers give the normal.
 
 use crate::geometry::aabb::Aabb;
+use crate::geometry::facet::Facet;
 use crate::geometry::frame::{self, BLUR, Frame};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
 use crate::geometry::roots::stretch::Stretch;
@@ -16,6 +17,7 @@ use crate::numeric::interval::Interval;
 use crate::numeric::scalar::Scalar;
 use crate::world::body::Body;
 use crate::world::certify::Equation;
+use crate::world::coincidence::ROUNDING;
 use crate::world::hittable::{Bracketed, Certified, Hittable, Searched};
 use crate::world::packets::shape::by_distance;
 use crate::world::shape::Shape;
@@ -48,6 +50,12 @@ pub trait Implicit: Send + Sync {
     /// Says why the surface is not that of a solid; `None` for a closed surface that lies within its box.
     fn openness(&self) -> Option<&'static str> {
         Some("it has no inside")
+    }
+
+    /// Returns the height of a closed shape that ends in planes at y = 0 and at this height, and has the same cross-section
+    /// between them; `None` for any other shape.
+    fn extruded(&self) -> Option<f64> {
+        None
     }
 
     /// Returns the coordinates u and v of a point of the surface, for shaders; `None` where it has none.
@@ -144,7 +152,20 @@ impl<T: Implicit> Bracketed for ImplicitShape<T> {
     }
 }
 
-impl<T: Implicit> Certified for ImplicitShape<T> {}
+impl<T: Implicit> Certified for ImplicitShape<T> {
+    fn facet(&self, at: DVec3, error: f64) -> Option<Facet> {
+        let height = self.formula.extruded()?;
+        let size = (at.abs() + self.frame.origin.abs()).element_sum();
+        // The box that extends the error along each axis reaches no farther along any other one.
+        let (at, error) = (self.frame.point(at), 1.75 * error + ROUNDING * size);
+        let is_upward = at.y > 0.5 * height;
+        let end = if is_upward { height } else { 0.0 };
+        let is_alone = (at.y - end).abs() + error < 0.25 * height;
+        let around = |place: f64| Interval { low: place - error, high: place + error };
+        let amid = self.formula.value([around(at.x), Interval::constant(0.5 * height), around(at.z)]);
+        (is_alone && amid.high < 0.0).then(|| self.frame.facet(end, is_upward))
+    }
+}
 
 impl<T: Implicit> Searched for ImplicitShape<T> {
     fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> f64 {

@@ -1,5 +1,6 @@
 //! A shape of any type, whatever it has opted into.
 
+use crate::geometry::facet::Facet;
 use crate::geometry::ray::{Bracket, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{Nearest, RayPacket};
 use crate::geometry::sight::Sight;
@@ -40,6 +41,12 @@ impl AnyShape {
     /// Tells whether a point lies in a closed shape; `None` where the surface may be within an error in world units.
     pub fn holds(&self, at: DVec3, error: f64) -> Option<bool> {
         self.0.holds(at, error)
+    }
+
+    /// Returns the facet in whose plane all of a closed shape's surface within an error in world units of a point lies;
+    /// `None` where that is not known.
+    pub fn facet(&self, at: DVec3, error: f64) -> Option<Facet> {
+        self.0.facet(at, error)
     }
 
     /// Returns what is certain about a ray's first hit. For a shape without an equation, nothing is.

@@ -4,6 +4,7 @@
 //! [`Certified`], and declares both to [`Shape`](crate::world::shape::Shape).
 
 use crate::geometry::aabb::Aabb;
+use crate::geometry::facet::Facet;
 use crate::geometry::ray::{Bracket, Drift, Ray, RayRange, Side};
 use crate::geometry::roots::Method;
 use crate::numeric::double_double::DoubleDouble;
@@ -156,6 +157,12 @@ pub trait Certified: Hittable + Equation {
     /// numbers. Rays that start at such a point leave the shape.
     fn touches(&self, at: DVec3, error: f64) -> bool {
         coincidence::touches(self, at, error)
+    }
+
+    /// Returns the facet in whose plane all of a closed shape's surface within an error in world units of a point lies;
+    /// `None` where that is curved, has an edge or is not known.
+    fn facet(&self, _at: DVec3, _error: f64) -> Option<Facet> {
+        None
     }
 
     /// Returns the distance of the hit near `distance` in double-double arithmetic, which tells which of two coincident

@@ -3,6 +3,7 @@
 use crate::common::{model, registry, render};
 use std::fmt::Write;
 use std::path::Path;
+use tabray::geometry::RayRange;
 use tabray::render::{Plan, trace};
 use tabray::scene;
 use tabray::tools::verify::{self, Verdict};
@@ -59,6 +60,62 @@ fn a_hole_flush_with_a_side_is_open() {
         "box a { center 4 3 -2 size 2 2 2 } box b { center 4 3 -2 size 2 2 2 } difference s { objects a b }",
         None,
     );
+}
+
+/// Boxes with sides in one plane, and cylinders with the same ends, as they are and turned. The ray does not pass through an
+/// edge of two triangles.
+const FLUSH: [(&str, Option<(f64, &str)>); 7] = [
+    (
+        "box cube { center 4.1 3.2 -2 size 2 2 2 } box hole { center 4.1 3.2 -1.5 size 1 1 1 }
+         difference s { objects cube hole }",
+        Some((8.0, "hole")),
+    ),
+    (
+        "box near { center 4.1 3.2 2 size 2 2 2 } box far { center 4.1 3.2 0 size 1 1 2 } union s { objects near far }",
+        Some((3.0, "near")),
+    ),
+    (
+        "box near { center 4.1 3.2 2 size 2 2 2 } box far { center 4.1 3.2 0 size 1 1 2 } difference s { objects near far }",
+        Some((3.0, "near")),
+    ),
+    (
+        "cylinder tube { base 4 3 -3 direction 0 0 2 height 2 radius 1 }
+         cylinder bore { base 4 3 -1 direction 0 0 -1 height 2 radius 0.5 } difference s { objects tube bore }",
+        None,
+    ),
+    (
+        "cylinder disc { base 4 3 -3 direction 0 7 24 height 1 radius 1 }
+         cylinder core { base 4 3 -3 direction 0 7 24 height 1 radius 0.5 } union s { objects core disc }",
+        Some((9.0 - 25.0 / 24.0, "core")),
+    ),
+    (
+        "cylinder post { base 4.1 3.2 0 direction 0 0 -1 height 2 radius 1 } box foot { center 4.1 3.2 1 size 8 8 2 }
+         union s { objects post foot }",
+        Some((4.0, "foot")),
+    ),
+    (
+        "box cube { center 0 0 0 size 2 2 2 } box hole { center 0 0 0.5 size 1 1 1 }
+         difference cut { objects cube hole }
+         place s { object cut rotation 0 0 10 translation 4.1 3.2 -2 }",
+        Some((8.0, "hole")),
+    ),
+];
+
+#[test]
+fn sides_in_one_plane_take_no_proof() {
+    for (solid, hit) in FLUSH {
+        let found = seen(solid).0;
+        let is_it = |(distance, part): &(f64, String)| {
+            hit.is_some_and(|(at, name)| (distance - at).abs() < 1e-12 && part == name)
+        };
+        assert!(found.as_ref().map_or(hit.is_none(), is_it), "{solid}: {found:?}");
+        let model = model(&format!("{VIEWER}{}", solid.replace("{ ", "{ material m ")));
+        let ray = model.camera.value.sight(0.0, 0.0).ray();
+        for object in &model.objects {
+            let bracket = object.shape.t_bounds(&ray, &RayRange::ALL);
+            assert!(!bracket.is_doubtful(), "{solid}: {bracket:?}");
+        }
+    }
 }
 
 #[test]

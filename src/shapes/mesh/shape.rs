@@ -4,6 +4,7 @@ use super::face::{Face, Leaving};
 use super::hits::{Last, NOTHING};
 use super::surface::Surface;
 use crate::geometry::aabb::{Aabb, SLACK};
+use crate::geometry::facet::Facet;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
 use crate::geometry::roots::Method;
 use crate::geometry::sight::{Line, Sight};
@@ -185,6 +186,10 @@ impl<A: Bounded> Proofs for Shape<Mesh<A>, ByPackets, ByFaces> {
 
     fn holds(&self, at: DVec3, error: f64) -> Option<bool> {
         self.shape.surface.holds::<A>(at, error)
+    }
+
+    fn facet(&self, at: DVec3, error: f64) -> Option<Facet> {
+        self.shape.surface.facet::<A>(at, error)
     }
 
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {

@@ -1,6 +1,7 @@
 //! Closed meshes as solids.
 
 use super::surface::Surface;
+use crate::geometry::facet::Facet;
 use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::world::accuracy::Bounded;
 use crate::world::coincidence::ROUNDING;
@@ -26,18 +27,28 @@ fn rounding(point: DVec3, at: DVec3) -> f64 {
     ROUNDING * (point.abs() + at.abs()).element_sum()
 }
 
+/// Tells whether a point lies above a plane; `None` where the plane may pass through the box that extends an error from the
+/// point along each axis.
+fn is_above([normal, point]: [DVec3; 2], at: DVec3, error: f64) -> Option<bool> {
+    // The box reaches no farther along a normal.
+    let (above, error) = (normal.dot(at - point), 1.75 * error + rounding(point, at));
+    if above > error {
+        Some(true)
+    } else if above >= -error {
+        None
+    } else {
+        Some(false)
+    }
+}
+
 /// Tells whether a point lies below all of these planes; `None` where it may lie on one of them.
 fn inside(planes: &[[DVec3; 2]], at: DVec3, error: f64) -> Option<bool> {
-    // The box that extends the error along each axis reaches no farther along a normal.
-    let error = 1.75 * error;
     let mut inside = Some(true);
-    for [normal, point] in planes {
-        let (above, error) = (normal.dot(at - *point), error + rounding(*point, at));
-        if above > error {
-            return Some(false);
-        }
-        if above >= -error {
-            inside = None;
+    for plane in planes {
+        match is_above(*plane, at, error) {
+            Some(true) => return Some(false),
+            Some(false) => {}
+            None => inside = None,
         }
     }
     inside
@@ -66,6 +77,26 @@ impl Surface {
             }
         }
         None
+    }
+
+    /// Returns the facet in whose plane all of a closed mesh's surface within an error in world units of a point lies;
+    /// `None` where there are several, where it is not across an axis, and where the mesh is not convex.
+    pub(super) fn facet<A: Bounded>(&self, at: DVec3, error: f64) -> Option<Facet> {
+        let planes = self.planes.get_or_init(|| self.convex::<A>()).as_ref()?;
+        let mut facet = None;
+        for (face, plane) in planes.iter().enumerate() {
+            match is_above(*plane, at, error) {
+                Some(true) => return None,
+                Some(false) => {}
+                None => {
+                    let own = Facet::of_triangle(self.corners(face), plane[0])?;
+                    if *facet.get_or_insert(own) != own {
+                        return None;
+                    }
+                }
+            }
+        }
+        facet
     }
 
     /// Returns the planes of the faces of a closed mesh that certainly is convex, a normal and a point of each; `None` for

@@ -1,6 +1,7 @@
 //! The shape of a copy: rays and hits of single rays in the coordinates of its object.
 
 use crate::geometry::aabb::{Aabb, SLACK};
+use crate::geometry::facet::Facet;
 use crate::geometry::placement::Placement;
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::geometry::roots::Method;
@@ -261,6 +262,11 @@ impl Proofs for Shape<Placed, ByPackets, ByPlacement> {
 
     fn holds(&self, at: DVec3, error: f64) -> Option<bool> {
         self.shape.body.shape.holds(self.shape.own_point(at), self.shape.own_error(at, error))
+    }
+
+    fn facet(&self, at: DVec3, error: f64) -> Option<Facet> {
+        let own = self.shape.body.shape.facet(self.shape.own_point(at), self.shape.own_error(at, error))?;
+        own.placed(self.shape.placement)
     }
 
     fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {

@@ -96,6 +96,28 @@ impl Trimmed {
         self.tree.is_bare(&self.way, &mut |part| self.holds(part, at, error))
     }
 
+    /// Tells whether a hit of the part is the solid's where other surfaces within an error in world units lie in the plane of
+    /// its own, as the numbers of the scene say; `None` where that is open.
+    fn is_bare_in_plane(&self, at: DVec3, error: f64) -> Option<bool> {
+        let own = self.own().facet(at, error)?;
+        let (mut outside, mut inside) = (vec![false; self.parts.len()], vec![false; self.parts.len()]);
+        inside[self.index] = true;
+        let mut is_known = true;
+        self.tree.holds(&mut |part| {
+            if part != self.index {
+                let beside = self.holds(part, at, error).map(|holds| [holds; 2]);
+                let beside = beside.or_else(|| self.parts[part].body.shape.facet(at, error)?.beside(&own));
+                match beside {
+                    Some(beside) => [outside[part], inside[part]] = beside,
+                    None => is_known = false,
+                }
+            }
+            // So that no part is passed over.
+            None
+        });
+        is_known.then(|| self.tree.owner(&outside, &inside) == Some(self.index))
+    }
+
     /// Tells whether a hit of the part is the solid's by what lies on both sides of it, at a distance that is a multiple
     /// of an error in world units.
     fn is_bare_beside(&self, at: DVec3, normal: DVec3, error: f64) -> bool {
@@ -114,7 +136,8 @@ impl Trimmed {
         let at = ray.at(distance);
         // The error of any hit first, then that of this one, which takes its normal.
         self.is_bare(at, ROUNDING / LEAST_COSINE * size).or_else(|| {
-            self.is_bare(at, coincidence::error(ray, distance, self.own().normal(at), self.reach()))
+            let error = coincidence::error(ray, distance, self.own().normal(at), self.reach());
+            self.is_bare(at, error).or_else(|| self.is_bare_in_plane(at, error))
         })
     }
 

@@ -1,5 +1,6 @@
 //! What is certain about the hits of a shape, by how its distances are found.
 
+use crate::geometry::facet::Facet;
 use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::geometry::roots::Method;
 use crate::geometry::sight::Sight;
@@ -18,6 +19,12 @@ pub trait Proofs: Send + Sync {
 
     /// Tells whether a point lies in a closed shape; `None` where the surface may be within an error in world units.
     fn holds(&self, _at: DVec3, _error: f64) -> Option<bool> {
+        None
+    }
+
+    /// Returns the facet in whose plane all of a closed shape's surface within an error in world units of a point lies;
+    /// `None` where that is not known.
+    fn facet(&self, _at: DVec3, _error: f64) -> Option<Facet> {
         None
     }
 
@@ -92,6 +99,10 @@ impl<T: Certified, S> Proofs for Shape<T, S, ByEquation> {
         certify::holds(&self.shape, at, error)
     }
 
+    fn facet(&self, at: DVec3, error: f64) -> Option<Facet> {
+        self.shape.facet(at, error)
+    }
+
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
         self.shape.fine_distance(ray, distance)
     }
@@ -116,6 +127,10 @@ impl<T: Searched, S> Proofs for Shape<T, S, ByRoots> {
 
     fn holds(&self, at: DVec3, error: f64) -> Option<bool> {
         certify::holds(&self.shape, at, error)
+    }
+
+    fn facet(&self, at: DVec3, error: f64) -> Option<Facet> {
+        self.shape.facet(at, error)
     }
 
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {

@@ -31,7 +31,7 @@ const fn closed(name: &'static str, rays: [usize; 2], ask: fn(&mut Random) -> Qu
 }
 
 /// All classes.
-pub const CLASSES: [Class; 47] = [
+pub const CLASSES: [Class; 49] = [
     class("sphere", [600_000, 4000], round::spheres),
     class("sphere, tangents", [400_000, 4000], round::sphere_tangents),
     class("sphere, from inside", [100_000, 1000], round::inside),
@@ -75,8 +75,10 @@ pub const CLASSES: [Class; 47] = [
     class("lathe", [1_000_000, 300], formulas::lathes),
     class("box", [1_000_000, 1000], formulas::boxes),
     class("prism", [1_000_000, 1000], formulas::prisms),
+    class("polygon", [1_000_000, 1000], formulas::polygons),
     class("solid", [1_000_000, 600], solids::solids),
     class("solid, silhouettes and edges", [20_000, 60], solids::silhouettes),
     class("solid, sides that coincide", [1_000_000, 800], solids::flush),
+    class("solid, ends that coincide", [1_000_000, 600], solids::ends),
     class("solid, from inside", [1_000_000, 600], solids::inside),
 ];

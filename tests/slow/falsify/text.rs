@@ -426,6 +426,12 @@ impl Scene {
                 let corners = corners.map(|[x, z]| [end(0, x), end(2, z)]);
                 Shape::Mesh { faces: prism(&corners, [end(1, -1), end(1, 1)], false) }
             }
+            "polygon" => {
+                let points = a.numbers("points").expect("points");
+                let corner = |index: usize| [0, 1, 2].map(|axis: usize| points[3 * index + axis].clone());
+                let faces = (1..points.len() / 3 - 1).map(|index| [0, index, index + 1].map(corner));
+                Shape::Mesh { faces: faces.collect() }
+            }
             "prism" => {
                 let base = a.vector_or("base", [0, 0, 0]);
                 let points = a.numbers("points").expect("points");

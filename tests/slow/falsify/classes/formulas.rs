@@ -1,7 +1,7 @@
 //! Surfaces by formulas of scenes, and the simple shapes.
 
 use crate::falsify::oracle;
-use crate::falsify::random::{Point, Random, dot, moved, turned, unit};
+use crate::falsify::random::{Point, Random, cross, dot, moved, turned, unit};
 use crate::falsify::ray::Ray;
 use crate::falsify::scenes::{Aim, Question, numbers};
 use crate::falsify::text::Scene;
@@ -173,6 +173,27 @@ pub fn boxes(random: &mut Random) -> Question {
     let center = moved(aim.target, random.between(0.0, 1.0), random.direction()).map(even);
     let center = if random.once_in(8) { aim.eye.map(even) } else { center };
     asked(random, &aim, format!("box center {} size {}", numbers(center), numbers(size)))
+}
+
+/// Returns a scene of a convex polygon, whose corners lie in one plane exactly.
+pub fn polygons(random: &mut Random) -> Question {
+    let aim = viewer(random);
+    let vector = |random: &mut Random| [0; 3].map(|_| 0.125 * random.whole(-16, 16));
+    let (one, other) = loop {
+        let (one, other) = (vector(random), vector(random));
+        let across = cross(one, other);
+        if dot(across, across) > 0.0 {
+            break (one, other);
+        }
+    };
+    let count = random.whole(3, 9) as usize;
+    let (turn, middle) = (random.between(0.0, 1.0), aim.target.map(even));
+    let corner = |index: usize| {
+        let angle = std::f64::consts::TAU * (index as f64 + turn) / count as f64;
+        numbers(moved(moved(middle, even(angle.cos()), one), even(angle.sin()), other))
+    };
+    let points: Vec<_> = (0..count).map(corner).collect();
+    asked(random, &aim, format!("polygon points {}", points.join(" ")))
 }
 
 /// Returns a scene of a prism of a convex polygon.

@@ -135,6 +135,35 @@ pub fn inside(random: &mut Random) -> Question {
     asked(random, &aim, object, &patterns)
 }
 
+/// Returns a scene of cylinders on one axis, and of boxes, that end in the same planes: turned, and as copies.
+pub fn ends(random: &mut Random) -> Question {
+    let (aim, mut patterns) = (aim(random), Patterns::new());
+    let at = moved(aim.target, random.between(0.0, 1.0), random.direction());
+    let is_copied = random.once_in(2);
+    let base = if is_copied { [0.0; 3] } else { at };
+    let axis = numbers(random.axis());
+    let mut object = format!("{} objects", OPERATIONS[random.below(3) as usize]);
+    for _ in 0..2 + random.below(3) {
+        let (radius, half) = (random.between(0.3, 1.5), [0; 3].map(|_| 0.5 * random.whole(1, 3)));
+        let of = if is_copied && random.once_in(2) {
+            // Its lower side is that of an upright cylinder, if it is not moved.
+            let center = [0.5 * random.whole(-1, 1), half[1], 0.5 * random.whole(-1, 1)];
+            format!("box center {} size {}", numbers(center), numbers(half.map(|half| 2.0 * half)))
+        } else {
+            let direction = if is_copied { "0 1 0" } else { &axis };
+            let sizes = format!("height {:?} radius {radius:?}", 2.0 * half[0]);
+            format!("cylinder base {} direction {direction} {sizes}", numbers(base))
+        };
+        object += &format!(" {}", patterns.add(&of));
+    }
+    if is_copied {
+        let rotation = [0; 3].map(|_| 15.0 * random.whole(-12, 12));
+        let name = patterns.add(&object);
+        object = format!("place object {name} translation {} rotation {}", numbers(at), numbers(rotation));
+    }
+    asked(random, &aim, object, &patterns)
+}
+
 /// Returns a scene of a solid, moved by bisection until a ray barely hits or barely misses it: the rays pass its
 /// silhouette, which may be an edge where two shapes meet.
 pub fn silhouettes(random: &mut Random) -> Question {
