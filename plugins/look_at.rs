@@ -10,7 +10,7 @@ pub static TARGET: Pparm<DVec3> =
         .unit("world coordinates")
         .pose(Pose::Target);
 pub static UP: Pparm<DVec3> = Pparm::or("up", "a direction that points up in the image", DVec3::Y)
-    .must("a nonzero vector", |up: &DVec3| up.try_normalize().is_some())
+    .must("a nonzero vector", |up: &DVec3| *up != DVec3::ZERO)
     .pose(Pose::Up);
 pub static ANGLE: Pparm<f64> = Pparm::or("angle", "the angle of view across the width of the image", 50.0)
     .unit("degrees")

@@ -42,7 +42,7 @@ impl ViewFrame {
             up: DVec3::from(up.to_array().map(|part| times_power_of_two(part, power))),
             scale: times_power_of_two(1.0, exponent(target - position)),
         };
-        let is_askew = forward.cross(up.try_normalize()?).length() > LEAST_SINE;
+        let is_askew = forward.cross(given.up.try_normalize()?).length() > LEAST_SINE;
         is_askew.then(|| Self { given, axes: given.axes() })
     }
 

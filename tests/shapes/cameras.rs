@@ -41,6 +41,21 @@ fn look_at_shows_its_target_in_the_middle_and_up_above() {
 }
 
 #[test]
+fn up_may_have_any_length() {
+    for kind in ["look_at", "fisheye", "orthographic"] {
+        let seen = |up: &str| {
+            let size = if kind == "orthographic" { "width 7" } else { "" };
+            let film =
+                film(&format!("{kind} c {{ pixeldim 41 31 position 1 -2 5 target -3 4 -1 up {up} {size} }}"));
+            let ray = film.ray(3.0, 4.0);
+            [ray.origin, ray.dir]
+        };
+        assert_eq!(seen("1e308 1e308 0"), seen("1 1 0"), "{kind}");
+        assert_eq!(seen("5e-324 0 0"), seen("1 0 0"), "{kind}");
+    }
+}
+
+#[test]
 fn rays_are_rounded_no_more_than_those_of_the_notes_camera() {
     let mut state = 3_u64;
     let mut random = |size: f64| {
