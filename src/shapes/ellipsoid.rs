@@ -27,7 +27,14 @@ pub struct Ellipsoid<A> {
 impl<A> Ellipsoid<A> {
     /// Returns the sphere of this radius, scaled along the axes around its centre.
     pub fn new(center: DVec3, radius: f64, scale: DVec3) -> Self {
-        let squeeze = scale.to_array().map(|part| DoubleDouble::from(1.0) / DoubleDouble::from(part));
+        let squeeze = scale.to_array().map(|part| {
+            // Scaling by a power of two loses no digit that matters, and keeps products from overflowing.
+            let exponent = exponent_to_one(part);
+            let DoubleDouble { high, low } =
+                DoubleDouble::from(1.0) / DoubleDouble::from(times_power_of_two(part, exponent));
+            let [high, low] = [high, low].map(|digits| times_power_of_two(digits, exponent));
+            DoubleDouble { high, low }
+        });
         let most_squeezed = 1.0 / scale.min_element();
         Self { center, radius, scale, squeeze, most_squeezed, accuracy: PhantomData }
     }

@@ -119,6 +119,14 @@ fn sides_in_one_plane_take_no_proof() {
 }
 
 #[test]
+fn a_part_may_be_as_long_as_numbers_go() {
+    let rod =
+        "ellipsoid rod { center 4 3 -3 radius 1 scale 1e307 2 2 } sphere ball { center 4 3 -9 radius 1 }";
+    is_hit(&format!("{rod} union s {{ objects rod ball }}"), Some((7.0, "rod")));
+    is_hit(&format!("{rod} difference s {{ objects ball rod }}"), Some((14.0, "ball")));
+}
+
+#[test]
 fn shapes_that_share_a_side_are_one_where_they_are_joined() {
     let boxes = "box near { center 4 3 2 size 2 2 10 } box far { center 4 3 -4 size 2 2 2 }";
     is_hit(&format!("{boxes} union s {{ objects near far }}"), Some((11.0, "far")));
