@@ -7,3 +7,11 @@ pub(crate) const MAX_DIST: f64 = 20.0;
 /// black. Without a limit, mirrors that nearly touch would reflect each other almost endlessly. A ray whose hit takes as
 /// long to find as those of many simple rays counts as many.
 pub(crate) const MAX_RAYS: usize = 20_000;
+
+/// The depth of the reflections that are traced even where the rays that were transmitted before them have used up the
+/// ray budget: that of primary rays, and that of the rays which these continue as.
+pub(crate) const KEPT_DEPTH: usize = 2;
+
+/// The part of a primary ray's budget that is kept for each such reflection, as a divisor. At most three of them follow
+/// from one primary ray, so that the budget is exceeded by less than a twentieth.
+pub(crate) const KEPT_PART: u32 = 64;

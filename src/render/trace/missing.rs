@@ -6,13 +6,27 @@ use super::hit_record::HitRecord;
 use super::light;
 use super::ray_group::RayGroup;
 use super::surface::Surface;
+use crate::render::limits::{KEPT_DEPTH, KEPT_PART};
 use crate::render::observer::TraceObserver;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
-    /// Starts `count` primary rays, which lack nothing yet.
-    pub(super) fn begin_missing(&mut self, count: usize) {
-        resized(&mut self.scratch.missing, count);
+    /// Starts primary rays with these ray budgets, which lack nothing yet.
+    pub(super) fn begin_missing(&mut self, budgets: &[u32]) {
+        resized(&mut self.scratch.missing, budgets.len());
+        self.scratch.kept.clear();
+        self.scratch.kept.extend(budgets.iter().map(|budget| budget / KEPT_PART));
         self.scratch.any_missing = false;
+    }
+
+    /// Keeps a part of their primary rays' budgets for the first reflections, which are traced after all that is transmitted
+    /// at the same point. A ray that never uses up its budget is not changed by that.
+    pub(super) fn keep_first_reflections(&mut self, group: &mut RayGroup) {
+        if self.depth >= KEPT_DEPTH || self.plan.depth.is_none() {
+            return;
+        }
+        for (budget, camera) in group.ray_budget[..group.len].iter_mut().zip(&group.camera) {
+            *budget = (*budget).max(self.scratch.kept[usize::from(*camera)]);
+        }
     }
 
     /// Returns a bound on the light that a primary ray lacks, in any channel.
@@ -139,6 +153,30 @@ mod tests {
         for specular in ["0.4", "0.5"] {
             let (error, times) = panes(specular);
             assert!(error < 64.0 * FAINT && times > 2.0, "{error} off, {times} times as many");
+        }
+    }
+
+    #[test]
+    fn what_is_transmitted_leaves_rays_for_the_first_reflections() {
+        let panes = PANES.replace("specular 0.1", "specular 0.5");
+        let ball = "material b { ambient 9 9 9 } sphere ball { material b center 4 6.4 13 radius 3 }";
+        let (with, without) = (model(&format!("{panes} {ball}")), model(&panes));
+        let middle = 2 * SIDES[0] + 2;
+        let of_ball = |budget: u32| {
+            let [with, without] = [&with, &without].map(|model| {
+                let (pixels, stats) = seen(&whole(model), budget);
+                // Those that end at once are counted, too.
+                assert!(stats.all_rays() < 20 * u64::from(budget) * 11 / 10, "{} rays", stats.all_rays());
+                pixels[middle]
+            });
+            assert!(without.1 > 0.0, "the budget is used up");
+            (with.0 - without.0).max_element()
+        };
+        // Half of what the ball shows at the end of a path of 18 units.
+        let whole = 0.5 * 9.0 / 18.0;
+        for budget in [256, 2000] {
+            let seen = of_ball(budget);
+            assert!(seen > 0.9 * whole, "{budget}: {seen} of {whole}");
         }
     }
 

@@ -254,7 +254,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     fn colours(&mut self, group: &mut RayGroup, colours: &mut VectorList) {
         self.observer.count(Count::Rays(RayKind::Primary, group.len));
         self.viewer = self.plan.camera.reach();
-        self.begin_missing(group.len);
+        self.begin_missing(&group.ray_budget[..group.len]);
         self.scratch.trails.begin(group.len);
         if W::SEES {
             self.observer.see(Event::Begin(Purpose::Primary));

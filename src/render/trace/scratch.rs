@@ -45,6 +45,8 @@ pub(crate) struct Scratch {
     /// For each current primary ray, a bound on the light that it lacks because its ray budget is used up. Valid only
     /// if `any_missing` is set.
     pub(super) missing: Vec<f64>,
+    /// For each primary ray, the budget that is kept for each of its first reflections.
+    pub(super) kept: Vec<u32>,
     /// Whether any primary ray may lack light.
     pub(super) any_missing: bool,
 }

@@ -122,6 +122,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
         if material.transparency != 0.0 {
             self.add_transmitted(group, shading, colours);
+            self.keep_first_reflections(group);
         }
         if shading.surface.is_mirror {
             self.add_reflected(group, shading, colours);
@@ -244,6 +245,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             }
         }
 
+        self.keep_first_reflections(group);
         for number in 0..=STEPS {
             let is_its = |crossing: &Crossing| {
                 let most = crossing.reflected.max_element();
