@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn what_is_turned_is_compared_with_what_is_turned_alike() {
-        let turned = Placement { rotation: Rotation { degrees: 30.0 * DVec3::X }, ..moved(DVec3::ZERO) };
+        let turned = Placement { rotation: Rotation::Angles(30.0 * DVec3::X), ..moved(DVec3::ZERO) };
         let facet = top(DVec3::ZERO, 2.0);
         let copy = facet.placed(turned).expect("it is placed once");
         assert_eq!(copy.beside(&facet), None);

@@ -6,7 +6,7 @@
 use crate::geometry::aabb::Aabb;
 use crate::geometry::facet::Facet;
 use crate::geometry::frame::{self, BLUR, Frame};
-use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::geometry::roots::stretch::Stretch;
 use crate::geometry::roots::taylor::{self, Found};
 use crate::geometry::roots::{Method, twice};
@@ -30,6 +30,12 @@ const RAYS_PER_SEARCH: u32 = 32;
 /// The number of pieces that are judged of a ray that is rounded by more than the size of the shape: `f64` can hardly tell
 /// where it is hit, however many pieces there are.
 const FEW_PIECES: usize = 256;
+
+/// The number of pieces that are judged of a ray that stands for others, as a copy's does: what takes more is proven.
+const MOST_DRIFTING: usize = 256;
+
+/// How often the bracket of a root is made four times as wide, until the function has certain signs at both ends.
+const WIDENINGS: usize = 8;
 
 /// An implicit surface, in coordinates of its own.
 pub trait Implicit: Send + Sync {
@@ -147,6 +153,10 @@ impl<T: Implicit> Bracketed for ImplicitShape<T> {
         })
     }
 
+    fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
+        FormulaOnRay::new(self, ray).within(drift).bracket(range)
+    }
+
     fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
         self.distance(ray, &RayRange { origin_side, ..RayRange::ALL })
     }
@@ -210,8 +220,12 @@ struct FormulaOnRay<'s, T> {
     /// shapes are hit as precisely as near ones.
     base: DVec3,
     dir: DVec3,
-    /// A bound of the rounding error of each coordinate of that point, in world units.
+    /// A bound of the error of each coordinate of that point, in world units.
     blur: f64,
+    /// A bound of the error of each component of the direction.
+    turn: f64,
+    /// Whether the ray stands for others that are off by more than its rounding.
+    drifts: bool,
     /// The ray in the world, and the distance of that point along it, in world units.
     ray: &'s Ray,
     closest: f64,
@@ -222,7 +236,50 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         let closest = (shape.frame.origin - ray.origin).dot(ray.dir);
         let base = shape.frame.direction(shape.frame.from_origin(ray, closest));
         let dir = shape.frame.direction(ray.dir);
-        Self { shape, base, dir, blur: frame::blur(base, closest), ray, closest }
+        Self { shape, base, dir, blur: frame::blur(base, closest), turn: BLUR, drifts: false, ray, closest }
+    }
+
+    /// Stands for all rays within a drift.
+    fn within(self, drift: Drift) -> Self {
+        let blur = self.blur + drift.origin + self.closest.abs() * drift.dir;
+        Self { blur, turn: self.turn + drift.dir, drifts: true, ..self }
+    }
+
+    /// Returns a bracket of the first hits of all rays that this one stands for.
+    fn bracket(&self, range: &RayRange) -> Bracket {
+        let stretch = self.stretch();
+        let first = || {
+            let (shortest, mut pieces) = (shortest(&stretch.outer), MOST_DRIFTING);
+            taylor::first_root_within(self, &stretch, self.closest, range, shortest, &mut pieces)
+        };
+        let root = match first() {
+            Found { root: Some(root), is_certain: true } => root,
+            Found { root: None, is_certain: true } => return Bracket::MISS,
+            _ => return Bracket::UNKNOWN,
+        };
+        let value = |t: f64| taylor::FunctionOnLine::at(self, Interval::constant(t));
+        let start = value(stretch.outer.start);
+        let rounding = 4.0 * f64::EPSILON * (self.closest.abs() + root.abs());
+        let mut width = 4.0 * (self.blur + self.turn * root.abs()) + rounding;
+        for _ in 0..WIDENINGS {
+            let (low, high) = (root - width, root + width);
+            let (before, after) = (value(low), value(high));
+            // The function does not cross 0 from the start to the root, and so has the sign there that it starts with.
+            let crosses = |from: Interval, to: Interval| from.low > 0.0 && to.high < 0.0;
+            let enters = crosses(before, after) && start.low > 0.0;
+            if enters || crosses(after, before) && start.high < 0.0 {
+                let is_kept =
+                    !T::IS_CUT || self.shape.formula.kept(self.on_line(Interval { low, high })).low >= 0.0;
+                let near = (self.closest + low - rounding).max(0.0);
+                return if is_kept {
+                    Bracket { near, far: self.closest + high + rounding }
+                } else {
+                    Bracket::UNKNOWN
+                };
+            }
+            width *= 4.0;
+        }
+        Bracket::UNKNOWN
     }
 
     /// Returns the part of the ray in the box, from the ray's origin on, whatever the range is: so a hit is the same in
@@ -232,7 +289,12 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         let reach = 2.0 * low.abs().max(high.abs()).element_sum();
         let mut stretch = Stretch::from(-self.closest..f64::INFINITY);
         for axis in 0..3 {
-            stretch.cut((self.base[axis], self.dir[axis]), [low[axis], high[axis]], self.blur, reach);
+            stretch.cut(
+                (self.base[axis], self.dir[axis]),
+                [low[axis], high[axis]],
+                [self.blur, self.turn],
+                reach,
+            );
         }
         stretch
     }
@@ -281,7 +343,8 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
 
     /// Encloses the points at distances along every ray that this one may have been rounded from.
     fn on_line<N: Scalar>(&self, t: N) -> [N; 3] {
-        let along = |axis: usize| N::about(self.base[axis], self.blur) + N::about(self.dir[axis], BLUR) * t;
+        let along =
+            |axis: usize| N::about(self.base[axis], self.blur) + N::about(self.dir[axis], self.turn) * t;
         [along(0), along(1), along(2)]
     }
 
@@ -306,6 +369,9 @@ impl<T: Implicit> taylor::FunctionOnLine for FormulaOnRay<'_, T> {
     /// Decides a piece in double-double arithmetic from the ray in the world, which tells nearly all touches from
     /// misses.
     fn undecided(&self, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
+        if self.drifts {
+            return None;
+        }
         let hidden = self.at(Interval::constant(piece.middle())).width();
         let exact = self.shape.frame.exactly(self.ray, self.closest);
         twice::first_root(|t| self.shape.formula.value(exact.along(t)), piece, origin_side, hidden)

@@ -2,7 +2,8 @@
 
 use crate::common::{model, render};
 use std::path::Path;
-use tabray::render::Plan;
+use tabray::geometry::{MISS, RayRange};
+use tabray::render::{Plan, trace};
 use tabray::scene::{self, Registry};
 use tabray::tools::verify::{self, Verdict};
 
@@ -20,6 +21,40 @@ fn look_the_same(one: &str, other: &str) {
     assert!(differences().all(|difference| difference <= 1), "{one}");
     let different = differences().filter(|difference| *difference > 0).count();
     assert!(different * 1000 <= one_bytes.len(), "{one}: {different}");
+}
+
+#[test]
+fn few_hits_of_copies_of_implicit_surfaces_take_a_proof() {
+    for pattern in [
+        "cylinder o { material red base 0 -1 0 height 2 radius 1.2 }",
+        "cylinder o { material red base 0 -1 0 height 2 radius 1.2 open yes }",
+        "capsule o { material red base 0 -1 0 height 2 radius 1 }",
+        "torus o { material red center 0 0 0 radius 1.3 tube 0.4 }",
+        "heart o { material red center 0 0 0 size 1.2 }",
+    ] {
+        let place = "place p { object o scale 1 1.5 0.8 rotation 40 25 10 translation 4 3 -3 }";
+        let camera =
+            "camera eye { pixeldim 40 30 worlddim 8 6 viewpoint 4 3 6 } material red { ambient 1 0 0 }";
+        let model = model(&format!("{camera} {pattern} {place}"));
+        let (plan, shape) = (Plan::new(&model), &model.objects[0].shape);
+        let (mut hits, mut doubtful) = (0, 0);
+        for (x, y) in (0..30).flat_map(|y| (0..40).map(move |x| (x, y))) {
+            assert_eq!(verify::pixel(&plan, x, y), Verdict::Proven, "{pattern} {x} {y}");
+            let sight = model.camera.value.sight(x as f64, y as f64);
+            let bracket = shape.t_bounds(&sight.ray(), &RayRange::ALL);
+            let hit = trace::first_hit(&plan, &sight).map_or(MISS, |hit| hit.distance);
+            assert!(bracket.near <= hit && hit <= bracket.far, "{pattern} {x} {y}: {hit} and {bracket:?}");
+            hits += usize::from(hit < MISS);
+            doubtful += usize::from(bracket.is_doubtful());
+            assert!(
+                bracket.is_doubtful() || hit == MISS || bracket.far - bracket.near < 1e-9,
+                "{pattern} {x} {y}: {bracket:?}"
+            );
+        }
+        // Of the tube, all rays through an opening are in doubt.
+        let most = if pattern.contains("open") { hits / 2 } else { hits / 20 };
+        assert!(hits > 40 && doubtful <= most, "{pattern}: {doubtful} of {hits}");
+    }
 }
 
 #[test]

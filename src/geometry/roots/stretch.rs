@@ -20,12 +20,18 @@ impl From<Range<f64>> for Stretch {
 
 impl Stretch {
     /// Cuts off what lies beyond two heights, where a line's height at `t` is `start + t dir`. Rounding may have moved
-    /// `start` by `blur` and `dir` by [`BLUR`], and the search goes no farther than `reach` from t = 0, all in world
-    /// units.
-    pub fn cut(&mut self, (start, dir): (f64, f64), [low, high]: [f64; 2], blur: f64, reach: f64) {
+    /// `start` by `blur` and `dir` by `turn`, at least [`BLUR`], and the search goes no farther than `reach` from t = 0, all
+    /// in world units.
+    pub fn cut(
+        &mut self,
+        (start, dir): (f64, f64),
+        [low, high]: [f64; 2],
+        [blur, turn]: [f64; 2],
+        reach: f64,
+    ) {
         // The line that this one was rounded from may be parallel to the ends.
-        if dir.abs() <= 2.0 * BLUR {
-            let moved = blur + 3.0 * BLUR * reach;
+        if dir.abs() <= 2.0 * turn {
+            let moved = blur + 3.0 * turn * reach;
             if start < low - moved || start > high + moved {
                 self.outer.end = f64::NEG_INFINITY;
             }
@@ -36,7 +42,7 @@ impl Stretch {
         }
         let (one, other) = ((low - start) / dir, (high - start) / dir);
         // The true direction is more than half of the rounded one, and the division itself rounds by less than BLUR.
-        let margin = |t: f64| 2.0 * (blur + BLUR * t.abs()) / dir.abs() + BLUR * t.abs();
+        let margin = |t: f64| 2.0 * (blur + turn * t.abs()) / dir.abs() + BLUR * t.abs();
         let (first, last) = (one.min(other), one.max(other));
         self.outer = self.outer.start.max(first - margin(first))..self.outer.end.min(last + margin(last));
         self.inner = self.inner.start.max(first + margin(first))..self.inner.end.min(last - margin(last));

@@ -57,7 +57,7 @@ impl Local {
         let moved = frame.direction(frame.from_origin(ray, base));
         let blur = frame::blur(moved, base);
         let mut stretch = Stretch::from(range.near - base..f64::INFINITY);
-        stretch.cut((moved.y, dir.y), [0.0, height], blur, 2.0 * (height + widest));
+        stretch.cut((moved.y, dir.y), [0.0, height], [blur, BLUR], 2.0 * (height + widest));
         let (mut from, mut to) = (stretch.outer.start, stretch.outer.end);
         // Wider than needed, so that rounding does not cut anything off.
         let widest = widest + 2.0 * (blur + BLUR * (height + widest));

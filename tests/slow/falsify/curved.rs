@@ -73,8 +73,11 @@ fn is_not_zero<T: Number>(of: &T) -> bool {
     matches!(of.sign(), Some(Ordering::Less | Ordering::Greater))
 }
 
-/// Returns the only root of a piece, by Newton's method with bounds.
+/// Returns the only root of a piece on which the function is monotonic, by Newton's method with bounds.
 fn narrowed<T: Number>(along: &impl Along, known: &Known<T>, mut piece: T) -> T {
+    /// How often a piece is cut where the method does not halve it, as where slopes differ at an edge of the shape.
+    const CUTS: usize = 64;
+    let mut cuts = 0;
     loop {
         let slope = along.at(&Jet::variable(piece.clone()), known).slope;
         let inner = piece.inner();
@@ -82,9 +85,20 @@ fn narrowed<T: Number>(along: &impl Along, known: &Known<T>, mut piece: T) -> T 
         let Some(next) = inner.sub(&value.div(&slope)).meet(&piece) else { return piece };
         let has_shrunk = next.is_half(&piece);
         piece = next;
-        if !has_shrunk {
-            return piece;
+        if has_shrunk {
+            continue;
         }
+        let inner = piece.inner();
+        let value = along.at(&Jet::constant(inner.clone()), known).value;
+        piece = match (value.sign(), slope.sign()) {
+            _ if cuts == CUTS => return piece,
+            (Some(Ordering::Less), Some(Ordering::Greater))
+            | (Some(Ordering::Greater), Some(Ordering::Less)) => piece.max(&inner),
+            (Some(Ordering::Less), Some(Ordering::Less))
+            | (Some(Ordering::Greater), Some(Ordering::Greater)) => piece.min(&inner),
+            _ => return piece,
+        };
+        cuts += 1;
     }
 }
 

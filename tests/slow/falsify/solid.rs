@@ -100,3 +100,21 @@ impl Operation {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::falsify::text::Scene;
+
+    #[test]
+    fn places_are_narrow_where_the_slope_jumps_nearby() {
+        let text = "camera eye { pixeldim 2 2 worlddim 4.652271034996277 2.434330299089727
+                viewpoint 2.3238390721488225 2.280479374619721 23.21576870322686 }
+            sphere ball { center 4.5 3 -4 radius 1.5 } cylinder post { base 5 1.5 -3.5 height 1 radius 1.5 }
+            difference cut { objects ball post }";
+        let scene = Scene::read(text, "");
+        let ray = Ray::of_pixel(&scene, 1, 1);
+        let Hit::At(place) = first(&scene.objects[0], &ray) else { panic!("it is hit") };
+        assert!((ray.distance(&place).near() - 28.350_084_7).abs() < 1e-4);
+    }
+}
