@@ -1,6 +1,7 @@
 //! Solids: what rays hit of shapes that are combined, also where their surfaces coincide, and how they look.
 
 use crate::common::{model, registry, render};
+use glam::DVec3;
 use std::fmt::Write;
 use std::path::Path;
 use tabray::geometry::RayRange;
@@ -116,6 +117,25 @@ fn sides_in_one_plane_take_no_proof() {
             assert!(!bracket.is_doubtful(), "{solid}: {bracket:?}");
         }
     }
+}
+
+#[test]
+fn a_ray_through_an_edge_that_is_cut_away_goes_on() {
+    let model = model(
+        "camera eye { pixeldim 2 2 worlddim 3 3 viewpoint 2 2.5 6 } material m { ambient 1 1 1 }
+         box block { material m center 4.5 4 -1.5 size 3 3 3 }
+         box recess { material m center 4.5 3.1 -1 size 3 2 2 }
+         difference cut { objects block recess }",
+    );
+    let plan = Plan::new(&model);
+    // Through (3, 3, 0), which is on an edge of both boxes, to the far side of what is cut away.
+    let hit = trace::first_hit(&plan, &model.camera.value.sight(1.0, 1.0)).expect("it is hit");
+    assert!(
+        (hit.point - DVec3::new(3.0 + 1.0 / 3.0, 3.0 + 1.0 / 6.0, -2.0)).length() < 1e-12,
+        "{}",
+        hit.point
+    );
+    assert!(verify::pixel(&plan, 1, 1) != Verdict::Contradicted);
 }
 
 #[test]

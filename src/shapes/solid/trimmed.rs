@@ -119,16 +119,24 @@ impl Trimmed {
     }
 
     /// Tells whether a hit of the part is the solid's by what lies on both sides of it, at a distance that is a multiple
-    /// of an error in world units.
-    fn is_bare_beside(&self, at: DVec3, normal: DVec3, error: f64) -> bool {
-        let step = BESIDE * (error + ROUNDING * at.abs().max_element()) * normal;
-        let beside = |at: DVec3, is_inside: bool| -> Vec<bool> {
-            let inside = |part: usize| self.holds(part, at, 0.0).unwrap_or(false);
-            (0..self.parts.len())
-                .map(|part| if part == self.index { is_inside } else { inside(part) })
-                .collect()
+    /// of an error in world units: along the normal, or where another part has an edge there, along the ray.
+    fn is_bare_beside(&self, ray: &Ray, at: DVec3, normal: DVec3, error: f64) -> bool {
+        let step = BESIDE * (error + ROUNDING * at.abs().max_element());
+        let ahead = if ray.dir.dot(normal) < 0.0 { -ray.dir } else { ray.dir };
+        let beside = |outward: DVec3, may_guess: bool| -> Option<bool> {
+            let sides = [(step * outward, false), (-step * outward, true)].map(|(step, is_inside)| {
+                let inside = |part: usize| match self.holds(part, at + step, 0.0) {
+                    _ if part == self.index => Some(is_inside),
+                    None if may_guess => Some(false),
+                    holds => holds,
+                };
+                (0..self.parts.len()).map(inside).collect::<Option<Vec<_>>>()
+            });
+            let [Some(outside), Some(inside)] = sides else { return None };
+            Some(self.tree.owner(&outside, &inside) == Some(self.index))
         };
-        self.tree.owner(&beside(at + step, false), &beside(at - step, true)) == Some(self.index)
+        let known = beside(normal, false).or_else(|| beside(ahead, false));
+        known.or_else(|| beside(normal, true)).unwrap_or(false)
     }
 
     /// Tells whether a hit of the part is the solid's; `None` where that is open. `size` is what the hit is computed from.
@@ -193,7 +201,7 @@ impl Trimmed {
             is_certain &= sure.is_some();
             let is_bare = sure.unwrap_or_else(|| {
                 let normal = shape.normal(at);
-                self.is_bare_beside(at, normal, coincidence::error(ray, distance, normal, reach))
+                self.is_bare_beside(ray, at, normal, coincidence::error(ray, distance, normal, reach))
             });
             if is_bare {
                 return (range.keep(distance), is_certain);
