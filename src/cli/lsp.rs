@@ -4,10 +4,12 @@ mod answers;
 mod documents;
 mod faults;
 mod protocol;
+mod transport;
 
 use crate::cli::process::crash;
 use crate::cli::process::failure::Failure;
 use crate::scene::registry::Registry;
+use crate::text;
 use answers::Server;
 use documents::Documents;
 use faults::Faults;
@@ -67,9 +69,9 @@ fn gone() -> Failure {
 
 /// Reads the next message.
 fn next(input: &mut StdinLock<'_>) -> Result<Message, Failure> {
-    match Message::read(input) {
+    match transport::read(input) {
         Ok(message) => message.ok_or_else(gone),
-        Err(error) => Err(Failure::Failed(format!("the editor broke off: {error}"))),
+        Err(error) => Err(Failure::Failed(format!("the editor broke off: {}", text::reason(&error)))),
     }
 }
 

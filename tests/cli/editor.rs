@@ -306,8 +306,20 @@ fn an_editor_that_breaks_off_is_a_failure() {
     let mut client = Client::start(&folder);
     client.note("exit", Value::Null);
     assert_eq!(client.program.wait().expect("an end").code(), Some(1));
-    let (status, _, err) = outcome(tabray(&folder).arg("lsp").write_stdin("Content-Length: 3\r\n\r\n{}}"));
-    assert_eq!(status, 1, "{err}");
+    for (input, reason) in [
+        ("Content-Length: 3\r\n\r\n{}}".to_owned(), "a message is malformed: "),
+        (
+            "Content-Length: 99999999999999\r\n\r\n{}".to_owned(),
+            "a message ends after 2 of 99999999999999 bytes",
+        ),
+        ("Content-Length: -1\r\n\r\n{}".to_owned(), "`-1` is not a length"),
+        ("Content-Type: x\r\n\r\n{}".to_owned(), "a header has no `Content-Length`"),
+        ("x".repeat(1 << 20), "what it says is not preceded by a header"),
+    ] {
+        let (status, _, err) = outcome(tabray(&folder).arg("lsp").write_stdin(input));
+        let said = format!("error: the editor broke off: {reason}");
+        assert!(status == 1 && err.starts_with(&said) && err.len() < 200, "{err}");
+    }
 }
 
 const UNTIDY: &str = "camera eye {\npixeldim 8 6 # wide\nworlddim 8 6   viewpoint 4 3 6\n}\n";
