@@ -4,6 +4,7 @@ use super::explain::Place;
 use super::report::{Change, Item, Page};
 use crate::cli::files::input;
 use crate::cli::files::picture::Picture;
+use crate::cli::options::number::whole;
 use crate::cli::options::set;
 use crate::cli::process::failure::{Failure, print, tell};
 use crate::output::compare::{Comparison, FullRangeComparison, Pixel};
@@ -24,7 +25,7 @@ pub struct Args {
     /// The new image, of the same size
     new: PathBuf,
     /// Ignore differences of up to this many levels in each channel
-    #[arg(long, value_name = "LEVELS", default_value_t = 0)]
+    #[arg(long, value_name = "LEVELS", default_value = "0", value_parser = whole::<u8>(0..=255))]
     tolerance: u8,
     /// Write a page that shows both images and their difference: one self-contained .html file
     #[arg(short, long, value_name = "FILE")]

@@ -1,6 +1,7 @@
 //! `tabray farm`: writes scripts with which an engine that is there already renders the parts of an image.
 
 use crate::cli::files::output;
+use crate::cli::options::number::whole;
 use crate::cli::process::failure::{self, Failure};
 use crate::text;
 use std::env;
@@ -37,7 +38,7 @@ struct Slurm {
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// The number of parts
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "N", value_parser = whole::<u32>(1..=100_000))]
     parts: u32,
     /// Options of `render` for each part
     #[arg(last = true, value_name = "OPTIONS")]

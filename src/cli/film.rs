@@ -2,6 +2,7 @@
 
 use crate::cli::files::output::{self, Output};
 use crate::cli::files::picture;
+use crate::cli::options::number::whole;
 use crate::cli::process::failure::Failure;
 use crate::cli::process::progress::Progress;
 use crate::cli::process::{memory, messages};
@@ -9,6 +10,7 @@ use crate::output::deflate::Compression;
 use crate::output::picture::Format;
 use crate::text;
 use image::imageops;
+use same_file::is_same_file;
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -34,7 +36,7 @@ pub struct Args {
     #[arg(long, value_name = "FILE")]
     animation: Option<PathBuf>,
     /// The number of frames per second of the animation
-    #[arg(long, value_name = "N", default_value = "25", value_parser = clap::value_parser!(u16).range(1..=240))]
+    #[arg(long, value_name = "N", default_value = "25", value_parser = whole::<u16>(1..=240))]
     rate: u16,
 }
 
@@ -45,6 +47,23 @@ Examples:
 
 pub fn run(args: &Args) -> Result<(), Failure> {
     let frames = frames(&args.frames)?;
+    let outputs: Vec<_> = [&args.sheet, &args.animation].into_iter().flatten().collect();
+    for path in &outputs {
+        if let Some(frame) = frames.iter().find(|frame| is_same_file(frame, path).unwrap_or(false)) {
+            return Err(Failure::Usage(
+                format!("`{}` is a frame, which would be replaced", frame.display()),
+                Some("name another file".to_owned()),
+            ));
+        }
+    }
+    if let [sheet, animation] = outputs[..]
+        && sheet == animation
+    {
+        return Err(Failure::Usage(
+            format!("the sheet and the animation cannot both be `{}`", sheet.display()),
+            Some("name two files".to_owned()),
+        ));
+    }
     if let Some(path) = &args.sheet {
         sheet(path, &frames)?;
     }

@@ -1,6 +1,7 @@
 //! `tabray merge`: puts an image together from its parts.
 
 use crate::cli::files::output::{self, Output};
+use crate::cli::options::number::whole;
 use crate::cli::process::failure::Failure;
 use crate::cli::process::progress::Progress;
 use crate::cli::process::{memory, messages};
@@ -38,7 +39,7 @@ pub struct Args {
     #[arg(long)]
     remove_parts: bool,
     /// The number of threads; by default one per core
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = whole::<u16>(1..=1024))]
     threads: Option<u16>,
 }
 

@@ -4,6 +4,7 @@ use super::course::Differences;
 use crate::cli::files::input::Source;
 use crate::cli::files::output::{Output, named};
 use crate::cli::files::{input, made, output, several};
+use crate::cli::options::number::whole;
 use crate::cli::options::size::Part;
 use crate::cli::options::stop::{self, Stop};
 use crate::cli::options::{cpu, frames, keep, method, samples, set, size};
@@ -70,7 +71,7 @@ pub struct Args {
     #[command(flatten)]
     stop: stop::Args,
     /// The number of threads; by default one per core
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = whole::<u16>(1..=1024))]
     #[arg(help_heading = "Speed")]
     threads: Option<u16>,
     #[command(flatten)]

@@ -4,6 +4,7 @@ mod colours;
 
 use crate::cli::files::input;
 use crate::cli::files::output::{self, Output, named};
+use crate::cli::options::number::whole;
 use crate::cli::options::{method, set};
 use crate::cli::process::failure::{Failure, print};
 use crate::cli::process::interrupt::{self, Manner};
@@ -47,7 +48,7 @@ pub struct Args {
     #[command(flatten)]
     method: method::Args,
     /// The number of threads; by default one per core
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = whole::<u16>(1..=1024))]
     threads: Option<u16>,
 }
 

@@ -1,5 +1,6 @@
 //! `tabray render --frames --sweep`: one image for each frame, with values that change from frame to frame.
 
+use crate::cli::options::number::whole;
 use crate::cli::process::failure::Failure;
 use crate::text;
 use std::ops::RangeInclusive;
@@ -25,7 +26,7 @@ pub struct Args {
     #[arg(long = "sweep", value_name = "NAME=VALUES", requires = "frames")]
     sweeps: Vec<String>,
     /// Render only this one of --frames: an array of tasks renders a film with it, and with --part a part of the frame
-    #[arg(long, value_name = "N", requires = "frames")]
+    #[arg(long, value_name = "N", value_parser = whole::<u32>(0..=MOST), requires = "frames")]
     frame: Option<u32>,
 }
 
@@ -110,6 +111,8 @@ fn between(values: &str, t: f64) -> String {
     let number = |word: &str| {
         let (from, to) = word.split_once("..")?;
         let (from, to): (f64, f64) = (from.parse().ok()?, to.parse().ok()?);
+        // What is no range of numbers is left as it stands, for the message about it.
+        (to - from).is_finite().then_some(())?;
         let at = if t == 1.0 { to } else { from + t * (to - from) };
         Some(text::shortest(at))
     };
@@ -149,6 +152,9 @@ mod tests {
         );
         assert_eq!(at("a.b=file..other", 0.5), "a.b=file..other");
         assert_eq!(at("nothing", 0.5), "nothing");
+        for range in ["1e400..1", "nan..1", "0..inf", "-1e308..1e308"] {
+            assert_eq!(at(&format!("a.b={range}"), 0.5), format!("a.b={range}"), "what was typed is shown");
+        }
     }
 
     #[test]

@@ -4,6 +4,7 @@ pub mod cpu;
 pub mod frames;
 pub mod keep;
 pub mod method;
+pub mod number;
 pub mod samples;
 pub mod set;
 pub mod size;

@@ -1,6 +1,7 @@
 //! `tabray verify --colours`: proves the bytes of an image.
 
 use crate::cli::files::output::{self, Output};
+use crate::cli::options::number::whole;
 use crate::cli::options::stop;
 use crate::cli::process::failure::{Failure, print};
 use crate::cli::process::messages;
@@ -26,7 +27,7 @@ pub struct Args {
     /// With --colours, the number of samples per pixel; by default that of the scene's camera
     #[arg(
         long, value_name = "N", requires = "colours",
-        value_parser = clap::value_parser!(u32).range(1..=i64::from(Sampler::MOST))
+        value_parser = whole::<u32>(1..=Sampler::MOST)
     )]
     samples: Option<u32>,
     /// With --colours, stop after this time, such as 90s, 5m or 1.5h, and report the pixels proven so far
