@@ -154,7 +154,12 @@ impl Label {
         let [number, of] = self.part;
         let pixels = self.size[0].checked_mul(self.size[1]);
         let is_small = self.size.iter().all(|side| *side <= 100_000) && pixels.is_some_and(|all| all > 0);
+        let is_keyword = |word: &str| {
+            (1..80).contains(&word.len()) && word.bytes().all(|byte| byte.is_ascii_graphic() || byte == b' ')
+        };
+        let are_texts = self.made.iter().all(|(keyword, text)| is_keyword(keyword) && !text.contains('\0'));
         is_small
+            && are_texts
             && of <= MOST_PARTS
             && (1..=of).contains(&number)
             && self.tiles[0] < self.tiles[1]

@@ -286,6 +286,17 @@ fn frames_have_values_that_change_and_names_by_their_numbers() {
         decoder.read_info().expect("a PNG").info().animation_control.map(|all| all.num_frames),
         Some(5)
     );
+    let frame = fs::read(folder.path().join("film-0008.png")).expect("a frame");
+    for option in ["--sheet", "--animation"] {
+        let (status, said) = run(&folder, &["film", "film.png", option, "./film-0008.png"]);
+        assert!(
+            status == 2 && said.contains("`film-0008.png` is a frame, which would be replaced"),
+            "{said}"
+        );
+    }
+    assert_eq!(fs::read(folder.path().join("film-0008.png")).expect("still there"), frame);
+    let (status, said) = run(&folder, &["film", "film.png", "--sheet", "a.png", "--animation", "a.png"]);
+    assert!(status == 2 && said.contains("cannot both be `a.png`"), "{said}");
     fs::remove_file(folder.path().join("film-0010.png")).expect("a frame");
     let (status, said) = run(&folder, &["film", "film.png", "--sheet", "sheet.png"]);
     assert!(status == 2 && said.contains("frame 10 of `film.png` is missing"), "{said}");
