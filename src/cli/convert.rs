@@ -22,7 +22,7 @@ pub struct Args {
     #[command(flatten)]
     set: set::Args,
     /// The file to write: TOML if its name ends in .toml, the course notes' syntax otherwise; `-` writes to standard
-    /// output
+    /// output, and needs --to
     output: PathBuf,
     /// The syntax to write, whatever the file name
     #[arg(long, value_name = "SYNTAX")]
@@ -40,6 +40,12 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let text = dump::scene(&model, syntax);
     if input::is_standard(&args.output) {
         return print(&text);
+    }
+    if let Some(what) = output::source(&args.output, &args.scene, &model) {
+        return Err(Failure::Usage(
+            format!("`{}` is {what}, which the copy would replace", args.output.display()),
+            Some("name another file: a copy has no comments and no formulas".to_owned()),
+        ));
     }
     is_the_same_scene(registry, &model, &text, &args.output)?;
     output::replace(&args.output, text.as_bytes())?;

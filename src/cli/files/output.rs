@@ -113,8 +113,19 @@ fn target(path: &Path) -> io::Result<PathBuf> {
     }
 }
 
-/// Refuses to write to a file that the model was read from, whatever its name here.
+/// Refuses to write an image to a file that the model was read from, whatever its name here.
 pub fn is_no_source(path: &Path, scene: &Path, model: &Model) -> Result<(), Failure> {
+    let refused = |what| {
+        Err(Failure::Usage(
+            format!("`{}` is {what}, which the image would replace", path.display()),
+            Some("name another file with `-o FILE`".to_owned()),
+        ))
+    };
+    source(path, scene, model).map_or(Ok(()), refused)
+}
+
+/// Says what a file is of which the model was read, whatever its name here; `None` for another file.
+pub fn source(path: &Path, scene: &Path, model: &Model) -> Option<String> {
     let is_scene = || {
         if input::is_standard(scene) {
             Handle::from_path(path).and_then(|target| Ok(Handle::stdin()? == target)).unwrap_or(false)
@@ -129,19 +140,15 @@ pub fn is_no_source(path: &Path, scene: &Path, model: &Model) -> Result<(), Fail
             args.files().any(|file| is_same_file(args.setting.folder.join(file), path).unwrap_or(false))
         })
     };
-    let what = if is_scene() {
-        "the scene".to_owned()
-    } else if let Some(texture) = model.textures.iter().find(|texture| is_source(texture)) {
-        format!("the image of texture `{}`", texture.args.name())
-    } else if let Some(record) = model.entities(Kind::Object).iter().find(is_read) {
-        format!("the file of {} `{}`", record.entity().name, record.name())
-    } else {
-        return Ok(());
-    };
-    Err(Failure::Usage(
-        format!("`{}` is {what}, which the image would replace", path.display()),
-        Some("name another file with `-o FILE`".to_owned()),
-    ))
+    if is_scene() {
+        return Some("the scene".to_owned());
+    }
+    if let Some(texture) = model.textures.iter().find(|texture| is_source(texture)) {
+        return Some(format!("the image of texture `{}`", texture.args.name()));
+    }
+    let objects = model.entities(Kind::Object);
+    let record = objects.iter().find(is_read)?;
+    Some(format!("the file of {} `{}`", record.entity().name, record.name()))
 }
 
 impl Output {
