@@ -43,6 +43,8 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 #[cfg(target_os = "linux")]
 use nix::sys::signal::{SigSet, Signal};
 use process::failure::{Failure, tell};
+#[cfg(target_os = "linux")]
+use process::interrupt;
 use process::{arguments, color, crash, help, memory, messages, program};
 use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
@@ -129,6 +131,8 @@ pub fn run() -> ExitCode {
     // without a message. If the signal cannot be blocked, it ends the program as before.
     #[cfg(target_os = "linux")]
     let _ = SigSet::from(Signal::SIGXFSZ).thread_block();
+    #[cfg(target_os = "linux")]
+    interrupt::keep_ignoring_hangups();
     crash::keep();
     memory::tell_when_refused();
     crash::catch(chosen).unwrap_or_else(|failure| tell(&failure))

@@ -3,13 +3,17 @@
 
 use crate::common::program::{folder, scene};
 use assert_cmd::cargo::cargo_bin;
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
 use std::collections::BTreeSet;
 use std::fs;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read};
 use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
 use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
+use std::thread;
+use std::time::Duration;
 use tempfile::TempDir;
 
 /// Makes a working directory with a valid scene, `ball.ray`.
@@ -41,6 +45,9 @@ fn standard_output_that_is_full_is_a_failure() {
         &["dump", "ball.ray"],
         &["probe", "ball.ray", "1", "1"],
         &["render", "ball.ray", "-o", "-"],
+        &["--help"],
+        &["--version"],
+        &["help", "render"],
     ] {
         let said = "error: cannot write to standard output: no space left on device\n".to_owned();
         assert_eq!(outcome(&mut after("exec > /dev/full", &folder, args)), (1, said), "{args:?}");
@@ -115,6 +122,46 @@ fn an_image_does_not_replace_what_it_is_made_from() {
     let args = ["render", "-", "--format", "ppm", "-o", "wall.ray"];
     assert_eq!(outcome(&mut after("exec < wall.ray", &folder, &args)), (2, said.to_owned()));
     assert!(before("wall.ray") == wall && before("bricks.png") == bricks);
+}
+
+#[test]
+fn a_copy_does_not_replace_the_scene() {
+    let folder = workplace();
+    let at = |name: &str| folder.path().join(name);
+    let before = fs::read(at("ball.ray")).expect("a scene");
+    symlink("ball.ray", at("link.ray")).expect("a link");
+    for (args, lines) in [
+        (["convert", "ball.ray", "ball.ray"], ""),
+        (["convert", "ball.ray", "./link.ray"], ""),
+        (["convert", "-", "ball.ray"], "exec < ball.ray"),
+    ] {
+        let (status, said) = outcome(&mut after(lines, &folder, &args));
+        assert!(
+            status == 2 && said.contains("is the scene, which the copy would replace"),
+            "{args:?}: {said}"
+        );
+    }
+    assert_eq!(fs::read(at("ball.ray")).expect("still there"), before);
+    assert_eq!(outcome(&mut after("", &folder, &["convert", "ball.ray", "copy.ray"])).0, 0);
+}
+
+#[test]
+fn a_render_under_nohup_outlives_its_terminal() {
+    let folder = workplace();
+    let hang_up = |lines: &str| {
+        let args = ["render", "ball.ray", "--size", "400", "--samples", "16384", "--time-limit", "3s"];
+        let mut render = after(lines, &folder, &args).stderr(Stdio::piped()).spawn().expect("it starts");
+        thread::sleep(Duration::from_secs(1));
+        kill(Pid::from_raw(render.id() as i32), Signal::SIGHUP).expect("a signal");
+        let mut said = String::new();
+        render.stderr.take().expect("a pipe").read_to_string(&mut said).expect("a text");
+        render.wait().expect("an end");
+        said
+    };
+    let said = hang_up("trap '' HUP");
+    assert!(said.contains("the time limit of 3s has been reached"), "{said}");
+    let said = hang_up("");
+    assert!(said.contains("interrupted") && !said.contains("limit"), "{said}");
 }
 
 #[test]

@@ -8,7 +8,9 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, ArgMatches, Command};
 use std::env;
 use std::ffi::OsString;
+use std::io::{self, Write};
 use std::path::Path;
+use std::process;
 
 /// Parses the program's arguments. What is wrong with them is printed, and ends the program; so do `--help` and
 /// `--version`.
@@ -51,6 +53,15 @@ pub fn matches(mut command: Command) -> Result<ArgMatches, Failure> {
         error.insert(ContextKind::SuggestedArg, ContextValue::String(near));
         // It shows the option that clap would guess.
         error.remove(ContextKind::Usage);
+    }
+    if !error.use_stderr() {
+        // Of what standard output does not take, clap says nothing.
+        match error.print().and_then(|()| io::stdout().flush()) {
+            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+                return Err(Failure::cannot_write(Path::new("-"), &error));
+            }
+            _ => process::exit(error.exit_code()),
+        }
     }
     error.exit()
 }

@@ -3,6 +3,10 @@
 
 use crate::cli::process::failure::{self, Failure};
 use crate::cli::process::temporary;
+#[cfg(target_os = "linux")]
+use nix::sys::signal::{SigSet, Signal};
+#[cfg(target_os = "linux")]
+use std::fs;
 use std::ops::ControlFlow;
 use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -57,6 +61,19 @@ pub fn catch(first: Manner) -> Result<(), Failure> {
             })),
         }
     })
+}
+
+/// Lets a program that `nohup` started go on when its terminal is closed. Catching interruptions catches hangups too, and
+/// would undo that they are ignored; a blocked one does not arrive. This must be called before other threads begin. If it
+/// cannot be told whether they are ignored, they are caught.
+#[cfg(target_os = "linux")]
+pub fn keep_ignoring_hangups() {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored =
+        status.lines().find_map(|line| u64::from_str_radix(line.strip_prefix("SigIgn:")?.trim(), 16).ok());
+    if ignored.is_some_and(|signals| signals >> (Signal::SIGHUP as u32 - 1) & 1 == 1) {
+        let _ = SigSet::from(Signal::SIGHUP).thread_block();
+    }
 }
 
 /// Notes interruptions from here on; the first one calls `then`, on a thread of its own.
