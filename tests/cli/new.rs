@@ -15,6 +15,8 @@ fn a_new_scene_is_sound_and_shows_something() {
         (status, err.as_str()),
         (0, "wrote still.life.ray; render it with `tabray render still.life.ray`\n")
     );
+    let (_, _, err) = outcome(tabray(&folder).args(["new", "scene", "two words"]));
+    assert_eq!(err, "wrote two words.ray; render it with `tabray render 'two words.ray'`\n");
     let (status, _, err) = outcome(tabray(&folder).args(["render", "still.life.ray", "--quick"]));
     assert_eq!(status, 0, "{err}");
     let picture = image::open(folder.path().join("still.life.png")).expect("a picture").into_rgb8();

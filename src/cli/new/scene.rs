@@ -4,6 +4,7 @@ use crate::cli::files::output;
 use crate::cli::process::failure::Failure;
 use crate::cli::process::{messages, program};
 use crate::scene::syntax::Syntax;
+use crate::text;
 use std::path::PathBuf;
 
 /// Write a commented scene, ready to render
@@ -50,6 +51,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     };
     let program = program::name();
     output::create(&path, &text.replace("`tabray ", &format!("`{program} ")))?;
-    messages::note(&format!("wrote {}; render it with `{program} render {0}`", path.display()));
+    let word = text::quoted(path.as_os_str());
+    messages::note(&format!("wrote {}; render it with `{program} render {word}`", path.display()));
     Ok(())
 }
