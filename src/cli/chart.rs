@@ -58,13 +58,14 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let limit = args.time_limit.unwrap_or(LIMIT).min(Duration::from_secs(1 << 30));
     let (mut work, start) = (Work::within(limit), Instant::now());
     let source = Source::read(&args.scene, &args.set)?;
-    input::told(source.load(registry, None))?;
+    let model = input::told(source.load(registry, None))?.model;
     let load = all_accuracies(registry, &source)?;
     let name = match args.scene.file_stem() {
         Some(stem) if !input::is_standard(&args.scene) => stem.to_string_lossy().into_owned(),
         _ => "stdin".to_owned(),
     };
-    let files = files(&args.output, &name)?;
+    let files = files(&args.output, &name, |path| output::is_no_source(path, &args.scene, &model))?;
+    drop(model);
     interrupt::catch(Manner::NotesFirst(NOTHING))?;
     let (kept, units) = (work.kept(), work.units());
     let end = |chart: Chart| {
@@ -103,9 +104,13 @@ const EXTENSIONS: [&str; 5] = ["svg", "png", "csv", "json", "txt"];
 /// The files to write, each with its path; `None` for those that are not wanted.
 type Files = [Option<(PathBuf, Output)>; 5];
 
-/// Opens the files of a chart: all of them in a folder, or the one that is named.
-fn files(output: &Path, name: &str) -> Result<Files, Failure> {
-    let open = |path: PathBuf| Output::open(&path).map(|output| Some((path, output)));
+/// Opens the files of a chart: all of them in a folder, or the one that is named. `may_be` refuses those that the scene was
+/// read from.
+fn files(output: &Path, name: &str, may_be: impl Fn(&Path) -> Result<(), Failure>) -> Result<Files, Failure> {
+    let open = |path: PathBuf| {
+        may_be(&path)?;
+        Output::open(&path).map(|output| Some((path, output)))
+    };
     let extension = output.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
     let named = EXTENSIONS.iter().position(|known| extension.eq_ignore_ascii_case(known));
     let mut files = [const { None }; 5];

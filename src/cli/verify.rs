@@ -64,6 +64,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let picture = match args.output {
         Some(path) => {
             let format = named(&path, "end it in .png or .ppm")?;
+            output::is_no_source(&path, &args.scene, &model)?;
             let output = Output::open(&path)?;
             Some((path, format, output))
         }

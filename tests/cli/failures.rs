@@ -99,6 +99,7 @@ fn an_image_does_not_replace_what_it_is_made_from() {
         texture bricks { filename bricks.png }
         texplane wall { material white normal 0 0 1 point 0 0 -8 xdir 1 0 0 dimensions 8 6 texname bricks mode 0 }";
     fs::write(at("wall.ray"), textured).expect("a file");
+    fs::write(at("bricks.ray"), textured).expect("a file");
     fs::copy(scene("textures/bricks.png"), at("bricks.png")).expect("a copy");
     fs::hard_link(at("bricks.png"), at("other.png")).expect("a name");
     symlink("wall.ray", at("link.png")).expect("a link");
@@ -117,6 +118,19 @@ fn an_image_does_not_replace_what_it_is_made_from() {
             "error: {what}, which the image would replace\n |\n = help: name another file with `-o FILE`\n"
         );
         assert_eq!(outcome(&mut after("", &folder, &args)), (2, said), "{output}");
+    }
+    for (args, what) in [
+        (&["verify", "wall.ray", "-o", "bricks.png"][..], "`bricks.png` is the image of texture `bricks`"),
+        (
+            &["verify", "wall.ray", "--colours", "-o", "other.png"],
+            "`other.png` is the image of texture `bricks`",
+        ),
+        (&["chart", "wall.ray", "-o", "bricks.png"], "`bricks.png` is the image of texture `bricks`"),
+        (&["chart", "bricks.ray"], "`./bricks.png` is the image of texture `bricks`"),
+    ] {
+        let (status, said) = outcome(&mut after("", &folder, args));
+        let refused = format!("error: {what}, which the image would replace\n");
+        assert!(status == 2 && said.starts_with(&refused), "{args:?}: {said}");
     }
     let said = "error: `wall.ray` is the scene, which the image would replace\n |\n = help: name another file with `-o FILE`\n";
     let args = ["render", "-", "--format", "ppm", "-o", "wall.ray"];
