@@ -1,7 +1,7 @@
 //! `tabray fmt`: formats scenes.
 
 use crate::cli::files::{input, output};
-use crate::cli::process::failure::{Failure, print, tell};
+use crate::cli::process::failure::{Failure, print, status, tell};
 use crate::cli::process::messages;
 use crate::editor::{self, Text, formatted, problem};
 use crate::scene::reader::{Fault, Report};
@@ -30,18 +30,17 @@ Examples:
   tabray fmt - < ball.ray";
 
 pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
-    let mut sound = true;
+    let mut worst = 0;
     for scene in &args.scenes {
-        match one(registry, scene, args.check) {
-            Ok(is_formatted) => sound &= is_formatted,
-            Err(failure @ Failure::Failed(_)) => return Err(failure),
-            Err(failure) => {
-                tell(&failure);
-                sound = false;
-            }
-        }
+        let failure = match one(registry, scene, args.check) {
+            Ok(true) => continue,
+            Ok(false) => Failure::Told,
+            Err(failure) => failure,
+        };
+        tell(&failure);
+        worst = worst.max(status(&failure));
     }
-    if sound { Ok(()) } else { Err(Failure::Told) }
+    if worst == 0 { Ok(()) } else { Err(Failure::Several(worst)) }
 }
 
 /// Formats a scene; returns whether it was formatted, or is now.

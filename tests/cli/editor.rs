@@ -340,6 +340,10 @@ fn fmt_formats_in_place_checks_and_reads_standard_input() {
         let (status, out, err) = outcome(tabray(&folder).args(arguments));
         assert_eq!((status, out.len(), err.as_str()), (0, 0, ""));
     }
+    fs::write(&path, UNTIDY).expect("room");
+    let (status, _, err) = outcome(tabray(&folder).args(["fmt", "missing", ".", "a.ray"]));
+    assert_eq!(status, 1, "{err}");
+    assert!(err.contains("cannot read `missing`") && err.ends_with("formatted a.ray\n"), "{err}");
     let (status, out, _) = outcome(tabray(&folder).args(["fmt", "-"]).write_stdin(UNTIDY));
     assert_eq!((status, String::from_utf8(out).as_deref()), (0, Ok(TIDY)));
 }
