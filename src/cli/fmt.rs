@@ -57,7 +57,7 @@ fn one(registry: &Registry, path: &Path, only_check: bool) -> Result<bool, Failu
     let Some(new) = formatted(&view) else {
         let mut report = Report::new(&name, body.to_owned(), view.syntax);
         if let Some((place, message)) = problem(&view) {
-            let fault = Fault::error(Some(place.clone()), message);
+            let fault = Fault::error(Some(place), message);
             report.add(fault.help("a scene is formatted when its form has no errors"));
         }
         return Err(Failure::Scene(report));

@@ -3,6 +3,7 @@
 
 use super::format_toml;
 use super::view::{Attribute, Break, Entity, Item, Repeat, View, Word};
+use crate::scene::reader::toml_error;
 use crate::scene::syntax::Syntax;
 use std::fmt::Write;
 use std::ops::Range;
@@ -14,9 +15,13 @@ const WIDEST_CELL: usize = 48;
 /// The most values of a row in which all stand equally far apart.
 const SHORT_ROW: usize = 4;
 
-/// Returns the first reason why a text cannot be formatted.
-pub fn problem(view: &View) -> Option<&Break> {
-    view.breaks.first()
+/// Returns a reason why a text cannot be formatted, with its place.
+pub fn problem(view: &View) -> Option<Break> {
+    view.breaks.first().cloned().or_else(|| match view.syntax {
+        Syntax::Notes => None,
+        // The events of a text in TOML do not show what is wrong within a key or a value.
+        Syntax::Toml => toml_error(view.text.as_str()),
+    })
 }
 
 /// Returns the text of a scene as it should be written, or `None` where its form has faults.

@@ -122,6 +122,21 @@ fn a_form_is_that_of_the_scenes() {
     "##);
     assert_eq!(format("a.ray", "camera eye {\r\n}\r\n"), "camera eye\r\n{\r\n}\r\n");
     assert_eq!(formatted(&view(Path::new("a.ray"), "camera eye { viewpoint 1")), None);
+    for wrong in [
+        "[[[",
+        "[[a.b]]]",
+        "[.a]",
+        "a = \"x",
+        "a = 1 2",
+        "a =",
+        "= 1",
+        "a = 1\rb = 2",
+        "a = tru",
+        "a = 1 # \u{1}",
+    ] {
+        assert_eq!(formatted(&view(Path::new("a.toml"), wrong)), None, "{wrong:?}");
+    }
+    assert!(formatted(&view(Path::new("a.toml"), "a = 1\na = 2")).is_some(), "its form has no errors");
 }
 
 /// The open files of a test.

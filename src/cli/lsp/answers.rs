@@ -253,7 +253,7 @@ impl<'r> Server<'r> {
 
     fn format(&self, asked: &Asked) -> Result<Value, String> {
         let Some(new) = editor::formatted(&asked.view) else {
-            let what = editor::problem(&asked.view).map_or("", |(_, message)| message.as_str());
+            let what = editor::problem(&asked.view).map_or_else(String::new, |(_, message)| message);
             return Err(format!("a scene whose form has errors is not formatted: {what}"));
         };
         // What is the same at the beginning and at the end stays, and the cursor with it.

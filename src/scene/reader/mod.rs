@@ -41,6 +41,7 @@ pub use fault::{Fault, Place, Places, Severity};
 pub use machine::Message;
 pub(crate) use notes::looks_like_number;
 pub use parsed::Parsed;
+pub use toml_faults::toml_error;
 
 use crate::scene::model::Model;
 use crate::scene::registry::Registry;

@@ -116,6 +116,24 @@ pub fn is_sound(text: &str) -> bool {
     text.len() <= PART || parallel::first(parts.len(), has_errors).is_none()
 }
 
+/// Returns a place at which a text is not TOML, with the reason. A key that is there twice is a fault of a scene, not of
+/// its form.
+pub fn toml_error(text: &str) -> Option<SyntaxError> {
+    if let Some(line) = long_line(text) {
+        return Some((line, format!("this line is longer than {LINE} bytes")));
+    }
+    let error = |piece: Range<usize>| {
+        let (_, errors) = DeTable::parse_recoverable(&text[piece.clone()]);
+        let error = errors.iter().find(|error| !is_duplicate(error))?;
+        let place = error.span().unwrap_or(0..0);
+        Some((piece.start + place.start..piece.start + place.end, error.message().to_owned()))
+    };
+    if is_sound(text) {
+        return error(0..text.len());
+    }
+    pieces(text).into_iter().find_map(error).or_else(|| Some((0..0, "this is not TOML".to_owned())))
+}
+
 /// Splits a text: before each line that is a title, and before other lines where no title comes for a long time.
 pub fn pieces(text: &str) -> Vec<Range<usize>> {
     let is_title = |line: &str| {
