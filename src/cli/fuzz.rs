@@ -9,10 +9,8 @@ use super::serve::Work;
 use super::serve::access::Access;
 use super::serve::connections::{Answer, Connections, Limits};
 use super::watch::answer::{self, JOBS};
-use super::watch::board::Board;
 use super::watch::desk::Desk;
 use super::watch::frame::Frame;
-use super::watch::tries::Tries;
 use crate::cli::options::size::Part;
 use crate::cli::rendering::resume::{self, Begun};
 use crate::output::checkpoint::{self, Identity};
@@ -133,13 +131,7 @@ impl Server {
         let work = Work::new(JOBS);
         Self::new(async move |request: Request<Bytes>| {
             // Events end with their board.
-            let desk = Desk {
-                board: Board::new(),
-                tries: Tries::default(),
-                registry,
-                path: PathBuf::from("there/is/no/scene.ray"),
-                changed: Box::new(|| {}),
-            };
+            let desk = Desk::new(registry, PathBuf::from("there/is/no/scene.ray"), Arc::new(|| {}));
             desk.board.show(&frame);
             ControlFlow::Continue(answer::answer(&request, &desk, &work).await)
         })

@@ -35,6 +35,7 @@ const PAGE: &str = concat!(
     include_str!("page/body.html"),
     "<script>\n",
     include_str!("page/state.js"),
+    include_str!("page/scenes.js"),
     include_str!("page/events.js"),
     include_str!("page/image.js"),
     include_str!("page/zoom.js"),
@@ -57,9 +58,18 @@ const QUIET: Duration = Duration::from_secs(60);
 /// The maximum length of a pixel's explanation, in bytes.
 const MAX_EXPLANATION: usize = 1 << 22;
 
-/// Answers a request.
+/// Splits the path of an address into the number of the scene that it is about, 0 where it names none, and the rest.
+pub fn split(path: &str) -> Option<(usize, Vec<&str>)> {
+    let parts: Vec<_> = path.split('/').skip(1).collect();
+    match parts[..] {
+        ["of", number, ref rest @ ..] if !rest.is_empty() => Some((number.parse().ok()?, rest.to_vec())),
+        _ => Some((0, parts)),
+    }
+}
+
+/// Answers a request about a scene.
 pub async fn answer(request: &Request<Bytes>, desk: &Desk, work: &Work) -> Response<Body> {
-    let path: Vec<_> = request.uri().path().split('/').skip(1).collect();
+    let (_, path) = split(request.uri().path()).unwrap_or_default();
     let board = &desk.board;
     if request.method() == Method::POST {
         return match path[..] {
@@ -75,7 +85,7 @@ pub async fn answer(request: &Request<Bytes>, desk: &Desk, work: &Work) -> Respo
     }
     match path[..] {
         [""] => serve::content(StatusCode::OK, "text/html; charset=utf-8", PAGE),
-        ["events"] => serve::stream("text/event-stream", events(board)),
+        ["events"] => serve::stream("text/event-stream", events(desk)),
         ["probe", version, x, y] => about(board, work, version, |frame| pixel(frame, x, y)).await,
         ["object", version, x, y] => {
             about(board, work, version, |frame| object(desk.registry, frame, x, y)).await
@@ -98,9 +108,9 @@ pub async fn answer(request: &Request<Bytes>, desk: &Desk, work: &Work) -> Respo
     }
 }
 
-fn events(board: &Board) -> Body {
+fn events(desk: &Desk) -> Body {
     let (mut sender, body) = Channel::new(1);
-    let mut reader = board.reader();
+    let (mut reader, look) = (desk.board.reader(), desk.look());
     tokio::spawn(async move {
         // When the program ends, the page should soon look for the next one.
         let mut event = Some(Bytes::from("retry: 500\n\n"));
@@ -112,7 +122,12 @@ fn events(board: &Board) -> Body {
             event = timeout(QUIET, reader.next()).await.unwrap_or(quiet);
         }
     });
-    body.boxed()
+    // The body is dropped as soon as the page has gone.
+    let looked_at = move |frame| {
+        let _ = &look;
+        frame
+    };
+    body.map_frame(looked_at).boxed()
 }
 
 /// Answers a request about the current image, which may take a while; fails if the image has been replaced.

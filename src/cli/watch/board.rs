@@ -22,6 +22,10 @@ struct State {
     fault: Option<Bytes>,
     /// The number of errors so far, which tells one error from the next.
     faults: u64,
+    /// All scenes, where there may be several.
+    list: Option<Bytes>,
+    /// The number of lists so far.
+    lists: u64,
 }
 
 impl State {
@@ -66,6 +70,25 @@ impl Board {
         });
     }
 
+    /// Sets the list of all scenes.
+    pub fn list(&self, event: Bytes) {
+        self.state.send_modify(|state| {
+            state.list = Some(event);
+            state.lists += 1;
+        });
+    }
+
+    /// Forgets the scene, whose image nobody needs any more.
+    pub fn clear(&self) {
+        self.state.send_modify(|state| {
+            if let Some(last) = state.frame.take() {
+                last.stale.store(true, Ordering::Relaxed);
+            }
+            state.events.clear();
+            state.fault = None;
+        });
+    }
+
     /// Returns the last valid scene, if it has this version.
     pub fn frame(&self, version: u64) -> Option<Arc<Frame>> {
         self.state.borrow().frame.clone().filter(|frame| frame.version == version)
@@ -83,7 +106,7 @@ impl Board {
 
     /// Makes a reader that has received no event yet.
     pub fn reader(&self) -> Reader {
-        Reader { state: self.state.subscribe(), version: 0, events: 0, faults: 0 }
+        Reader { state: self.state.subscribe(), version: 0, events: 0, faults: 0, lists: 0 }
     }
 }
 
@@ -95,6 +118,8 @@ pub struct Reader {
     events: usize,
     /// The number of errors when the last one was received.
     faults: u64,
+    /// The number of lists when the last one was received.
+    lists: u64,
 }
 
 impl Reader {
@@ -110,6 +135,10 @@ impl Reader {
 
     fn known(&mut self) -> Option<Bytes> {
         let state = self.state.borrow_and_update();
+        if self.lists != state.lists {
+            self.lists = state.lists;
+            return state.list.clone();
+        }
         if self.version != state.version() {
             (self.version, self.events) = (state.version(), 0);
         }

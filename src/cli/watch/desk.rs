@@ -9,6 +9,8 @@ use crate::scene::registry::Registry;
 use hyper::{Response, StatusCode};
 use std::fs;
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The state that the program and its pages share.
 pub struct Desk {
@@ -20,11 +22,47 @@ pub struct Desk {
     pub registry: &'static Registry,
     /// The file of the scene.
     pub path: PathBuf,
-    /// Tells the program that the values have changed.
-    pub changed: Box<dyn Fn() + Send + Sync>,
+    /// Tells the program that the values have changed, or the number of pages that look.
+    pub changed: Changed,
+    /// The number of pages that look at the scene.
+    pub looks: Arc<AtomicUsize>,
+}
+
+/// Tells the program that it has something to do.
+pub type Changed = Arc<dyn Fn() + Send + Sync>;
+
+/// A page that looks at a scene, until it is dropped. It does not keep the scene.
+pub struct Look {
+    looks: Arc<AtomicUsize>,
+    changed: Changed,
+}
+
+impl Drop for Look {
+    fn drop(&mut self) {
+        self.looks.fetch_sub(1, Ordering::Relaxed);
+        (self.changed)();
+    }
 }
 
 impl Desk {
+    /// Makes the desk of a scene that has not been read yet.
+    pub fn new(registry: &'static Registry, path: PathBuf, changed: Changed) -> Self {
+        let (board, tries) = (Board::new(), Tries::default());
+        Self { board, tries, registry, path, changed, looks: Arc::default() }
+    }
+
+    /// Begins to look at the scene.
+    pub fn look(&self) -> Look {
+        self.looks.fetch_add(1, Ordering::Relaxed);
+        (self.changed)();
+        Look { looks: self.looks.clone(), changed: self.changed.clone() }
+    }
+
+    /// Tells whether a page looks at the scene.
+    pub fn is_looked_at(&self) -> bool {
+        self.looks.load(Ordering::Relaxed) > 0
+    }
+
     /// Tries out other values of an attribute.
     pub fn try_out(&self, body: &[u8]) -> Response<Body> {
         match self.tries.set(body) {

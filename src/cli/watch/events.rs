@@ -84,6 +84,20 @@ pub struct Fault<'f> {
     pub text: Option<&'f str>,
 }
 
+/// Tells which scenes there are, in the order of the list.
+pub fn scenes(list: &[Listed]) -> Bytes {
+    event("scenes", &list)
+}
+
+/// A scene in the list of all scenes.
+#[derive(Serialize)]
+pub struct Listed {
+    /// The number in the address of its page.
+    pub number: usize,
+    /// Its name.
+    pub name: String,
+}
+
 fn event(name: &str, data: &impl Serialize) -> Bytes {
     format!("event: {name}\ndata: {}\n\n", json(data)).into()
 }

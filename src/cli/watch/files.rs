@@ -4,16 +4,41 @@ use crate::cli::process::failure::Failure;
 use crate::text;
 use notify::event::{AccessKind, AccessMode, EventKind, ModifyKind};
 use notify::{ErrorKind, Event, RecommendedWatcher, RecursiveMode, Watcher};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ffi::OsStr;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Watches files by their folders, because many editors replace a file by a new one.
 pub struct Files {
     watcher: RecommendedWatcher,
-    files: Arc<Mutex<BTreeSet<PathBuf>>>,
+    wanted: Arc<Mutex<Wanted>>,
+    /// The files of each scene, by its number.
+    of: BTreeMap<usize, BTreeSet<PathBuf>>,
     folders: BTreeSet<PathBuf>,
+}
+
+/// The files whose changes are of interest.
+#[derive(Default)]
+struct Wanted {
+    files: BTreeSet<PathBuf>,
+    /// The folders in which all scenes are of interest.
+    folders: BTreeSet<PathBuf>,
+}
+
+impl Wanted {
+    fn has(&self, path: &Path) -> bool {
+        let is_in_folder = || path.parent().is_some_and(|folder| self.folders.contains(folder));
+        self.files.contains(path) || (is_scene(path) && is_in_folder())
+    }
+}
+
+/// Tells whether a file in a folder is a scene, by its name.
+pub fn is_scene(path: &Path) -> bool {
+    let is_hidden = path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b"."));
+    let extension = path.extension().and_then(OsStr::to_str).unwrap_or_default();
+    !is_hidden && ["ray", "toml"].iter().any(|known| extension.eq_ignore_ascii_case(known))
 }
 
 impl Files {
@@ -22,12 +47,12 @@ impl Files {
     /// # Errors
     /// If the system cannot watch files.
     pub fn new(changed: impl Fn() + Send + 'static) -> Result<Self, Failure> {
-        let files = Arc::<Mutex<BTreeSet<PathBuf>>>::default();
-        let wanted = files.clone();
+        let wanted = Arc::<Mutex<Wanted>>::default();
+        let known = wanted.clone();
         let see = move |event: notify::Result<Event>| {
             let concerns = |event: &Event| {
-                let wanted = wanted.lock().unwrap_or_else(PoisonError::into_inner);
-                is_change(event.kind) && event.paths.iter().any(|path| wanted.contains(path))
+                let known = known.lock().unwrap_or_else(PoisonError::into_inner);
+                is_change(event.kind) && event.paths.iter().any(|path| known.has(path))
             };
             // If events were lost, they may have been about any file.
             if event.is_ok_and(|event| event.need_rescan() || concerns(&event)) {
@@ -36,18 +61,46 @@ impl Files {
         };
         let watcher = notify::recommended_watcher(see)
             .map_err(|error| Failure::Failed(format!("cannot watch files: {}", reason(&error))))?;
-        Ok(Self { watcher, files, folders: BTreeSet::new() })
+        Ok(Self { watcher, wanted, of: BTreeMap::new(), folders: BTreeSet::new() })
     }
 
-    /// Watches these files, whether they exist or not, and no others.
+    /// Watches these files of a scene, whether they exist or not, and no others of it.
     ///
     /// # Errors
     /// If the system cannot watch one of their folders.
-    pub fn watch<'f>(&mut self, files: impl IntoIterator<Item = &'f PathBuf>) -> Result<(), Failure> {
-        let files: BTreeSet<_> = files.into_iter().flat_map(|file| places(file)).collect();
-        let folders: BTreeSet<_> =
-            files.iter().filter_map(|file| file.parent()).map(Path::to_owned).collect();
-        *self.files.lock().unwrap_or_else(PoisonError::into_inner) = files;
+    pub fn watch<'f>(
+        &mut self,
+        scene: usize,
+        files: impl IntoIterator<Item = &'f PathBuf>,
+    ) -> Result<(), Failure> {
+        let files = files.into_iter().flat_map(|file| places(file)).collect();
+        if self.of.get(&scene) == Some(&files) {
+            return Ok(());
+        }
+        self.of.insert(scene, files);
+        self.wanted().files = self.of.values().flatten().cloned().collect();
+        self.apply()
+    }
+
+    /// Watches all scenes in these folders, those of later included.
+    ///
+    /// # Errors
+    /// If the system cannot watch one of the folders.
+    pub fn watch_folders(&mut self, folders: &[PathBuf]) -> Result<(), Failure> {
+        self.wanted().folders = folders.iter().filter_map(|folder| folder.canonicalize().ok()).collect();
+        self.apply()
+    }
+
+    fn wanted(&self) -> MutexGuard<'_, Wanted> {
+        self.wanted.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn apply(&mut self) -> Result<(), Failure> {
+        let folders: BTreeSet<_> = {
+            let wanted = self.wanted();
+            let around = wanted.files.iter().filter_map(|file| file.parent()).map(Path::to_owned);
+            around.chain(wanted.folders.iter().cloned()).collect()
+        };
         for folder in folders.difference(&self.folders) {
             self.watcher.watch(folder, RecursiveMode::NonRecursive).map_err(|error| {
                 Failure::Failed(format!("cannot watch the folder `{}`: {}", folder.display(), reason(&error)))

@@ -7,4 +7,5 @@ mod everybody;
 mod page;
 mod pictures;
 pub mod program;
+mod scenes;
 mod server;

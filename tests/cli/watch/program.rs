@@ -43,8 +43,16 @@ impl Watching {
 
     /// Watches `scene.ray` in this folder.
     pub fn start(folder: TempDir, args: &[&str]) -> Self {
+        let (watching, what) = Self::start_all(folder, &["scene.ray"], args);
+        assert_eq!(what, "scene.ray");
+        watching
+    }
+
+    /// Watches these scenes and folders in a folder; returns what it says that it watches, too.
+    pub fn start_all(folder: TempDir, scenes: &[&str], args: &[&str]) -> (Self, String) {
         let mut child = Command::new(cargo_bin!("tabray"))
-            .args(["watch", "scene.ray"])
+            .arg("watch")
+            .args(scenes)
             .args(args)
             .current_dir(folder.path())
             .stderr(Stdio::piped())
@@ -53,15 +61,16 @@ impl Watching {
         let mut stderr = BufReader::new(child.stderr.take().expect("its messages"));
         let mut line = String::new();
         stderr.read_line(&mut line).expect("text");
-        let (port, token) = line
-            .strip_prefix("watching scene.ray at http://127.0.0.1:")
+        let (what, (port, token)) = line
+            .strip_prefix("watching ")
             .and_then(|rest| rest.strip_suffix(" (Ctrl-C quits)\n"))
-            .and_then(|address| address.split_once("/?token="))
+            .and_then(|rest| rest.split_once(" at http://127.0.0.1:"))
+            .and_then(|(what, address)| Some((what.to_owned(), address.split_once("/?token=")?)))
             .unwrap_or_else(|| panic!("an address: {line}"));
         let (port, token) = (port.parse().expect("a port"), token.to_owned());
         // Later output is read, so that the program does not block.
         thread::spawn(move || stderr.read_to_end(&mut Vec::new()));
-        Self { child, folder, port, token }
+        (Self { child, folder, port, token }, what)
     }
 
     pub fn scene(&self) -> PathBuf {
@@ -87,7 +96,12 @@ impl Watching {
 
     /// Returns the events of a new page.
     pub fn events(&self) -> Events {
-        let answer = client().get(self.url("events")).call().expect("an answer");
+        self.events_at("events")
+    }
+
+    /// Returns the events at a path.
+    pub fn events_at(&self, path: &str) -> Events {
+        let answer = client().get(self.url(path)).call().expect("an answer");
         let lines = BufReader::new(answer.into_body().into_reader()).lines();
         let mut events = Events { lines: Box::new(lines) };
         assert_eq!(events.line(), "retry: 500");

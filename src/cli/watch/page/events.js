@@ -16,6 +16,7 @@ const ask = (path, form) => {
 const follow = () => {
   const events = new EventSource(`events${token}`)
   const on = (name, act) => events.addEventListener(name, (event) => act(event.data))
+  on('scenes', (data) => listScenes(JSON.parse(data)))
   on('scene', (data) => {
     const scene = JSON.parse(data)
     version = scene.version

@@ -21,11 +21,13 @@ const layers = [...document.querySelectorAll('#layers input')].map((input) => in
 const steps = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }
 document.addEventListener('keydown', (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey) return
-  if (event.target.matches?.('#fields input, #fields select') && event.key !== 'Escape') return
+  if (event.target.matches?.('#fields input, select') && event.key !== 'Escape') return
   const { key } = event
   if (layers[key - 1]) choose(layers[key - 1])
   else if (key === '0') fit()
   else if (key === 'v') refresh()
+  else if (key === 'n') goOn(1)
+  else if (key === 'p') goOn(-1)
   else if (key === 'c') toggleSteering()
   else if (steers && nudge(event)) { /* the camera moves */ }
   else if (key === '+') larger(1)

@@ -1,0 +1,166 @@
+//! All scenes that are watched: those that were named, and those in folders.
+
+use super::answer;
+use super::desk::{Changed, Desk};
+use super::events::{self, Listed};
+use super::files::{Files, is_scene};
+use crate::cli::files::input;
+use crate::cli::process::failure::Failure;
+use crate::cli::serve::{self, Body, Work};
+use crate::scene::registry::Registry;
+use crate::text;
+use hyper::body::Bytes;
+use hyper::{Request, Response, StatusCode};
+use std::collections::{BTreeMap, HashSet};
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// The scenes that are watched.
+pub struct Scenes {
+    registry: &'static Registry,
+    /// What the command names, and whether it is a folder.
+    named: Vec<(PathBuf, bool)>,
+    changed: Changed,
+    known: Mutex<Known>,
+}
+
+/// What is known of the scenes.
+#[derive(Default)]
+struct Known {
+    /// All scenes that there have been, by their numbers: a number never comes to mean another scene.
+    desks: Vec<Arc<Desk>>,
+    numbers: BTreeMap<PathBuf, usize>,
+    /// The numbers of the scenes that there are, in the order of the list.
+    list: Vec<usize>,
+}
+
+impl Scenes {
+    /// Finds the scenes that a command names, all of which can be read, and watches their files and folders.
+    pub fn new(
+        registry: &'static Registry,
+        named: &[PathBuf],
+        changed: Changed,
+        files: &mut Files,
+    ) -> Result<Self, Failure> {
+        let named: Vec<_> = named.iter().map(|path| (path.clone(), path.is_dir())).collect();
+        let of_kind = |are_folders| {
+            let some = named.iter().filter(move |(_, is_folder)| *is_folder == are_folders);
+            some.map(|(path, _)| path.clone()).collect::<Vec<_>>()
+        };
+        let (folders, alone) = (of_kind(true), of_kind(false));
+        for folder in &folders {
+            if found(folder)?.is_empty() {
+                let message = format!("cannot read a scene in `{}`: no file there is one", folder.display());
+                return Err(Failure::Unread(
+                    message,
+                    Some("the names of scenes end in .ray or .toml".to_owned()),
+                ));
+            }
+        }
+        files.watch_folders(&folders)?;
+        let scenes = Self { registry, named, changed, known: Mutex::default() };
+        scenes.find();
+        for (number, desk) in scenes.from(0).iter().enumerate() {
+            if alone.contains(&desk.path) {
+                files.watch(number, [&desk.path])?;
+                // A scene with faults has a page; a path that cannot be read has none.
+                input::read(&desk.path)?;
+            }
+        }
+        Ok(scenes)
+    }
+
+    fn known(&self) -> MutexGuard<'_, Known> {
+        self.known.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Returns the scene if it is the only one that there can be.
+    fn only(&self) -> Option<&Path> {
+        match &self.named[..] {
+            [(scene, false)] => Some(scene),
+            _ => None,
+        }
+    }
+
+    /// Returns what is watched, for people.
+    pub fn name(&self) -> String {
+        let count = || text::count(self.known().list.len(), "scene");
+        self.only().map_or_else(count, |scene| scene.display().to_string())
+    }
+
+    /// Finds the scenes that there are now, and tells all pages if they are others than before.
+    pub fn find(&self) {
+        let mut known = self.known();
+        let known = &mut *known;
+        let mut list = Vec::new();
+        for (named, is_folder) in &self.named {
+            let paths = if *is_folder { found(named).unwrap_or_default() } else { vec![named.clone()] };
+            for path in paths {
+                let next = known.desks.len();
+                let number = *known.numbers.entry(path.clone()).or_insert(next);
+                if number == next {
+                    known.desks.push(Arc::new(Desk::new(self.registry, path, self.changed.clone())));
+                }
+                list.push(number);
+            }
+        }
+        let mut listed = HashSet::new();
+        list.retain(|number| listed.insert(*number));
+        if list == known.list {
+            return;
+        }
+        known.list = list;
+        if self.only().is_some() {
+            return;
+        }
+        let name = |number: &usize| {
+            let name = known.desks[*number].path.display().to_string();
+            Listed { number: *number, name }
+        };
+        let event = events::scenes(&known.list.iter().map(name).collect::<Vec<_>>());
+        for desk in &known.desks {
+            desk.board.list(event.clone());
+        }
+    }
+
+    /// Returns the scenes from a number on.
+    pub fn from(&self, number: usize) -> Vec<Arc<Desk>> {
+        self.known().desks[number..].to_vec()
+    }
+
+    /// Tells whether a scene is to be read and rendered: a page looks at it, or it is the only one.
+    pub fn is_wanted(&self, number: usize) -> bool {
+        self.only().is_some() || self.known().desks[number].is_looked_at()
+    }
+
+    /// Answers a request.
+    pub async fn answer(&self, request: &Request<Bytes>, work: &Work) -> Response<Body> {
+        let desk = answer::split(request.uri().path())
+            .and_then(|(number, _)| self.known().desks.get(number).cloned());
+        match desk {
+            Some(desk) => answer::answer(request, &desk, work).await,
+            None => serve::text(StatusCode::NOT_FOUND, "there is no such scene\n"),
+        }
+    }
+}
+
+/// Returns the scenes in a folder, sorted.
+fn found(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let list = || -> io::Result<Vec<PathBuf>> {
+        let mut scenes = Vec::new();
+        for file in fs::read_dir(folder)? {
+            let path = file?.path();
+            if is_scene(&path) && path.is_file() {
+                scenes.push(path);
+            }
+        }
+        scenes.sort();
+        Ok(scenes)
+    };
+    list().map_err(|error| {
+        let reason = text::reason(&error);
+        Failure::Unread(format!("cannot read the folder `{}`: {reason}", folder.display()), None)
+    })
+}

@@ -1,0 +1,198 @@
+//! A scene that is read again whenever it changes, while pages look at it.
+
+use super::board::Board;
+use super::desk::Desk;
+use super::events::{self, Fault};
+use super::files::Files;
+use super::frame::{Frame, lines};
+use crate::cli::files::input;
+use crate::cli::process::crash;
+use crate::cli::process::failure::{Failure, tell};
+use crate::render::plan::Plan;
+use crate::render::progressive;
+use crate::render::renderer::Renderer;
+use crate::scene::model::Model;
+use crate::scene::reader::{self, Chosen, Loaded};
+use crate::world::accuracy::Accuracy;
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::sync::mpsc::{self, Sender};
+use std::thread;
+use std::time::{Instant, SystemTime};
+
+/// The maximum number of pixels of an image on a page: all of it is in memory, here and in the browser.
+const MAX_PIXELS: usize = 1 << 24;
+
+/// Starts the thread that renders the images of a scene, one after another.
+fn painter(desk: Arc<Desk>) -> Result<Sender<Arc<Frame>>, Failure> {
+    let renderer = Renderer::new(0)?;
+    let (sender, frames) = mpsc::channel::<Arc<Frame>>();
+    thread::spawn(move || {
+        let board = &desk.board;
+        for frame in frames {
+            let start = Instant::now();
+            let part = |area, colours: Vec<_>| board.add(&frame, events::part(&frame, &area, &colours));
+            let painted = crash::catch(|| {
+                progressive::render(&renderer, &mut Plan::for_picture(&frame.model), part, || frame.check())
+            });
+            match painted {
+                Ok(ControlFlow::Continue(())) => board.add(&frame, events::done(&frame, start.elapsed())),
+                Ok(ControlFlow::Break(())) => {}
+                Err(failure) => crashed(board, &frame.name, &frame.text, &failure),
+            }
+        }
+    });
+    Ok(sender)
+}
+
+/// The modification time of a file, and its length in bytes.
+type Stamp = (SystemTime, u64);
+
+fn stamp(file: &Path) -> Option<Stamp> {
+    let meta = fs::metadata(file).ok()?;
+    Some((meta.modified().ok()?, meta.len()))
+}
+
+/// What an image was made from.
+#[derive(PartialEq)]
+struct Read {
+    /// The scene.
+    bytes: Vec<u8>,
+    /// The values that are set beside it.
+    sets: Vec<String>,
+    /// The stamps of the files that it names.
+    stamps: Vec<Option<Stamp>>,
+}
+
+/// The file of a scene, which is read again and again.
+pub struct Watched {
+    desk: Arc<Desk>,
+    /// The number of the scene.
+    number: usize,
+    /// The values that are set beside its text.
+    sets: Vec<String>,
+    accuracy: Option<Accuracy>,
+    /// The files that the scene names.
+    named: Vec<PathBuf>,
+    /// What was read last.
+    last: Option<Read>,
+    /// The number of times that the scene was valid.
+    version: u64,
+    /// Takes what is to be rendered; `None` while nobody looks at the scene.
+    painter: Option<Sender<Arc<Frame>>>,
+}
+
+impl Watched {
+    /// Makes a scene that has not been read yet.
+    pub fn new(desk: Arc<Desk>, number: usize, sets: Vec<String>, accuracy: Option<Accuracy>) -> Self {
+        Self { desk, number, sets, accuracy, named: Vec::new(), last: None, version: 0, painter: None }
+    }
+
+    /// Shows the current scene if it is wanted; otherwise forgets it, and ends its render.
+    pub fn follow(&mut self, is_wanted: bool, files: &mut Files) -> Result<(), Failure> {
+        if !is_wanted {
+            if self.painter.take().is_some() {
+                (self.named, self.last) = (Vec::new(), None);
+                self.desk.board.clear();
+                files.watch(self.number, [&self.desk.path])?;
+            }
+            return Ok(());
+        }
+        let frames = match &self.painter {
+            Some(frames) => frames.clone(),
+            None => {
+                files.watch(self.number, [&self.desk.path])?;
+                self.painter.insert(painter(self.desk.clone())?).clone()
+            }
+        };
+        self.read(&frames, files)
+    }
+
+    /// Reads the current scene, shows it or its faults, and watches all files that it names.
+    fn read(&mut self, frames: &Sender<Arc<Frame>>, files: &mut Files) -> Result<(), Failure> {
+        let desk = self.desk.clone();
+        let board = &desk.board;
+        let (name, bytes) = match input::read(&desk.path) {
+            Ok(read) => read,
+            Err(Failure::Usage(message, _) | Failure::Unread(message, _)) => {
+                let name = desk.path.display().to_string();
+                let report = &format!("error: {message}");
+                board.fault(events::fault(&Fault { lines: &[], name: &name, report, text: None }));
+                self.last = None;
+                return Ok(());
+            }
+            Err(failure) => return Err(failure),
+        };
+        // One save may cause several events. The stamps of the files are taken before the files are read, so that a
+        // change in the meantime is noticed.
+        let sets = [&self.sets[..], &desk.tries.sets()].concat();
+        let now = Read { bytes, sets, stamps: self.named.iter().map(|file| stamp(file)).collect() };
+        if self.last.as_ref() == Some(&now) {
+            return Ok(());
+        }
+        let Read { bytes, sets, .. } = self.last.insert(now);
+        let text = String::from_utf8_lossy(bytes);
+        let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+        let folder = desk.path.parent().unwrap_or(&desk.path);
+        let chosen = Chosen { above_all: self.accuracy, sets, ..Chosen::default() };
+        let read = match crash::catch(|| reader::read_by(desk.registry, &name, folder, bytes, chosen)) {
+            Ok(read) => read,
+            Err(failure) => {
+                crashed(board, &name, text, &failure);
+                return Ok(());
+            }
+        };
+        let report = read.as_ref().map_or_else(|report| report, |loaded| &loaded.warnings);
+        self.named = report.files().to_vec();
+        files.watch(self.number, self.named.iter().chain([&desk.path]))?;
+        match read {
+            Ok(Loaded { model, .. }) if !fits(&model) => {
+                let [width, height] = model.camera.value.pixels;
+                let report = &format!(
+                    "error: an image of {width} x {height} pixels is too large for a page\n\
+                     help: the maximum is {MAX_PIXELS} pixels, such as 4096 x 4096"
+                );
+                board.fault(events::fault(&Fault { lines: &[], name: &name, report, text: Some(text) }));
+            }
+            Ok(Loaded { model, warnings, places, .. }) => {
+                self.version += 1;
+                let frame = Arc::new(Frame {
+                    version: self.version,
+                    name,
+                    text: text.to_owned(),
+                    warnings: warnings.to_string(),
+                    model,
+                    places,
+                    stale: AtomicBool::new(false),
+                });
+                board.show(&frame);
+                // Sending fails only when the program ends, and the thread that renders with it.
+                let _ = frames.send(frame);
+            }
+            Err(report) => {
+                let places = report.faults().iter().filter_map(|fault| fault.place.as_ref());
+                let lines = places.filter_map(|place| lines(text, place)).map(|[first, _]| first);
+                let lines = &lines.collect::<Vec<_>>();
+                let report = &report.to_string();
+                board.fault(events::fault(&Fault { lines, name: &name, report, text: Some(text) }));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Reports that the program failed at a scene. It goes on with the next one.
+fn crashed(board: &Board, name: &str, text: &str, failure: &Failure) {
+    tell(failure);
+    let Failure::Failed(message) = failure else { return };
+    let report = &format!("error: {message}");
+    board.fault(events::fault(&Fault { lines: &[], name, report, text: Some(text) }));
+}
+
+fn fits(model: &Model) -> bool {
+    let [width, height] = model.camera.value.pixels;
+    width * height <= MAX_PIXELS
+}
