@@ -126,6 +126,9 @@ impl Server {
             warnings: String::new(),
             model: loaded.model,
             places: loaded.places,
+            folder: PathBuf::new(),
+            sets: Vec::new(),
+            accuracy: None,
             stale: AtomicBool::new(false),
         });
         let work = Work::new(JOBS);

@@ -9,6 +9,7 @@ mod events;
 mod fields;
 mod files;
 pub(super) mod frame;
+mod other;
 mod scenes;
 pub(super) mod tries;
 mod watched;

@@ -5,6 +5,7 @@ use super::camera;
 use super::desk::Desk;
 use super::fields;
 use super::frame::Frame;
+use super::other::{self, How};
 use crate::cli::process::crash;
 use crate::cli::process::failure::tell;
 use crate::cli::serve::{self, Body, Client, Work};
@@ -40,6 +41,7 @@ const PAGE: &str = concat!(
     include_str!("page/image.js"),
     include_str!("page/zoom.js"),
     include_str!("page/camera.js"),
+    include_str!("page/compare.js"),
     include_str!("page/explain.js"),
     include_str!("page/fields.js"),
     include_str!("page/text.js"),
@@ -103,6 +105,9 @@ pub async fn answer(request: &Request<Bytes>, desk: &Desk, work: &Work) -> Respo
         ["entity", version, order] => {
             about(board, work, version, |frame| entity(desk.registry, frame, order)).await
         }
+        ["other", version, how] => {
+            about(board, work, version, |frame| other_image(desk.registry, frame, how)).await
+        }
         ["layer", version, name] => about(board, work, version, |frame| layer(frame, name)).await,
         _ => serve::text(StatusCode::NOT_FOUND, "there is no such page\n"),
     }
@@ -149,6 +154,9 @@ async fn about(
             if [io::ErrorKind::Interrupted, io::ErrorKind::BrokenPipe].contains(&error.kind()) =>
         {
             serve::text(StatusCode::GONE, "this image no longer exists\n")
+        }
+        Some(Ok(Err(error))) if error.kind() == io::ErrorKind::InvalidData => {
+            serve::text(StatusCode::CONFLICT, &format!("{error}\n"))
         }
         Some(Err(failure)) => {
             tell(&failure);
@@ -257,6 +265,15 @@ fn layer(frame: Arc<Frame>, name: &str) -> Option<Job> {
         let plan = Plan::new(&frame.model);
         let layer = aov.render(&Renderer::new(0)?, &plan, &plan, &|| check(&frame, client))?;
         Ok(("application/octet-stream", layer.bytes))
+    }))
+}
+
+/// Renders the image with another accuracy or number of samples.
+fn other_image(registry: &'static Registry, frame: Arc<Frame>, how: &str) -> Option<Job> {
+    let how = How::named(how)?;
+    Some(Box::new(move |client| {
+        let image = other::image(registry, &frame, how, || check(&frame, client))?;
+        Ok(("application/octet-stream", image))
     }))
 }
 

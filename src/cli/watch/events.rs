@@ -42,14 +42,15 @@ struct Scene<'s> {
 pub fn part(frame: &Frame, area: &Area, colours: &[Rgb]) -> Bytes {
     let Area { corner: [left, top], size: [width, height], block, is_final } = area;
     let pass = u8::from(*is_final);
-    let bytes: Vec<u8> = colours
-        .iter()
-        .flat_map(|colour| colour.to_array())
-        .flat_map(|channel| single(channel).to_le_bytes())
-        .collect();
-    let base64 = STANDARD.encode(bytes);
+    let base64 = STANDARD.encode(singles(colours));
     format!("event: part\ndata: {} {left} {top} {width} {height} {block} {pass} {base64}\n\n", frame.version)
         .into()
+}
+
+/// Returns the channels of colours in single precision.
+pub fn singles(colours: &[Rgb]) -> Vec<u8> {
+    let channels = colours.iter().flat_map(|colour| colour.to_array());
+    channels.flat_map(|channel| single(channel).to_le_bytes()).collect()
 }
 
 /// Announces that all parts of a scene's image have been sent.

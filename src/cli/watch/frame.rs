@@ -3,8 +3,12 @@
 use crate::render::plan::Plan;
 use crate::render::trace;
 use crate::scene::model::Model;
-use crate::scene::reader::Places;
+use crate::scene::reader::{self, Chosen, Places, Report};
+use crate::scene::registry::Registry;
+use crate::world::accuracy::Accuracy;
+use std::io;
 use std::ops::{ControlFlow, Range};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A valid scene, its text and the state of its image.
@@ -21,11 +25,28 @@ pub struct Frame {
     pub model: Model,
     /// The place of each entity in the text.
     pub places: Places,
+    /// The folder from which the scene names its files.
+    pub folder: PathBuf,
+    /// The values that are set beside the text.
+    pub sets: Vec<String>,
+    /// The accuracy that overrides the scene's own.
+    pub accuracy: Option<Accuracy>,
     /// Whether a newer scene has replaced this one.
     pub stale: AtomicBool,
 }
 
 impl Frame {
+    /// Makes the model again, with another accuracy if one is given.
+    ///
+    /// # Errors
+    /// The faults of the scene with that accuracy.
+    pub fn load(&self, registry: &Registry, accuracy: Option<Accuracy>) -> io::Result<Model> {
+        let chosen = Chosen { above_all: accuracy.or(self.accuracy), sets: &self.sets, ..Chosen::default() };
+        let loaded = reader::read_by(registry, &self.name, &self.folder, self.text.as_bytes(), chosen);
+        let faults = |report: Report| io::Error::new(io::ErrorKind::InvalidData, report.to_string());
+        loaded.map(|loaded| loaded.model).map_err(faults)
+    }
+
     /// Breaks if the scene has been replaced.
     pub fn check(&self) -> ControlFlow<()> {
         if self.stale.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }

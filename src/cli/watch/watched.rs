@@ -166,6 +166,9 @@ impl Watched {
                     warnings: warnings.to_string(),
                     model,
                     places,
+                    folder: folder.to_owned(),
+                    sets: sets.clone(),
+                    accuracy: self.accuracy,
                     stale: AtomicBool::new(false),
                 });
                 board.show(&frame);

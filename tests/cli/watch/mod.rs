@@ -3,6 +3,7 @@
 mod broken;
 pub mod browser;
 mod camera;
+mod compare;
 mod everybody;
 mod page;
 mod pictures;

@@ -28,6 +28,7 @@ const follow = () => {
     write(scene.text)
     report(scene.warnings, true)
     state('rendering', 'rendering')
+    compareNext()
     if (mark && !drag?.gesture) explain(mark)
     if (shown) refresh()
     if (layer !== 'picture') fetchLayer()
@@ -39,6 +40,7 @@ const follow = () => {
   on('done', (data) => {
     const { version: of, seconds } = JSON.parse(data)
     if (of !== version) return
+    compare()
     if (root.dataset.state === 'rendering') state('done', `${width} × ${height}, ${seconds.toFixed(2)} s`)
     requestAnimationFrame(() => { root.dataset.shown = version; root.dataset.shownAt = Date.now() })
   })

@@ -37,17 +37,17 @@ const timeLeft = () => {
 }
 
 /// Puts an area on the canvas, with the exposure: a channel of 1 is white, and what is between is cut.
-const expose = (left, top, wide, high) => {
+const expose = (left, top, wide, high, from = colours, onto = paper) => {
   if (!wide || !high) return
   const image = new ImageData(wide, high), factor = 255 * 2 ** stops
   for (let y = 0, to = 0; y < high; y++) {
-    for (let from = 3 * ((top + y) * width + left), end = from + 3 * wide; from < end; from++) {
-      const value = factor * colours[from]
+    for (let at = 3 * ((top + y) * width + left), end = at + 3 * wide; at < end; at++) {
+      const value = factor * from[at]
       image.data[to++] = value >= 255 ? 255 : value > 0 ? Math.trunc(value) : 0
       if (to % 4 === 3) image.data[to++] = 255
     }
   }
-  paper.putImageData(image, left, top)
+  onto.putImageData(image, left, top)
 }
 
 const fetchLayer = async () => {
@@ -75,6 +75,7 @@ const choose = (name) => {
   delete root.dataset.layer
   waits = false
   tell()
+  showBefore()
   if (name === 'picture') expose(0, 0, width, height)
   else if (version) fetchLayer()
 }
@@ -84,5 +85,6 @@ const setExposure = (value) => {
   slider.value = value
   stops = +slider.value
   $('#exposure output').textContent = stops > 0 ? `+${stops}` : stops
+  showBefore()
   if (layer === 'picture') expose(0, 0, width, height)
 }

@@ -5,6 +5,7 @@ let zoom = 1, offset = [0, 0], isFit = true
 
 const place = () => {
   sheet.style.transform = `translate(${offset[0]}px, ${offset[1]}px) scale(${zoom})`
+  sheet.style.setProperty('--screen', `${1 / zoom}px`)
   if (!mark) return
   // The mark is as thin at any zoom.
   const [left, top] = mark.map((at, side) => `${offset[side] + zoom * at}px`)
