@@ -1,6 +1,6 @@
 //! `tabray chart`: what each choice costs in a scene, and how wrong it is.
 
-use super::measuring::{Work, wait};
+use super::measuring::{Time, Work, wait};
 use crate::cli::files::input::{self, Source};
 use crate::cli::files::output::{self, Output};
 use crate::cli::options::{set, stop};
@@ -49,9 +49,6 @@ Examples:
 /// How long a chart may take if no time limit is given: on a quiet machine, most scenes take less.
 const LIMIT: Duration = Duration::from_secs(120);
 
-/// How much longer than its limit a measurement that is under way may take, as a fraction of the limit.
-const GRACE: u32 = 10;
-
 const NOTHING: &str = "nothing has been measured yet";
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
@@ -81,8 +78,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             let _ = sender.send(chart);
         });
         // A measurement that takes far too long is not waited for.
-        let last = limit.saturating_add(limit / GRACE).saturating_add(Duration::from_millis(500));
-        match wait(&measured, &units, last.saturating_sub(start.elapsed())) {
+        match wait(&measured, &units, Time::last(limit).saturating_sub(start.elapsed())) {
             Ok(chart) => end(chart?),
             Err(RecvTimeoutError::Timeout) => {
                 progress::clear();

@@ -129,6 +129,7 @@ impl Server {
             folder: PathBuf::new(),
             sets: Vec::new(),
             accuracy: None,
+            charting: Default::default(),
             stale: AtomicBool::new(false),
         });
         let work = Work::new(JOBS);

@@ -15,15 +15,58 @@ use std::time::{Duration, Instant};
 /// The time between two lines of progress.
 const LINES: Duration = Duration::from_secs(10);
 
+/// How much longer than its limit a measurement that is under way may take, as a fraction of the limit.
+const GRACE: u32 = 10;
+
 /// A measurement under way.
 pub struct Work {
     progress: Progress,
+    time: Time,
+    units: Units,
+    kept: Kept,
+}
+
+/// The time for a measurement, which its panels share.
+pub struct Time {
     start: Instant,
     limit: Duration,
     /// When the current panel began, and when it must end.
     panel: [Instant; 2],
-    units: Units,
-    kept: Kept,
+}
+
+impl Time {
+    /// Starts the time of a measurement.
+    pub fn within(limit: Duration) -> Self {
+        // No measurement takes years, and sums of times must not overflow.
+        let limit = limit.min(Duration::from_secs(1 << 30));
+        let now = Instant::now();
+        Self { start: now, limit, panel: [now, now.checked_add(limit).unwrap_or(now)] }
+    }
+
+    /// Gives the next panel its share of what is left for this many panels.
+    pub fn share(&mut self, panels: usize) {
+        let now = Instant::now();
+        let left = self.limit.saturating_sub(self.start.elapsed());
+        // Some panels take less than their share, so that one may take more.
+        let share = if panels > 1 { left.mul_f64(1.5 / (panels as f64 + 0.5)) } else { left };
+        self.panel = [now, now.checked_add(share).unwrap_or(now)];
+    }
+
+    /// Breaks if the time of the current panel is over.
+    pub fn check(&self) -> ControlFlow<()> {
+        if Instant::now() >= self.panel[1] { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+
+    /// Tells whether half of the current panel's time is over.
+    pub fn is_late(&self) -> bool {
+        let [from, to] = self.panel;
+        from.elapsed() > (to - from) / 2
+    }
+
+    /// Returns the time until a measurement under way is no longer waited for: a little longer than the limit.
+    pub fn last(limit: Duration) -> Duration {
+        limit.saturating_add(limit / GRACE).saturating_add(Duration::from_millis(500))
+    }
 }
 
 /// The units of work that are done, and all units.
@@ -36,12 +79,8 @@ type Kept = Arc<Mutex<Vec<Panel>>>;
 impl Work {
     /// Starts work that is to end within a time.
     pub fn within(limit: Duration) -> Self {
-        // No measurement takes years, and sums of times must not overflow.
-        let limit = limit.min(Duration::from_secs(1 << 30));
-        let now = Instant::now();
-        let panel = [now, now.checked_add(limit).unwrap_or(now)];
         let (progress, units, kept) = (Progress::new(0), Units::default(), Kept::default());
-        Self { progress, start: now, limit, panel, units, kept }
+        Self { progress, time: Time::within(limit), units, kept }
     }
 
     pub fn end(&self) {
@@ -92,20 +131,16 @@ impl chart::Progress for Work {
     fn done(&mut self, units: usize) -> ControlFlow<()> {
         self.units.0[0].fetch_add(units, Ordering::Relaxed);
         self.progress.advance(units);
-        if Instant::now() >= self.panel[1] { ControlFlow::Break(()) } else { interrupt::check() }
+        self.time.check()?;
+        interrupt::check()
     }
 
     fn share(&mut self, panels: usize) {
-        let now = Instant::now();
-        let left = self.limit.saturating_sub(self.start.elapsed());
-        // Some panels take less than their share, so that one may take more.
-        let share = if panels > 1 { left.mul_f64(1.5 / (panels as f64 + 0.5)) } else { left };
-        self.panel = [now, now.checked_add(share).unwrap_or(now)];
+        self.time.share(panels);
     }
 
     fn is_late(&self) -> bool {
-        let [from, to] = self.panel;
-        from.elapsed() > (to - from) / 2
+        self.time.is_late()
     }
 
     fn kept(&mut self, panels: &[Panel]) {

@@ -4,6 +4,7 @@ use crate::cli::files::input;
 use crate::cli::options::{keep, method, samples, set};
 use crate::cli::process::failure::{Failure, print};
 use crate::render::decisions::{self, Decision};
+use crate::render::plan::Plan;
 use crate::scene::registry::Registry;
 use crate::simd::cpu::Cpu;
 use std::path::PathBuf;
@@ -32,13 +33,12 @@ Examples:
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let mut model = input::load(registry, &args.scene, &args.set, args.method.accuracy()?)?;
     args.samples.apply(&mut model.camera.value)?;
+    print(&text(&args.keep.plan(&model)))
+}
+
+/// Returns the decisions of a plan, one on each line.
+pub fn text(plan: &Plan) -> String {
     let best = format!("{}, the highest level of this machine; the image is the same with any", Cpu::best());
     let cpu = Decision { subject: "instructions", text: best };
-    print(
-        &decisions::of(&args.keep.plan(&model))
-            .iter()
-            .chain([&cpu])
-            .map(|decision| format!("{decision}\n"))
-            .collect::<String>(),
-    )
+    decisions::of(plan).iter().chain([&cpu]).map(|decision| format!("{decision}\n")).collect()
 }

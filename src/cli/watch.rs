@@ -4,6 +4,7 @@ pub(super) mod answer;
 pub(super) mod board;
 mod browser;
 mod camera;
+mod chart;
 pub(super) mod desk;
 mod events;
 mod fields;

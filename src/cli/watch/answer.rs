@@ -2,10 +2,12 @@
 
 use super::board::Board;
 use super::camera;
+use super::chart;
 use super::desk::Desk;
 use super::fields;
 use super::frame::Frame;
 use super::other::{self, How};
+use crate::cli;
 use crate::cli::process::crash;
 use crate::cli::process::failure::tell;
 use crate::cli::serve::{self, Body, Client, Work};
@@ -42,6 +44,7 @@ const PAGE: &str = concat!(
     include_str!("page/zoom.js"),
     include_str!("page/camera.js"),
     include_str!("page/compare.js"),
+    include_str!("page/tabs.js"),
     include_str!("page/explain.js"),
     include_str!("page/fields.js"),
     include_str!("page/text.js"),
@@ -105,6 +108,16 @@ pub async fn answer(request: &Request<Bytes>, desk: &Desk, work: &Work) -> Respo
         ["entity", version, order] => {
             about(board, work, version, |frame| entity(desk.registry, frame, order)).await
         }
+        ["plan", version] => about(board, work, version, plan).await,
+        ["chart", version, seconds] => {
+            about(board, work, version, |frame| charted(desk.registry, frame, seconds)).await
+        }
+        ["charting", version] => match version.parse().ok().and_then(|version| board.frame(version)) {
+            Some(frame) => {
+                serve::content(StatusCode::OK, "application/json", text::json(&frame.charting.units()))
+            }
+            None => serve::text(StatusCode::GONE, "this image no longer exists\n"),
+        },
         ["other", version, how] => {
             about(board, work, version, |frame| other_image(desk.registry, frame, how)).await
         }
@@ -265,6 +278,24 @@ fn layer(frame: Arc<Frame>, name: &str) -> Option<Job> {
         let plan = Plan::new(&frame.model);
         let layer = aov.render(&Renderer::new(0)?, &plan, &plan, &|| check(&frame, client))?;
         Ok(("application/octet-stream", layer.bytes))
+    }))
+}
+
+/// Writes the plan of the image, as `tabray plan` does.
+fn plan(frame: Arc<Frame>) -> Option<Job> {
+    Some(Box::new(move |_| {
+        let words = cli::plan::text(&Plan::for_picture(&frame.model));
+        Ok(("text/plain; charset=utf-8", words.into_bytes()))
+    }))
+}
+
+/// Measures the chart of the scene, in this many seconds.
+fn charted(registry: &'static Registry, frame: Arc<Frame>, seconds: &str) -> Option<Job> {
+    let seconds = seconds.parse().ok().filter(|seconds| (1..=chart::MOST_SECONDS).contains(seconds))?;
+    Some(Box::new(move |client| {
+        let limit = Duration::from_secs(seconds);
+        let chart = chart::measure(registry, &frame, limit, || check(&frame, client))?;
+        Ok(("application/json", chart))
     }))
 }
 

@@ -1,5 +1,6 @@
 //! A valid scene, as it was when it was read.
 
+use super::chart::Charting;
 use crate::render::plan::Plan;
 use crate::render::trace;
 use crate::scene::model::Model;
@@ -31,6 +32,8 @@ pub struct Frame {
     pub sets: Vec<String>,
     /// The accuracy that overrides the scene's own.
     pub accuracy: Option<Accuracy>,
+    /// How far its chart is.
+    pub charting: Charting,
     /// Whether a newer scene has replaced this one.
     pub stale: AtomicBool,
 }

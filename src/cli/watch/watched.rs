@@ -1,6 +1,7 @@
 //! A scene that is read again whenever it changes, while pages look at it.
 
 use super::board::Board;
+use super::chart::Charting;
 use super::desk::Desk;
 use super::events::{self, Fault};
 use super::files::Files;
@@ -169,6 +170,7 @@ impl Watched {
                     folder: folder.to_owned(),
                     sets: sets.clone(),
                     accuracy: self.accuracy,
+                    charting: Charting::default(),
                     stale: AtomicBool::new(false),
                 });
                 board.show(&frame);

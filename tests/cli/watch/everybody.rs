@@ -15,9 +15,23 @@ const TAB: char = '\u{e004}';
 type Step = fn(&Watching, &Browser);
 
 /// The states of the page, one after another, each with the step that leads to it.
-const STATES: [(&str, Step); 5] = [
+const STATES: [(&str, Step); 8] = [
     ("plain", |_, _| {}),
+    ("two images compared", |_, browser| {
+        browser.press('d');
+        browser.wait("document.documentElement.dataset.compared && !document.querySelector('#line').hidden");
+    }),
+    ("the plan", |_, browser| {
+        browser.press('d');
+        browser.press('t');
+        browser.wait("document.querySelector('#plan').textContent");
+    }),
+    ("the tab of the chart", |_, browser| {
+        browser.press('t');
+        browser.wait("!document.querySelector('#chart').hidden");
+    }),
     ("an explained pixel, and the values of its object", |_, browser| {
+        browser.press('t');
         click(browser, [40, 30]);
         browser.wait("document.querySelector('#field-radius-0') && !document.querySelector('#told').hidden");
     }),

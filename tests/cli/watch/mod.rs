@@ -10,3 +10,4 @@ mod pictures;
 pub mod program;
 mod scenes;
 mod server;
+mod tabs;

@@ -29,6 +29,7 @@ const follow = () => {
     report(scene.warnings, true)
     state('rendering', 'rendering')
     compareNext()
+    renewTab()
     if (mark && !drag?.gesture) explain(mark)
     if (shown) refresh()
     if (layer !== 'picture') fetchLayer()
