@@ -30,7 +30,11 @@ const fetchPlan = async () => {
   if (!of) return
   const words = await ask(`plan/${of}`, 'text')
   if (words === null || of !== version) return
-  $('#plan').textContent = words
+  $('#plan').replaceChildren(...words.split(/(?<=\n)/).map((decision) => {
+    const row = document.createElement('div')
+    row.textContent = decision
+    return row
+  }))
   root.dataset.plan = of
 }
 
