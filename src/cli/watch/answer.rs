@@ -7,7 +7,7 @@ use super::desk::Desk;
 use super::fields;
 use super::frame::Frame;
 use super::other::{self, How};
-use crate::cli;
+use crate::cli::plan;
 use crate::cli::process::crash;
 use crate::cli::process::failure::tell;
 use crate::cli::serve::{self, Body, Client, Work};
@@ -284,7 +284,7 @@ fn layer(frame: Arc<Frame>, name: &str) -> Option<Job> {
 /// Writes the plan of the image, as `tabray plan` does.
 fn plan(frame: Arc<Frame>) -> Option<Job> {
     Some(Box::new(move |_| {
-        let words = cli::plan::text(&Plan::for_picture(&frame.model));
+        let words = plan::text(&Plan::for_picture(&frame.model));
         Ok(("text/plain; charset=utf-8", words.into_bytes()))
     }))
 }

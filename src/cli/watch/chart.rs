@@ -11,7 +11,7 @@ use serde::Serialize;
 use std::io;
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
@@ -22,21 +22,6 @@ pub const MOST_SECONDS: u64 = 3600;
 
 /// How often it is looked whether the chart is still wanted.
 const LOOK: Duration = Duration::from_millis(50);
-
-/// How far the chart of a scene is.
-#[derive(Default)]
-pub struct Charting {
-    is_busy: AtomicBool,
-    /// The units of work that are done, and all units.
-    units: [AtomicUsize; 2],
-}
-
-impl Charting {
-    /// Returns the units of work that are done, and all units.
-    pub fn units(&self) -> [usize; 2] {
-        self.units.each_ref().map(|units| units.load(Ordering::Relaxed))
-    }
-}
 
 /// A measurement under way, as it is seen by the thread that measures.
 struct Measurement {

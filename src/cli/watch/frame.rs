@@ -1,6 +1,5 @@
 //! A valid scene, as it was when it was read.
 
-use super::chart::Charting;
 use crate::render::plan::Plan;
 use crate::render::trace;
 use crate::scene::model::Model;
@@ -10,7 +9,7 @@ use crate::world::accuracy::Accuracy;
 use std::io;
 use std::ops::{ControlFlow, Range};
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// A valid scene, its text and the state of its image.
 pub struct Frame {
@@ -60,6 +59,22 @@ impl Frame {
         let hit =
             trace::first_hit(&Plan::new(&self.model), &self.model.camera.value.sight(x as f64, y as f64))?;
         lines(&self.text, self.places.get(hit.object.args.order()).as_ref()?)
+    }
+}
+
+/// How far the chart of a scene is.
+#[derive(Default)]
+pub struct Charting {
+    /// Whether it is being measured.
+    pub is_busy: AtomicBool,
+    /// The units of work that are done, and all units.
+    pub units: [AtomicUsize; 2],
+}
+
+impl Charting {
+    /// Returns the units of work that are done, and all units.
+    pub fn units(&self) -> [usize; 2] {
+        self.units.each_ref().map(|units| units.load(Ordering::Relaxed))
     }
 }
 

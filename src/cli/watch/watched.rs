@@ -1,11 +1,10 @@
 //! A scene that is read again whenever it changes, while pages look at it.
 
 use super::board::Board;
-use super::chart::Charting;
 use super::desk::Desk;
 use super::events::{self, Fault};
 use super::files::Files;
-use super::frame::{Frame, lines};
+use super::frame::{Charting, Frame, lines};
 use crate::cli::files::input;
 use crate::cli::process::crash;
 use crate::cli::process::failure::{Failure, tell};
