@@ -8,6 +8,9 @@ use super::tokens::{Token, TokenForm, Tokens};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+/// What no values have: other programs put it around and between them.
+const MARKS: &[u8] = b"<>()[],;=";
+
 /// A way of writing that scenes do not have.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Way {
@@ -38,9 +41,7 @@ pub fn explained(
     again: impl FnOnce(&str) -> Report<'static>,
 ) -> Report<'static> {
     let mut cleaned = Cleaned { bytes: text.as_bytes().to_vec(), found: BTreeMap::new() };
-    cleaned.colours();
-    cleaned.quotes();
-    cleaned.marks();
+    cleaned.all();
     let Some(clean) = String::from_utf8(cleaned.bytes).ok().filter(|_| !cleaned.found.is_empty()) else {
         return report;
     };
@@ -90,6 +91,19 @@ impl Way {
 }
 
 impl Cleaned {
+    /// Replaces all that scenes do not have. A text is only looked through for what its bytes allow.
+    fn all(&mut self) {
+        if self.bytes.contains(&b'#') {
+            self.colours();
+        }
+        if !self.bytes.is_ascii() {
+            self.quotes();
+        }
+        if self.bytes.iter().any(|byte| MARKS.contains(byte)) {
+            self.marks();
+        }
+    }
+
     fn find(&mut self, way: Way, place: Range<usize>, right: impl FnOnce() -> String) {
         match self.found.get_mut(&way) {
             Some(found) => found.places.push(place),
@@ -240,15 +254,18 @@ impl Cleaned {
 
     fn end_of_run(&mut self, text: &str, run: &mut Option<Range<usize>>) {
         let Some(place) = run.take() else { return };
-        let right = text[place.clone()].replace(|c: char| "<>()[],;=".contains(c), " ");
+        let right = text[place.clone()].replace(is_mark, " ");
         let right = right.split_whitespace().collect::<Vec<_>>().join(" ");
         self.find(Way::Brackets, place, || right);
     }
 }
 
+fn is_mark(c: char) -> bool {
+    u8::try_from(c).is_ok_and(|byte| MARKS.contains(&byte))
+}
+
 /// Returns the positions of a word's marks, where they are not part of a name.
 fn marks(word: &str, is_within: bool) -> Option<Vec<usize>> {
-    let is_mark = |c: char| "<>()[],;=".contains(c);
     if !word.contains(is_mark) {
         return None;
     }
@@ -301,9 +318,7 @@ mod tests {
 
     fn cleaned(text: &str) -> String {
         let mut cleaned = Cleaned { bytes: text.as_bytes().to_vec(), found: BTreeMap::new() };
-        cleaned.colours();
-        cleaned.quotes();
-        cleaned.marks();
+        cleaned.all();
         assert_eq!(cleaned.bytes.len(), text.len());
         cleaned.text()
     }

@@ -59,6 +59,10 @@ fn of_notes(registry: &Registry, name: &str, text: &str) -> Option<Fault> {
 
 /// Recognises a scene of POV-Ray.
 fn of_pov(text: &str, name: &str) -> Option<Fault> {
+    // Entities of scenes have names, and values no brackets.
+    if !(text.contains('<') && text.contains('>')) {
+        return None;
+    }
     let mut found = HashSet::new();
     let mut first = None;
     let mut at = 0;
@@ -77,10 +81,8 @@ fn of_pov(text: &str, name: &str) -> Option<Fault> {
             found.insert("{ <");
         }
     }
-    // Entities of scenes have names, and values no brackets.
-    let is_bracketed = text.contains('<') && text.contains('>');
     let is_told = found.len() >= ENOUGH || name.ends_with(".pov");
-    first.filter(|_| is_bracketed && is_told && !found.is_empty()).map(|place| {
+    first.filter(|_| is_told && !found.is_empty()).map(|place| {
         Fault::error(Some(place), "this is a scene of POV-Ray, whose language is another one").help(
             "`tabray new scene NAME` writes a scene to start from; `tabray list` lists the types of entities",
         )

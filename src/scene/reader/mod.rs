@@ -32,6 +32,7 @@ mod textures;
 mod threads;
 pub(crate) mod tokens;
 mod toml;
+mod toml_document;
 mod toml_faults;
 mod unseen;
 mod values;

@@ -1,20 +1,17 @@
-//! Parses scenes in TOML: `[entity-type.name]` tables of the same attributes.
+//! Parses scenes in TOML: long ones in parts at the same time, and those with syntax errors in pieces.
 
-use super::fault::Fault;
-use super::keyword::Keyword;
+use super::fault::{Fault, Severity};
 use super::listed::Statement;
-use super::parsed::{Form, MAX_VALUES, Parsed, VALUES, Word};
 use super::report::Report;
-use super::toml_faults::{
-    LINE, SyntaxError, before_titles, fault_of, is_duplicate, is_sound, long_line, next, pieces, places,
-};
+use super::toml_document::Reader;
+use super::toml_faults::{LINE, is_duplicate, is_title, long_line, parts, pieces};
+use crate::parallel;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
-use std::borrow::Cow;
-use std::mem::{swap, take};
+use std::collections::HashMap;
 use std::ops::Range;
-use toml::Spanned;
-use toml::de::{DeTable, DeValue, Error};
+use std::sync::OnceLock;
+use toml::de::DeTable;
 
 /// Parses the part of a text that begins at `start` and ends with it, and reports syntax errors. Parsing goes on after
 /// an error, so that one run finds the faults that follow.
@@ -32,8 +29,12 @@ pub fn parse<'a>(
         report.add(Fault::error(Some(placed(place)), message).help(help));
         return Vec::new();
     }
+    let outcome = in_parts(text, start);
+    if let Outcome::Statements(statements) = outcome {
+        return statements;
+    }
     let mut parsed = Vec::new();
-    if is_sound(text) {
+    if matches!(outcome, Outcome::OfOne) {
         let (document, errors) = DeTable::parse_recoverable(text);
         if document.get_ref().is_empty()
             && let Some(first) = errors.first()
@@ -44,7 +45,7 @@ pub fn parse<'a>(
             return Vec::new();
         }
         if errors.iter().all(is_duplicate) {
-            Parser::new((text, start), &errors, report, &mut parsed).read(document);
+            Reader::new((text, start), &errors, report, &mut parsed).read(document);
             parsed.sort_by_key(Statement::start);
             return parsed;
         }
@@ -57,307 +58,164 @@ pub fn parse<'a>(
         let at = start + piece.start;
         let text = &text[piece];
         let (document, errors) = DeTable::parse_recoverable(text);
-        Parser::new((text, at), &errors, report, &mut parsed).read(document);
+        Reader::new((text, at), &errors, report, &mut parsed).read(document);
     }
     parsed.sort_by_key(Statement::start);
     parsed
 }
 
-struct Parser<'a, 'r, 't> {
-    /// The text, or a piece of it.
-    text: &'a str,
-    /// The position at which the piece begins, in bytes.
-    at: usize,
-    /// The syntax errors of the piece, and which of them need not be reported any more.
-    errors: Vec<SyntaxError>,
-    is_told: Vec<bool>,
-    titles: Vec<usize>,
-    report: &'r mut Report<'t>,
-    parsed: &'r mut Vec<Statement<'a>>,
+/// What has become of parsing a text in parts.
+enum Outcome<'a> {
+    /// What the text says: it has no faults of form, and its parts do not depend on each other.
+    Statements(Vec<Statement<'a>>),
+    /// The text is to be parsed as one: it is short, or its parts may depend on each other.
+    OfOne,
+    /// A part has syntax errors.
+    Broken,
 }
 
-/// A key with its place, and a value with its place.
-type Key<'a> = Spanned<toml::de::DeString<'a>>;
-type Value<'a> = Spanned<DeValue<'a>>;
-
-impl<'a, 'r, 't> Parser<'a, 'r, 't> {
-    fn new(
-        (text, at): (&'a str, usize),
-        errors: &[Error],
-        report: &'r mut Report<'t>,
-        parsed: &'r mut Vec<Statement<'a>>,
-    ) -> Self {
-        let titles = before_titles(text);
-        let errors = places(errors, text, &titles);
-        Self { text, at, is_told: vec![true; errors.len()], errors, titles, report, parsed }
+/// Parses a text that begins at `start`, if it is long enough to have parts.
+fn in_parts(text: &str, start: usize) -> Outcome<'_> {
+    let parts = parts(text);
+    if parts.len() == 1 {
+        return Outcome::OfOne;
     }
-
-    fn read(&mut self, document: Spanned<DeTable<'a>>) {
-        for (kind, value) in document.into_inner() {
-            self.kind(&kind, value);
+    let parsed: Vec<_> = parts.iter().map(|_| OnceLock::new()).collect();
+    let is_broken = |index: usize| {
+        let outcome = one(text, parts[index].clone(), start);
+        let is_broken = matches!(outcome, Outcome::Broken);
+        let _ = parsed[index].set(outcome);
+        is_broken
+    };
+    if parallel::first(parts.len(), is_broken).is_some() {
+        return Outcome::Broken;
+    }
+    let mut all = Vec::with_capacity(parsed.len());
+    for outcome in parsed {
+        match outcome.into_inner() {
+            Some(Outcome::Statements(statements)) => all.push(statements),
+            _ => return Outcome::OfOne,
         }
-        for ((place, message), is_told) in take(&mut self.errors).into_iter().zip(take(&mut self.is_told)) {
-            if is_told {
-                self.fault(fault_of(place, &message, self.text));
+    }
+    if depend_on_each_other(&all) {
+        Outcome::OfOne
+    } else {
+        Outcome::Statements(all.into_iter().flatten().collect())
+    }
+}
+
+/// Parses one part of a text.
+fn one(text: &str, part: Range<usize>, start: usize) -> Outcome<'_> {
+    let (at, text) = (part.start, &text[part]);
+    let (document, errors) = DeTable::parse_recoverable(text);
+    if !errors.iter().all(is_duplicate) {
+        return Outcome::Broken;
+    }
+    // A part goes on where the one before ends, unless it begins with a title. And a title of one word may be that of what
+    // other parts have, too.
+    let has_own_title = at == 0 || text.lines().next().is_some_and(is_title);
+    let is_whole = |line: &str| !line.trim_start().starts_with('[') || is_title(line);
+    if !errors.is_empty() || !has_own_title || !text.lines().all(is_whole) {
+        return Outcome::OfOne;
+    }
+    let (mut report, mut statements) = (Report::default(), Vec::new());
+    Reader::new((text, start + at), &[], &mut report, &mut statements).read(document);
+    if report.count(Severity::Error) + report.count(Severity::Warning) > 0 {
+        return Outcome::OfOne;
+    }
+    statements.sort_by_key(Statement::start);
+    Outcome::Statements(statements)
+}
+
+/// Tells whether two parts name the same, which is several entities, or a duplicate.
+fn depend_on_each_other(parts: &[Vec<Statement<'_>>]) -> bool {
+    let mut known = HashMap::new();
+    for (index, part) in parts.iter().enumerate() {
+        for statement in part {
+            let name = match statement {
+                Statement::Entity(entity) => (entity.kind.text.as_ref(), entity.name.text.as_ref()),
+                Statement::Repeat { name, .. } => ("repeat", name.text.as_ref()),
+                // These stand before the first title.
+                Statement::Let { .. } | Statement::Include { .. } => continue,
+            };
+            if *known.entry(name).or_insert(index) != index {
+                return true;
             }
         }
     }
+    false
+}
 
-    /// Reports a fault whose place is relative to this piece.
-    fn fault(&mut self, mut fault: Fault) {
-        fault.place = fault.place.map(|place| self.placed(place));
-        self.report.add(fault);
-    }
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-    fn placed(&self, place: Range<usize>) -> Range<usize> {
-        self.at + place.start..self.at + place.end
-    }
-
-    fn word(&self, text: impl Into<Cow<'a, str>>, form: Form, place: Range<usize>) -> Word<'a> {
-        Word::at(text, form, self.placed(place))
-    }
-
-    /// Reads the entities of one type.
-    fn kind(&mut self, kind: &Key<'a>, value: Value<'a>) {
-        if let Some(keyword) = Keyword::of(kind.get_ref()) {
-            return self.statement(keyword, kind, value);
-        }
-        let DeValue::Table(entities) = value.into_inner() else {
-            let what = format!("`{}` is not part of any entity", kind.get_ref());
-            self.no_entity(kind, what);
-            return;
+    /// Returns a scene of some 2,000 spheres, in several parts, between a beginning and an end.
+    fn long(first: &str, last: &str) -> String {
+        let ball = |index| {
+            format!("[sphere.ball_{index}] # a title\ncenter = [{index}, 0.5, -4]\n# radius\nradius = 2\n\n")
         };
-        if entities.is_empty() {
-            self.no_entity(kind, format!("this `{}` has no name", kind.get_ref()));
-        }
-        for (name, value) in entities {
-            let span = value.span();
-            match value.into_inner() {
-                DeValue::Table(attributes) => self.entity(kind, &name, span, attributes),
-                DeValue::Array(entities) if entities.iter().any(|entity| entity.get_ref().is_table()) => {
-                    for entity in entities {
-                        let span = entity.span();
-                        if let DeValue::Table(attributes) = entity.into_inner() {
-                            self.entity(kind, &name, span, attributes);
-                        }
-                    }
-                }
-                _ => {
-                    let what = format!(
-                        "`{}` is not part of any entity: this `{}` has no name",
-                        name.get_ref(),
-                        kind.get_ref()
-                    );
-                    self.no_entity(&name, what);
-                }
-            }
-        }
+        let text = format!("{first}\n{}{last}\n", (0..2500).map(ball).collect::<String>());
+        assert!(parts(&text).len() > 1);
+        text
     }
 
-    /// Reads what stands in place of an entity.
-    fn statement(&mut self, keyword: Keyword, key: &Key<'a>, value: Value<'a>) {
-        let help = keyword.usage_in_toml();
-        let text = self.text;
-        let wrong = |place| {
-            let what = text.get(key.span()).unwrap_or_default();
-            Fault::error(Some(place), format!("this is not the form of `{what}`")).help(help)
+    fn told(statements: &[Statement<'_>]) -> Vec<String> {
+        let told = |statement: &Statement<'_>| match statement {
+            Statement::Entity(entity) => format!("{entity:?}"),
+            Statement::Let { name, value } => format!("let {name:?} {value:?}"),
+            Statement::Include { file } => format!("include {file:?}"),
+            Statement::Repeat { name, count, body, .. } => {
+                format!("repeat {name:?} {count:?} {:?}", told(body))
+            }
         };
-        match (keyword, value) {
-            (Keyword::Let, value) => {
-                let DeValue::Table(numbers) = value.into_inner() else {
-                    return self.fault(wrong(key.span()));
-                };
-                for (name, value) in numbers {
-                    let Some(value) = self.one(&value) else {
-                        self.fault(wrong(value.span()));
-                        continue;
-                    };
-                    let name = self.word(name.get_ref().clone(), Form::Text, name.span());
-                    self.parsed.push(Statement::Let { name, value });
-                }
-            }
-            (Keyword::Include, value) => {
-                let files = match value.get_ref() {
-                    DeValue::Array(files) => files.iter().cloned().collect(),
-                    _ => vec![value],
-                };
-                for file in files {
-                    match self.one(&file).filter(|file| file.form == Form::Text) {
-                        Some(file) => self.parsed.push(Statement::Include { file }),
-                        None => self.fault(wrong(file.span())),
-                    }
-                }
-            }
-            (Keyword::Repeat, value) => {
-                let DeValue::Table(repeats) = value.into_inner() else {
-                    return self.fault(wrong(key.span()));
-                };
-                for (name, value) in repeats {
-                    let values = match value.get_ref() {
-                        DeValue::Array(values) => values.iter().cloned().collect(),
-                        _ => vec![value],
-                    };
-                    for value in values {
-                        match (value.span(), value.into_inner()) {
-                            (span, DeValue::Table(body)) => self.repeat(&name, span, body, &wrong),
-                            (span, _) => self.fault(wrong(span)),
-                        }
-                    }
-                }
-            }
+        statements.iter().map(told).collect()
+    }
+
+    fn at_once(text: &str) -> Vec<String> {
+        let (mut report, mut statements) = (Report::default(), Vec::new());
+        let (document, errors) = DeTable::parse_recoverable(text);
+        Reader::new((text, 0), &errors, &mut report, &mut statements).read(document);
+        statements.sort_by_key(Statement::start);
+        told(&statements)
+    }
+
+    #[test]
+    fn parts_say_what_the_whole_says() {
+        for (first, last) in [
+            ("", ""),
+            (
+                "include = [\"a.toml\"]\nlet.height = 2\nsphere.own = { radius = 1 }\n",
+                "[[light.lamp]]\nlocation = [0, 1, 2]\n",
+            ),
+            ("\u{feff}", "[repeat.i]\ncount = 3\n[repeat.i.sphere.again]\nradius = \"i\"\n"),
+        ] {
+            let text = long(first, last);
+            let Outcome::Statements(statements) = in_parts(&text, 0) else {
+                panic!("{first} {last}: no parts")
+            };
+            assert_eq!(told(&statements), at_once(&text));
         }
     }
 
-    /// Reads what a `repeat` repeats, and how often.
-    fn repeat(
-        &mut self,
-        name: &Key<'a>,
-        span: Range<usize>,
-        body: DeTable<'a>,
-        wrong: &dyn Fn(Range<usize>) -> Fault,
-    ) {
-        let (mut inner, mut count) = (Vec::new(), None);
-        swap(self.parsed, &mut inner);
-        for (kind, value) in body {
-            if kind.get_ref() == "count" {
-                count = self.one(&value);
-            } else {
-                self.kind(&kind, value);
-            }
+    #[test]
+    fn parts_that_depend_on_each_other_are_parsed_as_one() {
+        for (first, last) in [
+            // Several of one name, and duplicates of various forms.
+            ("[[light.lamp]]\nlocation = [0, 1, 2]", "[[light.lamp]]\nlocation = [0, 1, 3]"),
+            ("[sphere.one]\nradius = 1", "[sphere.one]\nradius = 1"),
+            ("sphere.one.radius = 1", "[sphere.one]\nradius = 1"),
+            ("[sphere]\none = { radius = 1 }", "[sphere]\ntwo = { radius = 1 }"),
+            ("let.height = 1", "[let]\nwidth = 1"),
+            ("[repeat.i]\ncount = 3", "[repeat.i.sphere.again]\nradius = 1"),
+            // A fault that is found while a part is read.
+            ("heart = 1", ""),
+            ("", "[sphere.x]\nradius = 1979-05-27"),
+        ] {
+            assert!(matches!(in_parts(&long(first, last), 0), Outcome::OfOne), "{first} {last}");
         }
-        swap(self.parsed, &mut inner);
-        inner.sort_by_key(Statement::start);
-        match count {
-            Some(count) => {
-                let start = self.placed(span).start;
-                let name = self.word(name.get_ref().clone(), Form::Text, name.span());
-                self.parsed.push(Statement::Repeat { start, name, count, body: inner });
-            }
-            // Where something could not be parsed, the number may be there.
-            None if self.errors.is_empty() => self.fault(wrong(name.span())),
-            None => {}
-        }
-    }
-
-    /// Returns the only word of a value.
-    fn one(&mut self, value: &Value<'a>) -> Option<Word<'a>> {
-        let mut words = Parsed::begin(Word::at("", Form::Any, 0..0), Word::at("", Form::Any, 0..0));
-        if matches!(value.get_ref(), DeValue::Table(_) | DeValue::Array(_) | DeValue::Datetime(_)) {
-            return None;
-        }
-        self.values(value, &mut words);
-        let name = Word::at("", Form::Any, 0..0);
-        words.add(name, self.report);
-        words.values_of(0).first().cloned()
-    }
-
-    fn no_entity(&mut self, at: &Key<'a>, what: String) {
-        let help = "an entity is a table, `[TYPE.NAME]`, followed by its attributes, `NAME = VALUE`";
-        self.fault(Fault::error(Some(at.span()), what).help(help));
-    }
-
-    /// Reads an entity; `span` is its title, or all of it where it stands on one line.
-    fn entity(&mut self, kind: &Key<'a>, name: &Key<'a>, span: Range<usize>, attributes: DeTable<'a>) {
-        let title = if self.text[span.clone()].starts_with('[') { span.clone() } else { 0..0 };
-        let place_of = |key: &Key<'a>| {
-            // A key knows only the first title in which it stands.
-            let source = self.text.get(key.span()).unwrap_or_default();
-            let found = self.text[title.clone()].rfind(source).map(|at| title.start + at);
-            found.map_or(key.span(), |start| start..start + source.len())
-        };
-        let (kind_at, name_at) = (place_of(kind), place_of(name));
-        let start = kind_at.start;
-        let mut entity = Parsed::begin(
-            self.word(kind.get_ref().clone(), Form::Text, kind_at),
-            self.word(name.get_ref().clone(), Form::Text, name_at.clone()),
-        );
-        let mut attributes: Vec<_> = attributes.into_iter().collect();
-        attributes.sort_unstable_by_key(|(key, _)| key.span().start);
-        let mut end = name_at.end.max(span.end);
-        for (key, value) in attributes {
-            end = end.max(value.span().end);
-            // The stand-in for a missing value has a place before its key; the error comes after the key.
-            let is_before = value.span().start < key.span().end;
-            let value_end = if is_before { self.line_end(key.span().end) } else { value.span().end };
-            if self.is_faulty(key.span().start..value_end) {
-                self.only_the_first_error_of(value.span());
-                entity.is_damaged = true;
-                continue;
-            }
-            if self.values(&value, &mut entity) {
-                let key = self.word(key.get_ref().clone(), Form::Text, key.span());
-                entity.add(key, self.report);
-            } else {
-                entity.drop_values();
-                entity.is_damaged = true;
-            }
-        }
-        entity.place = Some(self.placed(start..end));
-        // What could not be parsed at all stands between the last attribute and the next title.
-        let next = next(&self.titles, end).unwrap_or(self.text.len());
-        entity.is_damaged |= self.is_faulty(name_at.start..next);
-        entity.shrink();
-        self.parsed.push(Statement::Entity(entity));
-    }
-
-    /// Returns the errors that begin in a span, its end included.
-    fn errors_in(&self, span: Range<usize>) -> Range<usize> {
-        let first = self.errors.partition_point(|(place, _)| place.start < span.start);
-        first..self.errors.partition_point(|(place, _)| place.start <= span.end).max(first)
-    }
-
-    fn line_end(&self, at: usize) -> usize {
-        self.text[at..].find('\n').map_or(self.text.len(), |length| at + length)
-    }
-
-    fn is_faulty(&self, span: Range<usize>) -> bool {
-        self.errors_in(span).any(|error| self.is_told[error])
-    }
-
-    /// Drops all but the first error of a broken value: the others follow from it.
-    fn only_the_first_error_of(&mut self, span: Range<usize>) {
-        let mut is_first = true;
-        for error in self.errors_in(span) {
-            if self.is_told[error] {
-                self.is_told[error] = take(&mut is_first);
-            }
-        }
-    }
-
-    /// Reads the values of an attribute; returns whether they have the form of values.
-    fn values(&mut self, value: &Value<'a>, entity: &mut Parsed<'a>) -> bool {
-        let place = value.span();
-        match value.get_ref() {
-            DeValue::String(text) => entity.value(self.word(text.clone(), Form::Text, place)),
-            DeValue::Float(number) => {
-                entity.value(self.word(number.as_str().to_owned(), Form::Number, place))
-            }
-            DeValue::Integer(number) => {
-                let digits = match number.radix() {
-                    10 => number.as_str().to_owned(),
-                    radix => i64::from_str_radix(number.as_str(), radix)
-                        .map_or_else(|_| self.text[place.clone()].to_owned(), |number| number.to_string()),
-                };
-                entity.value(self.word(digits, Form::Number, place));
-            }
-            DeValue::Array(values) if values.iter().all(|value| !value.get_ref().is_array()) => {
-                let mut sound = true;
-                for value in values.iter().take(MAX_VALUES) {
-                    sound &= self.values(value, entity);
-                }
-                return sound;
-            }
-            DeValue::Boolean(truth) => entity.value(self.word(truth.to_string(), Form::Truth, place)),
-            DeValue::Datetime(_) | DeValue::Array(_) | DeValue::Table(_) => {
-                let what = match value.get_ref() {
-                    DeValue::Datetime(_) => "a date cannot be the value of an attribute".to_owned(),
-                    DeValue::Array(_) => "a nested array cannot be the value of an attribute".to_owned(),
-                    _ => "a table cannot be the value of an attribute".to_owned(),
-                };
-                self.fault(Fault::error(Some(place), what).help(VALUES));
-                return false;
-            }
-        }
-        true
+        let text = long("[sphere.broken]\nradius = ", "");
+        assert!(matches!(in_parts(&text, 0), Outcome::Broken));
+        assert!(matches!(in_parts("[sphere.short]", 0), Outcome::OfOne));
     }
 }

@@ -99,21 +99,13 @@ pub fn long_line(text: &str) -> Option<Range<usize>> {
 }
 
 /// Tells whether a text can be parsed at once: it is short, or its parts have no syntax errors.
-pub fn is_sound(text: &str) -> bool {
-    let mut parts = pieces(text);
-    // Each part joins as many pieces as fit.
-    parts.dedup_by(|next, part| {
-        let fits = next.end - part.start <= PART;
-        if fits {
-            part.end = next.end;
-        }
-        fits
-    });
+fn is_sound(text: &str) -> bool {
+    let parts = parts(text);
     let has_errors = |part: usize| {
         let (_, errors) = DeTable::parse_recoverable(&text[parts[part].clone()]);
         !errors.iter().all(is_duplicate)
     };
-    text.len() <= PART || parallel::first(parts.len(), has_errors).is_none()
+    parts.len() == 1 || parallel::first(parts.len(), has_errors).is_none()
 }
 
 /// Returns a place at which a text is not TOML, with the reason. A key that is there twice is a fault of a scene, not of
@@ -134,13 +126,31 @@ pub fn toml_error(text: &str) -> Option<SyntaxError> {
     pieces(text).into_iter().find_map(error).or_else(|| Some((0..0, "this is not TOML".to_owned())))
 }
 
+/// Tells whether a line is the title of an entity.
+pub fn is_title(line: &str) -> bool {
+    let line = line.split('#').next().unwrap_or_default().trim();
+    let name = line.strip_prefix('[').and_then(|line| line.strip_suffix(']'));
+    name.is_some_and(|name| name.contains('.') && !name.contains([',', '=']))
+}
+
+/// Splits a text into parts that can be parsed at once, each of as many pieces as fit. A short text is one part.
+pub fn parts(text: &str) -> Vec<Range<usize>> {
+    if text.len() <= PART {
+        return vec![0..text.len()];
+    }
+    let mut parts = pieces(text);
+    parts.dedup_by(|next, part| {
+        let fits = next.end - part.start <= PART;
+        if fits {
+            part.end = next.end;
+        }
+        fits
+    });
+    parts
+}
+
 /// Splits a text: before each line that is a title, and before other lines where no title comes for a long time.
 pub fn pieces(text: &str) -> Vec<Range<usize>> {
-    let is_title = |line: &str| {
-        let line = line.split('#').next().unwrap_or_default().trim();
-        let name = line.strip_prefix('[').and_then(|line| line.strip_suffix(']'));
-        name.is_some_and(|name| name.contains('.') && !name.contains([',', '=']))
-    };
     let mut starts = vec![0];
     let mut at = 0;
     for line in text.split_inclusive('\n') {
