@@ -14,31 +14,40 @@ pub fn to_byte(channel: f64) -> u8 {
 /// Converts colours to bytes.
 pub(crate) fn to_bytes(cpu: Cpu, colours: View, pixels: &mut [[u8; 3]]) {
     const CHUNK: usize = 64;
-    let mut bytes = [[0; CHUNK]; 3];
+    let mut packed = [0; CHUNK];
     for (pixels, first) in pixels.chunks_mut(CHUNK).zip((0..).step_by(CHUNK)) {
-        let colours = colours.part(first..first + pixels.len());
-        for (channel, bytes) in [colours.x, colours.y, colours.z].into_iter().zip(&mut bytes) {
-            quantize(cpu, channel, &mut bytes[..channel.len()]);
-        }
-        for (lane, pixel) in pixels.iter_mut().enumerate() {
-            *pixel = [bytes[0][lane], bytes[1][lane], bytes[2][lane]];
+        let packed = &mut packed[..pixels.len()];
+        pack(cpu, colours.part(first..first + pixels.len()), packed);
+        for (pixel, packed) in pixels.iter_mut().zip(packed) {
+            let [red, green, blue, ..] = packed.to_le_bytes();
+            *pixel = [red, green, blue];
         }
     }
 }
 
+/// 2^52: adding it rounds a number from 0 to 255 to an integer, which then is the lowest bits of the sum.
+const WHOLE: f64 = (1_u64 << 52) as f64;
+
+/// Returns a number whose lowest byte is what [`to_byte`] returns, and whose next two bytes are 0, by operations that have
+/// vector instructions; a conversion to a byte has none.
+#[inline(always)]
+fn quantized(channel: f64) -> u64 {
+    let level = 255.0 * channel;
+    let level = if level > 0.0 { level } else { 0.0 };
+    let level = if level < 255.0 { level } else { 255.0 };
+    let whole = level + WHOLE;
+    let whole = if whole - WHOLE > level { whole - 1.0 } else { whole };
+    whole.to_bits()
+}
+
 kernels! {
-    /// Computes what [`to_byte`] returns, in operations that have vector instructions; a conversion to a byte has none.
-    fn quantize(channel: &[f64], bytes: &mut [u8]) {
-        // Adding 2^52 rounds a number from 0 to 255 to an integer, which then is the lowest bits of the sum.
-        const WHOLE: f64 = (1_u64 << 52) as f64;
-        let channel = &channel[..bytes.len()];
-        for lane in 0..bytes.len() {
-            let level = 255.0 * channel[lane];
-            let level = if level > 0.0 { level } else { 0.0 };
-            let level = if level < 255.0 { level } else { 255.0 };
-            let whole = level + WHOLE;
-            let whole = if whole - WHOLE > level { whole - 1.0 } else { whole };
-            bytes[lane] = whole.to_bits() as u8;
+    /// Packs the bytes of each colour into the lowest bits of a number, red lowest.
+    fn pack(colours: View, packed: &mut [u64]) {
+        let count = packed.len();
+        let View { x, y, z } = colours;
+        let (x, y, z) = (&x[..count], &y[..count], &z[..count]);
+        for lane in 0..count {
+            packed[lane] = quantized(x[lane]) | quantized(y[lane]) << 8 | quantized(z[lane]) << 16;
         }
     }
 }

@@ -134,6 +134,28 @@ impl Film {
         }
     }
 
+    /// Lists the sample of one index of each pixel, given by column and row, and writes the image positions of their rays.
+    pub(crate) fn scatter_each(
+        &self,
+        cpu: Cpu,
+        pixels: &[[usize; 2]],
+        index: u32,
+        list: &mut Vec<Sample>,
+        [x, y]: [&mut [f64]; 2],
+    ) {
+        let sample = |[column, row]: &[usize; 2]| {
+            let pixel = self.seed(*column as i64, *row as i64);
+            Sample { sampler: self.sampler, index, pixel }
+        };
+        list.clear();
+        list.extend(pixels.iter().map(sample));
+        sample::jitters(cpu, list, x, y);
+        for (([column, row], x), y) in pixels.iter().zip(x).zip(y) {
+            *x += *column as f64;
+            *y += *row as f64;
+        }
+    }
+
     /// Returns the place in the image at a distance from the centre of the lower left pixel, in pixels.
     #[inline(always)]
     fn point(&self, x: f64, y: f64) -> ImagePoint {

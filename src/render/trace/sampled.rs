@@ -28,16 +28,10 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let mut colours = colours.resized(pixels.len());
         for (pixels, first) in pixels.chunks(PACKET_SIZE).zip((0..).step_by(PACKET_SIZE)) {
             let len = pixels.len();
-            let mut places: Vec<_> =
-                pixels.iter().map(|[column, row]| camera.places(*column, *row, camera.samples)).collect();
             let mut sums = vec![(Rgb::ZERO, 0.0); len];
-            for _ in 0..camera.samples {
+            for index in 0..camera.samples {
                 let Scratch { places: [x, y], samples: drawn, .. } = &mut *self.scratch;
-                drawn.clear();
-                for (lane, (place, sample)) in places.iter_mut().filter_map(Iterator::next).enumerate() {
-                    (x[lane], y[lane]) = (place.x, place.y);
-                    drawn.extend(sample);
-                }
+                camera.scatter_each(self.cpu, pixels, index, drawn, [&mut x[..len], &mut y[..len]]);
                 self.look(group, len);
                 for (budget, (_, missing)) in group.ray_budget.iter_mut().zip(&sums) {
                     *budget = if *missing == f64::INFINITY { REST } else { *budget };

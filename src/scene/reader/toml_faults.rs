@@ -2,6 +2,7 @@
 
 use super::fault::Fault;
 use crate::parallel;
+use std::iter;
 use std::ops::Range;
 use toml::de::{DeTable, Error};
 
@@ -136,7 +137,7 @@ pub fn is_title(line: &str) -> bool {
 /// Splits a text into parts that can be parsed at once, each of as many pieces as fit. A short text is one part.
 pub fn parts(text: &str) -> Vec<Range<usize>> {
     if text.len() <= PART {
-        return vec![0..text.len()];
+        return iter::once(0..text.len()).collect();
     }
     let mut parts = pieces(text);
     parts.dedup_by(|next, part| {
