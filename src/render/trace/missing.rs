@@ -13,8 +13,10 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Starts primary rays with these ray budgets, which lack nothing yet.
     pub(super) fn begin_missing(&mut self, budgets: &[u32]) {
         resized(&mut self.scratch.missing, budgets.len());
-        self.scratch.kept.clear();
-        self.scratch.kept.extend(budgets.iter().map(|budget| budget / KEPT_PART));
+        if self.plan.depth.is_some() {
+            self.scratch.kept.clear();
+            self.scratch.kept.extend(budgets.iter().map(|budget| budget / KEPT_PART));
+        }
         self.scratch.any_missing = false;
     }
 

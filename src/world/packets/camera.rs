@@ -58,7 +58,8 @@ kernels! {
         let mut zeros = 0;
         for lane in 0..count {
             let dir = camera.plain_ray(&ImagePoint { at: [x[lane], y[lane]], pixels }, DVec2::ZERO).dir;
-            zeros |= u64::from((dir.x == 0.0) | (dir.y == 0.0));
+            // The product of two others may underflow; then, too, the rays are asked for again.
+            zeros |= u64::from(dir.x * dir.y == 0.0);
             dirs.set(lane, dir);
         }
         if zeros != 0 {
