@@ -126,7 +126,7 @@ fn parts_that_a_full_disk_refused_are_rendered_by_another_node() {
     let farm = Farm::new();
     // On the second node, the folder of the image is a disk that has no room for a part; the logs are where they were.
     let disk = format!(
-        "mkdir {kept} && mount --bind {shared} {kept} && mount -t tmpfs -o size=40k tmpfs {shared} && \
+        "mkdir {kept} && mount --bind {shared} {kept} && mount -t tmpfs -o size=8k tmpfs {shared} && \
          cp {kept}/hall.ray {shared} && mkdir {shared}/big.png.slurm && \
          mount --bind {kept}/big.png.slurm {shared}/big.png.slurm",
         shared = farm.path().display(),
