@@ -2,6 +2,7 @@
 //! stands on one line stay.
 
 use super::toml::events;
+use std::iter::repeat_n;
 use std::mem::take;
 use toml_parser::parser::EventKind;
 
@@ -39,7 +40,7 @@ pub fn formatted(text: &str) -> String {
         writer.event(event.kind(), &text[event.span().start()..event.span().end()]);
     }
     writer.lines.push(writer.line);
-    written(writer.lines)
+    written(writer.lines, text.len())
 }
 
 impl Writer {
@@ -113,7 +114,8 @@ impl Writer {
     }
 }
 
-fn written(lines: Vec<Line>) -> String {
+/// Writes lines with their keys in columns, in a text of about this length in bytes.
+fn written(lines: Vec<Line>, length: usize) -> String {
     let is_blank = |line: &Line| line.key.is_none() && line.text.is_empty() && line.comment.is_empty();
     let is_aligned = |line: &Line| line.key.is_some() && !line.text.starts_with('{');
     let mut kept: Vec<Line> = Vec::new();
@@ -125,7 +127,7 @@ fn written(lines: Vec<Line>) -> String {
     while kept.last().is_some_and(is_blank) {
         kept.pop();
     }
-    let mut text = String::new();
+    let mut text = String::with_capacity(length);
     let mut at = 0;
     while at < kept.len() {
         let count = kept[at..].iter().take_while(|line| is_aligned(line)).count();
@@ -133,11 +135,18 @@ fn written(lines: Vec<Line>) -> String {
         let widths = run.iter().filter(|line| is_aligned(line)).filter_map(|line| line.key.as_deref());
         let width = widths.map(|key| key.chars().count()).filter(|width| *width <= WIDEST).max().unwrap_or(0);
         for line in run {
-            let start = line.key.as_ref().map(|key| format!("{key:width$} = ")).unwrap_or_default();
-            let comment =
-                [" ", ""][usize::from(start.is_empty() && line.text.is_empty())].to_owned() + &line.comment;
-            let whole = format!("{start}{}{comment}", line.text);
-            text += whole.trim_end();
+            let start = text.len();
+            if let Some(key) = &line.key {
+                text += key;
+                text.extend(repeat_n(' ', width.saturating_sub(key.chars().count())));
+                text += " = ";
+            }
+            text += &line.text;
+            if text.len() > start {
+                text.push(' ');
+            }
+            text += &line.comment;
+            text.truncate(start + text[start..].trim_end().len());
             text.push('\n');
         }
         at += run.len();

@@ -39,7 +39,7 @@ fn range(span: Span) -> Range<usize> {
 /// Returns what a text consists of, and where it is not as a scene is written.
 pub fn read(registry: &Registry, text: &str) -> (Vec<Item>, Vec<Break>) {
     let (events, breaks) = events(text);
-    let mut reader = Reader { registry, text, items: Vec::new() };
+    let mut reader = Reader { registry, text, items: Vec::new(), path: Path::new() };
     reader.all(&events);
     end_bodies(&mut reader.items, text.len());
     (reader.items, breaks)
@@ -52,6 +52,8 @@ struct Reader<'a> {
     registry: &'a Registry,
     text: &'a str,
     items: Vec<Item>,
+    /// The parts of the last value's path. They are here, so that their memory is used again.
+    path: Path,
 }
 
 /// A value that is being read: its key, the first byte after the `=`, and the words so far.
@@ -172,22 +174,22 @@ impl Reader<'_> {
     /// Adds a value to what its key names.
     fn leaf(&mut self, table: &[Word], outer: &[Path], leaf: Leaf) {
         let Some(first) = leaf.key.first().map(|first| first.start) else { return };
-        let path: Path = table.iter().chain(outer.iter().flatten()).chain(&leaf.key).copied().collect();
-        if path.len() > MOST_PARTS {
-            return;
-        }
+        let mut path = take(&mut self.path);
+        path.clear();
+        path.extend(table.iter().chain(outer.iter().flatten()).chain(&leaf.key));
         let place = first..leaf.end.max(leaf.from.unwrap_or(0));
-        let (keyword, values) = (Keyword::of(self.says(path[0])), leaf.values.clone());
-        match (keyword, &path[..]) {
+        match (Keyword::of(self.says(path[0])), &path[..]) {
+            _ if path.len() > MOST_PARTS => {}
             (Some(Keyword::Include), [_]) => {
-                self.items.push(Item::Include(Include { files: values, place }));
+                self.items.push(Item::Include(Include { files: leaf.values, place }));
             }
             (Some(Keyword::Let), [_, name]) => {
-                let value = values.first().copied();
+                let value = leaf.values.first().copied();
                 self.items.push(Item::Let(Let { name: Some(*name), value, place }));
             }
-            _ => value(self.registry, self.text, &mut self.items, &path, &leaf, &place),
+            _ => value(self.registry, self.text, &mut self.items, &path, leaf, &place),
         }
+        self.path = path;
     }
 }
 
@@ -294,7 +296,7 @@ fn value(
     text: &str,
     items: &mut Vec<Item>,
     path: &[Word],
-    leaf: &Leaf,
+    leaf: Leaf,
     place: &Range<usize>,
 ) {
     match (Keyword::of(says(text, path[0])), path) {
@@ -331,7 +333,7 @@ fn value(
                 name: *key,
                 known: entity.known.and_then(|entity| attribute(entity, says(text, *key))),
                 values_from: leaf.from,
-                values: leaf.values.clone(),
+                values: leaf.values,
                 end: place.end,
             });
         }
@@ -346,7 +348,7 @@ fn value(
                     name: *key,
                     known: None,
                     values_from: leaf.from,
-                    values: leaf.values.clone(),
+                    values: leaf.values,
                     end: place.end,
                 });
             }

@@ -92,6 +92,13 @@ impl View<'_> {
     pub fn part(&self, Range { start, end }: Range<usize>) -> Self {
         Self { x: &self.x[start..end], y: &self.y[start..end], z: &self.z[start..end] }
     }
+
+    /// Adds the vectors to a sum, one after the other.
+    #[inline(always)]
+    pub fn added_to(&self, sum: DVec3) -> DVec3 {
+        let vectors = self.x.iter().zip(self.y).zip(self.z);
+        vectors.fold(sum, |sum, ((x, y), z)| sum + DVec3::new(*x, *y, *z))
+    }
 }
 
 /// A mutable view of consecutive vectors.

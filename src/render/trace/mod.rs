@@ -207,10 +207,17 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 camera.scatter(self.cpu, pixels, count..count + len, drawn, [&mut x[..len], &mut y[..len]]);
                 self.look(group, len);
                 self.colours(group, seen);
-                for lane in 0..len {
-                    sum += seen.get(lane);
-                    missing += self.missing(lane);
-                    count += 1;
+                let mut lanes = 0..len;
+                while !lanes.is_empty() {
+                    // The samples of one pixel may go on in the next packet.
+                    let end = len.min(lanes.start + samples - count % samples);
+                    let of_one = lanes.start..end;
+                    sum = seen.view(len).part(of_one.clone()).added_to(sum);
+                    if self.scratch.any_missing {
+                        missing = of_one.fold(missing, |missing, lane| missing + self.missing(lane));
+                    }
+                    count += end - lanes.start;
+                    lanes.start = end;
                     if count % samples == 0 {
                         colours.set(count / samples - 1, sum / f64::from(camera.samples));
                         self.cut(missing / f64::from(camera.samples));

@@ -48,8 +48,11 @@ pub fn recognised(
 
 /// Recognises a text in the notes' syntax.
 fn of_notes(registry: &Registry, name: &str, text: &str) -> Option<Fault> {
-    let is_named = Syntax::of_name(name) == Some(Syntax::Toml);
-    let first = has_entities(registry, text).filter(|_| is_named)?;
+    // Most texts in TOML have no braces, and entities of the notes' syntax do.
+    if Syntax::of_name(name) != Some(Syntax::Toml) || !text.contains('{') {
+        return None;
+    }
+    let first = has_entities(registry, text)?;
     Some(
         Fault::error(Some(first), "this is a scene as .ray files have it, not one in TOML")
             .label("in TOML, an entity is a table, `[TYPE.NAME]`")

@@ -99,32 +99,21 @@ pub fn long_line(text: &str) -> Option<Range<usize>> {
     lines.find(|line| line.len() > LINE)
 }
 
-/// Tells whether a text can be parsed at once: it is short, or its parts have no syntax errors.
-fn is_sound(text: &str) -> bool {
-    let parts = parts(text);
-    let has_errors = |part: usize| {
-        let (_, errors) = DeTable::parse_recoverable(&text[parts[part].clone()]);
-        !errors.iter().all(is_duplicate)
-    };
-    parts.len() == 1 || parallel::first(parts.len(), has_errors).is_none()
-}
-
 /// Returns a place at which a text is not TOML, with the reason. A key that is there twice is a fault of a scene, not of
 /// its form.
 pub fn toml_error(text: &str) -> Option<SyntaxError> {
     if let Some(line) = long_line(text) {
         return Some((line, format!("this line is longer than {LINE} bytes")));
     }
-    let error = |piece: Range<usize>| {
-        let (_, errors) = DeTable::parse_recoverable(&text[piece.clone()]);
+    let parts = parts(text);
+    let error = |part: usize| {
+        let part = parts[part].clone();
+        let (_, errors) = DeTable::parse_recoverable(&text[part.clone()]);
         let error = errors.iter().find(|error| !is_duplicate(error))?;
         let place = error.span().unwrap_or(0..0);
-        Some((piece.start + place.start..piece.start + place.end, error.message().to_owned()))
+        Some((part.start + place.start..part.start + place.end, error.message().to_owned()))
     };
-    if is_sound(text) {
-        return error(0..text.len());
-    }
-    pieces(text).into_iter().find_map(error).or_else(|| Some((0..0, "this is not TOML".to_owned())))
+    parallel::first(parts.len(), |part| error(part).is_some()).and_then(error)
 }
 
 /// Tells whether a line is the title of an entity.
