@@ -31,8 +31,8 @@ pub struct Args {
     scene: PathBuf,
     #[command(flatten)]
     set: set::Args,
-    /// Directory for the chart (SCENE.svg and SCENE.png), its numbers (SCENE.csv and SCENE.json) and the verdict in
-    /// words (SCENE.txt), by default the working directory; or one of these files, such as `a.svg`, of any name
+    /// Directory for the chart (SCENE-chart.svg and .png), its numbers (.csv and .json) and the verdict in words (.txt), by
+    /// default the working directory; or one of these files, such as `a.svg`, of any name
     #[arg(short, long, value_name = "DIR|FILE", default_value = ".", hide_default_value = true)]
     output: PathBuf,
     /// The time that the chart may take, such as 90s or 5m, instead of 2 minutes; what is not measured by then is left
@@ -115,7 +115,7 @@ fn files(output: &Path, name: &str, may_be: impl Fn(&Path) -> Result<(), Failure
         None => {
             output::folder(output)?;
             for (file, extension) in files.iter_mut().zip(EXTENSIONS) {
-                *file = open(output.join(format!("{name}.{extension}")))?;
+                *file = open(output.join(format!("{name}-chart.{extension}")))?;
             }
         }
     }

@@ -81,9 +81,7 @@ fn frames(name: &Path) -> Result<Vec<PathBuf>, Failure> {
         let digits = path.file_stem()?.to_str()?.strip_prefix(&stem)?;
         digits.bytes().all(|byte| byte.is_ascii_digit()).then(|| digits.parse::<u32>().ok()).flatten()
     };
-    let cannot = |error: io::Error| {
-        Failure::Usage(format!("cannot read `{}`: {}", folder.display(), text::reason(&error)), None)
-    };
+    let cannot = |error: io::Error| Failure::cannot_read(folder, &error);
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).map_err(cannot)? {
         let path = name.with_file_name(entry.map_err(cannot)?.file_name());

@@ -14,7 +14,7 @@ use answers::Server;
 use documents::Documents;
 use faults::Faults;
 use lsp_server::{ErrorCode, Message, Request};
-use protocol::{answered, capabilities, refused, told};
+use protocol::{answered, capabilities, malformed, refused, told};
 use serde_json::{Value, json};
 use std::io::{self, StdinLock, Write};
 use std::sync::mpsc::{self, Receiver, Sender};
@@ -67,11 +67,17 @@ fn gone() -> Failure {
     Failure::Failed("the editor broke off".to_owned())
 }
 
-/// Reads the next message.
-fn next(input: &mut StdinLock<'_>) -> Result<Message, Failure> {
-    match transport::read(input) {
-        Ok(message) => message.ok_or_else(gone),
-        Err(error) => Err(Failure::Failed(format!("the editor broke off: {}", text::reason(&error)))),
+/// Reads the next message. What is none is answered with the reason.
+fn next(input: &mut StdinLock<'_>, sender: &Sender<String>) -> Result<Message, Failure> {
+    loop {
+        match transport::read(input) {
+            Ok(Some(Ok(message))) => return Ok(message),
+            Ok(Some(Err(why))) => send(sender, malformed(&why))?,
+            Ok(None) => return Err(gone()),
+            Err(error) => {
+                return Err(Failure::Failed(format!("the editor broke off: {}", text::reason(&error))));
+            }
+        }
     }
 }
 
@@ -82,7 +88,7 @@ fn send(sender: &Sender<String>, text: String) -> Result<(), Failure> {
 /// Answers the first request of an editor, and returns what it says of itself.
 fn begin(input: &mut StdinLock<'_>, sender: &Sender<String>) -> Result<Value, Failure> {
     loop {
-        match next(input)? {
+        match next(input, sender)? {
             Message::Request(Request { id, method, params }) if method == "initialize" => {
                 let result = json!({
                     "capabilities": capabilities(),
@@ -103,10 +109,10 @@ fn begin(input: &mut StdinLock<'_>, sender: &Sender<String>) -> Result<Value, Fa
 /// Answers until the editor says that it ends.
 fn serve(input: &mut StdinLock<'_>, sender: &Sender<String>, server: &mut Server<'_>) -> Result<(), Failure> {
     loop {
-        match next(input)? {
+        match next(input, sender)? {
             Message::Request(request) if request.method == "shutdown" => {
                 send(sender, answered(&request.id, "null"))?;
-                return match next(input)? {
+                return match next(input, sender)? {
                     Message::Notification(notification) if notification.method == "exit" => Ok(()),
                     _ => Err(gone()),
                 };

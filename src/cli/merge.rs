@@ -5,7 +5,7 @@ use crate::cli::options::number::whole;
 use crate::cli::process::failure::Failure;
 use crate::cli::process::progress::Progress;
 use crate::cli::process::{memory, messages};
-use crate::cli::rendering::part_files::{Parts, cannot_read, open, refuse};
+use crate::cli::rendering::part_files::{Parts, open, refuse};
 use crate::cli::rendering::{aov, full_range};
 use crate::output::aov::Aov;
 use crate::output::aov_values::Values;
@@ -207,7 +207,7 @@ impl Parts {
     /// Returns the error for a part that cannot be read to its end, and for all others of which that is so.
     fn damaged(&self, path: &Path, error: &io::Error) -> Failure {
         if error.kind() != io::ErrorKind::InvalidData {
-            return cannot_read(path, error);
+            return Failure::cannot_read(path, error);
         }
         let is_damaged = |path: &&PathBuf| open(path).is_ok_and(|mut part| part.check().is_err());
         let damaged: Vec<_> =

@@ -20,10 +20,10 @@ pub struct Args {
     #[command(flatten)]
     set: set::Args,
     /// The pixel's column, from 0 at the left
-    #[arg(allow_negative_numbers = true)]
+    #[arg(allow_negative_numbers = true, value_parser = place)]
     x: i64,
     /// The pixel's row, from 0 at the bottom
-    #[arg(allow_negative_numbers = true)]
+    #[arg(allow_negative_numbers = true, value_parser = place)]
     y: i64,
     #[command(flatten)]
     method: method::Args,
@@ -33,6 +33,11 @@ const EXAMPLES: &str = "\
 Examples:
   tabray probe ball.ray 160 120
   tabray probe ball.ray 160 120 --method classic";
+
+/// Reads the number of a column or a row.
+fn place(text: &str) -> Result<i64, String> {
+    text.parse().map_err(|_| "give the pixel's column and row as whole numbers".to_owned())
+}
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let model = input::load(registry, &args.scene, &args.set, args.method.accuracy()?)?;

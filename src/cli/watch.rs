@@ -17,6 +17,7 @@ mod watched;
 
 use super::serve::{Server, Work};
 use crate::cli::files::input;
+use crate::cli::options::number::whole;
 use crate::cli::options::{method, set};
 use crate::cli::process::failure::Failure;
 use crate::cli::process::{interrupt, messages};
@@ -51,7 +52,7 @@ pub struct Args {
     #[command(flatten)]
     set: set::Args,
     /// The port of the page on 127.0.0.1; by default the first free one from 3000; 0 is any free one
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole::<u16>(0..=65535))]
     port: Option<u16>,
     /// Open the page in the browser
     #[arg(long)]

@@ -307,7 +307,6 @@ fn an_editor_that_breaks_off_is_a_failure() {
     client.note("exit", Value::Null);
     assert_eq!(client.program.wait().expect("an end").code(), Some(1));
     for (input, reason) in [
-        ("Content-Length: 3\r\n\r\n{}}".to_owned(), "a message is malformed: "),
         (
             "Content-Length: 99999999999999\r\n\r\n{}".to_owned(),
             "a message ends after 2 of 99999999999999 bytes",
@@ -320,6 +319,23 @@ fn an_editor_that_breaks_off_is_a_failure() {
         let said = format!("error: the editor broke off: {reason}");
         assert!(status == 1 && err.starts_with(&said) && err.len() < 200, "{err}");
     }
+}
+
+#[test]
+fn what_is_no_message_is_answered_with_the_reason() {
+    let folder = folder();
+    let text = |text: &str| format!("Content-Length: {}\r\n\r\n{text}", text.len());
+    let shutdown = r#"{"jsonrpc":"2.0","id":7,"method":"shutdown"}"#;
+    let initialize = r#"{"jsonrpc":"2.0","id":6,"method":"initialize","params":{"capabilities":{}}}"#;
+    let exit = r#"{"jsonrpc":"2.0","method":"exit"}"#;
+    let input: String = ["{}}", initialize, "[1, 2", shutdown, exit].map(text).concat();
+    let (status, out, err) = outcome(tabray(&folder).arg("lsp").write_stdin(input));
+    assert_eq!((status, err.as_str()), (0, ""));
+    let out = String::from_utf8(out).expect("text");
+    let at = |part: &str| out.find(part).unwrap_or_else(|| panic!("{part}: {out}"));
+    let malformed = r#""code":-32700,"message":"this message is malformed: "#;
+    assert!(at(malformed) < at(r#""id":6"#) && at(r#""id":6"#) < at(r#""id":7"#), "{out}");
+    assert_eq!(out.matches(malformed).count(), 2, "{out}");
 }
 
 const UNTIDY: &str = "camera eye {\npixeldim 8 6 # wide\nworlddim 8 6   viewpoint 4 3 6\n}\n";

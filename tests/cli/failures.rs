@@ -99,7 +99,6 @@ fn an_image_does_not_replace_what_it_is_made_from() {
         texture bricks { filename bricks.png }
         texplane wall { material white normal 0 0 1 point 0 0 -8 xdir 1 0 0 dimensions 8 6 texname bricks mode 0 }";
     fs::write(at("wall.ray"), textured).expect("a file");
-    fs::write(at("bricks.ray"), textured).expect("a file");
     fs::copy(scene("textures/bricks.png"), at("bricks.png")).expect("a copy");
     fs::hard_link(at("bricks.png"), at("other.png")).expect("a name");
     symlink("wall.ray", at("link.png")).expect("a link");
@@ -126,7 +125,6 @@ fn an_image_does_not_replace_what_it_is_made_from() {
             "`other.png` is the image of texture `bricks`",
         ),
         (&["chart", "wall.ray", "-o", "bricks.png"], "`bricks.png` is the image of texture `bricks`"),
-        (&["chart", "bricks.ray"], "`./bricks.png` is the image of texture `bricks`"),
     ] {
         let (status, said) = outcome(&mut after("", &folder, args));
         let refused = format!("error: {what}, which the image would replace\n");
@@ -310,7 +308,7 @@ fn folders_and_files_without_permission_are_named() {
         (1, &["man", "pages"], "cannot create the folder `pages`: permission denied"),
         (1, &["chart", "ball.ray", "-o", "charts"], "cannot create the folder `charts`: permission denied"),
         (1, &["check", "secret.ray"], "cannot read `secret.ray`: permission denied"),
-        (2, &["review", "closed"], "cannot read `closed`: permission denied"),
+        (1, &["review", "closed"], "cannot read `closed`: permission denied"),
         (1, &["review", "--reject", "snapshots"], "cannot remove `snapshots/a.snap.new`: permission denied"),
         (1, &["watch", "closed/ball.ray"], "cannot watch the folder `CLOSED`: permission denied"),
     ] {

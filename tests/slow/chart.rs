@@ -119,7 +119,7 @@ fn what_breaks_off_keeps_what_is_measured() {
 }
 
 fn numbers(folder: &Path) -> Value {
-    let text = std::fs::read_to_string(folder.join("edge.json")).expect("the numbers");
+    let text = std::fs::read_to_string(folder.join("edge-chart.json")).expect("the numbers");
     serde_json::from_str(&text).expect("JSON")
 }
 
@@ -153,12 +153,12 @@ fn a_chart_has_all_its_files_and_its_errors_are_the_same_twice() {
         let output = output.expect("the program runs");
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         for extension in ["svg", "png", "csv", "json", "txt"] {
-            assert!(folder.path().join("edge").with_extension(extension).is_file(), "{extension}");
+            assert!(folder.path().join("edge-chart").with_extension(extension).is_file(), "{extension}");
         }
-        let words = std::fs::read_to_string(folder.path().join("edge.txt")).expect("the verdict");
+        let words = std::fs::read_to_string(folder.path().join("edge-chart.txt")).expect("the verdict");
         assert_eq!(String::from_utf8_lossy(&output.stdout), words);
         assert!(words.starts_with("What to do:\n  "), "{words}");
-        let csv = std::fs::read_to_string(folder.path().join("edge.csv")).expect("the numbers");
+        let csv = std::fs::read_to_string(folder.path().join("edge-chart.csv")).expect("the numbers");
         assert_eq!(csv.lines().count(), 1 + errors(folder.path()).len());
     }
     assert_tells_fields("tools.md", &numbers(folders[0].path()));

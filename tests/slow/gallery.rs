@@ -100,11 +100,11 @@ fn the_gallery_of_charts_is_drawn() {
             tabray(&["chart", path.to_str().expect("UTF-8"), "-o", ".", "--time-limit", "1h"], folder.path());
         let name = path.file_stem().expect("a name").to_str().expect("UTF-8");
         for extension in ["png", "csv"] {
-            let file = Path::new(name).with_extension(extension);
-            fs::copy(folder.path().join(&file), pictures.join(&file)).expect("a copy");
+            let file = folder.path().join(format!("{name}-chart.{extension}"));
+            fs::copy(file, pictures.join(format!("{name}.{extension}"))).expect("a copy");
         }
-        let read = |extension| {
-            let file = folder.path().join(name).with_extension(extension);
+        let read = |extension: &str| {
+            let file = folder.path().join(format!("{name}-chart.{extension}"));
             fs::read_to_string(file).expect("it is written")
         };
         every_choice_has_its_name(&read("csv"), &read("svg"));

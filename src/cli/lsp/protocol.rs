@@ -183,6 +183,12 @@ pub fn refused(id: &RequestId, code: ErrorCode, message: &str) -> String {
     json!({ "jsonrpc": "2.0", "id": id, "error": { "code": code as i32, "message": message } }).to_string()
 }
 
+/// Writes that what came was no message.
+pub fn malformed(why: &str) -> String {
+    let error = json!({ "code": ErrorCode::ParseError as i32, "message": why });
+    json!({ "jsonrpc": "2.0", "id": null, "error": error }).to_string()
+}
+
 /// Writes what an editor is told without having asked.
 pub fn told(method: &str, parameters: &Value) -> String {
     json!({ "jsonrpc": "2.0", "method": method, "params": parameters }).to_string()

@@ -8,11 +8,11 @@ use std::str;
 /// The maximum length of a line of a header in bytes.
 const LONGEST_LINE: u64 = 1 << 10;
 
-/// Reads the next message; `None` if there are no more.
+/// Reads the next message, or why what its header announces is none; `None` if there are no more.
 ///
 /// # Errors
-/// Those of the input; of kind `InvalidData`, with the reason, if what comes is no message.
-pub fn read(input: &mut impl BufRead) -> io::Result<Option<Message>> {
+/// Those of the input; of kind `InvalidData`, with the reason, if it cannot be told where the next message begins.
+pub fn read(input: &mut impl BufRead) -> io::Result<Option<Result<Message, String>>> {
     let wrong = |reason: String| io::Error::new(io::ErrorKind::InvalidData, reason);
     let mut length = None;
     loop {
@@ -39,5 +39,5 @@ pub fn read(input: &mut impl BufRead) -> io::Result<Option<Message>> {
     if (text.len() as u64) < length {
         return Err(wrong(format!("a message ends after {} of {length} bytes", text.len())));
     }
-    serde_json::from_slice(&text).map(Some).map_err(|error| wrong(format!("a message is malformed: {error}")))
+    Ok(Some(serde_json::from_slice(&text).map_err(|error| format!("this message is malformed: {error}"))))
 }

@@ -53,6 +53,16 @@ impl Failure {
         };
         Self::Failed(format!("cannot write `{}`: {reason}", path.display()))
     }
+
+    /// Makes a failure of a path that could not be read, with the reason: that of the system, or what is wrong with a file
+    /// that is not what the command needs.
+    pub fn cannot_read(path: &Path, error: &io::Error) -> Self {
+        let message = format!("cannot read `{}`: {}", path.display(), text::reason(error));
+        match error.kind() {
+            io::ErrorKind::InvalidData => Self::Usage(message, None),
+            _ => Self::Unread(message, None),
+        }
+    }
 }
 
 /// Prints why a command failed, and returns the exit status.

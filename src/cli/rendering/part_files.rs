@@ -6,7 +6,6 @@ use crate::cli::rendering::{part, resume};
 use crate::files;
 use crate::output::checkpoint::Identity;
 use crate::output::part::{Label, Reader, What};
-use crate::text;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io;
@@ -53,8 +52,10 @@ impl Parts {
             }
             let (number, tiles) = (label.part[0], label.tiles());
             if let Some(other) = found.get(&number) {
-                if open(&path)?.checksum().map_err(|error| cannot_read(&path, &error))?
-                    != open(&other.path)?.checksum().map_err(|error| cannot_read(&other.path, &error))?
+                if open(&path)?.checksum().map_err(|error| Failure::cannot_read(&path, &error))?
+                    != open(&other.path)?
+                        .checksum()
+                        .map_err(|error| Failure::cannot_read(&other.path, &error))?
                 {
                     let (one, other) = (other.path.display(), path.display());
                     return Err(refuse(
@@ -172,11 +173,7 @@ fn same((path, label): (&Path, &Label), (other, first): (&Path, &Label)) -> Resu
 }
 
 pub fn open(path: &Path) -> Result<Reader, Failure> {
-    files::open(path).and_then(Reader::open).map_err(|error| cannot_read(path, &error))
-}
-
-pub fn cannot_read(path: &Path, error: &io::Error) -> Failure {
-    Failure::Usage(format!("cannot read `{}`: {}", path.display(), text::reason(error)), None)
+    files::open(path).and_then(Reader::open).map_err(|error| Failure::cannot_read(path, &error))
 }
 
 pub fn refuse(message: String, help: &str) -> Failure {
@@ -194,7 +191,7 @@ fn beside(image: &Path) -> Result<Vec<PathBuf>, Failure> {
         let numbers = file.strip_prefix(&name).and_then(|rest| rest.split_once("-of-"));
         numbers.is_some_and(|(number, of)| number.parse::<usize>().is_ok() && of.parse::<usize>().is_ok())
     };
-    let cannot = |error: io::Error| cannot_read(folder, &error);
+    let cannot = |error: io::Error| Failure::cannot_read(folder, &error);
     let mut paths = Vec::new();
     for entry in fs::read_dir(folder).map_err(cannot)? {
         let file = entry.map_err(cannot)?.file_name();

@@ -5,6 +5,7 @@ mod items;
 mod pending;
 
 use super::report::Page;
+use crate::cli::options::number::whole;
 use crate::cli::process::failure::Failure;
 use crate::cli::process::messages;
 use crate::scene::registry::Registry;
@@ -33,7 +34,7 @@ pub struct Args {
     #[arg(long, conflicts_with = "output")]
     serve: bool,
     /// The port to serve on; by default the first free one from 3000
-    #[arg(long, requires = "serve")]
+    #[arg(long, value_name = "N", value_parser = whole::<u16>(0..=65535), requires = "serve")]
     port: Option<u16>,
     /// Accept these snapshots, or all in a folder, instead of writing a page
     #[arg(long, value_name = "SNAPSHOT", num_args = 1.., conflicts_with_all = ["reject", "output", "before", "serve"])]

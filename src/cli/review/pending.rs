@@ -71,9 +71,7 @@ pub fn find(path: &Path) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();
     let mut folders = vec![path.to_owned()];
     while let Some(folder) = folders.pop() {
-        let cannot = |error: io::Error| {
-            Failure::Usage(format!("cannot read `{}`: {}", folder.display(), text::reason(&error)), None)
-        };
+        let cannot = |error: io::Error| Failure::cannot_read(&folder, &error);
         for entry in fs::read_dir(&folder).map_err(cannot)? {
             let entry = entry.map_err(cannot)?;
             if entry.file_type().map_err(cannot)?.is_dir() {

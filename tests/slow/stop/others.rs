@@ -65,8 +65,8 @@ fn a_chart_keeps_what_is_measured() {
         let (status, err) = interrupted(&["chart", "edge.ray"], time);
         assert_eq!(status, 130, "{err}");
         if err != "interrupted: nothing has been measured yet\n" {
-            let said = "wrote ./edge.txt\ninterrupted: the chart shows what has been measured so far\n";
-            assert!(err.starts_with("wrote ./edge.svg\n") && err.ends_with(said), "{err}");
+            let said = "wrote ./edge-chart.txt\ninterrupted: the chart shows what has been measured so far\n";
+            assert!(err.starts_with("wrote ./edge-chart.svg\n") && err.ends_with(said), "{err}");
             return;
         }
         time = time * 6 / 5;
