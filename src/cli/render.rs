@@ -104,6 +104,12 @@ pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
             ));
         }
         let set = args.set.values.clone();
+        // A sweep that ends beyond what the scene allows is told before the first frame is rendered.
+        if let [_, .., last] = &frames[..] {
+            args.set.values = [&set[..], &last.sets].concat();
+            let last = Source::read(&scene, &args.set)?.load(registry, args.method.accuracy()?);
+            last.map_err(Failure::Scene)?;
+        }
         for frame in frames {
             stop.ends_from_here()?;
             args.set.values = [&set[..], &frame.sets].concat();

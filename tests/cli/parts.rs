@@ -336,6 +336,18 @@ sphere s { material m center 4 3 -2 radius 1 }\n";
     );
 }
 
+#[test]
+fn a_film_that_ends_beyond_what_a_scene_allows_is_not_begun() {
+    let folder = folder();
+    let text = "camera eye { pixeldim 4 3 worlddim 8 6 viewpoint 4 3 6 }\nmaterial m { ambient 1 1 1 }
+sphere s { material m center 4 3 -2 radius 1 }\n";
+    fs::write(folder.path().join("a.ray"), text).expect("a scene");
+    let film = ["render", "a.ray", "-o", "film.png", "--frames", "1..5", "--sweep", "s.radius=1..-1"];
+    let (status, said) = run(&folder, &film);
+    assert!(status == 2 && said.contains("`radius` of sphere `s` must be positive, not -1"), "{said}");
+    assert_eq!(names_in(folder.path()), ["a.ray"]);
+}
+
 /// Changes when a file was changed last.
 fn date(path: &Path, seconds_ago: u64) {
     let file = fs::File::options().write(true).open(path).expect("a file");
