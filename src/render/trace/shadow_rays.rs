@@ -91,14 +91,29 @@ kernels! {
     /// Charges each shadow ray to its ray budget. Shadow rays with a `t_max` of 0 or whose budget is used up are marked
     /// with [`NOT_CAST`]. Returns how many of the first `len` are cast.
     fn charge_shadow_rays(len: usize, ray_budget: &mut [u32], t_max: &mut [f64], blocked: &mut [u64]) -> usize {
-        let (count, mut left) = (t_max.len(), 0);
+        let count = t_max.len();
         let (ray_budget, blocked) = (&mut ray_budget[..count], &mut blocked[..count]);
+        // Loops over numbers of one size each have vector instructions.
+        let mut any_used_up = false;
         for lane in 0..count {
-            let goes = (t_max[lane] > 0.0) & (ray_budget[lane] > 0);
+            any_used_up |= ray_budget[lane] == 0;
+        }
+        if any_used_up {
+            for lane in 0..count {
+                t_max[lane] = if ray_budget[lane] == 0 { 0.0 } else { t_max[lane] };
+            }
+        }
+        for lane in 0..count {
+            let goes = t_max[lane] > 0.0;
             t_max[lane] = if goes { t_max[lane] } else { 0.0 };
             blocked[lane] = if goes { 0 } else { NOT_CAST };
-            ray_budget[lane] -= u32::from(goes);
-            left += u64::from(goes & (lane < len));
+        }
+        for lane in 0..count {
+            ray_budget[lane] -= u32::from(t_max[lane] > 0.0);
+        }
+        let mut left = 0;
+        for t_max in &t_max[..len] {
+            left += u64::from(*t_max > 0.0);
         }
         left as usize
     }
