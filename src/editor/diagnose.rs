@@ -2,7 +2,7 @@
 
 use super::text::{Position, Text};
 use crate::files::plain;
-use crate::scene::reader::{self, Chosen, Fault, Report, Severity};
+use crate::scene::reader::{self, Chosen, Fault, Located, Severity};
 use crate::scene::registry::Registry;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -51,12 +51,11 @@ pub fn diagnose(
             Err(report) => report,
         };
     let mut texts = HashMap::new();
-    report.faults().iter().map(|fault| told(&report, fault, &mut texts)).collect()
+    report.located().map(|(fault, located)| told(fault, located, &mut texts)).collect()
 }
 
 /// Returns a fault with its places.
-fn told<'r>(report: &'r Report, fault: &'r Fault, texts: &mut HashMap<&'r str, Text>) -> Diagnosis {
-    let located = report.located(fault);
+fn told<'r>(fault: &Fault, located: Vec<Located<'r>>, texts: &mut HashMap<&'r str, Text>) -> Diagnosis {
     let mut remarks: Vec<_> = located
         .iter()
         .map(|located| {

@@ -1,9 +1,12 @@
 //! Entity types: what a plugin registers, and what its constructor receives.
 
 use crate::scene::attribute::Attribute;
+use crate::scene::common::{
+    ACCURACY, FILM, MATERIAL, MATERIAL_OF_ALL, OBJECT, OF_OBJECTS, PIXELDIM, SAMPLES, SHADER,
+};
 use crate::scene::counts::OneOf;
 use crate::scene::kind::Kind;
-use crate::scene::pparm::{Attributes, Given, Pparm, Row, Table};
+use crate::scene::pparm::{Attributes, Given, Row, Table};
 use crate::scene::value::{Datum, Type};
 use crate::text;
 use crate::world::accuracy::Accuracy;
@@ -11,7 +14,6 @@ use crate::world::background::AnyBackground;
 use crate::world::body::{AnyLight, Body, Paint};
 use crate::world::film::{AnyCamera, Film};
 use crate::world::material::Material;
-use crate::world::sample::Sampler;
 use crate::world::texture::Texture;
 use std::collections::BTreeMap;
 use std::ops::Deref;
@@ -68,43 +70,6 @@ pub enum Construct {
     /// Makes a background.
     Background(fn(&Args) -> Result<AnyBackground, Refusal>),
 }
-
-/// The attributes that every object has beside its own.
-pub static MATERIAL: Pparm<Arc<Material>> =
-    Pparm::required("material", "the material, defined earlier in the scene");
-
-const OBJECT: Table = &[&MATERIAL];
-
-/// The attribute of an object that is made of others, in place of [`MATERIAL`].
-static MATERIAL_OF_ALL: Pparm<Option<Arc<Material>>> =
-    Pparm::or("material", "the material of all of it; without, each object in it keeps its own", None);
-
-const OF_OBJECTS: Table = &[&MATERIAL_OF_ALL];
-
-/// An object whose own table has a `shader` has no other.
-pub(crate) static SHADER: Pparm<Option<Paint>> = Pparm::or(
-    "shader",
-    "the shader that gives the look, defined earlier in the scene, or a type of shader",
-    None,
-);
-
-/// The size of the image, which every camera has.
-pub static PIXELDIM: Pparm<[i64; 2]> = Pparm::required("pixeldim", "the width and height of the image")
-    .alias(&["pixel_dim"])
-    .each(&["width", "height"])
-    .unit("pixels")
-    .between(1.0, 100_000.0)
-    .dumped("pixel_dim", " \n");
-
-static SAMPLES: Pparm<i64> = Pparm::or("samples", "the number of samples per pixel, to smooth edges", 1)
-    .between(1.0, Sampler::MOST as f64)
-    .not_dumped();
-
-static ACCURACY: Pparm<Accuracy> =
-    Pparm::or("accuracy", "how exactly hits are computed", Accuracy::Exact).not_dumped();
-
-/// What every camera has before and after its own attributes.
-const FILM: [Table; 2] = [&[&PIXELDIM], &[&SAMPLES, &ACCURACY]];
 
 impl Entity {
     /// Describes a camera type. The attributes of every camera are added to its table: `pixeldim` before its own, and

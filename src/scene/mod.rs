@@ -2,10 +2,12 @@
 
 pub(crate) mod attribute;
 pub(crate) mod choice;
+mod common;
 pub(crate) mod counts;
 pub mod dump;
 pub(crate) mod entity;
 pub mod grammar;
+mod json_schema;
 pub(crate) mod kind;
 pub(crate) mod list;
 pub(crate) mod list_json;

@@ -3,8 +3,9 @@
 
 use crate::scene::attribute::Attribute;
 use crate::scene::choice::{Choice, ChoiceName, Choices};
+use crate::scene::common::SHADER;
 use crate::scene::counts::Counts;
-use crate::scene::entity::{Args, Construct, Entity, Refusal, SHADER};
+use crate::scene::entity::{Args, Construct, Entity, Refusal};
 use crate::scene::kind::Kind;
 use crate::scene::value::{Datum, Type, Value};
 use crate::world::body::{Body, Paint};

@@ -80,6 +80,8 @@ impl Faults {
     /// Reads scenes and tells the editor their faults until there is no more to do.
     pub fn work(&self, registry: &Registry, tell: &dyn Fn(String) -> bool) {
         let mut took = Duration::ZERO;
+        // The files with faults that are scenes. Finding that out takes as long as finding the faults.
+        let mut scenes = BTreeSet::new();
         loop {
             let mut state = self.state();
             while state.jobs.is_empty() && !state.is_over {
@@ -108,13 +110,18 @@ impl Faults {
                 crash::about(&path.display().to_string());
                 let faults = || {
                     let faults = diagnose(registry, &path, scene.text.as_str(), &scene.open);
-                    let is_scene = faults.is_empty() || scene.is_scene(registry, &path);
-                    if is_scene { faults } else { Vec::new() }
+                    let is_scene =
+                        faults.is_empty() || scenes.contains(&path) || scene.is_scene(registry, &path);
+                    is_scene.then_some(faults)
                 };
                 // A scene that ends in an internal error has no faults that could be told.
-                crash::catch(faults).unwrap_or_default()
+                crash::catch(faults).ok().flatten()
             };
-            let faults = job.scene.as_ref().map(read).unwrap_or_default();
+            let faults = job.scene.as_ref().and_then(read);
+            if faults.as_ref().is_some_and(|faults| !faults.is_empty()) {
+                scenes.insert(path.clone());
+            }
+            let faults = faults.unwrap_or_default();
             took = start.elapsed();
             if !self.keep(path, job, faults).into_iter().all(tell) {
                 return;

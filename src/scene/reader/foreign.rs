@@ -8,9 +8,6 @@ use super::tokens::{Token, TokenForm, Tokens};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// What no values have: other programs put it around and between them.
-const MARKS: &[u8] = b"<>()[],;=";
-
 /// A way of writing that scenes do not have.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Way {
@@ -99,7 +96,7 @@ impl Cleaned {
         if !self.bytes.is_ascii() {
             self.quotes();
         }
-        if self.bytes.iter().any(|byte| MARKS.contains(byte)) {
+        if self.bytes.iter().any(|byte| is_mark(char::from(*byte))) {
             self.marks();
         }
     }
@@ -260,8 +257,9 @@ impl Cleaned {
     }
 }
 
+/// Tells whether this is what no values have: other programs put it around and between them.
 fn is_mark(c: char) -> bool {
-    u8::try_from(c).is_ok_and(|byte| MARKS.contains(&byte))
+    matches!(c, '<' | '>' | '(' | ')' | '[' | ']' | ',' | ';' | '=')
 }
 
 /// Returns the positions of a word's marks, where they are not part of a name.

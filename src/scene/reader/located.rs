@@ -3,6 +3,7 @@
 use super::excerpt;
 use super::fault::Fault;
 use super::report::Report;
+use std::iter;
 use std::ops::Range;
 
 /// A place in one of the texts that a scene is read from.
@@ -18,16 +19,18 @@ pub struct Located<'r> {
 }
 
 impl Report<'_> {
-    /// Returns the place of a fault, and then the further places that help to understand it. A fault that has no place is
-    /// at the beginning of the scene.
-    pub(crate) fn located<'r>(&'r self, fault: &'r Fault) -> Vec<Located<'r>> {
+    /// Returns each fault with its place, and then the further places that help to understand it. A fault that has no
+    /// place is at the beginning of the scene.
+    pub(crate) fn located(&self) -> impl Iterator<Item = (&Fault, Vec<Located<'_>>)> {
         let parts = self.parts();
-        let others = excerpt::others(fault).filter_map(|(place, label)| Some((place.clone()?, label)));
-        let first = (fault.place.clone().unwrap_or(0..0), fault.label.as_str());
-        let located = |(place, label): (Range<usize>, &'r str)| {
-            let lines = parts.at(place.start);
-            Located { name: lines.name, text: lines.text, place: lines.place(&place), label }
-        };
-        std::iter::once(first).chain(others).map(located).collect()
+        self.faults().iter().map(move |fault| {
+            let others = excerpt::others(fault).filter_map(|(place, label)| Some((place.clone()?, label)));
+            let first = (fault.place.clone().unwrap_or(0..0), fault.label.as_str());
+            let located = |(place, label): (Range<usize>, _)| {
+                let lines = parts.at(place.start);
+                Located { name: lines.name, text: lines.text, place: lines.place(&place), label }
+            };
+            (fault, iter::once(first).chain(others).map(located).collect())
+        })
     }
 }

@@ -16,6 +16,7 @@ mod listed;
 mod located;
 mod machine;
 mod made;
+mod missing;
 mod names;
 mod notes;
 mod numbers;
@@ -39,6 +40,7 @@ mod values;
 
 pub use check::Chosen;
 pub use fault::{Fault, Place, Places, Severity};
+pub(crate) use located::Located;
 pub use machine::Message;
 pub(crate) use notes::looks_like_number;
 pub use parsed::Parsed;

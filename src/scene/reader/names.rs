@@ -1,6 +1,7 @@
 //! The names of a scene: which entities have them, and what references to them mean.
 
 use super::fault::{Fault, Place, Severity};
+use super::missing::Missing;
 use super::parsed::{Form, Word};
 use super::report::Report;
 use crate::scene::entity::Entity;
@@ -13,8 +14,8 @@ use crate::text::{self, nearest};
 use crate::world::body::{NamedBody, Paint};
 use hashbrown::hash_table::Entry;
 use hashbrown::{DefaultHashBuilder, HashMap, HashSet, HashTable};
-use std::collections::{BTreeMap, btree_map};
-use std::hash::{BuildHasher, Hash};
+use std::collections::BTreeMap;
+use std::hash::BuildHasher;
 use std::mem::take;
 use std::sync::{Arc, LazyLock};
 
@@ -52,48 +53,6 @@ pub struct Names {
     unresolved: Missing<Kind>,
     /// Whether an entity refers to a list of objects.
     pub combines: bool,
-}
-
-/// The maximum number of different missing names of one sort that are kept. Of more, only the number is known.
-const MAX_MISSING: usize = 10_000;
-
-/// Names of which a scene has no entity or no type, so many that a scene of nothing else takes little memory.
-pub struct Missing<K> {
-    /// The first names, each with its first place and the number of its places.
-    pub names: BTreeMap<(K, String), (Place, usize)>,
-    /// The hashes of the others.
-    others: HashSet<(K, u64)>,
-}
-
-impl<K> Default for Missing<K> {
-    fn default() -> Self {
-        Self { names: BTreeMap::new(), others: HashSet::new() }
-    }
-}
-
-impl<K: Copy + Ord + Hash> Missing<K> {
-    /// Notes that a name of this sort is missing at a place.
-    pub fn add(&mut self, sort: K, Word { text, place, .. }: &Word<'_>, hash: u64) {
-        let is_full = self.names.len() >= MAX_MISSING;
-        match self.names.entry((sort, text.to_string())) {
-            btree_map::Entry::Occupied(mut known) => known.get_mut().1 += 1,
-            btree_map::Entry::Vacant(free) if !is_full => {
-                free.insert((place.clone(), 1));
-            }
-            btree_map::Entry::Vacant(_) => {
-                self.others.insert((sort, hash));
-            }
-        }
-    }
-
-    /// Returns the hashes of the names that are not kept, all different.
-    pub fn others(&self) -> impl Iterator<Item = u64> {
-        self.others.iter().map(|(_, hash)| *hash)
-    }
-
-    fn is_empty(&self) -> bool {
-        self.names.is_empty()
-    }
 }
 
 impl Names {
@@ -288,11 +247,16 @@ impl Names {
         report.count_more(Severity::Error, others);
         unresolved.sort_by_key(|(_, (place, _))| place.as_ref().map(|place| place.start));
         let mut known: BTreeMap<Kind, Vec<&str>> = BTreeMap::new();
+        known.extend(unresolved.iter().map(|((kind, _), _)| (*kind, Vec::new())));
         let orders = if unresolved.is_empty() { 0..0 } else { 0..store.len() };
         for (entity, order) in orders.filter_map(|order| Some((store.entity(order)?, order))) {
-            known.entry(entity.kind()).or_default().push(store.name(order));
+            if let Some(known) = known.get_mut(&entity.kind()) {
+                known.push(store.name(order));
+            }
         }
-        known.entry(Kind::Shader).or_default().extend(procedural::types().map(|entity| entity.name));
+        if let Some(known) = known.get_mut(&Kind::Shader) {
+            known.extend(procedural::types().map(|entity| entity.name));
+        }
         known.values_mut().for_each(|known| {
             known.sort_unstable();
             known.dedup();

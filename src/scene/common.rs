@@ -1,0 +1,47 @@
+//! The attributes that all entities of a kind have beside those of their tables.
+
+use crate::scene::pparm::{Pparm, Table};
+use crate::world::accuracy::Accuracy;
+use crate::world::body::Paint;
+use crate::world::material::Material;
+use crate::world::sample::Sampler;
+use std::sync::Arc;
+
+/// The attributes that every object has beside its own.
+pub(super) static MATERIAL: Pparm<Arc<Material>> =
+    Pparm::required("material", "the material, defined earlier in the scene");
+
+pub(super) const OBJECT: Table = &[&MATERIAL];
+
+/// The attribute of an object that is made of others, in place of [`MATERIAL`].
+pub(super) static MATERIAL_OF_ALL: Pparm<Option<Arc<Material>>> =
+    Pparm::or("material", "the material of all of it; without, each object in it keeps its own", None);
+
+pub(super) const OF_OBJECTS: Table = &[&MATERIAL_OF_ALL];
+
+/// An object whose own table has a `shader` has no other.
+pub(super) static SHADER: Pparm<Option<Paint>> = Pparm::or(
+    "shader",
+    "the shader that gives the look, defined earlier in the scene, or a type of shader",
+    None,
+);
+
+/// The size of the image, which every camera has.
+pub(super) static PIXELDIM: Pparm<[i64; 2]> =
+    Pparm::required("pixeldim", "the width and height of the image")
+        .alias(&["pixel_dim"])
+        .each(&["width", "height"])
+        .unit("pixels")
+        .between(1.0, 100_000.0)
+        .dumped("pixel_dim", " \n");
+
+pub(super) static SAMPLES: Pparm<i64> =
+    Pparm::or("samples", "the number of samples per pixel, to smooth edges", 1)
+        .between(1.0, Sampler::MOST as f64)
+        .not_dumped();
+
+pub(super) static ACCURACY: Pparm<Accuracy> =
+    Pparm::or("accuracy", "how exactly hits are computed", Accuracy::Exact).not_dumped();
+
+/// What every camera has before and after its own attributes.
+pub(super) const FILM: [Table; 2] = [&[&PIXELDIM], &[&SAMPLES, &ACCURACY]];

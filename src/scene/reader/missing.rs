@@ -1,0 +1,50 @@
+//! Names that are missing from a scene.
+
+use super::fault::Place;
+use super::parsed::Word;
+use hashbrown::HashSet;
+use std::collections::{BTreeMap, btree_map};
+use std::hash::Hash;
+
+/// The maximum number of different missing names of one sort that are kept. Of more, only the number is known.
+const MAX_MISSING: usize = 10_000;
+
+/// Names of which a scene has no entity or no type, so many that a scene of nothing else takes little memory.
+pub struct Missing<K> {
+    /// The first names, each with its first place and the number of its places.
+    pub names: BTreeMap<(K, String), (Place, usize)>,
+    /// The hashes of the others.
+    others: HashSet<(K, u64)>,
+}
+
+impl<K> Default for Missing<K> {
+    fn default() -> Self {
+        Self { names: BTreeMap::new(), others: HashSet::new() }
+    }
+}
+
+impl<K: Copy + Ord + Hash> Missing<K> {
+    /// Notes that a name of this sort is missing at a place.
+    pub fn add(&mut self, sort: K, Word { text, place, .. }: &Word<'_>, hash: u64) {
+        let is_full = self.names.len() >= MAX_MISSING;
+        match self.names.entry((sort, text.to_string())) {
+            btree_map::Entry::Occupied(mut known) => known.get_mut().1 += 1,
+            btree_map::Entry::Vacant(free) if !is_full => {
+                free.insert((place.clone(), 1));
+            }
+            btree_map::Entry::Vacant(_) => {
+                self.others.insert((sort, hash));
+            }
+        }
+    }
+
+    /// Returns the hashes of the names that are not kept, all different.
+    pub fn others(&self) -> impl Iterator<Item = u64> {
+        self.others.iter().map(|(_, hash)| *hash)
+    }
+
+    /// Tells whether no name is missing.
+    pub fn is_empty(&self) -> bool {
+        self.names.is_empty()
+    }
+}
