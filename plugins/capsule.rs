@@ -4,15 +4,14 @@ use crate::prelude::*;
 
 static BASE: Pparm<DVec3> =
     Pparm::required("base", "the centre of its lower half sphere").unit("world coordinates");
-static DIRECTION: Pparm<DVec3> = Pparm::or("direction", "the direction of the axis, upward", DVec3::Y)
-    .must("a nonzero vector", |axis: &DVec3| axis.try_normalize().is_some());
+static DIRECTION: Pparm<DVec3> =
+    Pparm::or("direction", "the direction of the axis, upward", DVec3::Y).nonzero();
 static HEIGHT: Pparm<f64> =
     Pparm::required("height", "the distance from the centre of one half sphere to that of the other")
         .unit("world units")
-        .must("positive", |height| *height > 0.0);
-static RADIUS: Pparm<f64> = Pparm::required("radius", "the distance of its wall from the axis")
-    .unit("world units")
-    .must("positive", |radius| *radius > 0.0);
+        .positive();
+static RADIUS: Pparm<f64> =
+    Pparm::required("radius", "the distance of its wall from the axis").unit("world units").positive();
 
 const TABLE: Table = &[&BASE, &DIRECTION, &HEIGHT, &RADIUS];
 

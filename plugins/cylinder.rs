@@ -4,13 +4,11 @@ use crate::prelude::*;
 use crate::shapes::uv;
 
 static BASE: Pparm<DVec3> = Pparm::required("base", "the centre of its lower end").unit("world coordinates");
-static DIRECTION: Pparm<DVec3> = Pparm::or("direction", "the direction of the axis, upward", DVec3::Y)
-    .must("a nonzero vector", |axis: &DVec3| axis.try_normalize().is_some());
-static HEIGHT: Pparm<f64> =
-    Pparm::required("height", "the length").unit("world units").must("positive", |height| *height > 0.0);
-static RADIUS: Pparm<f64> = Pparm::required("radius", "the distance of its wall from the axis")
-    .unit("world units")
-    .must("positive", |radius| *radius > 0.0);
+static DIRECTION: Pparm<DVec3> =
+    Pparm::or("direction", "the direction of the axis, upward", DVec3::Y).nonzero();
+static HEIGHT: Pparm<f64> = Pparm::required("height", "the length").unit("world units").positive();
+static RADIUS: Pparm<f64> =
+    Pparm::required("radius", "the distance of its wall from the axis").unit("world units").positive();
 static OPEN: Pparm<bool> = Pparm::or("open", "whether it is a tube, without its two ends", false);
 
 const TABLE: Table = &[&BASE, &DIRECTION, &HEIGHT, &RADIUS, &OPEN];
@@ -56,8 +54,7 @@ impl Implicit for Cylinder {
 
     fn bounds(&self) -> [DVec3; 2] {
         // The box must not touch the surface, or it would be in doubt on which side of it a hit is.
-        let Self { radius, height, .. } = *self;
-        let [out, up] = [1.125 * radius, 0.125 * height];
-        [DVec3::new(-out, -up, -out), DVec3::new(out, height + up, out)]
+        let [out, up] = [1.125 * self.radius, 0.125 * self.height];
+        [DVec3::new(-out, -up, -out), DVec3::new(out, self.height + up, out)]
     }
 }

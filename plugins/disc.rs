@@ -4,11 +4,9 @@ use crate::prelude::*;
 
 static CENTER: Pparm<DVec3> =
     Pparm::required("center", "the position of the centre").alias(&["centre"]).unit("world coordinates");
-static NORMAL: Pparm<DVec3> = Pparm::or("normal", "the direction in which it faces", DVec3::Y)
-    .must("a nonzero vector", |normal: &DVec3| normal.try_normalize().is_some());
-static RADIUS: Pparm<f64> = Pparm::required("radius", "the distance from its centre to its edge")
-    .unit("world units")
-    .must("positive", |radius| *radius > 0.0);
+static NORMAL: Pparm<DVec3> = Pparm::or("normal", "the direction in which it faces", DVec3::Y).nonzero();
+static RADIUS: Pparm<f64> =
+    Pparm::required("radius", "the distance from its centre to its edge").unit("world units").positive();
 
 const TABLE: Table = &[&CENTER, &NORMAL, &RADIUS];
 

@@ -12,7 +12,7 @@ pub static DIMENSIONS: Pparm<DVec2> =
         .dumped("dimensions", "\n");
 pub static XDIR: Pparm<DVec3> =
     Pparm::required("xdir", "the direction of the first side, projected onto the plane")
-        .must("a nonzero vector", |xdir: &DVec3| xdir.try_normalize().is_some())
+        .nonzero()
         .dumped("xdir", "\n");
 static PROJECTED: Derived = Derived(|args| frame(args).x_axis.to_datum().line("projected", "\n"));
 static ROTATION_ROWS: Derived = Derived(|args| {

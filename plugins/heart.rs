@@ -4,9 +4,8 @@ use crate::prelude::*;
 
 static CENTER: Pparm<DVec3> =
     Pparm::required("center", "the position of the centre").alias(&["centre"]).unit("world coordinates");
-static SIZE: Pparm<f64> = Pparm::required("size", "the distance from the centre down to the tip")
-    .unit("world units")
-    .must("positive", |size| *size > 0.0);
+static SIZE: Pparm<f64> =
+    Pparm::required("size", "the distance from the centre down to the tip").unit("world units").positive();
 
 const TABLE: Table = &[&CENTER, &SIZE];
 

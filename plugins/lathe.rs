@@ -16,8 +16,7 @@ static POINTS: Pparm<Points> = Pparm::required(
     points.0[0].x == 0.0 && points.0.is_sorted_by(|low, high| low.x < high.x)
 });
 static DIRECTION: Pparm<DVec3> =
-    Pparm::or("direction", "the direction of the axis, upward from `base`", DVec3::Y)
-        .must("a nonzero vector", |axis: &DVec3| axis.try_normalize().is_some());
+    Pparm::or("direction", "the direction of the axis, upward from `base`", DVec3::Y).nonzero();
 static BASE: Pparm<DVec3> =
     Pparm::required("base", "the point on the axis at height 0").unit("world coordinates");
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 static WIDTH: Pparm<f64> = Pparm::required("width", "the width of what the image shows")
     .unit("world units")
-    .must("positive", |width| *width > 0.0)
+    .positive()
     .pose(Pose::Extent);
 
 const TABLE: Table = &[&WIDTH as &dyn Row];

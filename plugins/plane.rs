@@ -5,7 +5,7 @@ use crate::shapes::plane::{CLASSIC_METHOD, Flat, Plane};
 
 pub static NORMAL: Pparm<DVec3> =
     Pparm::required("normal", "a vector perpendicular to the plane, pointing to its lit side")
-        .must("a nonzero vector", |normal: &DVec3| normal.try_normalize().is_some())
+        .nonzero()
         .shown(DVec3::normalize);
 pub static POINT: Pparm<DVec3> = Pparm::required("point", "a point on the plane").unit("world coordinates");
 

@@ -14,7 +14,7 @@ static BASE: Pparm<DVec3> =
     Pparm::or("base", "the point from which the corners are measured", DVec3::ZERO).unit("world coordinates");
 static HEIGHT: Pparm<f64> = Pparm::required("height", "the distance from the lower end to the upper one")
     .unit("world units")
-    .must("positive", |height| *height > 0.0);
+    .positive();
 static OPEN: Pparm<bool> = Pparm::or("open", "whether its two ends are left out", false);
 
 const TABLE: Table = &[&POINTS, &BASE, &HEIGHT, &OPEN];

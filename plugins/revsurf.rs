@@ -12,13 +12,12 @@ static PROFILE: Pparm<Option<Arc<Formula>>> = Pparm::or(
     None,
 );
 static DIRECTION: Pparm<DVec3> =
-    Pparm::required("direction", "the direction of the axis, upward from `base`")
-        .must("a nonzero vector", |axis: &DVec3| axis.try_normalize().is_some());
+    Pparm::required("direction", "the direction of the axis, upward from `base`").nonzero();
 static BASE: Pparm<DVec3> =
     Pparm::required("base", "the point on the axis at height 0").unit("world coordinates");
 static HEIGHT: Pparm<f64> = Pparm::required("height", "the height of the surface along its axis")
     .unit("world units")
-    .must("positive", |height| *height > 0.0)
+    .positive()
     .not_dumped();
 
 static CURVE: OneOf = OneOf { meaning: "the profile curve", names: &["surfer", "profile"] };

@@ -17,9 +17,8 @@ static GROUND: Pparm<Option<Rgb>> = Pparm::or(
     None,
 )
 .must("0 or more in each channel", |ground| ground.is_none_or(|ground| is_light(&ground)));
-static UP: Pparm<DVec3> = Pparm::or("up", "the direction of the zenith", DVec3::Y)
-    .must("a nonzero vector", |up| up.try_normalize().is_some())
-    .shown(DVec3::normalize);
+static UP: Pparm<DVec3> =
+    Pparm::or("up", "the direction of the zenith", DVec3::Y).nonzero().shown(DVec3::normalize);
 
 const TABLE: Table = &[&HORIZON, &ZENITH, &GROUND, &UP];
 

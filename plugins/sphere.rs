@@ -9,7 +9,7 @@ static CENTER: Pparm<DVec3> =
     Pparm::required("center", "the position of the centre").alias(&["centre"]).unit("world coordinates");
 static RADIUS: Pparm<f64> = Pparm::required("radius", "the distance from the centre to the surface")
     .unit("world units")
-    .must("positive", |radius| *radius > 0.0)
+    .positive()
     .dumped("radius", "\n");
 
 /// The rows of every shape with a centre and a radius.

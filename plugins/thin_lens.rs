@@ -7,7 +7,7 @@ use std::sync::Arc;
 static APERTURE: Pparm<f64> =
     Pparm::required("aperture", "the diameter of the lens, through whose middle a single sample goes")
         .unit("world units")
-        .must("positive", |aperture| *aperture > 0.0);
+        .positive();
 static FOCUS: Pparm<Option<f64>> =
     Pparm::or("focus", "the distance of the plane that is sharp (by default that of `target`)", None)
         .unit("world units")

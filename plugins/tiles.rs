@@ -3,8 +3,7 @@
 use crate::prelude::*;
 use std::panic::Location;
 
-pub static WIDTH: Pparm<f64> =
-    Pparm::or("width", "the width of a tile", 0.5).unit("world units").must("positive", |width| *width > 0.0);
+pub static WIDTH: Pparm<f64> = Pparm::or("width", "the width of a tile", 0.5).unit("world units").positive();
 static ON: Pparm<Wall> = Pparm::or("on", "the wall along which the tiles lie", Wall::Floor);
 
 const TABLE: Table = &[&WIDTH, &ON];

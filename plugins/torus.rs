@@ -4,15 +4,12 @@ use crate::prelude::*;
 
 static CENTER: Pparm<DVec3> =
     Pparm::required("center", "the position of the centre").alias(&["centre"]).unit("world coordinates");
-static DIRECTION: Pparm<DVec3> = Pparm::or("direction", "the direction of the axis", DVec3::Y)
-    .must("a nonzero vector", |axis: &DVec3| axis.try_normalize().is_some());
+static DIRECTION: Pparm<DVec3> = Pparm::or("direction", "the direction of the axis", DVec3::Y).nonzero();
 static RADIUS: Pparm<f64> =
     Pparm::required("radius", "the distance from the centre to the middle of the tube")
         .unit("world units")
-        .must("positive", |radius| *radius > 0.0);
-static TUBE: Pparm<f64> = Pparm::required("tube", "the radius of the tube")
-    .unit("world units")
-    .must("positive", |tube| *tube > 0.0);
+        .positive();
+static TUBE: Pparm<f64> = Pparm::required("tube", "the radius of the tube").unit("world units").positive();
 
 const TABLE: Table = &[&CENTER, &DIRECTION, &RADIUS, &TUBE];
 

@@ -7,6 +7,7 @@ use crate::scene::attribute::{Attribute, Pose};
 use crate::scene::counts::{Counts, OneOf};
 use crate::scene::value::{COLOUR, Datum, Type, Value};
 use crate::text;
+use glam::DVec3;
 use std::borrow::Cow;
 use std::panic::Location;
 use std::ptr;
@@ -130,6 +131,20 @@ impl<T: Value> Pparm<T> {
     pub const fn not_dumped(mut self) -> Self {
         self.label = None;
         self
+    }
+}
+
+impl Pparm<f64> {
+    /// Sets the rule that the number is positive.
+    pub const fn positive(self) -> Self {
+        self.must("positive", |number| *number > 0.0)
+    }
+}
+
+impl Pparm<DVec3> {
+    /// Sets the rule that the vector is not zero, so that it has a direction.
+    pub const fn nonzero(self) -> Self {
+        self.must("a nonzero vector", |vector| vector.try_normalize().is_some())
     }
 }
 

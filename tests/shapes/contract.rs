@@ -76,8 +76,7 @@ fn a_shape_that_is_flat_to_the_fourth_order_keeps_its_contract_under_any_name() 
 }
 
 static CENTER: Pparm<DVec3> = Pparm::required("center", "the point in its middle");
-static RADIUS: Pparm<f64> =
-    Pparm::required("radius", "the distance to its surface").must("positive", |radius| *radius > 0.0);
+static RADIUS: Pparm<f64> = Pparm::required("radius", "the distance to its surface").positive();
 const TABLE: Table = &[&CENTER as &dyn Row, &RADIUS];
 
 /// A flaw of a sphere.

@@ -5,7 +5,7 @@ use tabray::prelude::*;
 static CENTER: Pparm<DVec3> = Pparm::required("center", "the position of the centre").unit("world coordinates");
 static SIZE: Pparm<f64> = Pparm::required("size", "the distance from the centre to the sides")
     .unit("world units")
-    .must("positive", |size| *size > 0.0);
+    .positive();
 
 const TABLE: Table = &[&CENTER, &SIZE];
 

@@ -2,8 +2,8 @@
 
 use crate::prelude::*;
 
-static RINGS: Pparm<f64> = Pparm::or("rings", "how many rings there are in the unit of length", 6.0)
-    .must("positive", |rings| *rings > 0.0);
+static RINGS: Pparm<f64> =
+    Pparm::or("rings", "how many rings there are in the unit of length", 6.0).positive();
 
 const TABLE: Table = &[&RINGS as &dyn Row];
 

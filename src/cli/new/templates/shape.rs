@@ -6,9 +6,8 @@ use crate::prelude::*;
 // has a default. The parser, its messages and the reference are made from these descriptions.
 static CENTER: Pparm<DVec3> =
     Pparm::required("center", "the position of the centre").alias(&["centre"]).unit("world coordinates");
-static SIZE: Pparm<f64> = Pparm::required("size", "the distance from the centre to the sides")
-    .unit("world units")
-    .must("positive", |size| *size > 0.0);
+static SIZE: Pparm<f64> =
+    Pparm::required("size", "the distance from the centre to the sides").unit("world units").positive();
 
 // The attributes in the order of the dump. Every shape has `material` without listing it.
 const TABLE: Table = &[&CENTER, &SIZE];
