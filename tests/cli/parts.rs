@@ -166,6 +166,34 @@ fn a_part_that_is_killed_or_stopped_is_resumed() {
     assert!(said.contains("a.png.part-2-of-4 is there already"), "{said}");
 }
 
+#[test]
+fn a_part_that_is_there_loses_its_checkpoint() {
+    let folder = folder();
+    let place = |name: &str| folder.path().join(name);
+    let (part, checkpoint) = (place("a.png.part-1-of-2"), place("a.png.part-1-of-2.checkpoint"));
+    let options = ["--part", "1/2", "--size", "120", "--samples", "256", "--threads", "1", "--resume"];
+    let scene = scene(SCENE);
+    let words = [&["render", scene.to_str().expect("a path"), "-o", "a.png"], &options[..]].concat();
+    // A render that is stopped, later and later until something is kept.
+    let mut limit = 20;
+    while !checkpoint.exists() {
+        let (status, said) = run(&folder, &[&words[..], &["--time-limit", &format!("{limit}ms")]].concat());
+        assert_eq!(status, 130, "{said}");
+        limit += limit / 10;
+    }
+    let kept = fs::read(&checkpoint).expect("a checkpoint");
+    succeeds(&folder, &words);
+    assert!(part.exists() && !checkpoint.exists());
+    // As if the program had been killed between the two.
+    fs::write(&checkpoint, &kept).expect("a checkpoint");
+    let said = succeeds(&folder, &words);
+    assert!(said.contains("is there already") && !checkpoint.exists(), "{said}");
+    // A file that is none of its own stays.
+    fs::write(&checkpoint, "notes").expect("a file");
+    succeeds(&folder, &words);
+    assert!(checkpoint.exists());
+}
+
 /// Changes a byte of a file.
 fn damage(path: &Path, at: impl Fn(usize) -> usize) {
     let mut bytes = fs::read(path).expect("a part");

@@ -7,7 +7,7 @@ use crate::cli::process::failure::{self, Failure};
 use crate::cli::process::progress::Progress;
 use crate::cli::process::{memory, messages};
 use crate::cli::rendering::job::{tell_proofs, warn_of};
-use crate::cli::rendering::part_begun::{Begun, is_there};
+use crate::cli::rendering::part_begun::{Begun, is_there, remove};
 use crate::cli::rendering::stats::Stats;
 use crate::cli::rendering::{aov, full_range, resume};
 use crate::output::aov::{Aov, Setting};
@@ -97,7 +97,10 @@ impl Share<'_> {
             Label { part, tiles, size, what, beside, identity, made, unfinished }
         };
         let main = beside_and_label(path, label(self.what, false));
-        if !(resumes && is_there(&main)?) {
+        if resumes && is_there(&main)? {
+            // Where the program was killed just after it had finished the part, its checkpoint is still there.
+            Begun::remove(&resume::beside(&main.0), &main.1)?;
+        } else {
             match self.what {
                 What::Exr | What::Pfm => self.full_range(&main)?,
                 _ => self.bytes(&main, resumes, label(self.what, true))?,
@@ -196,10 +199,7 @@ impl Share<'_> {
             })
         })?;
         finish(path, writer)?;
-        if was_begun {
-            fs::remove_file(&checkpoint).map_err(|error| Failure::cannot_write(&checkpoint, &error))?;
-        }
-        Ok(())
+        if was_begun { remove(&checkpoint) } else { Ok(()) }
     }
 
     /// Returns the tiles of the part that lie in some rows.

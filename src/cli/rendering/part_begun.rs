@@ -5,6 +5,7 @@ use crate::cli::process::messages;
 use crate::files;
 use crate::output::part::{self, Label, Reader};
 use crate::text;
+use std::fs;
 use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -61,6 +62,15 @@ impl Begun {
         Ok(Some(Self { path: path.to_owned(), reader, mask, next: 0 }))
     }
 
+    /// Removes what is left of a part that is there, if there is anything.
+    pub fn remove(path: &Path, label: &Label) -> Result<(), Failure> {
+        match Self::open(path, label) {
+            Ok(Some(_)) => remove(path),
+            // What belongs to another part stays.
+            _ => Ok(()),
+        }
+    }
+
     /// Reads the next tile into some rows, and tells whether it is rendered.
     pub fn tile(&mut self, rows: &mut [u8], row: usize, place: [Range<usize>; 2]) -> Result<bool, Failure> {
         let mut tile = vec![0; 3 * place[0].len() * place[1].len()];
@@ -76,4 +86,9 @@ impl Begun {
     pub fn is_over(&self) -> bool {
         self.next == self.mask.len()
     }
+}
+
+/// Removes the checkpoint of a part that is finished.
+pub fn remove(checkpoint: &Path) -> Result<(), Failure> {
+    fs::remove_file(checkpoint).map_err(|error| Failure::cannot_write(checkpoint, &error))
 }
