@@ -25,6 +25,19 @@ fn no_byte_is_contradicted_and_nearly_every_pixel_is_proven() {
     thread.join().expect("no failure");
 }
 
+#[test]
+fn at_an_outline_the_face_is_proven_that_no_other_hides() {
+    let model = load(&root().join("scenes/hard/doubled.ray"));
+    let plan = Plan::new(&model);
+    let prover = Prover::new(&plan);
+    // The edges of the box are seen through the middles of these pixels.
+    for x in [60, 100] {
+        for y in 0..plan.camera.pixels[1] {
+            assert_eq!(prover.traced(x, y).verdict(), Verdict::Proven, "{x} {y}");
+        }
+    }
+}
+
 fn all_scenes() {
     // Proven, rounded, open and contradicted pixels.
     let mut counts = [0; 4];

@@ -1,11 +1,12 @@
 //! What can be proven of a mesh's hits along any line.
 
 use super::face::Face;
+use super::hits::BESIDE;
 use super::surface::Surface;
 use crate::geometry::sight::Line;
 use crate::numeric::affine::Affine;
 use crate::numeric::interval::Interval;
-use crate::numeric::scalar::dot;
+use crate::numeric::scalar::{Scalar, dot, per_axis};
 use crate::world::accuracy::Bounded;
 use crate::world::certify::{self, Found, Met, Onward, OverFootprint, Precise};
 
@@ -17,6 +18,39 @@ impl Surface {
         line: &Line<Interval<F>>,
         leaves: Option<usize>,
     ) -> (Found<F>, usize) {
+        let met = self.met::<A, F>(line, leaves);
+        let first = met.iter().copied().reduce(|one, other| if other.0.0 < one.0.0 { other } else { one });
+        let Some(((low, first), face)) = first else { return (Found::Misses, 0) };
+        let Found::Hits(at) = first else { return (Found::Doubtful(low), face) };
+        let rivals =
+            || met.iter().filter(|((low, _), _)| *low <= at.high).map(|((_, found), face)| (*found, *face));
+        if rivals().all(|(_, other)| other == face) {
+            return (first, face);
+        }
+        // Of several faces at exactly the same distance, that which `face_along` chooses.
+        if rivals().all(|(found, _)| found == first && at.low == at.high) {
+            let place = |face: usize| {
+                let rank = match self.is_certainly_hidden::<A, F>(face, line, at, leaves)? {
+                    true => 2,
+                    false => u8::from(!self.is_certainly_outside::<A, F>(face, line)?),
+                };
+                Some((rank, self.order[face]))
+            };
+            let places: Option<Vec<_>> = rivals().map(|(_, face)| Some((place(face)?, face))).collect();
+            if let Some((_, face)) = places.and_then(|places| places.into_iter().min()) {
+                return (first, face);
+            }
+        }
+        (Found::Doubtful(low), face)
+    }
+
+    /// Returns the faces that a line may hit, each with what is certain about its first hit there and with the least t of
+    /// that hit.
+    fn met<A: Bounded, F: Precise>(
+        &self,
+        line: &Line<Interval<F>>,
+        leaves: Option<usize>,
+    ) -> Vec<((F, Found<F>), usize)> {
         let coarse = Line { origin: line.origin.map(Interval::coarse), dir: line.dir.map(Interval::coarse) };
         let mut met = Vec::new();
         self.tree.within(
@@ -31,20 +65,34 @@ impl Surface {
                 met.push((found, face));
             },
         );
-        let first = met.iter().copied().reduce(|one, other| if other.0.0 < one.0.0 { other } else { one });
-        let Some(((low, first), face)) = first else { return (Found::Misses, 0) };
-        let Found::Hits(at) = first else { return (Found::Doubtful(low), face) };
-        let rivals = || met.iter().filter(|((low, _), _)| *low <= at.high);
-        // Of several faces at exactly the same distance, that which `face_along` chooses.
-        if rivals().all(|((_, found), other)| *other == face || *found == first && at.low == at.high) {
-            let place =
-                |face: usize| Some((!self.is_certainly_outside::<A, F>(face, line)?, self.order[face]));
-            let places: Option<Vec<_>> = rivals().map(|(_, face)| Some((place(*face)?, *face))).collect();
-            if let Some((_, face)) = places.and_then(|places| places.into_iter().min()) {
-                return (first, face);
-            }
+        met
+    }
+
+    /// Tells whether other faces hide a face beside the point where a line meets it, as [`is_hidden`](Self::is_hidden)
+    /// does; `None` where it is open.
+    fn is_certainly_hidden<A: Bounded, F: Precise>(
+        &self,
+        face: usize,
+        line: &Line<Interval<F>>,
+        at: Interval<F>,
+        leaves: Option<usize>,
+    ) -> Option<bool> {
+        if self.open_edges > 0 {
+            return Some(false);
         }
-        (Found::Doubtful(low), face)
+        let ([a, b, c], met) = (self.corners(face), line.at(at));
+        let number = Interval::constant;
+        let way = per_axis(|axis| {
+            let sum = number(a[axis]) + number(b[axis]) + number(c[axis]);
+            met[axis] + number(BESIDE) * (sum / number(3.0) - met[axis]) - line.origin[axis]
+        });
+        // The point on the face is at t = 1.
+        let (nearly, toward) = (F::of(1.0 - 256.0 * f64::EPSILON), Line { origin: line.origin, dir: way });
+        let met = self.met::<A, F>(&toward, leaves);
+        if met.iter().any(|((_, found), _)| matches!(found, Found::Hits(at) if at.high < nearly)) {
+            return Some(true);
+        }
+        met.iter().all(|((low, _), _)| *low >= nearly).then_some(false)
     }
 
     /// Calls `met` with the possible first hits of each face.

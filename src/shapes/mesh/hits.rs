@@ -233,7 +233,6 @@ impl Surface {
 
     /// Tells whether the part of a face of a closed mesh beside a point of it is certainly hidden from where a ray starts.
     fn is_hidden(&self, face: usize, ray: &Ray, at: DVec3) -> bool {
-        const BESIDE: f64 = 1.0 / (1 << 20) as f64;
         let [a, b, c] = self.corners(face);
         let way = at + BESIDE * ((a + b + c) / 3.0 - at) - ray.origin;
         let distance = way.length();
@@ -302,3 +301,6 @@ impl Surface {
 
 /// What a ray leaves that starts on no face.
 pub(super) const NOTHING: Leaving = Leaving { least: -1.0, most: -1.0 };
+
+/// How far a point beside another one of a face lies from it, as a fraction of the way to the middle of the face.
+pub(super) const BESIDE: f64 = 1.0 / (1 << 20) as f64;
