@@ -8,7 +8,7 @@ trap 'rm -rf "$folder"' EXIT
 TIMEFORMAT=%U
 while read -r scene; do
     kind=without
-    grep -v '^#' "$scene" | grep -qE 'specular|transparency' && kind=with
+    grep -v '^#' "$scene" | grep -qE 'specular|transparency|^(glass|metal) ' && kind=with
     rendered=$({ time "$program" render --method exact --samples 1 "$scene" -o "$folder/a.ppm" 2>"$folder/err"; } 2>&1) || continue
     proven=$({ time "$program" verify --colours --method exact --samples 1 --time-limit 300s --json "$scene" >"$folder/found" 2>/dev/null; } 2>&1)
     # Numbers of pixels: all, proven, rounded, open, contradicted, not reached.

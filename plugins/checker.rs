@@ -55,8 +55,18 @@ impl Shader for Checker {
         square.unwrap_or(DVec2::ZERO)
     }
 
-    fn enclose<F: Precise>(&self, material: &Material, _at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        Some(LookBounds::from(material).hull(&LookBounds::from(&*self.other)))
+    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
+        let square = |axis: usize| {
+            let count = self.squares[axis];
+            let square = (at.uv?[axis] * Interval::constant(count)).certain_floor()?;
+            Some(square.min(count - 1.0))
+        };
+        let [own, other] = [LookBounds::from(material), LookBounds::from(&*self.other)];
+        Some(match (square(0), square(1)) {
+            (Some(column), Some(row)) if (column + row).rem_euclid(2.0) == 0.0 => own,
+            (Some(_), Some(_)) => other,
+            _ => own.hull(&other),
+        })
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {

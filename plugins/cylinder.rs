@@ -35,6 +35,10 @@ impl Implicit for Cylinder {
         Some(uv::on_height(at, self.height))
     }
 
+    fn uv_bounds(&self, at: [Interval; 3]) -> Option<[Interval; 2]> {
+        Some(uv::bounds_on_height(at, self.height))
+    }
+
     fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
         let wall = x.powi(2) + z.powi(2) - N::constant(self.radius).powi(2);
         if self.is_open { wall } else { wall.max(y * (y - N::constant(self.height))) }

@@ -126,4 +126,8 @@ impl<A> Equation for Ellipsoid<A> {
     fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         Ellipsoid::value(self, at)
     }
+    fn uv_bounds(&self, at: [Interval; 3]) -> Option<[Interval; 2]> {
+        let n = Interval::constant;
+        Some(uv::bounds_on_sphere(per_axis(|axis| (at[axis] - n(self.center[axis])) / n(self.scale[axis]))))
+    }
 }

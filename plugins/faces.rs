@@ -55,14 +55,17 @@ impl Shader for Faces {
         DVec2::new(Self::face(at).into(), 0.0)
     }
 
-    fn enclose<F: Precise>(&self, material: &Material, _at: &PointBounds<F>) -> Option<LookBounds<F>> {
+    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
         let look = LookBounds::from(material);
         let times = |own: [Interval<F>; 3]| {
             let of = |colour: &Rgb| per_axis(|channel| own[channel] * Interval::constant(colour[channel]));
             let hull = |one: [Interval<F>; 3], other: [Interval<F>; 3]| {
                 per_axis(|channel| one[channel].hull(other[channel]))
             };
-            self.colours.iter().map(of).reduce(hull)
+            match at.face {
+                Some(face) => Some(of(&self.colours[face as usize % self.colours.len()])),
+                None => self.colours.iter().map(of).reduce(hull),
+            }
         };
         Some(LookBounds { ambient: times(look.ambient)?, diffuse: times(look.diffuse)?, ..look })
     }

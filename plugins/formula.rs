@@ -76,13 +76,14 @@ impl Shader for ByFormula {
     fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
         let n = Interval::<F>::constant;
         let normal = if self.uses(5..8) { at.normal? } else { [n(0.0); 3] };
-        if self.uses(3..5) || !self.all().all(SurfaceField::is_enclosed) {
+        let [u, v] =
+            if self.uses(3..5) { at.uv? } else { [Interval::constant(0.0); 2] }.map(Interval::from_f64);
+        if !self.all().all(SurfaceField::is_enclosed) {
             return None;
         }
         let ([x, y, z], [nx, ny, nz]) = (at.position, normal);
-        let channel = |formula: &SurfaceField| {
-            formula.at([x, y, z, n(0.0), n(0.0), nx, ny, nz]).max(n(0.0)).min(n(MOST))
-        };
+        let channel =
+            |formula: &SurfaceField| formula.at([x, y, z, u, v, nx, ny, nz]).max(n(0.0)).min(n(MOST));
         let colour = |formulas: &Option<Formulas>, own| match formulas {
             Some(formulas) => formulas.each_ref().map(channel),
             None => own,

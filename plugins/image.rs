@@ -39,8 +39,13 @@ impl Image {
 
     /// Returns the texel of a column and a row among those of all repetitions. Beyond an edge, it is that at the edge.
     fn texel(&self, at: DVec2) -> Rgb {
-        let (at, size) = (at.clamp(DVec2::ZERO, (self.size() - 1.0).max(DVec2::ZERO)), self.texture.size());
-        self.texture.texel(at.x as u32 % size[0].max(1), at.y as u32 % size[1].max(1))
+        self.texture.texel(self.wrapped(at.x, 0), self.wrapped(at.y, 1))
+    }
+
+    /// Returns the column or the row in the texture of a column or row among those of all repetitions.
+    fn wrapped(&self, at: f64, axis: usize) -> u32 {
+        let size = u64::from(self.texture.size()[axis].max(1));
+        (at.clamp(0.0, (self.size()[axis] - 1.0).max(0.0)) as u64 % size) as u32
     }
 
     fn colour(&self, at: &SurfacePoint) -> Rgb {
@@ -53,6 +58,30 @@ impl Image {
             self.texel(corner + DVec2::new(0.0, y)).lerp(self.texel(corner + DVec2::new(1.0, y)), part.x)
         };
         row(0.0).lerp(row(1.0), part.y)
+    }
+
+    /// Encloses the colours at points with such u and v.
+    fn enclosed<F: Precise>(&self, uv: [Interval; 2]) -> [Interval<F>; 3] {
+        let (size, n) = (self.size(), Interval::constant);
+        let half = n(if self.smooth { 0.5 } else { 0.0 });
+        let place = [uv[0] * n(size.x) - half, uv[1] * n(size.y) - half];
+        if let (true, [Some(x), Some(y)]) = (self.smooth, place.map(Interval::certain_floor)) {
+            let part = [place[0] - n(x), place[1] - n(y)].map(Interval::<F>::from_f64);
+            let texel = |right: f64, up: f64| constants(self.texel(DVec2::new(x + right, y + up)));
+            let blend = |one: [Interval<F>; 3], other: [Interval<F>; 3], part: Interval<F>| {
+                per_axis(|channel| one[channel] + part * (other[channel] - one[channel]))
+            };
+            let row = |up: f64| blend(texel(0.0, up), texel(1.0, up), part[0]);
+            return blend(row(0.0), row(1.0), part[1]);
+        }
+        // Blended colours lie among those of the texels around.
+        let last = if self.smooth { 1 } else { 0 };
+        let range = |axis: usize| {
+            let Interval { low, high } = place[axis];
+            (low.floor() as i64..=(high.floor() as i64).saturating_add(last))
+                .map(move |at| self.wrapped(at as f64, axis))
+        };
+        self.texture.enclose(range(0), range(1))
     }
 }
 
@@ -73,10 +102,11 @@ impl Shader for Image {
         self.place(at).floor().min(self.size() - 1.0)
     }
 
-    /// The texel is not known, but its colours are, from 0 to 1.
-    fn enclose<F: Precise>(&self, material: &Material, _at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        let (look, any) = (LookBounds::from(material), Interval::constant(0.0).hull(Interval::constant(1.0)));
-        let times = |colour: [Interval<F>; 3]| per_axis(|channel| colour[channel] * any);
+    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
+        // Where nothing is known of u and v, the colours are those of all texels.
+        let unknown = [Interval::<f64>::whole(); 2];
+        let (look, texel) = (LookBounds::from(material), self.enclosed::<F>(at.uv.unwrap_or(unknown)));
+        let times = |colour: [Interval<F>; 3]| per_axis(|channel| colour[channel] * texel[channel]);
         Some(LookBounds { ambient: times(look.ambient), diffuse: times(look.diffuse), ..look })
     }
 

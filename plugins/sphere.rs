@@ -160,4 +160,7 @@ impl<A> Equation for Sphere<A> {
         let part = |axis: usize| (at[axis] - N::constant(self.center[axis])).powi(2);
         part(0) + part(1) + part(2) - N::constant(self.radius).powi(2)
     }
+    fn uv_bounds(&self, at: [Interval; 3]) -> Option<[Interval; 2]> {
+        Some(uv::bounds_on_sphere(per_axis(|axis| at[axis] - Interval::constant(self.center[axis]))))
+    }
 }

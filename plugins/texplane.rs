@@ -3,11 +3,7 @@
 use super::{fplane, plane};
 use crate::prelude::*;
 use crate::shapes::rectangle::{Rectangle, along_sides};
-use std::ops::RangeInclusive;
 use std::sync::Arc;
-
-/// The number of texels along a side from which on an enclosure no longer looks at each.
-const MOST_TEXELS: u64 = 8;
 
 static TEXNAME: Pparm<Arc<Texture>> = Pparm::required("texname", "the texture, defined earlier in the scene");
 static MODE: Pparm<i64> = Pparm::required(
@@ -100,6 +96,7 @@ impl Picture {
     pub fn enclose<F: Precise>(&self, at: [Interval<F>; 3]) -> [Interval<F>; 3] {
         let Given { normal, xdir, screen, pixels } = self.given;
         let (corner, n) = (self.rectangle.corner, Interval::<F>::constant);
+        let [normal, xdir] = [constants(normal), constants(xdir)];
         let across = along_sides(normal, xdir, per_axis(|axis| at[axis] - n(corner[axis])));
         let size = self.texture.size();
         let range = |side: usize| {
@@ -110,22 +107,10 @@ impl Picture {
             let Interval { low, high } = texels.coarse();
             // Infinite ends become the least and the greatest number.
             let exact = texels.certain_floor().map(|at| at as u32..=at as u32);
-            exact.unwrap_or(low as u32..=high as u32)
+            let size = if self.texel.is_some() { size[side].max(1) } else { u32::MAX };
+            exact.unwrap_or(low as u32..=high as u32).map(move |at| at % size)
         };
-        let (columns, rows) = (range(0), range(1));
-        let count = |range: &RangeInclusive<u32>| u64::from(range.end() - range.start()) + 1;
-        let any = [Interval { low: n(0.0).low, high: n(1.0).high }; 3];
-        if count(&columns).max(count(&rows)) > MOST_TEXELS {
-            return any;
-        }
-        let wrapped = |at: u32, side: usize| if self.texel.is_some() { at % size[side].max(1) } else { at };
-        let texels = rows.flat_map(|row| columns.clone().map(move |column| (column, row)));
-        let colours =
-            texels.map(|(column, row)| constants(self.texture.texel(wrapped(column, 0), wrapped(row, 1))));
-        let hull = |one: [Interval<F>; 3], other: [Interval<F>; 3]| {
-            per_axis(|channel| one[channel].hull(other[channel]))
-        };
-        colours.reduce(hull).unwrap_or(any)
+        self.texture.enclose(range(0), range(1))
     }
 }
 

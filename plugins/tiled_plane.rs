@@ -62,7 +62,7 @@ impl Shader for Tiles {
 
     fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
         let [normal, xdir] = self.given;
-        let [u, v] = along_sides(normal, xdir, at.position);
+        let [u, v] = along_sides(constants(normal), constants(xdir), at.position);
         let tile = |along: Interval<F>, side: usize| {
             let offset = Interval::constant(100_000.0);
             ((along + offset) / Interval::constant(self.dimensions[side])).certain_floor()

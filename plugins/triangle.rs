@@ -163,4 +163,7 @@ impl<A> Equation for Triangle<A> {
     fn kept<N: Scalar>(&self, at: [N; 3]) -> N {
         self.plane.kept(at).min(self.inside(at))
     }
+    fn uv_bounds(&self, at: [Interval; 3]) -> Option<[Interval; 2]> {
+        Some(uv::bounds_on_triangle(self.corners, at))
+    }
 }

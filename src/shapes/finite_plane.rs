@@ -1,11 +1,12 @@
 //! A rectangle as a shape: what rays, packets and proofs ask of it.
 
 use super::plane::{CLASSIC_METHOD, Flat, Plane};
-use super::rectangle::FinitePlane;
+use super::rectangle::{FinitePlane, along_sides};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
 use crate::numeric::double_double::DoubleDouble;
-use crate::numeric::scalar::Scalar;
+use crate::numeric::interval::Interval;
+use crate::numeric::scalar::{Scalar, constants, per_axis};
 use crate::world::accuracy::{Bounded, Classic};
 use crate::world::certify::Equation;
 use crate::world::hittable::{Bracketed, Certified, Hittable};
@@ -125,6 +126,13 @@ impl<A> Equation for FinitePlane<A> {
 
     fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         self.plane.value(at)
+    }
+
+    fn uv_bounds(&self, at: [Interval; 3]) -> Option<[Interval; 2]> {
+        let from_corner = per_axis(|axis| at[axis] - Interval::constant(self.rectangle.corner[axis]));
+        let [u, v] = along_sides(self.plane.given_normal(), constants(self.given_xdir), from_corner);
+        let DVec2 { x, y } = self.rectangle.dimensions;
+        Some([u / Interval::constant(x), v / Interval::constant(y)])
     }
 
     fn kept<N: Scalar>(&self, at: [N; 3]) -> N {

@@ -69,6 +69,12 @@ pub trait Implicit: Send + Sync {
         None
     }
 
+    /// Encloses the coordinates u and v, as mathematics has them, of the points of the surface in a box; `None` where they
+    /// are not known, which is always correct. Proofs of colours ask for them.
+    fn uv_bounds(&self, _at: [Interval; 3]) -> Option<[Interval; 2]> {
+        None
+    }
+
     /// Returns the low and the high corner of a box around the shape. What lies outside of the box is cut off, and a
     /// shape that is cut shows its inside.
     fn bounds(&self) -> [DVec3; 2];
@@ -193,6 +199,10 @@ impl<T: Implicit> Equation for ImplicitShape<T> {
 
     fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         self.formula.value(at)
+    }
+
+    fn uv_bounds(&self, at: [Interval; 3]) -> Option<[Interval; 2]> {
+        self.formula.uv_bounds(at)
     }
 
     fn kept<N: Scalar>(&self, at: [N; 3]) -> N {

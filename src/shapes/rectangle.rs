@@ -53,8 +53,7 @@ impl Rectangle {
 
 /// Returns the coordinates of a vector along the sides of a rectangle with this normal, whose first side is along the
 /// projection of `xdir`, in the unit of the vector. The normal and `xdir` may have any length.
-pub fn along_sides<N: Scalar>(normal: DVec3, xdir: DVec3, vector: [N; 3]) -> [N; 2] {
-    let [normal, xdir] = [constants(normal), constants(xdir)];
+pub fn along_sides<N: Scalar>(normal: [N; 3], xdir: [N; 3], vector: [N; 3]) -> [N; 2] {
     let (square, across) = (dot(normal, normal), dot(normal, xdir));
     let first = per_axis(|axis| square * xdir[axis] - across * normal[axis]);
     let along = |side: [N; 3]| dot(side, vector) / dot(side, side).sqrt();

@@ -1,5 +1,7 @@
 //! Coordinates u and v on surfaces, for shaders.
 
+use crate::numeric::interval::Interval;
+use crate::numeric::scalar::{Scalar, constants, cross, dot, per_axis};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
@@ -30,6 +32,32 @@ pub fn on_triangle([a, b, c]: [DVec3; 3], at: DVec3) -> DVec2 {
     if weights.is_finite() { weights } else { DVec2::ZERO }
 }
 
+/// Encloses what [`turn`] returns for the points of a box, as mathematics has it.
+fn turn_bounds([x, _, z]: [Interval; 3]) -> Interval {
+    x.atan2(z) / (Interval::constant(2.0) * Interval::pi()) + Interval::constant(0.5)
+}
+
+/// Encloses what [`on_sphere`] returns for the directions of the points of a box, as mathematics has it.
+pub fn bounds_on_sphere(at: [Interval; 3]) -> [Interval; 2] {
+    let height = at[1] / dot(at, at).sqrt();
+    [turn_bounds(at), (-height).acos() / Interval::pi()]
+}
+
+/// Encloses what [`on_height`] returns for the points of a box, as mathematics has it.
+pub fn bounds_on_height(at: [Interval; 3], height: f64) -> [Interval; 2] {
+    [turn_bounds(at), at[1] / Interval::constant(height)]
+}
+
+/// Encloses what [`on_triangle`] returns for the points of a box, as mathematics has it.
+pub fn bounds_on_triangle(corners: [DVec3; 3], at: [Interval; 3]) -> [Interval; 2] {
+    let [a, b, c] = corners.map(constants::<Interval>);
+    let from = |to: [Interval; 3]| per_axis(|axis| to[axis] - a[axis]);
+    let (first, second, at) = (from(b), from(c), from(at));
+    let upright = cross(first, second);
+    let weight = |one, other| dot(cross(one, other), upright) / dot(upright, upright);
+    [weight(at, second), weight(first, at)]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -43,6 +71,43 @@ mod tests {
             (DVec3::Y, [0.5, 1.0]),
         ] {
             assert!((on_sphere(at) - DVec2::from(uv)).length() < 1e-15, "{at}: {}", on_sphere(at));
+        }
+    }
+
+    /// Returns the box of these half sizes around a point.
+    fn around(at: DVec3, half: f64) -> [Interval; 3] {
+        per_axis(|axis| Interval { low: at[axis] - half, high: at[axis] + half })
+    }
+
+    #[track_caller]
+    fn is_within(uv: DVec2, bounds: [Interval; 2]) {
+        for axis in 0..2 {
+            let Interval { low, high } = bounds[axis];
+            assert!(low - 1e-15 <= uv[axis] && uv[axis] <= high + 1e-15, "{uv} is not within {bounds:?}");
+        }
+    }
+
+    #[test]
+    fn bounds_contain_uv_and_are_close_around_it() {
+        let corners = [DVec3::new(0.1, 0.0, 0.3), DVec3::new(4.0, 0.2, 0.0), DVec3::new(0.0, 1.0, 2.0)];
+        for step in 0..1000 {
+            let turn = 0.3 + f64::from(step);
+            let at = DVec3::new(2.0 * turn.sin(), (1.7 * turn).sin(), 2.0 * turn.cos());
+            let half = 10_f64.powi(-(step % 15) - 1);
+            let inside = at + half * DVec3::new((5.0 * turn).sin(), (7.0 * turn).sin(), (9.0 * turn).sin());
+            let near = around(at, half);
+            is_within(on_sphere(inside.normalize()), bounds_on_sphere(near));
+            is_within(on_height(inside, 3.0), bounds_on_height(near, 3.0));
+            is_within(on_triangle(corners, inside), bounds_on_triangle(corners, near));
+            if half < 1e-3 {
+                let widest = |bounds: [Interval; 2]| bounds[0].width().max(bounds[1].width());
+                assert!(widest(bounds_on_triangle(corners, near)) < 100.0 * half + 1e-13);
+                // Apart from the meridian where u begins anew.
+                if at.z > 0.0 || at.x.abs() > half {
+                    assert!(widest(bounds_on_sphere(near)) < 100.0 * half + 1e-13, "{at}");
+                    assert!(widest(bounds_on_height(near, 3.0)) < 100.0 * half + 1e-13, "{at}");
+                }
+            }
         }
     }
 

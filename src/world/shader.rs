@@ -3,7 +3,7 @@
 use crate::geometry::ray::Side;
 use crate::numeric::interval::{Float, Interval};
 use crate::numeric::scalar::{Scalar, per_axis};
-use crate::world::certify::Precise;
+use crate::world::certify::{Precise, Proven};
 use crate::world::hittable::Hittable;
 use crate::world::material::{Look, Material, Rgb};
 use glam::{DVec2, DVec3};
@@ -76,6 +76,26 @@ pub struct PointBounds<F> {
     pub position: [Interval<F>; 3],
     /// The unit normals, outward; `None` where they are not known.
     pub normal: Option<[Interval<F>; 3]>,
+    /// The coordinates u and v; `None` where the shape has none, they are not known, or the shader does not see them.
+    pub uv: Option<[Interval; 2]>,
+    /// The index of the face; `None` where the shape has none, it is not known, or the shader does not see it.
+    pub face: Option<u32>,
+}
+
+impl<F: Precise> PointBounds<F> {
+    /// Returns points of a part of a shape with what a shader sees of them.
+    pub fn seen(
+        shape: &dyn Proven,
+        sees: Sees,
+        part: usize,
+        position: [Interval<F>; 3],
+        normal: Option<[Interval<F>; 3]>,
+    ) -> Self {
+        let shape = F::proofs(shape);
+        let uv = if sees.uv { shape.uv_bounds(position, part) } else { None };
+        let face = if sees.face { shape.face(part) } else { None };
+        Self { position, normal, uv, face }
+    }
 }
 
 /// The origin and the unit of length of the pattern of a shader on one object.

@@ -1,6 +1,8 @@
 //! Textures: images that colour surfaces and light.
 
 use crate::files::{self, ImageBytes};
+use crate::numeric::interval::{Float, Interval};
+use crate::numeric::scalar::{Scalar, constants, per_axis};
 use crate::text;
 use crate::world::material::Rgb;
 use bytesize::ByteSize;
@@ -12,6 +14,9 @@ use std::sync::OnceLock;
 
 /// What a decoder may take beside the picture, in bytes.
 const ASIDE: u64 = 1 << 20;
+
+/// The number of columns or rows from which on an enclosure no longer looks at each texel.
+const MOST_TEXELS: usize = 8;
 
 /// An image in a file. It is read once, when it is first needed.
 #[derive(Debug, Default)]
@@ -105,5 +110,23 @@ impl Texture {
         let (width, height) = image.dimensions();
         let pixel = image.get_pixel(column.min(width - 1), height - 1 - row.min(height - 1));
         Rgb::from_array(pixel.0.map(f64::from)) / 256.0
+    }
+
+    /// Encloses the texels of some columns and rows, of which there is one each at least. Where they are many, the channels
+    /// may be anything from 0 to 1.
+    pub fn enclose<F: Float>(
+        &self,
+        columns: impl Iterator<Item = u32> + Clone,
+        rows: impl Iterator<Item = u32> + Clone,
+    ) -> [Interval<F>; 3] {
+        let any = Interval::constant(0.0).hull(Interval::constant(1.0));
+        if columns.clone().nth(MOST_TEXELS).is_some() || rows.clone().nth(MOST_TEXELS).is_some() {
+            return [any; 3];
+        }
+        let of_row = |row: u32| columns.clone().map(move |column| constants(self.texel(column, row)));
+        let hull = |one: [Interval<F>; 3], other: [Interval<F>; 3]| {
+            per_axis(|channel| one[channel].hull(other[channel]))
+        };
+        rows.flat_map(of_row).reduce(hull).unwrap_or([any; 3])
     }
 }

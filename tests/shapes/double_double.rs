@@ -155,6 +155,40 @@ fn intervals_hold_the_true_results() {
     }
 }
 
+/// The angles of a box are bounded by those whose sines and cosines, with 237 bits, lie on the two sides of each point.
+#[test]
+fn intervals_hold_the_true_angles() {
+    let mut random = Random::new(9);
+    for _ in 0..20 * ARGUMENTS {
+        let width = 0.1_f64.powi(random.below(18) as i32);
+        let mut around = |least: f64, most: f64| {
+            let inside = random.between(least, most);
+            let (less, more) = (width * random.between(0.0, 1.0), width * random.between(0.0, 1.0));
+            (inside, Interval { low: inside - less, high: inside + more })
+        };
+        let [(x, columns), (y, rows), (cosine, cosines)] =
+            [around(-3.0, 3.0), around(-3.0, 3.0), around(-1.0, 1.0)];
+        let angles = rows.atan2(columns);
+        // Positive where the point lies to the left of a direction.
+        let left = |angle: f64| {
+            let (sine, cosine) = f256::from(angle).sin_cos();
+            f256::from(y) * cosine - f256::from(x) * sine
+        };
+        let zero = f256::from(0.0);
+        let is_turn = angles.width() > std::f64::consts::TAU;
+        let held = left(angles.low) >= zero && left(angles.high) <= zero;
+        assert!(is_turn || held, "({x:?}, {y:?}) is not within {angles:?}");
+
+        let angles = cosines.acos();
+        let [most, least] = [angles.low, angles.high].map(|angle| f256::from(angle).sin_cos().1);
+        let held = least <= f256::from(cosine) && f256::from(cosine) <= most;
+        assert!(held, "the angle of {cosine:?} is not within {angles:?}");
+    }
+    let [above, across] = [Interval { low: 1e-300, high: 1.0 }, Interval { low: -1.0, high: 1e-300 }];
+    let left = Interval { low: -2.0, high: -1.0 };
+    assert!(above.atan2(left).low > 2.0 && across.atan2(left).width() > std::f64::consts::TAU);
+}
+
 /// Converts a number of 237 bits, exactly.
 fn widest(of: f256) -> Bits {
     let (sign, exponent, (high, low)) = of.as_sign_exp_signif();

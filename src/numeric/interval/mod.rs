@@ -95,6 +95,11 @@ impl<F: Float> Interval<F> {
         Interval { low: self.low.to_f64().next_down(), high: self.high.to_f64().next_up() }
     }
 
+    /// Converts from `f64`, exactly.
+    pub fn from_f64(of: Interval) -> Self {
+        Self { low: F::of(of.low), high: F::of(of.high) }
+    }
+
     /// Returns the greatest integer that is not greater than the numbers, where it is the same for all of them.
     pub fn certain_floor(self) -> Option<f64> {
         let floor = self.low.floor();

@@ -191,7 +191,8 @@ impl Panes {
             }
             let (point, place) = (path.line.at(at), all[0].1);
             let pane = &scene.model.objects[object];
-            let seen = PointBounds { position: point.map(|axis| axis.range()), normal: None };
+            let (proven, position) = (pane.shape.proven()?, point.map(|axis| axis.range()));
+            let seen = PointBounds::seen(proven, pane.shader.sees(), place.part, position, None);
             let look = EncloseLook::<f64>::look(&*pane.shader, &pane.material, &seen)?;
             let tint = tint(pane.material.transparency, look.diffuse.map(Affine::from))?;
             let before = self.passed.unwrap_or([one; 3]);

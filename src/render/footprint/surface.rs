@@ -50,7 +50,8 @@ impl Surface {
             let normal = shading_normals(shape, at, place.part, normal)?;
             let range = |vector: [Affine; 3]| vector.map(|axis| axis.range());
             let outward = if is_turned { normal.map(|part| -part) } else { normal };
-            let point = PointBounds { position: range(at), normal: Some(range(outward)) };
+            let sees = object.shader.sees();
+            let point = PointBounds::seen(shape, sees, place.part, range(at), Some(range(outward)));
             let look = EncloseLook::<f64>::look(&*object.shader, &object.material, &point)?;
             let [ambient, diffuse, specular] =
                 [look.ambient, look.diffuse, look.specular].map(|colour| colour.map(Affine::from));

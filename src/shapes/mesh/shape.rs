@@ -231,6 +231,14 @@ impl<A: Bounded, F: Precise> Onward<F> for Mesh<A> {
     ) -> Option<[Interval<F>; 3]> {
         self.surface.enclosed_normal(part, at, normal)
     }
+
+    fn uv_bounds(&self, at: [Interval<F>; 3], part: usize) -> Option<[Interval; 2]> {
+        Some(uv::bounds_on_triangle(self.surface.corners(part), at.map(Interval::coarse)))
+    }
+
+    fn face(&self, part: usize) -> Option<u32> {
+        Some(self.surface.order[part])
+    }
 }
 
 impl<A: Bounded> OverFootprint for Mesh<A> {

@@ -87,7 +87,7 @@ impl Shader for PlacedShader {
 
     fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
         let position = self.placed.placement.point(at.position).map(F::widen);
-        let own = PointBounds { position, normal: None };
+        let own = PointBounds { position, normal: None, uv: at.uv, face: at.face };
         let look = EncloseLook::<Fraction>::look(self.own(), material, &own)?;
         let narrow = |colour: [Fine; 3]| colour.map(F::narrow);
         let LookBounds { ambient, diffuse, specular } = look;

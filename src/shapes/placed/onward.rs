@@ -47,6 +47,14 @@ impl<F: Precise> Onward<F> for Placed {
         let length = dot(world, world).sqrt();
         Some(per_axis(|axis| world[axis] / length))
     }
+
+    fn uv_bounds(&self, at: [Interval<F>; 3], part: usize) -> Option<[Interval; 2]> {
+        F::proofs(self.body.shape.proven()?).uv_bounds(self.placement.point(at), part)
+    }
+
+    fn face(&self, part: usize) -> Option<u32> {
+        F::proofs(self.body.shape.proven()?).face(part)
+    }
 }
 
 impl OverFootprint for Placed {

@@ -11,6 +11,7 @@ use crate::geometry::ray::{Bracket, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{self, Nearest, RayPacket, split};
 use crate::geometry::roots::Method;
 use crate::geometry::sight::Line;
+use crate::numeric::interval::Interval;
 use crate::numeric::scalar::Scalar;
 use crate::shapes::uv;
 use crate::simd::cpu::Cpu;
@@ -36,6 +37,10 @@ impl<S: Equation> Equation for InFrame<S> {
 
     fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         self.surface.value(at)
+    }
+
+    fn uv_bounds(&self, at: [Interval; 3]) -> Option<[Interval; 2]> {
+        self.surface.uv_bounds(at)
     }
 
     fn cost(&self) -> usize {

@@ -6,6 +6,7 @@ use crate::geometry::aabb::{Aabb, SLACK};
 use crate::numeric::formula::Formula;
 use crate::numeric::interval::Interval;
 use crate::numeric::scalar::Scalar;
+use crate::shapes::uv;
 use crate::text;
 use crate::world::certify::Equation;
 use glam::DVec3;
@@ -103,6 +104,10 @@ impl Equation for Revolution {
     fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
         let height = y.max(N::constant(0.0)).min(N::constant(self.height));
         x.powi(2) + z.powi(2) - self.square.at(height)
+    }
+
+    fn uv_bounds(&self, at: [Interval; 3]) -> Option<[Interval; 2]> {
+        Some(uv::bounds_on_height(at, self.height))
     }
 
     fn cost(&self) -> usize {

@@ -93,6 +93,14 @@ impl<F: Precise> Onward<F> for Trimmed {
     ) -> Option<[Interval<F>; 3]> {
         F::proofs(self.proven(self.index)?).shading_normal(at, part, normal)
     }
+
+    fn uv_bounds(&self, at: [Interval<F>; 3], part: usize) -> Option<[Interval; 2]> {
+        F::proofs(self.proven(self.index)?).uv_bounds(at, part)
+    }
+
+    fn face(&self, part: usize) -> Option<u32> {
+        F::proofs(self.proven(self.index)?).face(part)
+    }
 }
 
 /// Where a hit of the part may not be seen, what comes after it is not known.

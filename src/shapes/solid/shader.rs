@@ -45,6 +45,8 @@ impl Shader for PartShader {
         let own = PointBounds {
             position: at.position.map(F::widen),
             normal: at.normal.map(|normal| normal.map(F::widen)),
+            uv: at.uv,
+            face: at.face,
         };
         let look = EncloseLook::<Fraction>::look(&*self.0.shader, material, &own)?;
         let narrow = |colour: [Fine; 3]| colour.map(F::narrow);

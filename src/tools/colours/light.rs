@@ -160,7 +160,8 @@ impl<F: Number> Panes<F> {
             }
             let point = path.line.at(at);
             let pane = &scene.objects[object];
-            let look = F::look(pane, &PointBounds { position: point, normal: None })?;
+            let seen = PointBounds::seen(pane.shape.proven()?, pane.shader.sees(), part, point, None);
+            let look = F::look(pane, &seen)?;
             let tint = tint(pane.material.transparency, look.diffuse)?;
             self.passed = per_axis(|channel| self.passed[channel] * tint[channel]);
             self.at.push(at);

@@ -89,10 +89,7 @@ impl<'s, 'p, 'm> Tracer<'s, 'p, 'm> {
     fn background<F: Number>(&self, ray: &Ray<F>) -> Colour<F> {
         let Some(background) = &self.scene.plan.model.background else { return [Interval::constant(0.0); 3] };
         let toward = per_axis(|axis| (ray.path.line.dir[axis] / ray.length).coarse());
-        background
-            .value
-            .enclose(toward)
-            .map(|Interval { low, high }| Interval { low: F::of(low), high: F::of(high) })
+        background.value.enclose(toward).map(Interval::from_f64)
     }
 
     /// Encloses the colour that a ray returns which hits a place at t.

@@ -27,7 +27,8 @@ impl<F: Number> Surface<F> {
             return None;
         }
         let at = line.at(t);
-        let shape = F::proofs(object.shape.proven()?);
+        let proven = object.shape.proven()?;
+        let shape = F::proofs(proven);
         let normal = gradient(shape, at, place.part);
         let length = dot(normal, normal).sqrt();
         if length.has_zero() || !length.is_bounded() {
@@ -47,7 +48,8 @@ impl<F: Number> Surface<F> {
         let normal = turned(normal);
         // What is mirrored is mirrored by the shading normal, too.
         let normal = shape.shading_normal(at, place.part, normal)?;
-        let look = F::look(object, &PointBounds { position: at, normal: Some(turned(normal)) })?;
+        let point = PointBounds::seen(proven, object.shader.sees(), place.part, at, Some(turned(normal)));
+        let look = F::look(object, &point)?;
         let [ambient, diffuse, specular] = [look.ambient, look.diffuse, look.specular];
         Some(Self { place, at, normal, ambient, diffuse, specular })
     }

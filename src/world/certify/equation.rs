@@ -19,6 +19,14 @@ pub trait Equation {
         line
     }
 
+    /// Encloses the coordinates u and v that [`Hittable::uv`] returns, as mathematics has them, of the points of the surface
+    /// in a box; `None` where they are not known, which is always correct. Proofs of colours ask for them.
+    ///
+    /// [`Hittable::uv`]: crate::world::hittable::Hittable::uv
+    fn uv_bounds(&self, _at: [Interval; 3]) -> Option<[Interval; 2]> {
+        None
+    }
+
     /// Returns the equation's value at a point: 0 on the surface, with opposite signs on the two sides.
     fn value<N: Scalar>(&self, at: [N; 3]) -> N;
 

@@ -32,6 +32,20 @@ pub trait Onward<F: Float> {
     ) -> Option<[Interval<F>; 3]> {
         Some(normal)
     }
+
+    /// Encloses the coordinates u and v of the points of a part in a box in world coordinates; `None` where they are not
+    /// known.
+    fn uv_bounds(&self, _at: [Interval<F>; 3], _part: usize) -> Option<[Interval; 2]> {
+        None
+    }
+
+    /// Returns the index of the face to which a part belongs, as [`Hittable::face`] counts them; `None` where it is not
+    /// known.
+    ///
+    /// [`Hittable::face`]: crate::world::hittable::Hittable::face
+    fn face(&self, _part: usize) -> Option<u32> {
+        None
+    }
 }
 
 /// What can be proven of a shape's hits along any line, in every precision.
@@ -47,6 +61,11 @@ impl<E: Equation, F: Precise> Onward<F> for E {
     fn slope(&self, at: [Dual<Interval<F>>; 3], _part: usize) -> Dual<Interval<F>> {
         let point = Line { origin: at, dir: [Dual::constant(0.0); 3] };
         self.value(self.own(point).origin)
+    }
+
+    fn uv_bounds(&self, at: [Interval<F>; 3], _part: usize) -> Option<[Interval; 2]> {
+        let point = Line { origin: at.map(Interval::coarse), dir: [Interval::constant(0.0); 3] };
+        Equation::uv_bounds(self, self.own(point).origin)
     }
 }
 
