@@ -25,10 +25,14 @@ pub fn body(args: &Args, shape: AnyShape) -> Body {
 pub fn shape(args: &Args) -> AnyShape {
     match args.accuracy() {
         Accuracy::Classic => Shape::new(plane::<Classic>(args)).classic().into(),
-        Accuracy::Draft => Shape::new(plane::<Draft>(args)).flat().certified().into(),
-        Accuracy::Exact => Shape::new(plane::<Exact>(args)).flat().certified().into(),
-        Accuracy::Strict => Shape::new(plane::<Strict>(args)).flat().certified().into(),
+        Accuracy::Draft => exact(plane::<Draft>(args)),
+        Accuracy::Exact => exact(plane::<Exact>(args)),
+        Accuracy::Strict => exact(plane::<Strict>(args)),
     }
+}
+
+fn exact<A: Bounded>(plane: Plane<A>) -> AnyShape {
+    Shape::new(plane.from_nearest_point()).flat().certified().into()
 }
 
 /// Makes the plane of an entity whose table has the rows of [`TABLE`], with hits of accuracy `A`.

@@ -1,6 +1,6 @@
 //! The tracer's first hit is the proven one, in every scene.
 
-use crate::common::{load, model, root, scenes};
+use crate::common::{load, model, render, root, scenes};
 use assert_cmd::cargo::cargo_bin_cmd;
 use tabray::render::{Plan, trace};
 use tabray::tools::verify::{self, Verdict};
@@ -181,6 +181,23 @@ fn a_ray_that_rounding_makes_parallel_to_a_plane_meets_it() {
         assert_eq!(trace::first_hit(&Plan::new(&model), &sight).is_some(), is_met, "{viewpoint}");
         let [_, ties, contradicted] = counts(&model, 1);
         assert_eq!((ties, contradicted), (0, 0), "{viewpoint}");
+    }
+}
+
+#[test]
+fn a_plane_keeps_its_shadows_and_mirrors_however_far_away_its_point_is() {
+    let picture = |point: &str| {
+        render(&model(&format!(
+            "camera eye {{ pixeldim 64 48 worlddim 8 6 viewpoint 4 3 6 }}
+             material white {{ ambient 1 1 1 diffuse 4 4 4 specular 0.3 }}
+             plane floor {{ material white normal 0 1 0 point {point} }}
+             sphere ball {{ material white center 4 2 -4 radius 1.4 }}
+             light lamp {{ location 1 7 2 emissivity 20 20 20 }}"
+        )))
+    };
+    let near = picture("0 0 0");
+    for point in ["1e16 0 0", "1e150 0 -1e150"] {
+        assert_eq!(picture(point), near, "{point}");
     }
 }
 

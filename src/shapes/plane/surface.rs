@@ -57,6 +57,14 @@ impl<A> Plane<A> {
         Self { normal, upright, point, is_upright, max_z: NO_END, accuracy: PhantomData }
     }
 
+    /// Returns the same plane, given by its point nearest to the world's origin where its normal is along an axis: a point
+    /// far away within the plane would cost digits.
+    pub fn from_nearest_point(self) -> Self {
+        let along = |axis: usize| if self.upright[axis].high == 0.0 { 0.0 } else { self.point[axis] };
+        let point = if self.is_upright { DVec3::new(along(0), along(1), along(2)) } else { self.point };
+        Self { point, ..self }
+    }
+
     /// Returns the plane without what lies beyond a z, in world units, if one is given.
     pub fn up_to(self, max_z: Option<f64>) -> Self {
         Self { max_z: max_z.unwrap_or(NO_END), ..self }
