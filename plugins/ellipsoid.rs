@@ -30,39 +30,13 @@ fn exact<A: Bounded>(ellipsoid: Ellipsoid<A>) -> AnyShape {
     Shape::new(ellipsoid).bracketed().certified().into()
 }
 
-impl Hittable for Ellipsoid<Classic> {
+impl<A: Marker> Hittable for Ellipsoid<A> {
     #[inline(always)]
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
-        let (from, dir) = self.squeezed(ray);
-        range.keep(sphere::classic(from, dir, self.radius))
-    }
-
-    #[inline]
-    fn normal(&self, at: DVec3) -> DVec3 {
-        self.upright(at)
-    }
-
-    fn uv(&self, at: DVec3) -> Option<DVec2> {
-        Some(uv::on_sphere(((at - self.center) / self.scale).normalize_or_zero()))
-    }
-
-    fn bounds(&self) -> Option<Aabb> {
-        Some(self.around())
-    }
-
-    #[inline]
-    fn can_hit_itself(&self, _leaving: Side) -> bool {
-        false
-    }
-
-    fn method(&self) -> String {
-        sphere::CLASSIC_METHOD.to_owned()
-    }
-}
-
-impl<A: Bounded> Hittable for Ellipsoid<A> {
-    #[inline(always)]
-    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        if A::IS_CLASSIC {
+            let (from, dir) = self.squeezed(ray);
+            return range.keep(sphere::classic(from, dir, self.radius));
+        }
         range.keep(sphere::distance::<A>(&self.line(ray), self.radius, range.origin_side))
     }
 
@@ -81,7 +55,7 @@ impl<A: Bounded> Hittable for Ellipsoid<A> {
 
     #[inline]
     fn can_hit_itself(&self, leaving: Side) -> bool {
-        leaving == Side::Inside
+        !A::IS_CLASSIC && leaving == Side::Inside
     }
 
     fn openness(&self) -> Option<&'static str> {
@@ -89,7 +63,7 @@ impl<A: Bounded> Hittable for Ellipsoid<A> {
     }
 
     fn is_two_sided(&self) -> bool {
-        true
+        !A::IS_CLASSIC
     }
 
     fn method(&self) -> String {

@@ -1,7 +1,7 @@
 //! A plane: flat and infinite.
 
 use crate::prelude::*;
-use crate::shapes::plane::{CLASSIC_METHOD, Flat, Plane};
+use crate::shapes::plane::{Flat, Plane};
 
 pub static NORMAL: Pparm<DVec3> =
     Pparm::required("normal", "a vector perpendicular to the plane, pointing to its lit side")
@@ -40,41 +40,7 @@ pub fn plane<A>(args: &Args) -> Plane<A> {
     Plane::with_normal(args.get(&NORMAL), args.get(&POINT)).up_to(args.planes_end_at())
 }
 
-impl Hittable for Plane<Classic> {
-    #[inline(always)]
-    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
-        self.keep(self.crossing(ray), ray, range)
-    }
-
-    #[inline]
-    fn normal(&self, _at: DVec3) -> DVec3 {
-        self.normal
-    }
-
-    #[inline]
-    fn can_hit_itself(&self, _leaving: Side) -> bool {
-        false
-    }
-
-    fn clearance(&self, from: DVec3) -> Option<f64> {
-        let rounding = SLACK * (from.length() + self.point.length());
-        Some((self.normal.dot(from - self.point).abs() - rounding).max(0.0))
-    }
-
-    fn plane(&self) -> Option<[DVec3; 2]> {
-        Some([self.point, self.normal])
-    }
-
-    fn reach(&self) -> f64 {
-        self.point.abs().max_element()
-    }
-
-    fn method(&self) -> String {
-        CLASSIC_METHOD.to_owned()
-    }
-}
-
-impl<A: Bounded> Hittable for Plane<A> {
+impl<A: Marker> Hittable for Plane<A> {
     #[inline(always)]
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         self.keep(self.crossing(ray), ray, range)

@@ -5,7 +5,7 @@ use super::light::{self, PointLight};
 use super::plane;
 use super::texplane::{self, Picture};
 use crate::prelude::*;
-use crate::shapes::rectangle::{FinitePlane, Rectangle, Window};
+use crate::shapes::rectangle::{FinitePlane, Rectangle};
 
 static HEADING: Derived = Derived(|_| Datum::Word(String::new()).line("projector", " \n"));
 
@@ -39,10 +39,7 @@ impl<A> Projector<A> {
     }
 }
 
-impl<A: Send + Sync> Light for Projector<A>
-where
-    FinitePlane<A>: Window,
-{
+impl<A: Marker> Light for Projector<A> {
     #[inline]
     fn location(&self) -> DVec3 {
         self.light.location

@@ -53,38 +53,13 @@ fn exact<A: Bounded>(quadric: Quadric<A>) -> AnyShape {
     Shape::new(quadric).bracketed().certified().into()
 }
 
-impl Hittable for Quadric<Classic> {
-    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
-        self.classic_distance(ray, range)
-    }
-
-    #[inline]
-    fn normal(&self, at: DVec3) -> DVec3 {
-        self.upright(at)
-    }
-
-    fn bounds(&self) -> Option<Aabb> {
-        Some(self.around())
-    }
-
-    #[inline]
-    fn can_hit_itself(&self, _leaving: Side) -> bool {
-        false
-    }
-
-    fn method(&self) -> String {
-        Self::METHOD.to_owned()
-    }
-
-    fn clearance(&self, from: DVec3) -> Option<f64> {
-        Some(self.clearance_by_value(from))
-    }
-}
-
-impl<A: Bounded> Hittable for Quadric<A> {
+impl<A: Marker> Hittable for Quadric<A> {
     /// Returns the nearer of the two roots that lies in the box.
     #[inline(always)]
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        if A::IS_CLASSIC {
+            return self.classic_distance(ray, range);
+        }
         let quick = self.fast_distance(ray, range);
         if quick.is_nan() { range.keep(self.exact_hit(ray, range.near)) } else { quick }
     }
@@ -98,13 +73,18 @@ impl<A: Bounded> Hittable for Quadric<A> {
         Some(self.around())
     }
 
+    #[inline]
+    fn can_hit_itself(&self, _leaving: Side) -> bool {
+        !A::IS_CLASSIC
+    }
+
     fn openness(&self) -> Option<&'static str> {
         (!self.is_closed())
             .then_some("it is no ellipsoid within its box, with an equation that is below J inside")
     }
 
     fn is_two_sided(&self) -> bool {
-        true
+        !A::IS_CLASSIC
     }
 
     fn method(&self) -> String {

@@ -53,42 +53,12 @@ impl<A> Sphere<A> {
     }
 }
 
-impl Hittable for Sphere<Classic> {
+impl<A: Marker> Hittable for Sphere<A> {
     #[inline(always)]
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
-        range.keep(sphere::classic(ray.origin - self.center, ray.dir, self.radius))
-    }
-
-    #[inline]
-    fn normal(&self, at: DVec3) -> DVec3 {
-        (at - self.center).normalize()
-    }
-
-    fn uv(&self, at: DVec3) -> Option<DVec2> {
-        Some(uv::on_sphere((at - self.center).normalize_or_zero()))
-    }
-
-    fn bounds(&self) -> Option<Aabb> {
-        Some(sphere::bounds(self.center, self.radius))
-    }
-
-    fn clearance(&self, from: DVec3) -> Option<f64> {
-        Some(sphere::clearance(self.center, self.radius, from))
-    }
-
-    #[inline]
-    fn can_hit_itself(&self, _leaving: Side) -> bool {
-        false
-    }
-
-    fn method(&self) -> String {
-        sphere::CLASSIC_METHOD.to_owned()
-    }
-}
-
-impl<A: Bounded> Hittable for Sphere<A> {
-    #[inline(always)]
-    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        if A::IS_CLASSIC {
+            return range.keep(sphere::classic(ray.origin - self.center, ray.dir, self.radius));
+        }
         range.keep(sphere::distance::<A>(&SphereLine::new(ray, self.center), self.radius, range.origin_side))
     }
 
@@ -111,7 +81,7 @@ impl<A: Bounded> Hittable for Sphere<A> {
 
     #[inline]
     fn can_hit_itself(&self, leaving: Side) -> bool {
-        leaving == Side::Inside
+        !A::IS_CLASSIC && leaving == Side::Inside
     }
 
     fn openness(&self) -> Option<&'static str> {
@@ -119,7 +89,7 @@ impl<A: Bounded> Hittable for Sphere<A> {
     }
 
     fn is_two_sided(&self) -> bool {
-        true
+        !A::IS_CLASSIC
     }
 
     fn method(&self) -> String {

@@ -2,7 +2,7 @@
 
 use crate::prelude::*;
 use crate::shapes::Triangle;
-use crate::shapes::plane::{CLASSIC_METHOD, Flat, Plane};
+use crate::shapes::plane::{Flat, Plane};
 use crate::shapes::uv;
 
 static VERTEX1: Pparm<DVec3> = Pparm::required("vertex1", "the first vertex").unit("world coordinates");
@@ -48,45 +48,12 @@ fn shape(args: &Args) -> Option<AnyShape> {
     })
 }
 
-impl Hittable for Triangle<Classic> {
+impl<A: Marker> Hittable for Triangle<A> {
     #[inline(always)]
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         let distance = self.plane.distance(ray, range);
-        if self.contains(ray.at(distance)) { distance } else { MISS }
-    }
-
-    #[inline]
-    fn normal(&self, _at: DVec3) -> DVec3 {
-        self.plane.normal
-    }
-
-    fn uv(&self, at: DVec3) -> Option<DVec2> {
-        Some(uv::on_triangle(self.corners, at))
-    }
-
-    fn bounds(&self) -> Option<Aabb> {
-        Some(Aabb::around(&self.corners))
-    }
-
-    #[inline]
-    fn can_hit_itself(&self, _leaving: Side) -> bool {
-        false
-    }
-
-    fn plane(&self) -> Option<[DVec3; 2]> {
-        Some([self.plane.point, self.plane.normal])
-    }
-
-    fn method(&self) -> String {
-        CLASSIC_METHOD.to_owned()
-    }
-}
-
-impl<A: Bounded> Hittable for Triangle<A> {
-    #[inline(always)]
-    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
-        let distance = self.plane.distance(ray, range);
-        if self.is_passed_by(ray) { distance } else { MISS }
+        let is_hit = if A::IS_CLASSIC { self.contains(ray.at(distance)) } else { self.is_passed_by(ray) };
+        if is_hit { distance } else { MISS }
     }
 
     #[inline]

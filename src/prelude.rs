@@ -13,7 +13,7 @@ pub use crate::scene::value::{COLOUR, Datum, PerChannel, Value};
 pub use inventory;
 
 // What a constructor returns: a camera, a material, a texture, a shader, an object, a light or a background.
-pub use crate::world::accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
+pub use crate::world::accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Marker, Strict};
 pub use crate::world::any_shape::AnyShape;
 pub use crate::world::background::Background;
 pub use crate::world::body::{AnyShader, Body, NamedBody, Paint, Warning};

@@ -1,52 +1,18 @@
 //! A rectangle as a shape: what rays, packets and proofs ask of it.
 
-use super::plane::{CLASSIC_METHOD, Flat, Plane};
+use super::plane::{Flat, Plane};
 use super::rectangle::{FinitePlane, along_sides};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
 use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::interval::Interval;
 use crate::numeric::scalar::{Scalar, constants, per_axis};
-use crate::world::accuracy::{Bounded, Classic};
+use crate::world::accuracy::{Bounded, Marker};
 use crate::world::certify::Equation;
 use crate::world::hittable::{Bracketed, Certified, Hittable};
 use glam::{DVec2, DVec3};
 
-impl Hittable for FinitePlane<Classic> {
-    #[inline(always)]
-    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
-        let distance = self.plane.distance(ray, range);
-        if self.has_crossing(ray, distance) { distance } else { MISS }
-    }
-
-    #[inline]
-    fn normal(&self, _at: DVec3) -> DVec3 {
-        self.plane.normal
-    }
-
-    fn uv(&self, at: DVec3) -> Option<DVec2> {
-        Some(self.rectangle.coordinates(at) / self.rectangle.dimensions)
-    }
-
-    fn bounds(&self) -> Option<Aabb> {
-        Some(self.rectangle.around())
-    }
-
-    #[inline]
-    fn can_hit_itself(&self, _leaving: Side) -> bool {
-        false
-    }
-
-    fn plane(&self) -> Option<[DVec3; 2]> {
-        Some([self.plane.point, self.plane.normal])
-    }
-
-    fn method(&self) -> String {
-        CLASSIC_METHOD.to_owned()
-    }
-}
-
-impl<A: Bounded> Hittable for FinitePlane<A> {
+impl<A: Marker> Hittable for FinitePlane<A> {
     #[inline(always)]
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         let distance = self.plane.distance(ray, range);

@@ -6,7 +6,7 @@ use crate::numeric::double_double::vectors::{cross, product, unit};
 use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two};
 use crate::numeric::scalar::{self, Scalar, constants, dot, per_axis};
 use crate::shapes::plane::{DRAFT_ERROR, Plane};
-use crate::world::accuracy::{Accuracy, Bounded, Classic};
+use crate::world::accuracy::{Accuracy, Marker};
 use glam::{DMat3, DVec2, DVec3};
 
 /// The place and the size of a rectangle.
@@ -110,7 +110,7 @@ impl<A> FinitePlane<A> {
     }
 }
 
-impl<A: Bounded> FinitePlane<A> {
+impl<A: Marker> FinitePlane<A> {
     /// Returns bounds of the distance of a hit in a range.
     #[inline(always)]
     pub fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
@@ -125,9 +125,19 @@ impl<A: Bounded> FinitePlane<A> {
         }
     }
 
+    /// Returns the distance in world units at which a ray passes through the rectangle ahead, or `None`.
+    #[inline(always)]
+    pub fn crossing(&self, ray: &Ray) -> Option<f64> {
+        let distance = self.plane.crossing(ray);
+        (distance > 0.0 && self.has_crossing(ray, distance)).then_some(distance)
+    }
+
     /// Returns whether the rectangle contains the point where a ray intersects its plane; the sides belong to it.
     #[inline(always)]
     pub fn has_crossing(&self, ray: &Ray, distance: f64) -> bool {
+        if A::IS_CLASSIC {
+            return self.inside(ray, distance) >= 0.0;
+        }
         self.quickly_has_crossing(ray, distance).unwrap_or_else(|| self.precisely_has_crossing(ray))
     }
 
@@ -161,36 +171,6 @@ impl<A: Bounded> FinitePlane<A> {
             let lowest = -(2_f64.powi(-97)) * (size + self.rectangle.dimensions[side]);
             along.high >= lowest && past.high >= lowest
         })
-    }
-}
-
-impl FinitePlane<Classic> {
-    /// Returns whether the rectangle contains the point where a ray intersects its plane; the sides belong to it.
-    #[inline(always)]
-    pub fn has_crossing(&self, ray: &Ray, distance: f64) -> bool {
-        self.inside(ray, distance) >= 0.0
-    }
-}
-
-/// A rectangle that rays pass through.
-pub trait Window: Send + Sync {
-    /// Returns the distance in world units at which a ray passes through the rectangle ahead, or `None`.
-    fn crossing(&self, ray: &Ray) -> Option<f64>;
-}
-
-impl<A: Bounded> Window for FinitePlane<A> {
-    #[inline(always)]
-    fn crossing(&self, ray: &Ray) -> Option<f64> {
-        let distance = self.plane.crossing(ray);
-        (distance > 0.0 && self.has_crossing(ray, distance)).then_some(distance)
-    }
-}
-
-impl Window for FinitePlane<Classic> {
-    #[inline(always)]
-    fn crossing(&self, ray: &Ray) -> Option<f64> {
-        let distance = self.plane.crossing(ray);
-        (distance > 0.0 && self.has_crossing(ray, distance)).then_some(distance)
     }
 }
 

@@ -8,7 +8,7 @@ use crate::geometry::aabb::{Aabb, SLACK, larger};
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two, two_product};
 use crate::numeric::scalar::per_axis;
-use crate::world::accuracy::{Accuracy, Bounded};
+use crate::world::accuracy::{Accuracy, Marker};
 use glam::DVec3;
 
 /// A half-line from a point, in double-double arithmetic.
@@ -51,18 +51,16 @@ pub fn clearance(center: DVec3, radius: f64, from: DVec3) -> f64 {
 }
 
 /// Returns the method of intersection, in a few words.
-pub fn method<A: Bounded>() -> &'static str {
+pub fn method<A: Marker>() -> &'static str {
     match A::ACCURACY {
+        Accuracy::Classic => "the notes' formula",
         Accuracy::Draft => "a closed form, in twice the precision where rounding could decide",
         Accuracy::Exact => {
             "a closed form and a step of Newton's method, in twice the precision where rounding could decide"
         }
-        _ => "a closed form in twice the precision",
+        Accuracy::Strict => "a closed form in twice the precision",
     }
 }
-
-/// The course notes' method, in a few words.
-pub const CLASSIC_METHOD: &str = "the notes' formula";
 
 /// Returns the distance of a sphere by the course notes' formula, for a ray that starts at `from`, relative to the
 /// center.
@@ -79,14 +77,14 @@ pub fn classic(from: DVec3, dir: DVec3, radius: f64) -> f64 {
 /// Returns the distance of the first hit of a sphere: of its near side, or from inside of its far side. A tangent line
 /// misses it, as in the course notes.
 #[inline(always)]
-pub fn first_hit<A: Bounded>(line: &SphereLine, radius: f64) -> f64 {
+pub fn first_hit<A: Marker>(line: &SphereLine, radius: f64) -> f64 {
     let quick = quick_hit::<A>(line, radius);
     if quick.is_nan() { in_double_double(line, radius) } else { quick }
 }
 
 /// Returns what [`first_hit`] does, or NaN where rounding could decide it.
 #[inline(always)]
-pub fn quick_hit<A: Bounded>(line: &SphereLine, radius: f64) -> f64 {
+pub fn quick_hit<A: Marker>(line: &SphereLine, radius: f64) -> f64 {
     let (from, dir) = (high(&line.from), high(&line.dir));
     let a = dir.dot(dir);
     let toward = -from.dot(dir);
@@ -132,7 +130,7 @@ pub fn quick_hit<A: Bounded>(line: &SphereLine, radius: f64) -> f64 {
 /// discriminant, the start is taken for a point of the sphere, whose far root is twice as far as the midpoint of the
 /// chord.
 #[inline(always)]
-pub fn far_hit<A: Bounded>(line: &SphereLine, radius: f64) -> f64 {
+pub fn far_hit<A: Marker>(line: &SphereLine, radius: f64) -> f64 {
     let (from, dir) = (high(&line.from), high(&line.dir));
     let a = dir.dot(dir);
     let toward = -from.dot(dir);
@@ -147,7 +145,7 @@ pub fn far_hit<A: Bounded>(line: &SphereLine, radius: f64) -> f64 {
 
 /// Returns the distance of the first hit of a ray that leaves the sphere to a side, or does not start on it.
 #[inline(always)]
-pub fn distance<A: Bounded>(line: &SphereLine, radius: f64, origin_side: Option<Side>) -> f64 {
+pub fn distance<A: Marker>(line: &SphereLine, radius: f64, origin_side: Option<Side>) -> f64 {
     match origin_side {
         None => first_hit::<A>(line, radius),
         Some(Side::Inside) => far_hit::<A>(line, radius),
@@ -157,7 +155,7 @@ pub fn distance<A: Bounded>(line: &SphereLine, radius: f64, origin_side: Option<
 
 /// Returns what [`distance`] does, or NaN where rounding could decide it.
 #[inline(always)]
-pub fn refine<A: Bounded>(line: &SphereLine, radius: f64, origin_side: Option<Side>) -> f64 {
+pub fn refine<A: Marker>(line: &SphereLine, radius: f64, origin_side: Option<Side>) -> f64 {
     let distance = match origin_side {
         None => quick_hit::<A>(line, radius),
         Some(Side::Inside) => far_hit::<A>(line, radius),

@@ -60,20 +60,34 @@ pub struct Exact;
 #[derive(Clone, Copy, Debug)]
 pub struct Strict;
 
-/// A marker of an accuracy that finds first hits with error bounds: [`Draft`], [`Exact`] or [`Strict`].
-pub trait Bounded: Copy + Send + Sync + 'static {
+/// A marker of an accuracy: [`Classic`], [`Draft`], [`Exact`] or [`Strict`].
+pub trait Marker: Copy + Send + Sync + 'static {
     /// The accuracy that the marker stands for.
     const ACCURACY: Accuracy;
+
+    /// Whether hits are found by the course notes' formula. As a constant, it selects code when that is compiled.
+    const IS_CLASSIC: bool = matches!(Self::ACCURACY, Accuracy::Classic);
 }
 
-impl Bounded for Draft {
+impl Marker for Classic {
+    const ACCURACY: Accuracy = Accuracy::Classic;
+}
+
+impl Marker for Draft {
     const ACCURACY: Accuracy = Accuracy::Draft;
 }
 
-impl Bounded for Exact {
+impl Marker for Exact {
     const ACCURACY: Accuracy = Accuracy::Exact;
 }
 
-impl Bounded for Strict {
+impl Marker for Strict {
     const ACCURACY: Accuracy = Accuracy::Strict;
 }
+
+/// A marker of an accuracy that finds first hits with error bounds: [`Draft`], [`Exact`] or [`Strict`].
+pub trait Bounded: Marker {}
+
+impl Bounded for Draft {}
+impl Bounded for Exact {}
+impl Bounded for Strict {}

@@ -23,7 +23,7 @@ pub(crate) mod shape;
 pub(crate) mod solid;
 pub(crate) mod texture;
 
-pub use accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
+pub use accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Marker, Strict};
 pub use any_shape::AnyShape;
 pub use background::{AnyBackground, Background};
 pub use body::{AnyLight, AnyShader, Body, NamedBody, Paint, Part, Solid, Warning};

@@ -8,7 +8,7 @@ use crate::numeric::double_double::exact::exact_sum;
 use crate::numeric::double_double::{DoubleDouble, dot, two_product, two_sum};
 use crate::numeric::scalar::per_axis;
 use crate::simd::soa::LANES;
-use crate::world::accuracy::{Accuracy, Bounded, Classic};
+use crate::world::accuracy::{Accuracy, Marker};
 
 impl<A> Plane<A> {
     /// Returns whether a ray intersects the plane on the viewer's side of the image plane: whether z, which is the
@@ -77,11 +77,17 @@ impl<A> Plane<A> {
     }
 }
 
-impl<A: Bounded> Plane<A> {
+impl<A: Marker> Plane<A> {
     /// Returns the distance in world units at which a ray intersects the plane, forward or backward; [`MISS`] for a
     /// parallel ray.
     #[inline(always)]
     pub fn crossing(&self, ray: &Ray) -> f64 {
+        if A::IS_CLASSIC {
+            let toward = self.normal.dot(ray.dir);
+            let away = self.normal.dot(self.point) - self.normal.dot(ray.origin);
+            // Both are 0 for a ray in the plane.
+            return if toward == 0.0 { MISS } else { away / toward };
+        }
         let quick = self.quick_crossing(ray);
         if quick.is_nan() { self.exact_crossing(ray).high } else { quick }
     }
@@ -149,9 +155,10 @@ impl<A: Bounded> Plane<A> {
     /// Returns the method of intersection, in a few words.
     pub fn method(&self) -> &'static str {
         match A::ACCURACY {
+            Accuracy::Classic => "the notes' formula",
             Accuracy::Draft => "plain arithmetic",
             Accuracy::Exact => "plain arithmetic, compensated for rounding where sums cancel",
-            _ => "twice the precision",
+            Accuracy::Strict => "twice the precision",
         }
     }
 
@@ -159,6 +166,10 @@ impl<A: Bounded> Plane<A> {
     /// plane, and for a ray that leaves the plane.
     #[inline(always)]
     pub fn keep(&self, distance: f64, ray: &Ray, range: &RayRange) -> f64 {
+        if A::IS_CLASSIC {
+            let is_cut_off = (ray.at(distance).z > self.max_z) | range.origin_side.is_some();
+            return if is_cut_off { MISS } else { range.keep(distance) };
+        }
         let quick = self.quick_keep(distance, ray, range);
         if !quick.is_nan() {
             quick
@@ -184,25 +195,5 @@ impl<A: Bounded> Plane<A> {
         let kept = if (z > self.max_z) | origin_side { MISS } else { range.keep(distance) };
         let is_doubtful = ((z - self.max_z).abs() <= error) & (distance < MISS);
         if (is_doubtful | distance.is_nan()) & !origin_side { f64::NAN } else { kept }
-    }
-}
-
-impl Plane<Classic> {
-    /// Returns the distance in world units at which a ray intersects the plane, forward or backward; [`MISS`] for a
-    /// parallel ray.
-    #[inline(always)]
-    pub fn crossing(&self, ray: &Ray) -> f64 {
-        let toward = self.normal.dot(ray.dir);
-        let away = self.normal.dot(self.point) - self.normal.dot(ray.origin);
-        // Both are 0 for a ray in the plane.
-        if toward == 0.0 { MISS } else { away / toward }
-    }
-
-    /// Returns the distance if it is in the range, else [`MISS`]; also [`MISS`] on the viewer's side of the image
-    /// plane, and for a ray that leaves the plane.
-    #[inline(always)]
-    pub fn keep(&self, distance: f64, ray: &Ray, range: &RayRange) -> f64 {
-        let is_cut_off = (ray.at(distance).z > self.max_z) | range.origin_side.is_some();
-        if is_cut_off { MISS } else { range.keep(distance) }
     }
 }

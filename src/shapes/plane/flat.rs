@@ -3,7 +3,7 @@
 use super::surface::Plane;
 use crate::geometry::ray::{Bracket, Ray, RayRange, Side};
 use crate::geometry::ray_packet::RayPacket;
-use crate::world::accuracy::{Accuracy, Bounded};
+use crate::world::accuracy::{Accuracy, Bounded, Marker};
 use crate::world::hittable::Bracketed;
 use crate::world::packets::shape::OneRay;
 use crate::world::shape::Shape;

@@ -13,4 +13,4 @@ mod surface;
 
 pub use flat::{ByPlane, Flat};
 pub use products::DRAFT_ERROR;
-pub use surface::{CLASSIC_METHOD, Plane, Rough};
+pub use surface::{Plane, Rough};

@@ -11,9 +11,6 @@ use std::marker::PhantomData;
 /// A z beyond all hits, in world units, whose products with differences of coordinates are finite.
 const NO_END: f64 = 1e200;
 
-/// The course notes' method, in a few words.
-pub const CLASSIC_METHOD: &str = "the notes' formula";
-
 /// An infinite plane; its type selects the accuracy of intersections.
 #[derive(Clone, Copy, Debug)]
 pub struct Plane<A> {

@@ -7,7 +7,7 @@ use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::clearance;
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::numeric::scalar::{Scalar, per_axis};
-use crate::world::accuracy::{Accuracy, Bounded, Classic};
+use crate::world::accuracy::{Accuracy, Marker};
 use glam::{DMat3, DVec3};
 use std::marker::PhantomData;
 
@@ -121,9 +121,15 @@ impl<A> Quadric<A> {
     }
 }
 
-impl Quadric<Classic> {
+impl<A: Marker> Quadric<A> {
     /// How hits are found, in a few words.
-    pub const METHOD: &str = "the notes' formula";
+    pub const METHOD: &str = match A::ACCURACY {
+        Accuracy::Classic => "the notes' formula",
+        Accuracy::Strict => "a closed form in twice the precision",
+        Accuracy::Draft | Accuracy::Exact => {
+            "a closed form and a step of Newton's method, in twice the precision where rounding could decide"
+        }
+    };
 
     /// Returns the distance of the first hit by the course notes' formula.
     pub fn classic_distance(&self, ray: &Ray, range: &RayRange) -> f64 {
@@ -141,19 +147,6 @@ impl Quadric<Classic> {
         let crossings = classic_roots(a, b, c).map(|distance| range.keep(distance));
         crossings.into_iter().find(|distance| keeps(ray.at(*distance))).unwrap_or(MISS)
     }
-
-    /// Returns the unit normal at a point.
-    pub fn upright(&self, at: DVec3) -> DVec3 {
-        let normal = 2.0 * (self.square * (at - self.center)) + self.linear;
-        // A cone's apex has no normal; any unit vector will do.
-        normal.try_normalize().unwrap_or(DVec3::Y)
-    }
-}
-
-impl<A: Bounded> Quadric<A> {
-    /// How hits are found, in a few words.
-    pub const METHOD: &str =
-        "a closed form and a step of Newton's method, in twice the precision where rounding could decide";
 
     #[inline(always)]
     fn own_ray(&self, ray: &Ray) -> OwnRay {
@@ -209,7 +202,12 @@ impl<A: Bounded> Quadric<A> {
 
     /// Returns the unit normal at a point.
     pub fn upright(&self, at: DVec3) -> DVec3 {
-        self.own.normal(at, self.center)
+        if !A::IS_CLASSIC {
+            return self.own.normal(at, self.center);
+        }
+        let normal = 2.0 * (self.square * (at - self.center)) + self.linear;
+        // A cone's apex has no normal; any unit vector will do.
+        normal.try_normalize().unwrap_or(DVec3::Y)
     }
 }
 
