@@ -15,6 +15,7 @@ use crate::world::film::{Adaptive, Film};
 use crate::world::material::{Material, Rgb};
 use crate::world::sample::Sampler;
 use crate::world::texture::Texture;
+use std::collections::HashMap;
 use std::fmt;
 use std::sync::Arc;
 
@@ -206,30 +207,38 @@ fn depth(model: &Model, depth: &Depth) -> String {
     }
 }
 
-fn textures(plan: &Plan) -> Vec<String> {
+fn textures<'m>(plan: &Plan<'m>) -> Vec<String> {
     let model = plan.model;
     if model.textures.is_empty() {
         return Vec::new();
     }
-    let uses = |record: &Record, is_needed: bool| (record.args(), is_needed);
+    // For each texture, the names of the entities that use it, and whether any of them is needed.
+    let mut users: HashMap<String, (Vec<&str>, bool)> = HashMap::new();
+    let mut memory = None;
+    let mut add = |record: &'m Record, is_needed: bool| {
+        for texture in record.args_in(&mut memory).textures() {
+            let (names, is_any_needed) = users.entry(texture.to_owned()).or_default();
+            names.push(record.name());
+            *is_any_needed |= is_needed;
+        }
+    };
     let mut unmet = plan.needs.unmet.iter().peekable();
-    let objects = model.objects.iter().enumerate();
-    let mut users: Vec<_> =
-        objects.map(|(index, object)| uses(&object.args, unmet.next_if_eq(&&index).is_none())).collect();
-    let lights = model.lights.iter().enumerate();
-    users.extend(lights.map(|(index, light)| uses(&light.args, plan.needs.lights.contains(&index))));
-    users.extend(model.background.iter().map(|background| uses(&background.args, true)));
+    for (index, object) in model.objects.iter().enumerate() {
+        add(&object.args, unmet.next_if_eq(&&index).is_none());
+    }
+    let mut lit = plan.needs.lights.iter().peekable();
+    for (index, light) in model.lights.iter().enumerate() {
+        add(&light.args, lit.next_if_eq(&&index).is_some());
+    }
+    model.background.iter().for_each(|background| add(&background.args, true));
     let text = |item: &Item<Arc<Texture>>| {
         let name = item.args.name();
-        let its = users.iter().filter(|(args, _)| args.textures().any(|used| used == name));
-        let its: Vec<_> = its.map(|(args, is_needed)| (args.name.as_str(), *is_needed)).collect();
-        if its.is_empty() {
+        let Some((its, is_needed)) = users.get(name) else {
             return format!("`{name}` is not read: nothing uses it");
-        }
+        };
         let [width, height] = item.value.size();
-        let is_needed = its.iter().any(|(_, is_needed)| *is_needed);
-        let rest = if is_needed { "" } else { ", which is left out" };
-        let its = some(its.into_iter().map(|(name, _)| name));
+        let rest = if *is_needed { "" } else { ", which is left out" };
+        let its = some(its.iter().copied());
         format!("`{name}` of {width} x {height} texels, read once: used by {its}{rest}")
     };
     model.textures.iter().map(text).collect()

@@ -20,8 +20,8 @@
 //! through glass are at most 1. Rays do not hit what lies behind the plane that they leave, nor the object that they
 //! leave if it cannot be hit again.
 //!
-//! **Interfaces.** Where the material has an interface, which divides each channel of light into a reflected fraction `r` and the rest, the
-//! sum is `kept * S / d + (1 - r) * tint * transmitted light + r * reflected light`, so that
+//! **Interfaces.** Where the material has an interface, which divides each channel of light into a reflected fraction
+//! `r` and the rest, the sum is `kept * S / d + (1 - r) * tint * transmitted light + r * reflected light`, so that
 //!
 //! ```text
 //! beyond(i, side) >= kept_j * S_j + max(T_j * beyond(j, other side), beyond(j, same side))
@@ -60,10 +60,11 @@ mod surface;
 pub(crate) use branch::{Branch, FAINT, MANY, Onward, STEPS, step};
 pub(crate) use surface::clearance;
 
+use crate::parallel;
 use crate::render::limits::MAX_DIST;
 use crate::scene::model::Model;
 use crate::world::accuracy::Accuracy;
-use crate::world::material::Rgb;
+use crate::world::material::{Look, Rgb};
 use solve::Scene;
 use surface::Surface;
 
@@ -78,8 +79,7 @@ pub(crate) struct Depth {
 impl Depth {
     /// Computes the bounds of a scene; `None` where no object reflects or transmits rays.
     pub fn new(model: &Model) -> Option<Self> {
-        let looks: Vec<_> =
-            model.objects.iter().map(|object| object.shader.brightest(&object.material)).collect();
+        let looks = looks(model);
         let shiny = model.objects.iter().zip(&looks).any(|(object, look)| {
             object.material.transparency != 0.0 || look.is_none_or(|look| look.specular != Rgb::ZERO)
         });
@@ -119,16 +119,19 @@ fn background(model: &Model) -> f64 {
 /// Bounds what a primary ray that hits an object returns in any channel, times the path length; infinite where there is
 /// no bound.
 pub(crate) fn most(model: &Model) -> f64 {
-    let looks: Vec<_> =
-        model.objects.iter().map(|object| object.shader.brightest(&object.material)).collect();
-    Scene::new(model, Surface::all(model, &looks, None), background(model)).bounds(false).0
+    Scene::new(model, Surface::all(model, &looks(model), None), background(model)).bounds(false).0
 }
 
-/// Bounds what one light of a model adds to a primary ray in any channel, times the path length; infinite where there is
-/// no bound.
-pub(crate) fn most_of_light(model: &Model, light: usize) -> f64 {
-    let looks: Vec<_> =
-        model.objects.iter().map(|object| object.shader.brightest(&object.material)).collect();
-    let surfaces = Surface::all(model, &looks, Some(light));
-    Scene::new(model, surfaces, 0.0).bounds(false).0
+/// Bounds what each light of a model adds to a primary ray in any channel, times the path length; infinite where there
+/// is no bound.
+pub(crate) fn most_of_lights(model: &Model) -> Vec<f64> {
+    let looks = looks(model);
+    let most =
+        |light: usize| Scene::new(model, Surface::all(model, &looks, Some(light)), 0.0).bounds(false).0;
+    parallel::map(model.lights.len(), most)
+}
+
+/// Returns each object's brightest look, if it has one.
+fn looks(model: &Model) -> Vec<Option<Look>> {
+    model.objects.iter().map(|object| object.shader.brightest(&object.material)).collect()
 }

@@ -24,7 +24,8 @@ pub(super) struct Scene {
     shiny: Vec<(usize, Sides<bool>)>,
     /// On which sides of one shiny surface another one lies, for each pair; empty for more than [`PAIRS`] surfaces.
     lies: Vec<Sides<bool>>,
-    /// For each shiny surface and side, the largest own light of the background and of the other surfaces that may be hit from there.
+    /// For each shiny surface and side, the largest light of the background and of the matt surfaces that may be hit
+    /// from there.
     matt_light: Vec<Sides<f64>>,
 }
 
@@ -39,15 +40,19 @@ impl Scene {
         let lies = |of: usize, object: usize| {
             if is_few { lies(&objects[of], &objects[object]) } else { [true; 2] }
         };
-        let matt_light = shiny.iter().map(|of| {
+        let matt_light = |of: usize| {
             let sent = matt
                 .iter()
-                .map(|object| lies(*of, *object).map(|lies| if lies { surfaces[*object].own } else { 0.0 }));
+                .map(|object| lies(of, *object).map(|lies| if lies { surfaces[*object].own } else { 0.0 }));
             sent.fold([background; 2], |[one, other], [outside, inside]| {
                 [above(one, outside), above(other, inside)]
             })
-        });
-        let matt_light = matt_light.collect();
+        };
+        let matt_light = match shiny.first() {
+            // Where it is not determined what lies behind what, each surface may be lit by all others.
+            Some(first) if !is_few => vec![matt_light(*first); shiny.len()],
+            _ => shiny.iter().map(|of| matt_light(*of)).collect(),
+        };
         let pairs = shiny.iter().flat_map(|of| shiny.iter().map(|object| lies(*of, *object)));
         let lies = if is_few { pairs.collect() } else { Vec::new() };
         let meets = |index: usize| (index, SIDES.map(|side| can_hit_itself(&objects[index], side)));

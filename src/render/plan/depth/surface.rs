@@ -125,8 +125,8 @@ fn own(model: &Model, object: &Object, look: &Look, only: Option<usize>, any_lig
     let highlight = if object.material.shininess == 0.0 { Rgb::ZERO } else { look.specular.abs() };
     let diffuse = look.diffuse.abs();
     let mut own = if only.is_some() { Rgb::ZERO } else { look.ambient.abs() };
-    let lights = model.lights.iter().enumerate().filter(|(index, _)| only.is_none_or(|only| only == *index));
-    for (_, light) in lights {
+    let lights = only.map_or(&model.lights[..], |only| std::slice::from_ref(&model.lights[only]));
+    for light in lights {
         if highlight == Rgb::ZERO && diffuse == Rgb::ZERO {
             break;
         }

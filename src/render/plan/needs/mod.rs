@@ -2,8 +2,8 @@
 //!
 //! **Views.** Primary rays lead away from the viewer, between the edges of the image. Where they may meet a mirror in a
 //! plane, the rays that it reflects lead away from the viewer's mirror image, in front of the mirror; and so on from
-//! mirror to mirror. Glass does not turn rays, unless its material has an interface. Such a material and a curved mirror may show everything, and so may more than [`MAX_VIEWS`]
-//! views: then no object is left out.
+//! mirror to mirror. Glass does not turn rays, unless its material has an interface. Such glass and curved mirrors may
+//! show everything, and so may more than [`MAX_VIEWS`] views: then no object is left out.
 //!
 //! **Lights.** A light is left out where it adds nothing to anything that a view may meet: it lies behind the object's
 //! plane, it does not shine on the object's region ([`is_clear_of`](crate::world::light::Light::is_clear_of)), or the
@@ -272,5 +272,5 @@ pub(crate) fn most_levels(model: &Model) -> Vec<f64> {
     // No path is shorter than the distance of the nearest object.
     let clearance = |object| (depth::clearance(object, viewer.middle) - viewer.radius).max(0.0);
     let near = model.objects.iter().map(clearance).fold(f64::INFINITY, f64::min);
-    (0..model.lights.len()).map(|light| 255.0 * depth::most_of_light(model, light) / near).collect()
+    depth::most_of_lights(model).into_iter().map(|most| 255.0 * most / near).collect()
 }
