@@ -116,6 +116,14 @@ fn rounds_within_rounds_without_end_are_refused_quickly() {
 }
 
 #[test]
+fn a_number_that_a_variable_of_a_formula_hides_is_refused_there() {
+    let scene = |formula: &str| format!("{HEAD}let u 0.25\nformula f {{ ambient \"{formula}\" }}\n");
+    let said = refused(Path::new(""), "scene", &scene("1 + u"));
+    assert!(said.contains("`u` is a variable of this formula and a number of the scene"), "{said}");
+    model(&scene("1 + v"));
+}
+
+#[test]
 fn many_unknown_names_are_told_quickly() {
     let numbers: String = (0..20_000).map(|index| format!("let n{index} {index}\n")).collect();
     let wrong: String = (0..20_000)

@@ -217,6 +217,10 @@ impl<'t> Parser<'t> {
         let word = &rest[..length];
         let place = start..self.at;
         if let Some(variable) = self.variables.iter().position(|name| *name == word) {
+            if (self.named)(word).is_some() {
+                let message = format!("`{word}` is a variable of this formula and a number of the scene");
+                return Err(self.fault(place, message));
+            }
             self.steps.push(Step::Variable(variable as u8));
             return Ok(());
         }
