@@ -6,6 +6,7 @@ use glam::DVec3;
 use memchr::memchr;
 use std::borrow::Cow;
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 /// What a block of a file holds.
 #[derive(Default)]
@@ -35,14 +36,15 @@ pub fn read(bytes: &[u8], room: &Room) -> Result<Model, Broken> {
         for (faces, name, number) in part.uses {
             // Faces so far without a material keep none.
             model.slots.resize(before + faces, slot);
-            let next = names.len() + 1;
-            slot = *names.entry(name).or_insert_with_key(|name| {
-                model.materials.push(name.clone());
-                next as u16
-            });
-            if next > usize::from(u16::MAX) {
-                return Err(Broken::line(line + number, "there are more than 65534 materials"));
-            }
+            slot = match names.entry(name) {
+                Entry::Occupied(known) => *known.get(),
+                Entry::Vacant(free) => {
+                    let next = u16::try_from(model.materials.len() + 1)
+                        .map_err(|_| Broken::line(line + number, "there are more than 65535 materials"))?;
+                    model.materials.push(free.key().clone());
+                    *free.insert(next)
+                }
+            };
         }
         if slot != 0 || !model.slots.is_empty() {
             model.slots.resize(model.faces.len(), slot);

@@ -220,6 +220,16 @@ fn faces_of_a_ply_may_come_before_its_vertices() {
 }
 
 #[test]
+fn an_obj_of_65535_materials_may_use_one_again_and_no_other() {
+    let uses = |number: usize| format!("usemtl m{number}\n");
+    let all: String = (0..65535).map(uses).collect();
+    let text = |last: usize| format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{all}{}f 1 2 3\n", uses(last));
+    assert_eq!(obj::read(text(0).as_bytes()).expect("65535 materials").slots, [1]);
+    let broken = obj::read(text(65535).as_bytes()).expect_err("65536 materials");
+    assert_eq!(broken.message, "there are more than 65535 materials");
+}
+
+#[test]
 fn lines_of_an_obj_may_be_continued() {
     let folded = |end: &str| {
         let text = obj_text()
