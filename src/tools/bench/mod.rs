@@ -20,7 +20,7 @@ use crate::world::body::AnyShader;
 use crate::world::material::{Look, Material, Rgb};
 use crate::world::shader::{Sees, Shader, SurfacePoint};
 use ceiling::Bare;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::io;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -214,7 +214,15 @@ impl Shader for Matt {
         Rgb::ZERO
     }
 
+    fn tile(&self, at: &SurfacePoint) -> DVec2 {
+        self.0.tile(at)
+    }
+
     fn uniform(&self, material: &Material) -> Option<Look> {
         self.0.uniform(material).map(|look| Look { specular: Rgb::ZERO, ..look })
+    }
+
+    fn brightest(&self, material: &Material) -> Option<Look> {
+        self.0.brightest(material).map(|look| Look { specular: Rgb::ZERO, ..look })
     }
 }
