@@ -118,7 +118,8 @@ impl<'r> Documents<'r> {
     }
 
     fn read(&self, path: &Path) -> Option<Arc<View>> {
-        let changed = fs::metadata(path).ok()?.modified().ok();
+        let meta = fs::metadata(path).ok().filter(|meta| meta.len() <= LARGEST)?;
+        let changed = meta.modified().ok();
         if let Some((known, view)) = self.stored.borrow().get(path)
             && *known == changed
         {
