@@ -1,7 +1,7 @@
 //! A turned piece: a surface of revolution whose profile is a spline through points.
 
 use crate::prelude::*;
-use crate::shapes::{Classic, Finish, InFrame, Revolution};
+use crate::shapes::{ClassicRevolution, Finish, InFrame, Revolution};
 
 /// The points of a profile: the height and the radius of each.
 type Points = List<DVec2, 2, 64>;
@@ -29,7 +29,7 @@ inventory::submit! {
         let (radius, height) = (Formula::through(&points), points[points.len() - 1][0]);
         let finish = match args.accuracy() {
             Accuracy::Classic => {
-                let surface = Classic { line: ProfileLine { radius, slope: None }, height };
+                let surface = ClassicRevolution { line: ProfileLine { radius, slope: None }, height };
                 return Ok(Body::plain(Shape::new(InFrame { surface, frame }).classic()));
             }
             Accuracy::Draft => Finish::Bracket,

@@ -104,10 +104,7 @@ fn unknown(args: &Args, painted: &Painted) -> Option<Warning> {
 
 /// Warns of materials whose shininess or transparency differs from that of the mesh, which are those of all its faces.
 fn unlike(args: &Args, painted: &Painted) -> Option<Warning> {
-    let own = args.values().find_map(|(_, datum)| match datum {
-        Datum::Material { material, .. } => Some(material),
-        _ => None,
-    })?;
+    let own = args.material();
     let is_unlike = |material: &Material| {
         material.shininess != own.shininess || material.transparency != own.transparency
     };

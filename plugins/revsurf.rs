@@ -1,7 +1,7 @@
 //! A surface of revolution: a profile curve rotated around an axis.
 
 use crate::prelude::*;
-use crate::shapes::{Classic, Finish, InFrame, Revolution};
+use crate::shapes::{ClassicRevolution, Finish, InFrame, Revolution};
 use std::sync::Arc;
 
 static SURFER: Pparm<Option<&'static Profile>> =
@@ -30,7 +30,7 @@ inventory::submit! {
         let (line, height) = (line(args), args.get(&HEIGHT));
         let finish = match args.accuracy() {
             Accuracy::Classic => {
-                return Ok(Body::plain(Shape::new(InFrame { surface: Classic { line, height }, frame }).classic()));
+                return Ok(Body::plain(Shape::new(InFrame { surface: ClassicRevolution { line, height }, frame }).classic()));
             }
             Accuracy::Draft => Finish::Bracket,
             Accuracy::Exact | Accuracy::Strict => Finish::Root,

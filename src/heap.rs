@@ -23,7 +23,7 @@ thread_local! {
     static MAY_FAIL: Cell<bool> = const { Cell::new(false) };
 }
 
-/// From here on this is called where memory is refused, with the length of the allocation in bytes. If it returns, the
+/// Registers what is called, with the length of the allocation in bytes, where memory is refused. If it returns, the
 /// program ends with a signal.
 pub fn when_refused(call: fn(usize)) {
     REFUSED.get_or_init(|| call);

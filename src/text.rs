@@ -193,6 +193,12 @@ pub fn json_in_lines(value: &impl Serialize) -> String {
 
 const NAMED: &str = "only a map whose keys are no names has no JSON";
 
+/// Writes a SHA-256: `sha256:` and its hexadecimal digits.
+pub fn sha256(hash: &[u8]) -> String {
+    let digits: String = hash.iter().map(|byte| format!("{byte:02x}")).collect();
+    format!("sha256:{digits}")
+}
+
 /// Returns the name of a value on the command line.
 pub fn name(value: &impl ValueEnum) -> String {
     value.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()

@@ -26,7 +26,8 @@ use std::time::{Duration, Instant};
 /// Measures the choices on a part of the image, shows them with a bound on their errors that holds with a confidence of
 /// 99 %, and prints the command line to use. Takes at most half as many rays as the image with the fixed number of samples
 /// that suffices; or 1 million where that is more (with `--worst` 2 million). That is at most about 500 rays for each pixel
-/// of a tiny image. Never takes longer than 10 seconds unless it is given more.
+/// of a tiny image. Gives up after 10 seconds, or after
+/// the time that it is given; it may end a tenth later.
 #[derive(clap::Args)]
 #[command(group = ArgGroup::new("limit").args(["max_error", "max_time"]).required(true))]
 #[command(after_long_help = EXAMPLES)]

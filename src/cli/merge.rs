@@ -97,11 +97,9 @@ impl Parts {
             What::Beside(aov, compression, setting) => {
                 let format = compression.map_or(Format::Ppm, Format::Png);
                 let numbers = self.all(24)?;
-                let number = |bytes: &[u8]| f64::from_le_bytes(bytes.try_into().unwrap_or_default());
-                let values: Vec<Values> = numbers
-                    .chunks_exact(24)
-                    .map(|pixel| [0, 8, 16].map(|at| number(&pixel[at..at + 8])))
-                    .collect();
+                let number = |bytes: &[u8; 8]| f64::from_le_bytes(*bytes);
+                let (pixels, _) = numbers.as_chunks().0.as_chunks::<3>();
+                let values: Vec<Values> = pixels.iter().map(|pixel| pixel.each_ref().map(number)).collect();
                 drop(numbers);
                 let layer = Aov::layer(aov, &values, &setting);
                 aov::tell(&layer);
@@ -161,8 +159,7 @@ impl Parts {
         memory::room(full_range::PIXEL.saturating_mul(width).saturating_mul(height), "the image")?;
         let out = self.open(path)?;
         let bytes = self.all(12)?;
-        let number = |bytes: &[u8]| f32::from_le_bytes(bytes.try_into().unwrap_or_default());
-        let pixels: Vec<f32> = bytes.chunks_exact(4).map(number).collect();
+        let pixels: Vec<f32> = bytes.as_chunks().0.iter().map(|number| f32::from_le_bytes(*number)).collect();
         drop(bytes);
         let mut out = BufWriter::new(out);
         let written = format.write(&mut out, self.label.size, &pixels);

@@ -98,26 +98,28 @@ enum Command {
     Man(man::Args),
 }
 
-const EXIT_STATUS: &str = "\
+macro_rules! exit_status {
+    () => {
+        "\
 Exit status:
     0  success
     1  failure: something could not be read, written or started
     2  bad input: a scene or a command line with errors
-  130  interrupted, or stopped at a limit";
+  130  interrupted, or stopped at a limit"
+    };
+}
 
-const EXAMPLES: &str = "\
-Exit status:
-    0  success
-    1  failure: something could not be read, written or started
-    2  bad input: a scene or a command line with errors
-  130  interrupted, or stopped at a limit
+const EXIT_STATUS: &str = exit_status!();
 
-Examples:
+const EXAMPLES: &str = concat!(
+    exit_status!(),
+    "\n\nExamples:
   tabray new scene ball                     # writes ball.ray, a scene to start from
   tabray render ball.ray                    # writes ball.png
   tabray watch ball.ray --open              # shows it in the browser, and each change
   tabray render ball.ray -o big.png --size 1600 --samples 16
-  tabray help render                        # explains the options of `render`";
+  tabray help render                        # explains the options of `render`"
+);
 
 /// Returns the command line, under the name of the running program.
 fn command() -> clap::Command {

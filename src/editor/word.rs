@@ -20,7 +20,7 @@ pub enum Form {
     Bare,
     /// By quotes that this many bytes at each end are, with escape sequences in between.
     Quoted(u8),
-    /// Likewise, without escape sequences.
+    /// By quotes that this many bytes at each end are, without escape sequences.
     Literal(u8),
     /// By a quote at its beginning alone.
     Unclosed,

@@ -6,7 +6,7 @@ use crate::render::bytes::{shown, to_byte};
 use crate::render::observer::{Event, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
-use crate::render::trace::{self, Bounded};
+use crate::render::trace::{self, PixelBound};
 use crate::world::film::Film;
 use crate::world::material::Rgb;
 use clap::ValueEnum;
@@ -254,7 +254,7 @@ pub(super) fn cost(costs: &[u64], [width, height]: [usize; 2]) -> Layer {
     let most = costs.iter().copied().max().unwrap_or(0);
     let place = costs.iter().position(|cost| *cost == most).unwrap_or(0);
     Layer {
-        bytes: shown_all(costs.iter().map(|cost| DVec3::splat(*cost as f64 / most as f64))),
+        bytes: shown_all(costs.iter().map(|cost| DVec3::splat(*cost as f64 / most.max(1) as f64))),
         exact: None,
         most: Some((most, [place % width, height - 1 - place / width])),
         worst: None,
@@ -281,16 +281,16 @@ pub(super) fn samples(pixels: &[(u32, Option<f64>)], setting: &Setting) -> Layer
 }
 
 /// Shows what is proven of pixels: as grey up to the limit, and red beyond.
-pub(super) fn bounds(pixels: &[Bounded], setting: &Setting) -> Layer {
+pub(super) fn bounds(pixels: &[PixelBound], setting: &Setting) -> Layer {
     let [width, height] = setting.size;
     let limit = setting.limit().unwrap_or(1.0);
     let worst = pixels.iter().map(|pixel| pixel.error).fold(0.0, f64::max);
     let place = pixels.iter().position(|pixel| pixel.error == worst).unwrap_or(0);
-    let shade = |pixel: &Bounded| match pixel.is_certified {
+    let shade = |pixel: &PixelBound| match pixel.is_certified {
         true => DVec3::splat(0.5 * pixel.error / limit),
         false => DVec3::X,
     };
-    let numbers = |pixel: &Bounded| {
+    let numbers = |pixel: &PixelBound| {
         let open = if pixel.is_certified { 0.0 } else { 1.0 };
         [(pixel.error as f32).next_up(), pixel.footprints as f32, open]
     };

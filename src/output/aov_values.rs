@@ -3,7 +3,7 @@
 
 use crate::output::aov::{self, Aov, Layer, PixelError, Setting};
 use crate::render::plan::Plan;
-use crate::render::trace::{self, Bounded};
+use crate::render::trace::{self, PixelBound};
 use glam::DVec3;
 
 /// The numbers of a pixel. What an image does not need is 0, and what there is not is NaN.
@@ -24,7 +24,7 @@ impl Aov {
                 [f64::from(count), error.unwrap_or(f64::NAN), 0.0]
             }
             Self::Error if plan.camera.certain => {
-                let Bounded { error, is_certified, footprints } =
+                let PixelBound { error, is_certified, footprints } =
                     trace::bounded(plan, x, y).unwrap_or_default();
                 [error, f64::from(u8::from(is_certified)), f64::from(footprints)]
             }
@@ -58,7 +58,7 @@ impl Aov {
                 aov::samples(&all(values, of), setting)
             }
             Self::Error if setting.certain => {
-                let of = |[error, certified, footprints]: &Values| Bounded {
+                let of = |[error, certified, footprints]: &Values| PixelBound {
                     error: *error,
                     is_certified: is(*certified),
                     footprints: *footprints as u32,

@@ -195,7 +195,7 @@ fn hash(bytes: &[u8]) -> String {
 }
 
 fn shown(hasher: Sha256) -> String {
-    hasher.finalize().iter().fold("sha256:".to_owned(), |text, byte| format!("{text}{byte:02x}"))
+    text::sha256(&hasher.finalize())
 }
 
 /// Writes a checkpoint of the top of an image, with this number of columns and rows. `picture` has these rows, whether

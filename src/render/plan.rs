@@ -25,8 +25,8 @@ const MANY: usize = 1 << 14;
 pub struct Plan<'m> {
     /// The scene.
     pub model: &'m Model,
-    /// The camera, initially the model's own. A fixed number of samples and the sampler may be changed, and the image size of a plan that was
-    /// made for any ray; the rest is what the plan was made for.
+    /// The camera, initially the model's own. What may be changed afterwards: a fixed number of samples, the sampler, and,
+    /// in a plan for any ray, the size of the image. The plan depends on the rest.
     pub camera: Film,
     /// The indices of the objects without bounds.
     pub(crate) unbounded: Vec<usize>,

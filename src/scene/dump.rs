@@ -9,7 +9,8 @@ use crate::scene::syntax::Syntax;
 use crate::scene::value::Datum;
 use std::collections::HashMap;
 
-/// Returns the notes' dump: camera, materials, objects and lights, with numbers to one decimal. Textures, shaders and backgrounds are not in it.
+/// Returns the notes' dump: camera, materials, objects and lights, with numbers to one decimal.
+/// Textures, shaders and backgrounds are not in it.
 pub fn notes(model: &Model) -> String {
     let kinds = [Kind::Camera, Kind::Material, Kind::Object, Kind::Light];
     let mut memory = None;

@@ -58,8 +58,8 @@ impl<A> Ellipsoid<A> {
         Aabb { low: self.center - reach, high: self.center + reach }
     }
 
-    #[inline(always)]
     /// Returns the unit normal at a point of the surface.
+    #[inline(always)]
     pub fn upright(&self, at: DVec3) -> DVec3 {
         ((at - self.center) / (self.scale * self.scale)).normalize()
     }

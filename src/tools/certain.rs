@@ -7,7 +7,7 @@ use crate::render::plan::Plan;
 use crate::render::ray_stats::Cuts;
 use crate::render::renderer::Renderer;
 use crate::render::tiles::{self, TILE, TOGETHER};
-use crate::render::trace::{Bounded, Scratch, Tracer};
+use crate::render::trace::{PixelBound, Scratch, Tracer};
 use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
 use crate::tools::bench::clock;
@@ -86,14 +86,14 @@ pub fn truth(renderer: &Renderer, model: &mut Model) -> Vec<Sampled> {
 
 /// Collects what is proven of pixels, in their order.
 #[derive(Default)]
-struct Bounds(Vec<Bounded>);
+struct Bounds(Vec<PixelBound>);
 
 impl TraceObserver for Bounds {
     const SEES: bool = false;
 
     fn count(&mut self, count: Count) {
         if let Count::Bounded { error, is_certified, footprints } = count {
-            self.0.push(Bounded { error, is_certified, footprints });
+            self.0.push(PixelBound { error, is_certified, footprints });
         }
     }
 }
@@ -130,14 +130,14 @@ pub fn measure(renderer: &Renderer, model: &mut Model, limit: f64, truth: &[Samp
 }
 
 /// Renders a model on one thread, in rows from the top: its colours, what is proven of them, and the CPU time.
-fn render(renderer: &Renderer, model: &Model) -> (Vec<Rgb>, Vec<Bounded>, f64) {
+fn render(renderer: &Renderer, model: &Model) -> (Vec<Rgb>, Vec<PixelBound>, f64) {
     renderer.run(|| {
         let (mut scratch, mut bounds) = (Scratch::default(), Bounds::default());
         let start = clock::now();
         let plan = Plan::new(model);
         let [width, height] = plan.camera.pixels;
         let mut colours = vec![Rgb::ZERO; width * height];
-        let mut proven = vec![Bounded::default(); width * height];
+        let mut proven = vec![PixelBound::default(); width * height];
         let mut pixels = Vec::new();
         for (low, left) in (0..height)
             .step_by(TILE)

@@ -15,7 +15,7 @@ use glam::{DMat3, DVec2, DVec3};
 /// A shape that rays can hit. Shapes do not change while an image is rendered.
 ///
 /// A plugin implements `distance` and `normal`, and overrides those other methods of which it knows more. Each default
-/// is correct for every shape.
+/// is correct for every shape, except for [`reach`](Self::reach) of a shape without bounds.
 pub trait Hittable: Send + Sync {
     /// Returns the distance from the ray's origin to its first hit of the shape within the range, in world units, or
     /// [`MISS`](crate::geometry::ray::MISS).
@@ -120,7 +120,8 @@ pub trait Hittable: Send + Sync {
     }
 
     /// Returns the largest magnitude of the shape's own coordinates that its hits are computed from, in world units.
-    /// The ray's coordinates do not count.
+    /// The ray's coordinates do not count. The default is that of the bounding box, and 0 without one: a shape without
+    /// bounds overrides it.
     fn reach(&self) -> f64 {
         self.bounds().map_or(0.0, |bounds| bounds.low.abs().max(bounds.high.abs()).max_element())
     }

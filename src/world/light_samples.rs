@@ -33,7 +33,7 @@ pub struct LightSamples<'f> {
 }
 
 /// Whether any of some shading points is lit.
-pub struct Lit {
+pub struct AnyLit {
     /// Whether any point faces the light.
     pub any_faces: bool,
     /// Whether the light shines on any of the points that face it.

@@ -39,7 +39,8 @@ pub struct Sample {
     pub sampler: Sampler,
     /// The sample's index among the pixel's samples, from 0.
     pub index: u32,
-    /// The pixel's index in the image.
+    /// What tells the pixel's samples from those of others: its index in the image, scrambled; for probes, the number of
+    /// a point on the rim of a light.
     pub pixel: u32,
 }
 

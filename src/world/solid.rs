@@ -17,11 +17,11 @@ pub enum Operation {
 /// A condition on the parts that a point lies in, which are given by their indices.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Tree {
-    /// That holds everywhere or nowhere.
+    /// Holds everywhere or nowhere.
     Known(bool),
-    /// To lie in a part.
+    /// Holds where a point lies in this part.
     Part(usize),
-    /// That of an operation on several of them.
+    /// Combines several conditions by an operation.
     Combined(Operation, Arc<[Tree]>),
 }
 

@@ -51,7 +51,7 @@ impl Texture {
         self.load_within(u64::MAX)
     }
 
-    /// The image, read from its file at the first call, if it takes no more memory than so many bytes.
+    /// Returns the image, and reads its file at the first call, unless that takes more than `bytes` bytes of memory.
     ///
     /// # Errors
     /// The reason why it cannot be read.
@@ -87,7 +87,7 @@ impl Texture {
         Ok(picture.into_rgb8())
     }
 
-    /// How many bytes its picture takes; 0 where it was not read.
+    /// Returns the memory that the image takes, in bytes; 0 if it has not been read.
     pub fn bytes(&self) -> u64 {
         let picture = self.image.get().and_then(|picture| picture.as_ref().ok());
         picture.map_or(0, |picture| picture.as_raw().len() as u64)

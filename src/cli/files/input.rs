@@ -76,8 +76,7 @@ impl Source {
 
     /// Returns the SHA-256 of the text, as `sha256sum` prints it.
     pub fn hash(&self) -> String {
-        let hash = Sha256::digest(&self.bytes);
-        hash.iter().fold("sha256:".to_owned(), |text, byte| format!("{text}{byte:02x}"))
+        text::sha256(&Sha256::digest(&self.bytes))
     }
 
     /// Makes a model, with the given accuracy or with the scene's own, and its warnings.

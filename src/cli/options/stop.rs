@@ -103,20 +103,20 @@ impl Stop {
         self.written.fetch_add(time.as_micros() as u64, Ordering::Relaxed);
     }
 
-    /// From here on interruptions and limits are only noted, because there is something to keep.
+    /// Lets interruptions and limits only be noted from now on, because there is something to keep.
     pub fn begin(&self) {
         interrupt::from_here(Manner::Notes);
         let _ = self.begun.set(());
     }
 
-    /// From here on an image is rendered of which no part can be kept: interruptions and limits end the program, and
-    /// this is said.
+    /// Lets interruptions and limits end the program with this message from now on, because no part of the image can be
+    /// kept.
     pub fn begin_unkept(&self, said: &'static str) {
         interrupt::from_here(Manner::Ends(said));
         let _ = self.begun.set(());
     }
 
-    /// From here on interruptions and limits end the program, and the images not yet written are lost.
+    /// Lets interruptions and limits end the program from now on; images not yet written are lost.
     pub fn ends_from_here(&self) -> Result<(), Failure> {
         interrupt::from_here(Manner::Ends(NOT_FINISHED));
         match self.reached.get() {

@@ -12,7 +12,7 @@ fn last() -> MutexGuard<'static, (String, String)> {
     LAST.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// From here on panics are not printed, but kept, so that [`catch`] can report them.
+/// Keeps panics, in place of printing them, so that [`catch`] can report them.
 pub fn keep() {
     panic::set_hook(Box::new(|info| {
         let payload = info.payload();
@@ -30,7 +30,7 @@ pub fn keep() {
     }));
 }
 
-/// From here on panics are reported as concerning this scene.
+/// Names the scene that later panics are reported for.
 pub fn about(scene: &str) {
     scene.clone_into(&mut last().1);
 }

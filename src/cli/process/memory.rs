@@ -27,7 +27,7 @@ pub fn room(bytes: usize, what: &str) -> Result<(), Failure> {
     Err(Failure::Failed(format!("not enough memory for {what}: it takes about {}", ByteSize(bytes as u64))))
 }
 
-/// From here on the program ends with a message if the system refuses it memory.
+/// Ends the program with a message, from now on, if the system refuses it memory.
 pub fn tell_when_refused() {
     if let Ok(mut reserve) = RESERVE.lock() {
         heap::may_fail(|| reserve.try_reserve_exact(KEPT).ok());

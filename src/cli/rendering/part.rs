@@ -46,7 +46,7 @@ fn share(text: &str) -> Result<[usize; 2], String> {
         || format!("give a part as `3/16`: its number, from 1, and of how many parts, up to {MOST_PARTS}");
     let [number, of]: [usize; 2] = [number.parse().map_err(|_| wrong())?, of.parse().map_err(|_| wrong())?];
     match (number, of) {
-        (_, 0) | (_, MOST_PARTS..) if of != MOST_PARTS => Err(wrong()),
+        (_, of) if !(1..=MOST_PARTS).contains(&of) => Err(wrong()),
         (0, _) => Err(format!("parts are counted from 1: the first is `1/{of}`")),
         _ if number > of => Err(format!("the last of {of} parts is `{of}/{of}`")),
         _ => Ok([number, of]),
@@ -263,12 +263,11 @@ impl Share<'_> {
         mask.resize(tiles.len(), 0);
         let mut writer = begin(path, &label)?;
         let mut file = written.read_from(begin_at).map_err(cannot)?;
-        let copied = || -> io::Result<()> {
+        let mut copied = || -> io::Result<()> {
             writer.put(&mask)?;
             copy(&mut io::Read::take(&mut file, 3 * kept as u64), &mut writer)?;
             copy(&mut io::Read::take(io::repeat(0), 3 * rest as u64), &mut writer)
         };
-        let mut copied = copied;
         copied().map_err(cannot)?;
         finish(path, writer)?;
         let share = (1000.0 * done as f64 / tiles.len() as f64).floor() / 10.0;

@@ -140,7 +140,7 @@ fn events(desk: &Desk) -> Body {
             event = timeout(QUIET, reader.next()).await.unwrap_or(quiet);
         }
     });
-    // The body is dropped as soon as the page has gone.
+    // The closure owns `look`, so that the page counts as looking until the body is dropped, which is when it has gone.
     let looked_at = move |frame| {
         let _ = &look;
         frame
@@ -223,7 +223,7 @@ fn pixel(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
     let [x, y] = place(&frame, x, y)?;
     Some(Box::new(move |client| {
         Renderer::new(1)?.run(|| {
-            let mut told = Bounded { text: Vec::new(), check: || check(&frame, client) };
+            let mut told = LimitedText { text: Vec::new(), check: || check(&frame, client) };
             match probe::pixel(&Plan::new(&frame.model), x, y, &mut told) {
                 Err(error) if error.kind() == io::ErrorKind::StorageFull => {
                     told.text
@@ -248,12 +248,12 @@ struct Explained<'e> {
 }
 
 /// Collects a pixel's explanation while a client waits for it and it is not too long.
-struct Bounded<C> {
+struct LimitedText<C> {
     text: Vec<u8>,
     check: C,
 }
 
-impl<C: Fn() -> ControlFlow<()>> Write for Bounded<C> {
+impl<C: Fn() -> ControlFlow<()>> Write for LimitedText<C> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         if (self.check)().is_break() {
             // An operation that fails with `Interrupted` would be tried again.
@@ -314,11 +314,11 @@ mod tests {
 
     #[test]
     fn an_explanation_ends_where_it_is_too_long_or_nobody_wants_it() {
-        let mut told = Bounded { text: Vec::new(), check: || ControlFlow::Continue(()) };
+        let mut told = LimitedText { text: Vec::new(), check: || ControlFlow::Continue(()) };
         told.write_all(&vec![b'a'; MAX_EXPLANATION]).expect("it is not too long");
         let full = told.write_all(b"a").expect_err("now it is");
         assert_eq!((full.kind(), told.text.len()), (io::ErrorKind::StorageFull, MAX_EXPLANATION));
-        let mut told = Bounded { text: Vec::new(), check: || ControlFlow::Break(()) };
+        let mut told = LimitedText { text: Vec::new(), check: || ControlFlow::Break(()) };
         assert_eq!(told.write_all(b"a").expect_err("nobody").kind(), io::ErrorKind::BrokenPipe);
     }
 }

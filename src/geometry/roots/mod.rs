@@ -74,22 +74,19 @@ impl Method {
         shortest: f64,
     ) -> Option<f64> {
         let origin_side = range.origin_side;
-        if self == Self::Taylor {
-            return taylor::first_root(line, &span.into(), base, range, shortest).root;
-        }
-        let span = span.start.max(range.near - base)..span.end.min(range.far - base);
-        if span.is_empty() {
-            return None;
-        }
+        let clipped = || {
+            let part = span.start.max(range.near - base)..span.end.min(range.far - base);
+            (!part.is_empty()).then_some(part)
+        };
         match self {
-            Self::Steps => steps::first_root(line, span, origin_side),
+            Self::Taylor => taylor::first_root(line, &span.clone().into(), base, range, shortest).root,
+            Self::Steps => steps::first_root(line, clipped()?, origin_side),
             Self::Samples(count, refiner) => {
-                samples::first_root(line, span, shortest, origin_side, (count, refiner))
+                samples::first_root(line, clipped()?, shortest, origin_side, (count, refiner))
             }
-            Self::Turning(count) => turning::first_root(line, span, shortest, origin_side, count),
-            Self::Tracing => tracing::first_root(line, span, origin_side),
-            Self::Intervals => intervals::first_root(line, span, shortest, origin_side),
-            Self::Taylor => unreachable!("it has been asked"),
+            Self::Turning(count) => turning::first_root(line, clipped()?, shortest, origin_side, count),
+            Self::Tracing => tracing::first_root(line, clipped()?, origin_side),
+            Self::Intervals => intervals::first_root(line, clipped()?, shortest, origin_side),
         }
     }
 

@@ -79,7 +79,7 @@ pub fn observe_pixel(plan: &Plan, x: usize, y: usize, observer: &mut impl TraceO
 
 /// What is proven of a pixel's colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Bounded {
+pub struct PixelBound {
     /// A bound on the error of the colour as it is shown, the largest of its channels, where 1 is white.
     pub error: f64,
     /// Whether the bound is within the limit, so that the pixel takes no samples.
@@ -89,11 +89,11 @@ pub struct Bounded {
 }
 
 /// Returns what is proven of a pixel's colour, where that is wanted.
-pub fn bounded(plan: &Plan, x: usize, y: usize) -> Option<Bounded> {
+pub fn bounded(plan: &Plan, x: usize, y: usize) -> Option<PixelBound> {
     let (proof, gain) = (certain::proof(plan, x, y)?, plan.camera.gain());
     let is_certified = certain::is_certified(plan, &proof);
     let colour = if is_certified { proof.middle(gain) } else { pixel(plan, x, y) / gain };
-    Some(Bounded { error: proof.error(colour, gain), is_certified, footprints: proof.footprints })
+    Some(PixelBound { error: proof.error(colour, gain), is_certified, footprints: proof.footprints })
 }
 
 /// Returns the number of samples that a pixel takes, and where pixels differ in that, the estimated error of its colour,
@@ -178,59 +178,69 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let camera = &self.plan.camera;
         let mut primary = self.scratch.primary.take().unwrap_or_default();
         self.scratch.places.iter_mut().for_each(|places| places.resize(PACKET_SIZE, 0.0));
-        let PrimaryScratch { group, seen, colours, .. } = &mut *primary;
-        let mut colours = colours.resized(pixels.len());
-        if let (Some(adaptive), Some(prover)) = (camera.adaptive, &self.plan.prover) {
-            self.certain_pixels(pixels, adaptive, prover, &mut primary);
-        } else if let Some(adaptive) = camera.adaptive {
-            self.adaptive_pixels(pixels, adaptive, &mut primary);
-        } else if camera.samples > 1 && sampled::is_unbounded(self.plan) {
-            self.one_by_one(pixels, &mut primary);
-        } else if camera.samples == 1 {
-            self.scratch.samples.clear();
-            for (pixels, first) in pixels.chunks(PACKET_SIZE).zip((0..).step_by(PACKET_SIZE)) {
-                let [x, y] = &mut self.scratch.places;
-                film::middles(self.cpu, pixels, x, y);
-                self.look(group, pixels.len());
-                self.colours(group, seen);
-                colours.copy_at(first, seen.view(pixels.len()));
-                if self.scratch.any_missing {
-                    (0..pixels.len()).for_each(|lane| self.cut(self.missing(lane)));
-                }
-            }
-        } else {
-            let samples = camera.samples as usize;
-            let (mut sum, mut missing, mut count) = (Rgb::ZERO, 0.0, 0);
-            while count < samples * pixels.len() {
-                let len = PACKET_SIZE.min(samples * pixels.len() - count);
-                let Scratch { places: [x, y], samples: drawn, .. } = &mut *self.scratch;
-                camera.scatter(self.cpu, pixels, count..count + len, drawn, [&mut x[..len], &mut y[..len]]);
-                self.look(group, len);
-                self.colours(group, seen);
-                let mut lanes = 0..len;
-                while !lanes.is_empty() {
-                    // The samples of one pixel may go on in the next packet.
-                    let end = len.min(lanes.start + samples - count % samples);
-                    let of_one = lanes.start..end;
-                    sum = seen.view(len).part(of_one.clone()).added_to(sum);
-                    if self.scratch.any_missing {
-                        missing = of_one.fold(missing, |missing, lane| missing + self.missing(lane));
-                    }
-                    count += end - lanes.start;
-                    lanes.start = end;
-                    if count % samples == 0 {
-                        colours.set(count / samples - 1, sum / f64::from(camera.samples));
-                        self.cut(missing / f64::from(camera.samples));
-                        (sum, missing) = (Rgb::ZERO, 0.0);
-                    }
-                }
-            }
+        match (camera.adaptive, &self.plan.prover) {
+            (Some(adaptive), Some(prover)) => self.certain_pixels(pixels, adaptive, prover, &mut primary),
+            (Some(adaptive), None) => self.adaptive_pixels(pixels, adaptive, &mut primary),
+            (None, _) if camera.samples == 1 => self.middles(pixels, &mut primary),
+            (None, _) if sampled::is_unbounded(self.plan) => self.one_by_one(pixels, &mut primary),
+            (None, _) => self.fixed_samples(pixels, &mut primary),
         }
         if camera.exposure != 0.0 {
             let mut colours = primary.colours.resized(pixels.len());
             (0..pixels.len()).for_each(|pixel| colours.set(pixel, camera.gain() * colours.get(pixel)));
         }
         self.scratch.primary.insert(primary).colours.view(pixels.len())
+    }
+
+    /// Computes the colours of pixels by one ray through the middle of each.
+    fn middles(&mut self, pixels: &[[usize; 2]], primary: &mut PrimaryScratch) {
+        let PrimaryScratch { group, seen, colours, .. } = primary;
+        let mut colours = colours.resized(pixels.len());
+        self.scratch.samples.clear();
+        for (pixels, first) in pixels.chunks(PACKET_SIZE).zip((0..).step_by(PACKET_SIZE)) {
+            let [x, y] = &mut self.scratch.places;
+            film::middles(self.cpu, pixels, x, y);
+            self.look(group, pixels.len());
+            self.colours(group, seen);
+            colours.copy_at(first, seen.view(pixels.len()));
+            if self.scratch.any_missing {
+                (0..pixels.len()).for_each(|lane| self.cut(self.missing(lane)));
+            }
+        }
+    }
+
+    /// Computes the colours of pixels by the same number of samples of each, as many of them together as fit into a
+    /// packet.
+    fn fixed_samples(&mut self, pixels: &[[usize; 2]], primary: &mut PrimaryScratch) {
+        let camera = &self.plan.camera;
+        let PrimaryScratch { group, seen, colours, .. } = primary;
+        let mut colours = colours.resized(pixels.len());
+        let samples = camera.samples as usize;
+        let (mut sum, mut missing, mut count) = (Rgb::ZERO, 0.0, 0);
+        while count < samples * pixels.len() {
+            let len = PACKET_SIZE.min(samples * pixels.len() - count);
+            let Scratch { places: [x, y], samples: drawn, .. } = &mut *self.scratch;
+            camera.scatter(self.cpu, pixels, count..count + len, drawn, [&mut x[..len], &mut y[..len]]);
+            self.look(group, len);
+            self.colours(group, seen);
+            let mut lanes = 0..len;
+            while !lanes.is_empty() {
+                // The samples of one pixel may go on in the next packet.
+                let end = len.min(lanes.start + samples - count % samples);
+                let of_one = lanes.start..end;
+                sum = seen.view(len).part(of_one.clone()).added_to(sum);
+                if self.scratch.any_missing {
+                    missing = of_one.fold(missing, |missing, lane| missing + self.missing(lane));
+                }
+                count += end - lanes.start;
+                lanes.start = end;
+                if count % samples == 0 {
+                    colours.set(count / samples - 1, sum / f64::from(camera.samples));
+                    self.cut(missing / f64::from(camera.samples));
+                    (sum, missing) = (Rgb::ZERO, 0.0);
+                }
+            }
+        }
     }
 
     /// Makes the first `len` image positions, with their samples, the current primary rays.

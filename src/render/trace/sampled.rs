@@ -2,7 +2,8 @@
 //!
 //! A pixel is then off by an unknown amount as soon as one of its samples uses up its ray budget, whatever the others
 //! return. So those after it get a small part of the budget, and the pixel costs about as much as one of a single
-//! sample; it takes no more than the first ones where the number depends on the pixel. What a sample may cost depends on those before it, which are traced first.
+//! sample; where the number of samples depends on the pixel, it takes only the first number. What a sample may cost
+//! depends on those before it, which are traced first.
 
 use super::context::Tracer;
 use super::scratch::{PrimaryScratch, Scratch};

@@ -30,7 +30,7 @@ pub(crate) struct Scratch {
     #[expect(clippy::vec_box, reason = "they come and go, and are large")]
     pub(super) levels: Vec<Box<HitScratch>>,
     /// The unused scratch space of shadow rays through glass, one for each pane on their way.
-    #[expect(clippy::vec_box, reason = "likewise")]
+    #[expect(clippy::vec_box, reason = "they come and go, and are large")]
     pub(super) transmittances: Vec<Box<Transmittance>>,
     /// For direct light, which is finished before any rays continue.
     pub(super) lighting: Option<Box<LightScratch>>,

@@ -59,13 +59,14 @@ impl<'a> Source<'_, 'a> {
 
 /// The number of entities that are parsed and then checked at one time: 8 times what a thread checks at one time.
 pub(super) const TOGETHER: usize = 1 << 11;
+/// The number of entities that a thread checks at one time.
 pub(super) const PIECE: usize = 1 << 8;
 
 /// The default limit on the memory of all textures of a scene, in bytes: far more than scenes need, and far less than a
 /// small file can claim to hold.
 const TEXTURE_MEMORY: u64 = 1 << 30;
 
-/// The accuracy of a scene and its memory limit, as far as the caller chooses them.
+/// What the caller chooses beside the text of a scene.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Chosen<'s> {
     /// The accuracy that overrides the scene's own.

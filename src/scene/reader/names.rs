@@ -44,8 +44,8 @@ pub struct Names {
     again: BTreeMap<usize, Claims>,
     /// The hashes of the names of entities of unknown types, which a reference may mean.
     doubtful: HashSet<u64>,
-    /// The materials that can be referred to so far, the textures, the shaders, and those objects to which an entity has referred, by
-    /// the indices of their data.
+    /// The materials, textures and shaders that can be referred to so far, and the objects to which an entity has
+    /// referred, by the indices of their data.
     defined: [HashMap<String, u32>; 4],
     /// The objects that other entities refer to, by their orders: a datum each.
     patterns: BTreeMap<usize, Datum>,

@@ -1,6 +1,7 @@
 //! What a search has found of a ray's first hit.
 
 use super::face::{Leaving, largest};
+use crate::geometry::aabb::smaller;
 use crate::geometry::ray::{Bracket, MISS, Ray};
 use crate::simd::soa::LANES;
 use crate::world::coincidence::CLOSE;
@@ -36,7 +37,6 @@ impl Nearest {
     #[inline(always)]
     pub(super) fn add(&mut self, face: u64, Bracket { near, far }: Bracket) {
         let is_first = near < self.near;
-        let smaller = |one: f64, other: f64| if one < other { one } else { other };
         // Minima, which need no branches.
         self.second = smaller(self.second, if is_first { self.near } else { near });
         self.face = if is_first { face } else { self.face };

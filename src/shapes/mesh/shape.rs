@@ -6,7 +6,6 @@ use super::surface::Surface;
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::facet::Facet;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
-use crate::geometry::roots::Method;
 use crate::geometry::sight::{Line, Sight};
 use crate::numeric::affine::Affine;
 use crate::numeric::double_double::DoubleDouble;
@@ -207,10 +206,6 @@ impl<A: Bounded> Proofs for Shape<Mesh<A>, ByPackets, ByFaces> {
 
     fn proven(&self) -> Option<&dyn Proven> {
         Some(&self.shape)
-    }
-
-    fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
-        None
     }
 }
 

@@ -4,7 +4,6 @@ use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::facet::Facet;
 use crate::geometry::placement::Placement;
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
-use crate::geometry::roots::Method;
 use crate::geometry::sight::Sight;
 use crate::numeric::double_double::DoubleDouble;
 use crate::world::body::Body;
@@ -283,9 +282,5 @@ impl Proofs for Shape<Placed, ByPackets, ByPlacement> {
 
     fn is_of_the_notes(&self) -> bool {
         self.shape.body.shape.packets().is_of_the_notes()
-    }
-
-    fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
-        None
     }
 }

@@ -13,9 +13,9 @@ pub(super) struct Products {
     pub toward_size: f64,
 }
 
-/// Returns the quotient of two dot products computed by [`dot`](crate::numeric::double_double::dot), each given with the size of its terms. The result is
-/// [`MISS`] where the divisor is 0, and NaN where one of them is less than 2^-44 of its terms: it could then be off by
-/// more than half an ulp, or have the other sign.
+/// Returns the quotient of two dot products computed by [`dot`](crate::numeric::double_double::dot), each given with the
+/// size of its terms. The result is [`MISS`] where the divisor is 0, and NaN where a dot product is less than 2^-44 of
+/// its terms: it could then be off by more than half an ulp, or have the other sign.
 #[inline(always)]
 pub(super) fn quotient((away, away_size): (f64, f64), (toward, toward_size): (f64, f64)) -> f64 {
     const MAX_RATIO: f64 = (1_u64 << 44) as f64;

@@ -9,14 +9,14 @@ use crate::world::certify::Equation;
 use glam::DVec3;
 
 /// A surface of revolution around the y axis, as the course notes' program finds it.
-pub struct Classic {
+pub struct ClassicRevolution {
     /// The profile that is revolved.
     pub line: ProfileLine,
     /// The height of the surface, in world units.
     pub height: f64,
 }
 
-impl Classic {
+impl ClassicRevolution {
     /// Returns the distance of a ray's hit: bisection to 1e-4 world units between the ray's origin and its point
     /// closest to the axis. Grazing rays are lost, and so is the inner wall.
     pub fn first_hit(&self, ray: &Ray, range: &RayRange) -> f64 {
@@ -45,7 +45,7 @@ impl Classic {
 }
 
 /// The surface that the course notes mean, not the one that their program finds.
-impl Equation for Classic {
+impl Equation for ClassicRevolution {
     fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
         x.powi(2) + z.powi(2) - self.line.radius.squared().at(y)
     }

@@ -32,6 +32,6 @@ mod surface;
 mod tests;
 mod walk;
 
-pub use classic::Classic;
+pub use classic::ClassicRevolution;
 pub use shape::InFrame;
 pub use surface::{Finish, Revolution};

@@ -1,7 +1,7 @@
 //! Surfaces of revolution as shapes, anywhere in the world.
 
 use super::bracket::MAX_RAYS;
-use super::classic::Classic;
+use super::classic::ClassicRevolution;
 use super::lanes::Lanes;
 use super::normal;
 use super::surface::Revolution;
@@ -56,7 +56,7 @@ impl<S: Equation> Equation for InFrame<S> {
     }
 }
 
-impl Hittable for InFrame<Classic> {
+impl Hittable for InFrame<ClassicRevolution> {
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         self.surface.first_hit(&self.frame.ray(ray), range)
     }
@@ -197,8 +197,8 @@ where
         self.shape.surface.roots(cpu, &self.shape.frame, rays, brackets, out);
     }
 
-    fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], landing: SurfaceInteraction) {
-        let SurfaceInteraction { points, normals, sides, cosines, travelled } = landing;
+    fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction) {
+        let SurfaceInteraction { points, normals, sides, cosines, travelled } = interaction;
         let InFrame { surface, frame } = &self.shape;
         normal::interact(cpu, surface, frame, rays, distances, sides, cosines, travelled, points, normals);
     }

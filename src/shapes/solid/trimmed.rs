@@ -2,7 +2,6 @@
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
-use crate::geometry::roots::Method;
 use crate::geometry::sight::Sight;
 use crate::numeric::double_double::DoubleDouble;
 use crate::world::any_shape::AnyShape;
@@ -347,9 +346,5 @@ impl Proofs for Shape<Trimmed, ByPackets, ByParts> {
 
     fn proven(&self) -> Option<&dyn Proven> {
         Some(&self.shape)
-    }
-
-    fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
-        None
     }
 }

@@ -112,14 +112,14 @@ impl Tried<'_> {
                 let (mut points, mut normals) = (Vectors::<LANES>::ZERO, Vectors::<LANES>::ZERO);
                 let (mut sides, mut cosines) = ([Side::Inside; LANES], [0.0; LANES]);
                 let mut travelled = [1.0; LANES];
-                let landing = SurfaceInteraction {
+                let interaction = SurfaceInteraction {
                     points: points.view_mut(LANES),
                     normals: normals.view_mut(LANES),
                     sides: &mut sides,
                     cosines: &mut cosines,
                     travelled: &mut travelled,
                 };
-                shape.packets().interact(cpu, rays, &[distance; LANES], landing);
+                shape.packets().interact(cpu, rays, &[distance; LANES], interaction);
                 let (at, normal) = (ray.at(distance), shape.normal(ray.at(distance)));
                 let side = Side::seen_along(ray.dir, normal);
                 let turned = shape.is_two_sided() && side == Side::Inside;

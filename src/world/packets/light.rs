@@ -6,7 +6,7 @@ use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::ViewMut;
 use crate::world::certify::Precise;
 use crate::world::light::Light;
-use crate::world::light_samples::{LightSamples, Lit, ShadingPoints};
+use crate::world::light_samples::{AnyLit, LightSamples, ShadingPoints};
 use crate::world::material::Rgb;
 use f256::f256;
 use glam::DVec3;
@@ -14,7 +14,7 @@ use glam::DVec3;
 /// A light for packets. Every [`Light`] is one.
 pub trait PacketLight: Light + EncloseLight<f64> + EncloseLight<f256> + EncloseLight<Fraction> {
     /// Samples the light from many points, with what [`emissivity`](Light::emissivity) returns for each.
-    fn sample(&self, cpu: Cpu, points: &ShadingPoints, samples: LightSamples) -> Lit;
+    fn sample(&self, cpu: Cpu, points: &ShadingPoints, samples: LightSamples) -> AnyLit;
 }
 
 /// A light that is enclosed in one precision. Every [`Light`] is one.
@@ -30,7 +30,7 @@ impl<T: Light, F: Precise> EncloseLight<F> for T {
 }
 
 impl<T: Light> PacketLight for T {
-    fn sample(&self, cpu: Cpu, points: &ShadingPoints, samples: LightSamples) -> Lit {
+    fn sample(&self, cpu: Cpu, points: &ShadingPoints, samples: LightSamples) -> AnyLit {
         let LightSamples { toward, emissivity, cos_over_distance, t_max, shines } = samples;
         sample(cpu, self, points, cos_over_distance, t_max, shines, toward, emissivity)
     }
@@ -44,7 +44,7 @@ kernels! {
         cos_over_distance: &mut [f64],
         t_max: &mut [f64],
         shines: &mut [u64],
-    ) => toward, emissivity -> Lit {
+    ) => toward, emissivity -> AnyLit {
         let (count, middle) = (shading.points.len(), light.location());
         let out = (cos_over_distance, t_max, shines, toward.first(count), emissivity.first(count));
         match shading.lights {
@@ -70,7 +70,7 @@ fn sample_each<T: Light>(
         ViewMut,
         ViewMut,
     ),
-) -> Lit {
+) -> AnyLit {
     let (count, slack, is_uniform) = (shading.points.len(), shading.slack, light.uniform().is_some());
     let (points, normals) = (shading.points.first(count), shading.normals.first(count));
     let (cos_over_distance, t_max, shines) =
@@ -98,7 +98,7 @@ fn sample_each<T: Light>(
         any_faces |= faces;
         any_shines |= does_shine;
     }
-    Lit { any_faces: any_faces != 0, any_shines: any_shines != 0 }
+    AnyLit { any_faces: any_faces != 0, any_shines: any_shines != 0 }
 }
 
 /// Returns the largest magnitude of a point's coordinates, in world units.

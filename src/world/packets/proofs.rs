@@ -47,7 +47,9 @@ pub trait Proofs: Send + Sync {
 
     /// Returns the distance by another root-finding method, or `None` where the shape's hits are not the roots of a
     /// function along the ray, or are found in closed form.
-    fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> Option<f64>;
+    fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
+        None
+    }
 }
 
 impl<T: Hittable, S> Proofs for Shape<T, S, Unproven> {
@@ -61,10 +63,6 @@ impl<T: Hittable, S> Proofs for Shape<T, S, Unproven> {
 
     fn certify(&self, _sight: &Sight, _precision: Precision) -> Enclosure {
         Enclosure::UNKNOWN
-    }
-
-    fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
-        None
     }
 }
 
@@ -83,10 +81,6 @@ impl<T: Hittable + Equation, S> Proofs for Shape<T, S, ByFormula> {
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
         certify::first_hit(&self.shape, sight, precision)
-    }
-
-    fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
-        None
     }
 }
 
@@ -113,10 +107,6 @@ impl<T: Certified, S> Proofs for Shape<T, S, ByEquation> {
 
     fn proven(&self) -> Option<&dyn Proven> {
         Some(&self.shape)
-    }
-
-    fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
-        None
     }
 }
 
