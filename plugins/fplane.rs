@@ -1,6 +1,7 @@
 //! A finite plane: a rectangle.
 
 use super::plane;
+use crate::numeric::double_double::scaled;
 use crate::prelude::*;
 use crate::shapes::rectangle::{self, FinitePlane, Rectangle};
 
@@ -61,7 +62,7 @@ fn frame(args: &Attributes) -> DMat3 {
 /// # Errors
 /// If `xdir` is within 1e-6 radians of the normal or its opposite, and so has no direction in the plane.
 pub fn sides(args: &Args) -> Result<[DVec3; 2], Refusal> {
-    let (normal, xdir) = (args.get(&plane::NORMAL).normalize(), args.get(&XDIR).normalize());
+    let (normal, xdir) = (scaled(args.get(&plane::NORMAL)).normalize(), scaled(args.get(&XDIR)).normalize());
     if normal.cross(xdir).length() < 1e-6 {
         return Err(Refusal {
             attribute: Some("xdir"),

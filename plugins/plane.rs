@@ -1,12 +1,13 @@
 //! A plane: flat and infinite.
 
+use crate::numeric::double_double::scaled;
 use crate::prelude::*;
 use crate::shapes::plane::{Flat, Plane};
 
 pub static NORMAL: Pparm<DVec3> =
     Pparm::required("normal", "a vector perpendicular to the plane, pointing to its lit side")
         .nonzero()
-        .shown(DVec3::normalize);
+        .shown(|normal| scaled(normal).normalize());
 pub static POINT: Pparm<DVec3> = Pparm::required("point", "a point on the plane").unit("world coordinates");
 
 /// The rows of every kind of plane.

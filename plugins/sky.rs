@@ -1,5 +1,6 @@
 //! A sky: a gradient from the horizon up to the zenith.
 
+use crate::numeric::double_double::scaled;
 use crate::prelude::*;
 
 static HORIZON: Pparm<Rgb> = Pparm::or(
@@ -18,7 +19,7 @@ static GROUND: Pparm<Option<Rgb>> = Pparm::or(
 )
 .must("0 or more in each channel", |ground| ground.is_none_or(|ground| is_light(&ground)));
 static UP: Pparm<DVec3> =
-    Pparm::or("up", "the direction of the zenith", DVec3::Y).nonzero().shown(DVec3::normalize);
+    Pparm::or("up", "the direction of the zenith", DVec3::Y).nonzero().shown(|up| scaled(up).normalize());
 
 const TABLE: Table = &[&HORIZON, &ZENITH, &GROUND, &UP];
 
@@ -29,7 +30,7 @@ fn is_light(colour: &Rgb) -> bool {
 inventory::submit! {
     Entity::background("sky", "a gradient from the horizon up to the zenith where there is no object", &[TABLE], |args| {
         let (horizon, zenith) = (args.get(&HORIZON), args.get(&ZENITH));
-        let (ground, up) = (args.get(&GROUND).unwrap_or(horizon), args.get(&UP).normalize());
+        let (ground, up) = (args.get(&GROUND).unwrap_or(horizon), scaled(args.get(&UP)).normalize());
         Ok(Box::new(Sky { horizon, zenith, ground, up }))
     })
 }

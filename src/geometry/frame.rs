@@ -4,7 +4,7 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::facet::Facet;
 use crate::geometry::ray::Ray;
 use crate::geometry::sight::{Line, Sight};
-use crate::numeric::double_double::{DoubleDouble, offset};
+use crate::numeric::double_double::{DoubleDouble, offset, scaled};
 use crate::numeric::scalar::{Scalar, constants, dot, per_axis};
 use glam::{DMat3, DVec3};
 
@@ -40,10 +40,9 @@ impl Frame {
     /// Returns a frame whose y axis is along a nonzero vector. Its rotation around that axis is arbitrary: the frame is
     /// for surfaces of revolution.
     pub fn around(origin: DVec3, axis: DVec3) -> Self {
+        let axis = scaled(axis);
         let axes = orthonormal_basis(axis.normalize().to_array(), sign(axis)).map(DVec3::from);
-        // Scaling by a power of two loses no digit, and keeps squares from overflowing.
-        let scale = 2.0_f64.powi(-(axis.abs().max_element().log2() as i32).clamp(-1000, 1000));
-        Self { origin, axes: DMat3::from_cols(axes[0], axes[1], axes[2]), axis: Some(axis * scale) }
+        Self { origin, axes: DMat3::from_cols(axes[0], axes[1], axes[2]), axis: Some(axis) }
     }
 
     /// Returns the facet at a height on the y axis of a shape that ends there, upward or downward.

@@ -2,7 +2,7 @@
 
 use crate::geometry::image_point::ImagePoint;
 use crate::geometry::placement::radians;
-use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two};
+use crate::numeric::double_double::{DoubleDouble, exponent_to_one, scaled, times_power_of_two};
 use crate::numeric::scalar::{Scalar, constants, cross, dot, per_axis};
 use glam::DVec3;
 
@@ -34,14 +34,8 @@ impl ViewFrame {
     pub fn new(position: DVec3, target: DVec3, up: DVec3) -> Option<Self> {
         let forward = (target - position).try_normalize()?;
         // Scaling by a power of two loses no digit, and keeps squares from overflowing.
-        let exponent = |of: DVec3| exponent_to_one(of.abs().max_element());
-        let power = exponent(up);
-        let given = Given {
-            position,
-            target,
-            up: DVec3::from(up.to_array().map(|part| times_power_of_two(part, power))),
-            scale: times_power_of_two(1.0, exponent(target - position)),
-        };
+        let exponent = exponent_to_one((target - position).abs().max_element());
+        let given = Given { position, target, up: scaled(up), scale: times_power_of_two(1.0, exponent) };
         let is_askew = forward.cross(given.up.try_normalize()?).length() > LEAST_SINE;
         is_askew.then(|| Self { given, axes: given.axes() })
     }

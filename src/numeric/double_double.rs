@@ -6,6 +6,7 @@ mod elementary;
 pub mod exact;
 pub mod vectors;
 
+use glam::DVec3;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Returns the rounded sum of two numbers and its rounding error.
@@ -68,6 +69,14 @@ pub fn exponent_to_one(magnitude: f64) -> i32 {
 pub fn times_power_of_two(number: f64, exponent: i32) -> f64 {
     let half = exponent / 2;
     number * power_of_two(half) * power_of_two(exponent - half)
+}
+
+/// Returns a vector times the power of two that brings its largest component to between 1/2 and 1, so that squares neither
+/// overflow nor underflow. Components that are far smaller than the largest one may lose digits.
+#[inline]
+pub fn scaled(vector: DVec3) -> DVec3 {
+    let exponent = exponent_to_one(vector.abs().max_element());
+    vector.map(|part| times_power_of_two(part, exponent))
 }
 
 /// Returns 2^`exponent`; infinity or 0 where that is too large or too small.

@@ -144,7 +144,7 @@ impl Pparm<f64> {
 impl Pparm<DVec3> {
     /// Sets the rule that the vector is not zero, so that it has a direction.
     pub const fn nonzero(self) -> Self {
-        self.must("a nonzero vector", |vector| vector.try_normalize().is_some())
+        self.must("a nonzero vector", |vector| *vector != DVec3::ZERO)
     }
 }
 

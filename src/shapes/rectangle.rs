@@ -3,7 +3,7 @@
 use crate::geometry::aabb::{Aabb, larger, smaller};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
 use crate::numeric::double_double::vectors::{cross, product, unit};
-use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two};
+use crate::numeric::double_double::{DoubleDouble, scaled};
 use crate::numeric::scalar::{self, Scalar, constants, dot, per_axis};
 use crate::shapes::plane::{DRAFT_ERROR, Plane};
 use crate::world::accuracy::{Accuracy, Marker};
@@ -177,7 +177,7 @@ impl<A: Marker> FinitePlane<A> {
 /// Returns the directions of a rectangle's two sides and its normal as columns, all unit vectors: the rows of the
 /// course notes' rotation matrix.
 pub fn frame(normal: DVec3, xdir: DVec3) -> DMat3 {
-    let normal = normal.normalize();
+    let (normal, xdir) = (scaled(normal).normalize(), scaled(xdir));
     let x = (xdir - normal.dot(xdir) * normal).normalize();
     DMat3::from_cols(x, normal.cross(x), normal)
 }
@@ -190,8 +190,7 @@ pub fn rounded_sides(upright: [DoubleDouble; 3], xdir: DVec3) -> [DVec3; 2] {
 /// Returns the directions of the two sides of a rectangle with this normal, as double-double unit vectors; the first is
 /// along the projection of `xdir` onto the plane.
 pub fn exact_sides(upright: [DoubleDouble; 3], xdir: DVec3) -> [[DoubleDouble; 3]; 2] {
-    let exponent = exponent_to_one(xdir.abs().max_element());
-    let xdir = xdir.to_array().map(|part| DoubleDouble::from(times_power_of_two(part, exponent)));
+    let xdir = scaled(xdir).to_array().map(DoubleDouble::from);
     let second = cross(upright, xdir);
     [unit(cross(second, upright)), unit(second)]
 }

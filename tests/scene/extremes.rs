@@ -1,6 +1,6 @@
 //! Extreme numbers in place of each number of a scene: the scene is refused or rendered at once.
 
-use crate::common::{registry, render, root};
+use crate::common::{model, registry, render, root};
 use std::fs;
 use std::time::{Duration, Instant};
 use tabray::scene;
@@ -61,5 +61,32 @@ fn a_mesh_or_a_box_seen_from_much_too_far_away_is_drawn() {
         let folder = root().join("scenes/entities");
         let scene = scene::read(registry(), "far", &folder, text.as_bytes(), None);
         render(&scene.unwrap_or_else(|report| panic!("{report}")).model);
+    }
+}
+
+#[test]
+fn a_direction_may_have_any_length() {
+    let picture = |length: &str| {
+        let along = |part: f64| format!("\"{part}*{length}\"");
+        let direction = |x: f64, y: f64, z: f64| [x, y, z].map(along).join(" ");
+        render(&model(&format!(
+            "camera eye {{ pixeldim 32 24 worlddim 8 6 viewpoint 4 3 6 }}
+             material m {{ ambient 1 1 1 diffuse 4 4 4 }}
+             sky day {{ horizon 0.5 0.5 0.6 zenith 0.1 0.2 0.6 up {} }}
+             plane floor {{ material m normal {} point 0 0 0 }}
+             fplane sheet {{ material m normal {} point 1 1 -3 xdir {} dimensions 2 2 }}
+             cylinder can {{ material m base 6 1 -4 direction {} height 2 radius 1 }}
+             light lamp {{ location 1 7 2 emissivity 20 20 20 }}",
+            direction(0.25, 1.0, 0.0),
+            direction(0.0, 2.0, 0.125),
+            direction(-0.5, 0.25, 1.0),
+            direction(1.0, 0.5, 0.25),
+            direction(0.5, 1.0, 0.25),
+        )))
+    };
+    let usual = picture("1");
+    // Powers of two, of which the largest component keeps all digits.
+    for power in ["2^-1000", "2^-500", "2^500", "2^1000"] {
+        assert_eq!(picture(power), usual, "{power}");
     }
 }

@@ -3,7 +3,7 @@
 use super::products::{MIN_TOWARD, Products, RECIPROCAL_ERROR, reciprocal};
 use crate::geometry::aabb::{Aabb, SLACK, larger};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
-use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two};
+use crate::numeric::double_double::{DoubleDouble, scaled};
 use crate::numeric::scalar::{Scalar, per_axis};
 use glam::DVec3;
 use std::marker::PhantomData;
@@ -42,9 +42,8 @@ pub struct Rough {
 impl<A> Plane<A> {
     /// Returns the plane through a point with a normal of any length.
     pub fn with_normal(normal: DVec3, point: DVec3) -> Self {
-        let exponent = exponent_to_one(normal.abs().max_element());
-        let upright = normal.to_array().map(|part| DoubleDouble::from(times_power_of_two(part, exponent)));
-        Self::new(normal.normalize(), upright, point)
+        let normal = scaled(normal);
+        Self::new(normal.normalize(), normal.to_array().map(DoubleDouble::from), point)
     }
 
     /// Returns the plane through a point with a rounded unit normal, and a vector along the normal as exact as it is
