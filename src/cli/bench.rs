@@ -3,7 +3,7 @@
 mod certain;
 mod sampling;
 
-use crate::cli::files::input;
+use crate::cli::files::{input, output};
 use crate::cli::options::{cpu, method, set};
 use crate::cli::process::failure::{Failure, print};
 use crate::scene::model::Model;
@@ -87,6 +87,11 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         return certain::run(models, args.size);
     }
     if let Some(question) = args.sampling {
+        if let Some(file) = &args.output {
+            for (scene, (_, model)) in args.scenes.iter().zip(&models) {
+                output::is_no_source(file, scene, model)?;
+            }
+        }
         return sampling::run(question, models, args.size, args.output.as_deref(), args.keep.as_deref());
     }
     let mut measured = Vec::new();

@@ -1,9 +1,11 @@
 //! `tabray bench`: the numbers that it counts. Times are not tested.
 
 use crate::common;
+use crate::common::program::folder;
 use crate::common::root;
 use assert_cmd::cargo::cargo_bin_cmd;
 use serde_json::Value;
+use std::fs;
 use tabray::scene;
 use tabray::simd::Cpu;
 use tabray::tools::bench::scenes;
@@ -138,4 +140,24 @@ fn what_is_kept_of_samples_is_not_measured_again() {
     let first = table();
     assert!(first.contains("| size | 4..64 |"), "{first}");
     assert_eq!(table(), first, "the times too");
+}
+
+#[test]
+fn a_chart_of_sampling_does_not_replace_a_texture() {
+    let folder = folder();
+    let place = |name: &str| folder.path().join(name);
+    fs::copy(root().join("scenes/textures/dusk.png"), place("dusk.png")).expect("a texture");
+    let scene = "camera eye { pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 }
+        texture dusk { filename dusk.png } material m { ambient 1 1 1 }
+        texplane wall { material m normal 0 0 1 point 0 0 -4 xdir 1 0 0 dimensions 8 6 texname dusk mode 0 }";
+    fs::write(place("wall.ray"), scene).expect("a scene");
+    let before = fs::read(place("dusk.png")).expect("a texture");
+    let run = cargo_bin_cmd!("tabray")
+        .args(["bench", "wall.ray", "--sampling", "limits", "--size", "2x2", "-o", "dusk.png"])
+        .current_dir(folder.path())
+        .assert()
+        .code(2);
+    let said = String::from_utf8_lossy(&run.get_output().stderr).into_owned();
+    assert!(said.contains("`dusk.png` is the image of texture `dusk`"), "{said}");
+    assert_eq!(fs::read(place("dusk.png")).expect("a texture"), before);
 }
