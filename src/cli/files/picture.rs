@@ -11,7 +11,7 @@ use std::path::Path;
 /// Reads the image in a file.
 pub fn read(path: &Path) -> Result<RgbImage, Failure> {
     let cannot = |reason: String| Failure::Usage(format!("cannot read `{}`: {reason}", path.display()), None);
-    let file = files::open(path).map_err(|error| cannot(text::reason(&error)))?;
+    let file = files::open(path).map_err(|error| Failure::cannot_read(path, &error))?;
     decode(&mut BufReader::new(file)).map_err(cannot)
 }
 
@@ -27,8 +27,8 @@ impl Picture {
         let cannot =
             |reason: String| Failure::Usage(format!("cannot read `{}`: {reason}", path.display()), None);
         let Some(format) = FullRange::of(path) else { return read(path).map(Self::Bytes) };
-        let file: &mut dyn ImageBytes =
-            &mut BufReader::new(files::open(path).map_err(|error| cannot(text::reason(&error)))?);
+        let file = files::open(path).map_err(|error| Failure::cannot_read(path, &error))?;
+        let file: &mut dyn ImageBytes = &mut BufReader::new(file);
         let picture = match format {
             FullRange::Pfm => full_range::read_pfm(file).map_err(|error| match error.kind() {
                 io::ErrorKind::InvalidData => "it is no PFM of three channels".to_owned(),
