@@ -1,6 +1,7 @@
 //! The bytes of images are those of the proven colours, in every scene.
 
-use crate::common::{load, root, scenes};
+use crate::common::{load, model_in, root, scenes};
+use std::fs;
 use std::thread;
 use tabray::render::Plan;
 use tabray::tools::colours::{Prover, Verdict};
@@ -31,6 +32,21 @@ fn at_an_outline_the_face_is_proven_that_no_other_hides() {
     // The edges of the box are seen through the middles of these pixels.
     for x in [60, 100] {
         for y in 0..plan.camera.pixels[1] {
+            assert_eq!(prover.traced(x, y).verdict(), Verdict::Proven, "{x} {y}");
+        }
+    }
+}
+
+#[test]
+fn along_a_wall_of_slivers_the_face_that_is_hit_is_proven() {
+    let text = fs::read_to_string(root().join("scenes/hard/lantern-inside.ray")).expect("a scene");
+    // The viewer is in the plane of the left wall.
+    let text = text.replace("viewpoint 4 3 6", "viewpoint 0 3 6");
+    let model = model_in(&root().join("scenes/hard"), &text);
+    let plan = Plan::new(&model);
+    let prover = Prover::new(&plan);
+    for y in 0..plan.camera.pixels[1] {
+        for x in 0..8 {
             assert_eq!(prover.traced(x, y).verdict(), Verdict::Proven, "{x} {y}");
         }
     }

@@ -19,7 +19,7 @@ const AWAY_ERROR: f64 = 32.0 * f64::EPSILON;
 
 /// A bound on the rounding error of the dot product with the ray's direction, as a fraction of the product of the edges: a camera ray's
 /// direction is off by 3, and components of a direction add up to at most 1.74: 1.74 * (10 + 2 * 6) = 39, less than 48.
-const TOWARD_ERROR: f64 = 24.0 * f64::EPSILON;
+pub(super) const TOWARD_ERROR: f64 = 24.0 * f64::EPSILON;
 
 /// Far more than what products lose that are too small for all digits: the sum of a few of 5e-324. A product with such a
 /// sum loses as many times more as the other factor is. It is a normal number, as processors take a hundred times longer
@@ -199,40 +199,35 @@ impl<A> Equation for Face<A> {
     }
 }
 
-/// Returns the point of a triangle that is nearest to a point (Ericson, "Real-Time Collision Detection", 2005).
-pub(super) fn nearest_point([a, b, c]: [DVec3; 3], at: DVec3) -> DVec3 {
-    let size = (a - at).abs().max((b - at).abs()).max((c - at).abs()).max_element();
+/// Returns the distance from a point to a triangle, in world units.
+///
+/// Where the point's projection onto the plane is on the same side of all edges, it is that from the plane, and else that
+/// from the nearest edge. Coordinates are relative to the point, and the normal is that of the two shortest edges, so that a
+/// triangle that is far longer than it is wide costs few digits.
+pub(super) fn distance_to(corners: [DVec3; 3], at: DVec3) -> f64 {
+    let corners = corners.map(|corner| corner - at);
+    let size = corners.iter().fold(0.0, |size: f64, corner| size.max(corner.abs().max_element()));
     if !(1e-70..1e70).contains(&size) && size > 0.0 && size < MISS {
         // Its fourth power would underflow or overflow.
         let scale = times_power_of_two(1.0, exponent_to_one(size));
-        let corners = [a, b, c].map(|corner| (corner - at) * scale);
-        return at + nearest_point(corners, DVec3::ZERO) / scale;
+        return distance_to(corners.map(|corner| corner * scale), DVec3::ZERO) / scale;
     }
-    let (ab, ac) = (b - a, c - a);
-    let (d1, d2) = (ab.dot(at - a), ac.dot(at - a));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return a;
+    let [a, b, c] = corners;
+    let mut edges = [b - a, c - b, a - c];
+    edges.sort_by(|one, other| one.length_squared().total_cmp(&other.length_squared()));
+    let normal = edges[0].cross(edges[1]);
+    let sides = [(a, b), (b, c), (c, a)].map(|(from, to)| from.cross(to).dot(normal));
+    let is_inside = sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0);
+    if is_inside && normal != DVec3::ZERO {
+        let nearer = |one: DVec3, other: DVec3| {
+            if other.length_squared() < one.length_squared() { other } else { one }
+        };
+        return (nearer(nearer(a, b), c).dot(normal) / normal.length()).abs();
     }
-    let (d3, d4) = (ab.dot(at - b), ac.dot(at - b));
-    if d3 >= 0.0 && d4 <= d3 {
-        return b;
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return a + d1 / (d1 - d3) * ab;
-    }
-    let (d5, d6) = (ab.dot(at - c), ac.dot(at - c));
-    if d6 >= 0.0 && d5 <= d6 {
-        return c;
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return a + d2 / (d2 - d6) * ac;
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
-        return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
-    }
-    let sum = va + vb + vc;
-    a + vb / sum * ab + vc / sum * ac
+    let from_edge = |from: DVec3, to: DVec3| {
+        let along = to - from;
+        let part = (-from.dot(along) / along.length_squared()).clamp(0.0, 1.0);
+        (from + part * along).length()
+    };
+    from_edge(a, b).min(from_edge(b, c)).min(from_edge(c, a))
 }

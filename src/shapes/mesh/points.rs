@@ -1,6 +1,6 @@
 //! The faces of a mesh near a point.
 
-use super::face::nearest_point;
+use super::face::distance_to;
 use super::surface::Surface;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::MISS;
@@ -54,7 +54,7 @@ impl Surface {
     /// Calls a function with each face that may be within a distance of a point, and with its distance, in world units.
     /// The function returns the distance beyond which no more faces matter.
     fn near(&self, at: DVec3, within: f64, mut call: impl FnMut(usize, f64) -> f64) {
-        self.tree.around(at, within, |face| call(face, nearest_point(self.corners(face), at).distance(at)));
+        self.tree.around(at, within, |face| call(face, distance_to(self.corners(face), at)));
     }
 
     /// Tells whether a point is on a face, up to an error in world units and to rounding.

@@ -1,6 +1,6 @@
 //! Properties of meshes: their hits are those of their triangles, and no ray escapes from a closed one.
 
-use super::face::Leaving;
+use super::face::{Leaving, distance_to};
 use super::hits::{Last, NOTHING};
 use super::known::Known;
 use super::search::Aims;
@@ -387,5 +387,40 @@ fn faces_of_which_none_lies_beside_another_are_found() {
                 }
             });
         }
+    }
+}
+
+#[test]
+fn the_distance_of_a_sliver_keeps_its_digits() {
+    let point = |x, z| DVec3::new(x, 6.0, z);
+    let sliver = [point(0.0, -4e5), point(0.0, 1e5), point(2.0, 1e5)];
+    let at = point(0.050847458, -0.101694915);
+    assert!(distance_to(sliver, at) < 1e-9);
+    assert!((distance_to(sliver, at + DVec3::Y) - 1.0).abs() < 1e-9);
+    assert!((distance_to(sliver, at - DVec3::X) - 0.949152542).abs() < 1e-9);
+}
+
+proptest! {
+    #[test]
+    fn the_distance_of_a_triangle_is_that_of_its_nearest_point(
+        coordinates in prop::array::uniform9(-3.0..3.0_f64), at in prop::array::uniform3(-5.0..5.0_f64),
+        weights in prop::collection::vec((0.0..1.0_f64, 0.0..1.0_f64), 100), height in -2.0..2.0_f64
+    ) {
+        let corner = |first: usize| DVec3::from_slice(&coordinates[first..]);
+        let [a, b, c] = [corner(0), corner(3), corner(6)];
+        let normal = (b - a).cross(c - a);
+        prop_assume!(normal.length() > 0.1);
+        let at = DVec3::from(at);
+        let distance = distance_to([a, b, c], at);
+        for (one, other) in weights {
+            let (one, other) = if one + other > 1.0 { (1.0 - one, 1.0 - other) } else { (one, other) };
+            let inside = a + one * (b - a) + other * (c - a);
+            prop_assert!(distance <= inside.distance(at) + 1e-13, "{inside} is nearer than {distance}");
+            let above = inside + height * normal.normalize();
+            prop_assert!((distance_to([a, b, c], above) - height.abs()).abs() < 1e-12);
+        }
+        // It is not too small either: the nearest point is on the plane or on an edge.
+        let from_plane = (at - a).dot(normal.normalize()).abs();
+        prop_assert!(distance >= from_plane - 1e-12);
     }
 }
