@@ -93,7 +93,7 @@ impl<F: Precise> PointBounds<F> {
     ) -> Self {
         let shape = F::proofs(shape);
         let uv = if sees.uv { shape.uv_bounds(position, part) } else { None };
-        let face = if sees.face { shape.face(part) } else { None };
+        let face = if sees.face { shape.face(position, part) } else { None };
         Self { position, normal, uv, face }
     }
 }

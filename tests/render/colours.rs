@@ -1,6 +1,6 @@
 //! The bytes of images are those of the proven colours, in every scene.
 
-use crate::common::{load, model_in, root, scenes};
+use crate::common::{load, model, model_in, root, scenes};
 use std::fs;
 use std::thread;
 use tabray::render::Plan;
@@ -50,6 +50,20 @@ fn along_a_wall_of_slivers_the_face_that_is_hit_is_proven() {
             assert_eq!(prover.traced(x, y).verdict(), Verdict::Proven, "{x} {y}");
         }
     }
+}
+
+#[test]
+fn at_the_edge_of_a_box_the_colour_of_a_face_is_not_taken_for_certain() {
+    // The middle pixel looks along the right side of the box, and the shader sees that face there.
+    let model = model(
+        "camera eye { pixeldim 33 21 worlddim 8 6 viewpoint 4 3 6 } material m { ambient 0.25 0.5 1 }
+         faces six { colours 2 0 0  0 2 0  0 0 2  2 2 0  0 2 2  2 0 2 }
+         box o { material m center 3 3 -2 size 2 0.25 0.5 shader six }",
+    );
+    let plan = Plan::new(&model);
+    let prover = Prover::new(&plan);
+    assert_ne!(prover.traced(16, 10).verdict(), Verdict::Contradicted);
+    assert_eq!(prover.traced(15, 10).verdict(), Verdict::Proven);
 }
 
 fn all_scenes() {

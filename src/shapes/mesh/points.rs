@@ -4,6 +4,7 @@ use super::face::distance_to;
 use super::surface::Surface;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::MISS;
+use crate::numeric::interval::Interval;
 use crate::shapes::triangle::Triangle;
 use crate::world::accuracy::Bounded;
 use crate::world::coincidence::CLOSE;
@@ -30,6 +31,19 @@ impl Surface {
             within
         });
         first
+    }
+
+    /// Tells whether [`face_at`](Self::face_at) returns one of a mesh's `own` faces at each point of these faces in a box.
+    pub(super) fn is_alone(&self, at: [Interval; 3], own: impl Fn(usize) -> bool) -> bool {
+        let middle = DVec3::from(at.map(Interval::middle));
+        let size = DVec3::from(at.map(Interval::width)).length();
+        let within = size + 32.0 * f64::EPSILON * (middle.abs().max_element() + self.reach());
+        let mut is_alone = within < MISS;
+        self.near(middle, within, |face, distance| {
+            is_alone &= distance > within || own(face);
+            if is_alone { within } else { -1.0 }
+        });
+        is_alone
     }
 
     /// Returns the distance of the nearest face to a point in world units, and the face.

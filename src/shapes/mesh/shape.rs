@@ -228,11 +228,14 @@ impl<A: Bounded, F: Precise> Onward<F> for Mesh<A> {
     }
 
     fn uv_bounds(&self, at: [Interval<F>; 3], part: usize) -> Option<[Interval; 2]> {
-        Some(uv::bounds_on_triangle(self.surface.corners(part), at.map(Interval::coarse)))
+        let (surface, at) = (&self.surface, at.map(Interval::coarse));
+        surface.is_alone(at, |face| face == part).then(|| uv::bounds_on_triangle(surface.corners(part), at))
     }
 
-    fn face(&self, part: usize) -> Option<u32> {
-        Some(self.surface.order[part])
+    fn face(&self, at: [Interval<F>; 3], part: usize) -> Option<u32> {
+        let order = &self.surface.order;
+        let is_own = |face: usize| order[face] == order[part];
+        self.surface.is_alone(at.map(Interval::coarse), is_own).then_some(order[part])
     }
 }
 

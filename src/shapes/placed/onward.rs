@@ -52,8 +52,8 @@ impl<F: Precise> Onward<F> for Placed {
         F::proofs(self.body.shape.proven()?).uv_bounds(self.placement.point(at), part)
     }
 
-    fn face(&self, part: usize) -> Option<u32> {
-        F::proofs(self.body.shape.proven()?).face(part)
+    fn face(&self, at: [Interval<F>; 3], part: usize) -> Option<u32> {
+        F::proofs(self.body.shape.proven()?).face(self.placement.point(at), part)
     }
 }
 

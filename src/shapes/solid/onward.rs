@@ -98,8 +98,8 @@ impl<F: Precise> Onward<F> for Trimmed {
         F::proofs(self.proven(self.index)?).uv_bounds(at, part)
     }
 
-    fn face(&self, part: usize) -> Option<u32> {
-        F::proofs(self.proven(self.index)?).face(part)
+    fn face(&self, at: [Interval<F>; 3], part: usize) -> Option<u32> {
+        F::proofs(self.proven(self.index)?).face(at, part)
     }
 }
 

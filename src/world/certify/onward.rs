@@ -39,11 +39,11 @@ pub trait Onward<F: Float> {
         None
     }
 
-    /// Returns the index of the face to which a part belongs, as [`Hittable::face`] counts them; `None` where it is not
-    /// known.
+    /// Returns the index of the face on which the points of a part in a box in world coordinates lie, as
+    /// [`Hittable::face`] tells it; `None` where it is not known.
     ///
     /// [`Hittable::face`]: crate::world::hittable::Hittable::face
-    fn face(&self, _part: usize) -> Option<u32> {
+    fn face(&self, _at: [Interval<F>; 3], _part: usize) -> Option<u32> {
         None
     }
 }
