@@ -19,7 +19,7 @@ const AWAY_ERROR: f64 = 32.0 * f64::EPSILON;
 
 /// A bound on the rounding error of the dot product with the ray's direction, as a fraction of the product of the edges: a camera ray's
 /// direction is off by 3, and components of a direction add up to at most 1.74: 1.74 * (10 + 2 * 6) = 39, less than 48.
-pub(super) const TOWARD_ERROR: f64 = 24.0 * f64::EPSILON;
+const TOWARD_ERROR: f64 = 24.0 * f64::EPSILON;
 
 /// Far more than what products lose that are too small for all digits: the sum of a few of 5e-324. A product with such a
 /// sum loses as many times more as the other factor is. It is a normal number, as processors take a hundred times longer

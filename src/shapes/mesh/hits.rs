@@ -1,6 +1,6 @@
 //! First hits of rays with a mesh: brackets in plain arithmetic, distances, and proofs.
 
-use super::face::{Face, Leaving, TOWARD_ERROR, t_bounds};
+use super::face::{Face, Leaving, t_bounds};
 use super::known::{Known, Nearest};
 use super::points::touches;
 use super::search::Scratch;
@@ -201,8 +201,7 @@ impl Surface {
 
     /// Returns the face that a ray hits at a distance in world units: of several that hold the point up to rounding, the
     /// first in the file of those that are seen there; of these, those whose outside the ray hits, if there are any. At
-    /// the outline of a closed mesh, a face that others hide would show light from within; one that lies along the ray is
-    /// not seen at all.
+    /// the outline of a closed mesh, a face that others hide would show light from within.
     #[inline(always)]
     pub(super) fn face_along(&self, ray: &Ray, distance: f64) -> usize {
         let close = CLOSE * (distance + ray.origin.abs().max_element());
@@ -218,24 +217,18 @@ impl Surface {
             only
         } else {
             let at = ray.at(distance);
-            self.first_at(at, |face| self.rank(face, ray, at))
+            self.first_at(at, |face| match self.is_hidden(face, ray, at) {
+                true => 2,
+                false => u8::from(!self.is_outside_hit(face, ray.dir)),
+            })
         }
     }
 
-    /// Returns how little of a face is seen where it holds a point of a ray, in plain arithmetic: 0 where its outside is
-    /// hit, 1 for its inside, 2 where others hide it, 3 where it is edge-on.
-    fn rank(&self, face: usize, ray: &Ray, at: DVec3) -> u8 {
+    /// Tells whether a ray along a direction hits the outside of a face, in plain arithmetic.
+    fn is_outside_hit(&self, face: usize, dir: DVec3) -> bool {
         let [a, b, c] = self.corners(face);
-        let (one, other) = (b - a, c - a);
-        let toward = one.cross(other).dot(ray.dir);
-        if toward.abs() <= TOWARD_ERROR * one.abs().max_element() * other.abs().max_element() {
-            3
-        } else if self.is_hidden(face, ray, at) {
-            2
-        } else {
-            // An open mesh is lit on one side, and shows nothing of the other.
-            u8::from(self.open_edges == 0 && toward > 0.0)
-        }
+        // An open mesh is lit on one side, and shows nothing of the other.
+        self.open_edges > 0 || (b - a).cross(c - a).dot(dir) < 0.0
     }
 
     /// Tells whether the part of a face of a closed mesh beside a point of it is certainly hidden from where a ray starts.
