@@ -13,16 +13,18 @@
 
 use super::arrays::VectorList;
 use super::context::Tracer;
-use super::estimate::{AdaptiveScratch, Around, Estimate, Found, Wanted};
+use super::estimate::{AdaptiveScratch, Around, Estimate, Found, Run};
 use super::ray_group::RayGroup;
 use super::sampled;
 use super::scratch::{PrimaryScratch, Scratch};
+use super::trail::Trails;
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::render::features::FEATURE_SAMPLES;
 use crate::render::observer::{Count, TraceObserver};
 use crate::world::film::Adaptive;
 use crate::world::sample::{self, Sample};
 use std::mem::take;
+use std::ops::Range;
 
 /// How many estimated errors the error of a pixel may be, where it is limited.
 const CONFIDENCE: f64 = 2.0;
@@ -66,62 +68,52 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     ) {
         let PrimaryScratch { group, seen, colours, adaptive: scratch } = primary;
         let mut colours = colours.resized(pixels.len());
-        let AdaptiveScratch { probes, grid, estimates, active, batch } = scratch;
+        let AdaptiveScratch { probes, grid, estimates, active, runs } = scratch;
+        let (camera, features) = (&self.plan.camera, self.plan.features.as_ref());
+        let has_features = features.is_some_and(|features| features.count() != Some(0));
+        let is_unbounded = sampled::is_unbounded(self.plan);
+        // Tells whether a pixel goes on after a number of samples, whatever their colours are.
+        let is_short = |estimate: &Estimate, pixel: &[usize; 2], count: u32| {
+            let has_feature = || features.is_some_and(|all| all.any_at(*pixel, estimate.distance()));
+            count < CROSSED_SAMPLES && estimate.is_crossed() || count < FEATURE_SAMPLES && has_feature()
+        };
         self.scratch.trails.is_on = true;
-        let mut rays = Rays { tracer: self, group, seen, batch: take(batch) };
+        let mut rays = Rays { tracer: self, group, seen, is_unbounded, runs: take(runs) };
         rays.begin(pixels, probes, grid, estimates);
+        let next_goal = |estimate: &Estimate, pixel: &[usize; 2], mut goal: u32| {
+            // If nothing bounds the light, a pixel may end with the first number of samples.
+            while !is_unbounded && goal < adaptive.most && is_short(estimate, pixel, goal) {
+                goal *= 2;
+            }
+            goal
+        };
+        for (estimate, pixel) in estimates.iter_mut().zip(pixels) {
+            estimate.set_goal(next_goal(estimate, pixel, camera.samples));
+        }
         active.clear();
         active.extend(0..pixels.len() as u32);
-        let mut goal = rays.tracer.plan.camera.samples;
-        let gain = rays.tracer.plan.camera.gain();
-        let is_unbounded = sampled::is_unbounded(rays.tracer.plan);
+        let (gain, doubt) = (camera.gain(), if adaptive.error.is_some() { DOUBT } else { 1.0 });
         while !active.is_empty() {
-            let wanted = |of: u32, index, ray_budget| {
-                let pixel = pixels[of as usize].map(|side| side as f64);
-                Wanted { of, pixel, index, ray_budget }
-            };
-            if is_unbounded {
-                // What a sample may cost depends on those before it.
-                for index in 0..goal {
-                    for of in &*active {
-                        let Estimate { count, missing, .. } = estimates[*of as usize];
-                        if count <= index {
-                            let budget = (missing == f64::INFINITY).then_some(sampled::REST);
-                            rays.want(wanted(*of, index, budget), &mut |of, found| {
-                                estimates[of].add(found, goal);
-                            });
-                        }
-                    }
-                    rays.trace(&mut |of, found| estimates[of].add(found, goal));
-                }
-            } else {
-                for of in &*active {
-                    for index in estimates[*of as usize].count..goal {
-                        rays.want(wanted(*of, index, None), &mut |of, found| {
-                            estimates[of].add(found, goal);
-                        });
-                    }
-                }
-                rays.trace(&mut |of, found| estimates[of].add(found, goal));
+            // What a pixel's rays met matters only as long as all of them have met the same, or for small objects.
+            for is_crossed in [false, true] {
+                rays.tracer.scratch.trails.is_on = has_features || !is_crossed;
+                rays.take_samples(active, pixels, is_crossed, estimates);
             }
-            let limit = most_error(adaptive, goal);
-            let doubt = if adaptive.error.is_some() { DOUBT } else { 1.0 };
             active.retain(|of| {
-                let (estimate, pixel) = (&mut estimates[*of as usize], pixels[*of as usize]);
+                let (estimate, pixel) = (&mut estimates[*of as usize], &pixels[*of as usize]);
+                let goal = estimate.goal;
                 // More samples do not help a pixel that is off by an unknown amount.
                 let goes_on = goal < adaptive.most
                     && estimate.missing != f64::INFINITY
-                    && (estimate.error(gain, doubt) > limit
-                        || goal < CROSSED_SAMPLES && estimate.is_crossed()
-                        || goal < FEATURE_SAMPLES && rays.is_feature(pixel, estimate.distance()));
+                    && (is_short(estimate, pixel, goal)
+                        || estimate.error(gain, doubt) > most_error(adaptive, goal));
                 if goes_on {
-                    estimate.join();
+                    estimate.set_goal(next_goal(estimate, pixel, 2 * goal));
                 }
                 goes_on
             });
-            goal *= 2;
         }
-        *batch = rays.batch;
+        *runs = rays.runs;
         self.scratch.trails.is_on = false;
         for (pixel, estimate) in estimates.iter().enumerate() {
             colours.set(pixel, estimate.colour());
@@ -131,12 +123,15 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     }
 }
 
-/// Collects rays until there is a packet of them.
+/// Collects samples until there is a packet of them.
 struct Rays<'r, 'm, 'w, W> {
     tracer: &'r mut Tracer<'m, 'w, W>,
     group: &'r mut RayGroup,
     seen: &'r mut VectorList,
-    batch: Vec<Wanted>,
+    /// Whether nothing bounds the light that rays may return.
+    is_unbounded: bool,
+    /// The samples that wait.
+    runs: Vec<Run>,
 }
 
 impl<W: TraceObserver> Rays<'_, '_, '_, W> {
@@ -165,7 +160,7 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
             probes.push([index % wide + left, index / wide + low]);
         }
         for corners in probes.chunks(PACKET_SIZE) {
-            self.probe(corners, |corner, found| grid[place(corner)] = Around::from(&found));
+            self.probe(corners, |corner, found| grid[place(corner)] = found);
         }
         // Each place gets what is found there and at the next, and then what there and at the next two have: so it has
         // what is found at four of a row, and then in four rows.
@@ -176,14 +171,14 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
             }
         }
         estimates.clear();
-        estimates.extend(pixels.iter().map(|pixel| Estimate::new(grid[place(*pixel)])));
+        let least = self.tracer.plan.camera.samples;
+        estimates.extend(pixels.iter().map(|pixel| Estimate::new(grid[place(*pixel)], least)));
     }
 
     /// Traces probes at corners, and reports what each found.
-    fn probe(&mut self, corners: &[[usize; 2]], mut found: impl FnMut([usize; 2], Found)) {
-        let Self { tracer, group, seen, .. } = self;
+    fn probe(&mut self, corners: &[[usize; 2]], mut report: impl FnMut([usize; 2], Around)) {
+        let Self { tracer, group, seen, is_unbounded, .. } = self;
         let (len, camera) = (corners.len(), &tracer.plan.camera);
-        let is_unbounded = sampled::is_unbounded(tracer.plan);
         let Scratch { places: [x, y], samples, are_probes, .. } = &mut *tracer.scratch;
         samples.clear();
         for (lane, [column, row]) in corners.iter().enumerate() {
@@ -192,69 +187,120 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
         }
         *are_probes = true;
         tracer.look(group, len);
-        if is_unbounded {
+        if *is_unbounded {
             group.ray_budget.fill(sampled::REST);
         }
         tracer.colours(group, seen);
         tracer.scratch.are_probes = false;
-        for (lane, corner) in corners.iter().enumerate() {
-            found(*corner, self.found(lane));
+        let found = self.found(0..len);
+        corners.iter().enumerate().for_each(|(lane, corner)| report(*corner, Around::of(&found, lane)));
+    }
+
+    /// Returns what the rays of some lanes found.
+    #[inline]
+    fn found(&self, lanes: Range<usize>) -> Found<'_> {
+        let Trails { is_on, marks, distances, .. } = &self.tracer.scratch.trails;
+        let recorded = if *is_on { lanes.clone() } else { 0..0 };
+        Found {
+            colours: self.seen.view(lanes.end).part(lanes),
+            marks: &marks[recorded.clone()],
+            distances: &distances[recorded],
         }
     }
 
-    /// Returns what the ray of a lane found.
-    #[inline]
-    fn found(&self, lane: usize) -> Found {
-        let trails = &self.tracer.scratch.trails;
-        let (mark, distance) = (trails.marks[lane], trails.distances[lane]);
-        Found { colour: self.seen.get(lane), missing: self.tracer.missing(lane), mark, distance }
-    }
-
-    /// Tells whether the bounds of a small object, no farther than a distance, reach into a pixel.
-    fn is_feature(&self, pixel: [usize; 2], distance: f64) -> bool {
-        let features = self.tracer.plan.features.as_ref();
-        features.is_some_and(|features| features.any_at(pixel, distance))
-    }
-
-    /// Adds a ray, and traces the rays once there is a packet of them. `found` is told what each found.
-    #[inline]
-    fn want(&mut self, wanted: Wanted, found: &mut impl FnMut(usize, &Found)) {
-        self.batch.push(wanted);
-        if self.batch.len() == PACKET_SIZE {
-            self.trace(found);
+    /// Takes the samples that active pixels lack, of those pixels where rays have met different things or of the others.
+    fn take_samples(
+        &mut self,
+        active: &[u32],
+        pixels: &[[usize; 2]],
+        is_crossed: bool,
+        estimates: &mut [Estimate],
+    ) {
+        loop {
+            let mut lacks_more = false;
+            for of in active {
+                let estimate = &estimates[*of as usize];
+                if estimate.count < estimate.goal && estimate.is_crossed() == is_crossed {
+                    // What a sample may cost depends on those before it, if nothing bounds the light.
+                    let end = if self.is_unbounded { estimate.count + 1 } else { estimate.goal };
+                    let ray_budget = (estimate.missing == f64::INFINITY).then_some(sampled::REST);
+                    lacks_more |= end < estimate.goal;
+                    self.take_run(*of, pixels[*of as usize], estimate.count..end, ray_budget, estimates);
+                }
+            }
+            self.trace(estimates);
+            if !lacks_more {
+                return;
+            }
         }
     }
 
-    /// Traces the rays that wait.
-    fn trace(&mut self, found: &mut impl FnMut(usize, &Found)) {
-        let Self { tracer, group, seen, batch } = self;
-        let (len, camera) = (batch.len(), &tracer.plan.camera);
+    /// Adds samples of a pixel to those that wait, and traces these once there is a packet of them.
+    #[inline]
+    fn take_run(
+        &mut self,
+        of: u32,
+        pixel: [usize; 2],
+        mut samples: Range<u32>,
+        ray_budget: Option<u32>,
+        estimates: &mut [Estimate],
+    ) {
+        while !samples.is_empty() {
+            let first = self.waiting();
+            let count = samples.len().min(PACKET_SIZE - first);
+            let middle = samples.start + count as u32;
+            let (samples_here, lanes) = (samples.start..middle, first..first + count);
+            self.runs.push(Run { of, pixel, samples: samples_here, lanes, ray_budget });
+            samples.start = middle;
+            if self.waiting() == PACKET_SIZE {
+                self.trace(estimates);
+            }
+        }
+    }
+
+    /// Returns the number of samples that wait.
+    #[inline]
+    fn waiting(&self) -> usize {
+        self.runs.last().map_or(0, |run| run.lanes.end)
+    }
+
+    /// Traces the samples that wait.
+    fn trace(&mut self, estimates: &mut [Estimate]) {
+        let len = self.waiting();
         if len == 0 {
             return;
         }
-        let Scratch { places, samples, .. } = &mut *tracer.scratch;
+        let Self { tracer, group, seen, runs, .. } = self;
+        let camera = &tracer.plan.camera;
+        let Scratch { places, samples: drawn, .. } = &mut *tracer.scratch;
         let sampler = camera.sampler;
-        let sample = |&Wanted { pixel: [x, y], index, .. }: &Wanted| Sample {
-            sampler,
-            index,
-            pixel: camera.seed(x as i64, y as i64),
-        };
-        samples.clear();
-        samples.extend(batch.iter().map(sample));
+        drawn.clear();
+        for Run { pixel: [x, y], samples, .. } in &*runs {
+            let pixel = camera.seed(*x as i64, *y as i64);
+            drawn.extend(samples.clone().map(|index| Sample { sampler, index, pixel }));
+        }
         let [x, y] = &mut *places;
-        sample::jitters(tracer.cpu, samples, &mut x[..len], &mut y[..len]);
-        for (lane, wanted) in batch.iter().enumerate() {
-            x[lane] += wanted.pixel[0];
-            y[lane] += wanted.pixel[1];
+        sample::jitters(tracer.cpu, drawn, &mut x[..len], &mut y[..len]);
+        for Run { pixel: [column, row], lanes, .. } in &*runs {
+            x[lanes.clone()].iter_mut().for_each(|x| *x += *column as f64);
+            y[lanes.clone()].iter_mut().for_each(|y| *y += *row as f64);
         }
         tracer.look(group, len);
-        for (budget, wanted) in group.ray_budget.iter_mut().zip(&*batch) {
-            *budget = wanted.ray_budget.unwrap_or(*budget);
+        for Run { lanes, ray_budget, .. } in &*runs {
+            if let Some(budget) = ray_budget {
+                group.ray_budget[lanes.clone()].fill(*budget);
+            }
         }
         tracer.colours(group, seen);
-        for lane in 0..len {
-            found(self.batch[lane].of as usize, &self.found(lane));
+        for Run { of, lanes, .. } in &self.runs {
+            let estimate = &mut estimates[*of as usize];
+            estimate.add(&self.found(lanes.clone()));
+            if self.tracer.scratch.any_missing {
+                // One after the other, so that the sum does not depend on the packets.
+                let missing = lanes.clone().map(|lane| self.tracer.missing(lane));
+                estimate.missing = missing.fold(estimate.missing, |sum, one| sum + one);
+            }
         }
-        self.batch.clear();
+        self.runs.clear();
     }
 }

@@ -1,9 +1,11 @@
 //! What is known of a pixel's colour after some of its samples.
 
 use crate::render::bytes::shown;
+use crate::simd::soa::View;
 use crate::world::material::Rgb;
 use glam::DVec3;
 use std::array;
+use std::ops::Range;
 
 /// The number of blocks of samples whose means are compared.
 const BLOCKS: usize = 8;
@@ -27,8 +29,8 @@ pub(super) struct AdaptiveScratch {
     pub estimates: Vec<Estimate>,
     /// The indices of the pixels that take more samples.
     pub active: Vec<u32>,
-    /// The rays to be traced next.
-    pub batch: Vec<Wanted>,
+    /// The samples to be traced next.
+    pub runs: Vec<Run>,
 }
 
 impl AdaptiveScratch {
@@ -38,29 +40,26 @@ impl AdaptiveScratch {
     }
 }
 
-/// A ray that is to be traced.
-#[derive(Clone, Copy)]
-pub(super) struct Wanted {
-    /// The index of what it belongs to.
+/// Samples of a pixel that follow each other and are to be traced.
+pub(super) struct Run {
+    /// The index of the pixel's estimate.
     pub of: u32,
-    /// The pixel's column and row, which may lie outside of the image.
-    pub pixel: [f64; 2],
-    /// The sample's index.
-    pub index: u32,
-    /// The number of rays that it may cost, where that is not the usual one.
+    /// The pixel's column and row.
+    pub pixel: [usize; 2],
+    /// The indices of the samples.
+    pub samples: Range<u32>,
+    /// The lanes of their rays.
+    pub lanes: Range<usize>,
+    /// The number of rays that each may cost, where that is not the usual one.
     pub ray_budget: Option<u32>,
 }
 
-/// What a sample found.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Found {
-    pub colour: Rgb,
-    /// A bound on the light that the colour lacks.
-    pub missing: f64,
-    /// What the ray met on its path.
-    pub mark: u64,
-    /// The distance of the first hit, in world units.
-    pub distance: f64,
+/// What rays found, one after the other.
+pub(super) struct Found<'f> {
+    pub colours: View<'f>,
+    /// What each met on its path, and the distance of its first hit in world units; empty where that is not recorded.
+    pub marks: &'f [u64],
+    pub distances: &'f [f64],
 }
 
 /// What rays found together.
@@ -82,20 +81,36 @@ impl Default for Around {
     }
 }
 
-impl From<&Found> for Around {
+impl Around {
+    /// Returns what one ray found.
     #[inline]
-    fn from(&Found { colour, mark, distance, .. }: &Found) -> Self {
+    pub fn of(found: &Found, lane: usize) -> Self {
+        let colour = found.colours.get(lane);
+        let (mark, distance) = (found.marks[lane], found.distances[lane]);
         Self { low: colour, high: colour, mark, is_crossed: false, distance }
     }
-}
 
-impl Around {
     /// Includes what others found.
     #[inline]
     pub fn include(&mut self, other: &Self) {
         (self.low, self.high) = (self.low.min(other.low), self.high.max(other.high));
         self.is_crossed |= other.is_crossed | (other.mark != self.mark);
         self.distance = self.distance.max(other.distance);
+    }
+
+    /// Includes what rays found.
+    #[inline]
+    fn include_all(&mut self, found: &Found) {
+        for lane in 0..found.colours.len() {
+            let colour = found.colours.get(lane);
+            (self.low, self.high) = (self.low.min(colour), self.high.max(colour));
+        }
+        for mark in found.marks {
+            self.is_crossed |= *mark != self.mark;
+        }
+        for distance in found.distances {
+            self.distance = self.distance.max(*distance);
+        }
     }
 }
 
@@ -104,6 +119,8 @@ impl Around {
 pub(super) struct Estimate {
     /// The number of samples.
     pub count: u32,
+    /// The number of samples that the pixel is to have next, a power of two.
+    pub goal: u32,
     /// The sum of their colours.
     sum: Rgb,
     /// The sums of the colours of equally long runs of samples, as many as there are samples but no more than
@@ -116,10 +133,10 @@ pub(super) struct Estimate {
 }
 
 impl Estimate {
-    /// Starts with what the probes around the pixel found.
+    /// Starts with what the probes around the pixel found, and with the number of samples that it is to have first.
     #[inline]
-    pub fn new(around: Around) -> Self {
-        Self { around, ..Self::default() }
+    pub fn new(around: Around, goal: u32) -> Self {
+        Self { around, goal, ..Self::default() }
     }
 
     /// Tells whether rays here or around met different things on their paths.
@@ -132,28 +149,36 @@ impl Estimate {
         self.around.distance
     }
 
-    /// Adds the next sample of `goal`, a power of two.
+    /// Adds the next samples, up to [`goal`](Self::goal).
     #[inline]
-    pub fn add(&mut self, found: &Found, goal: u32) {
-        self.around.include(&Around::from(found));
-        self.sum += found.colour;
-        self.missing += found.missing;
+    pub fn add(&mut self, found: &Found) {
+        self.around.include_all(found);
+        self.sum = found.colours.added_to(self.sum);
         // Each block has a power of two of them.
-        let shift = goal.trailing_zeros().saturating_sub(BLOCKS.trailing_zeros());
-        self.blocks[(self.count >> shift) as usize & (BLOCKS - 1)] += found.colour;
-        self.count += 1;
+        let shift = shift(self.goal);
+        let (mut from, end) = (0, found.colours.len());
+        while from < end {
+            let left = (1 << shift) - (self.count as usize & ((1 << shift) - 1));
+            let to = end.min(from + left);
+            let block = &mut self.blocks[(self.count >> shift) as usize & (BLOCKS - 1)];
+            *block = found.colours.part(from..to).added_to(*block);
+            self.count += (to - from) as u32;
+            from = to;
+        }
     }
 
-    /// Joins pairs of blocks, so that there is room for as many samples again.
+    /// Sets the number of samples that the pixel is to have next, which is no less than before.
     #[inline]
-    pub fn join(&mut self) {
-        if self.count as usize >= BLOCKS {
+    pub fn set_goal(&mut self, goal: u32) {
+        // Pairs of blocks are joined, so that there is room for as many samples again.
+        for _ in shift(self.goal)..shift(goal) {
             let blocks = self.blocks;
             let joined = |pair: usize| {
                 if pair < BLOCKS / 2 { blocks[2 * pair] + blocks[2 * pair + 1] } else { Rgb::ZERO }
             };
             self.blocks = array::from_fn(joined);
         }
+        self.goal = goal;
     }
 
     /// Returns the colour.
@@ -195,4 +220,10 @@ impl Estimate {
         };
         off(1.0).max(off(FAR))
     }
+}
+
+/// Returns the binary logarithm of the number of samples in each block of so many samples, a power of two.
+#[inline]
+fn shift(samples: u32) -> u32 {
+    samples.trailing_zeros().saturating_sub(BLOCKS.trailing_zeros())
 }
