@@ -42,7 +42,7 @@ pub struct Args {
     /// Write a chart of --sampling, an .svg or a .png file
     #[arg(short, long, value_name = "FILE", requires = "sampling")]
     output: Option<PathBuf>,
-    /// Keep what --sampling measures of each scene in this directory, and measure only what it lacks
+    /// Keep the measurements of --sampling in this directory, and measure only what is missing there
     #[arg(long, value_name = "DIR", requires = "sampling")]
     keep: Option<PathBuf>,
     /// Print JSON

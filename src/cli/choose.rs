@@ -24,10 +24,9 @@ use std::time::{Duration, Instant};
 /// Choose accuracy and samples for a maximum error or time
 ///
 /// Measures the choices on a part of the image, shows them with a bound on their errors that holds with a confidence of
-/// 99 %, and prints the command line to use. Takes at most half as many rays as the image with the fixed number of samples
-/// that suffices; or 1 million where that is more (with `--worst` 2 million). That is at most about 500 rays for each pixel
-/// of a tiny image. Gives up after 10 seconds, or after
-/// the time that it is given; it may end a tenth later.
+/// 99 %, and prints the command line to use. Takes at most half as many rays as an image with the fixed number of
+/// samples that suffices, or 1 million if that is more (2 million with `--worst`). That is at most about 500 rays for
+/// each pixel of a tiny image. Gives up after 10 seconds or after --time-limit, and may take a tenth longer.
 #[derive(clap::Args)]
 #[command(group = ArgGroup::new("limit").args(["max_error", "max_time"]).required(true))]
 #[command(after_long_help = EXAMPLES)]

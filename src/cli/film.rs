@@ -21,13 +21,13 @@ const ON_SHEET: usize = 100;
 /// The width of a frame on a contact sheet in pixels.
 const WIDTH: u32 = 192;
 
-/// Put frames together to a contact sheet and to an animation
+/// Put frames together into a contact sheet or an animation
 ///
 /// The frames are those that `tabray render --frames A..B -o IMAGE` wrote.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
-    /// The name of the frames, as `render --frames` was told with -o: film.png for film-0001.png, film-0002.png ...
+    /// The name of the frames, as given to `render --frames` with -o: film.png for film-0001.png, film-0002.png ...
     frames: PathBuf,
     /// Write small images of the frames, evenly chosen if there are more than 100, in rows on one image
     #[arg(long, value_name = "FILE", required_unless_present = "animation")]

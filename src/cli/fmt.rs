@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 
 /// Format scenes
 ///
-/// Attributes stand in columns, one on each line, and what stands on one line stays there. Comments and the order are
-/// kept, and so is what the scene means. A scene whose form has errors is left as it is.
+/// Attributes that have a line each are aligned in columns; what shares a line stays on it. Comments, the order and the
+/// meaning of the scene are kept. A scene with syntax errors is left as it is.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {

@@ -22,8 +22,8 @@ use std::thread;
 
 /// Serve editors: the Language Server Protocol on standard input and output
 ///
-/// An editor starts it by itself: docs/tools.md says how. It finds all errors of a scene, completes, explains, renames and
-/// formats, in both syntaxes.
+/// An editor starts it: docs/tools.md says how to set it up. It finds all errors of a scene, completes, explains,
+/// renames and formats, in both syntaxes.
 #[derive(clap::Args)]
 pub struct Args {
     /// For clients that say so; there is no other way

@@ -31,9 +31,9 @@ const NAMED: usize = 12;
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
-    /// The image to write, as `render --part` was told with -o
+    /// The image to write, as given to `render --part` with -o
     image: PathBuf,
-    /// The parts, in any order; by default all files beside the image that are named as its parts are
+    /// The parts, in any order; by default all files beside the image that are named like its parts
     parts: Vec<PathBuf>,
     /// Remove the parts once the image is written
     #[arg(long)]

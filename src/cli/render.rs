@@ -38,8 +38,8 @@ pub struct Args {
     set: set::Args,
     /// The image to write: a .png or .ppm file, or an .exr or .pfm file for colours that are not clamped or rounded, or
     /// `-` for standard output (a PPM unless --format says otherwise); by default the scene's name with .png in the
-    /// working directory. For several scenes it is a folder, which is made if there is none; for one scene too, if it
-    /// ends with `/`
+    /// working directory. For several scenes, a folder, which is created if necessary; for one scene too, if it ends
+    /// with `/`
     #[arg(short, long, value_name = "FILE|DIR")]
     output: Option<PathBuf>,
     /// The image format, whatever the file's extension

@@ -7,7 +7,7 @@ use crate::scene::model::Model;
 #[group(id = "what is left out")]
 #[command(next_help_heading = "Speed")]
 pub struct Args {
-    /// Leave out no object and no light that the image does not need; the image is the same
+    /// Also trace objects and lights that the image does not need; the image is the same
     #[arg(long)]
     keep_all: bool,
 }

@@ -15,19 +15,19 @@ const LEVELS: f64 = 255.0;
 #[group(id = "how many samples")]
 #[command(next_help_heading = "Samples")]
 pub struct Args {
-    /// The number of samples per pixel, to smooth edges; by default that of the scene's camera. With two powers of two
-    /// as `4..64`, each pixel takes the first number, and more up to the second where its colour is less certain: at
-    /// edges, in soft shadows, where objects are small
+    /// The number of samples per pixel, to smooth edges; by default that of the scene's camera. With two powers of two,
+    /// such as `4..64`, each pixel takes the first number, and up to the second where its colour is less certain: at
+    /// edges, in soft shadows and where objects are small
     #[arg(long, value_name = "N|MIN..MAX", value_parser = samples)]
     samples: Option<Samples>,
     /// Take as many samples in each pixel as it needs for this error of its colour, such as `2` (levels of 255) or
-    /// `0.5%` (of white): an estimate, which 98 to 100 of 100 pixels kept in the scenes of docs/adaptive.md; 4 to 4096
-    /// samples unless --samples gives other limits
+    /// `0.5%` (of white): an estimate, which held for 98 to 100 of 100 pixels in the scenes of docs/adaptive.md; 4 to
+    /// 4096 samples unless --samples gives other limits
     #[arg(long, value_name = "LEVELS|PERCENT%", value_parser = error, allow_negative_numbers = true)]
     max_error: Option<f64>,
     /// Prove the error of --max-error where that is possible: the colour of a pixel is enclosed for all rays through it
-    /// at once, and where the enclosure is narrow enough the pixel takes no samples. The share of these pixels is
-    /// printed, and how much the others may be off, which take samples as without this option
+    /// at once, and if the enclosure is narrow enough, the pixel takes no samples. Other pixels take samples as without
+    /// this option. The share of proven pixels is printed, with a bound on the error of the others
     #[arg(long, requires = "max_error")]
     certain: bool,
     /// The distribution of the samples within a pixel

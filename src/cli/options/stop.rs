@@ -39,14 +39,14 @@ const NOT_FINISHED: &str = "the image was not finished";
 #[command(next_help_heading = "Limits")]
 pub struct Args {
     /// Continue from the checkpoint that was left beside the image when its render was stopped; if there is none, start
-    /// from the beginning. Parts and frames that are there already are not rendered again
+    /// from the beginning. Existing parts and frames are not rendered again
     #[arg(long)]
     pub resume: bool,
     /// Stop after this time, such as 90s, 5m or 1.5h, as Ctrl-C does: write what is done, and beside it a checkpoint
     /// for --resume; the time includes reading the scene and writing the image
     #[arg(long, value_name = "TIME", value_parser = time)]
     time_limit: Option<Duration>,
-    /// Hold less of the image at a time to stay within this memory, such as 200MiB; where that is not enough, stop as
+    /// Hold less of the image at a time to stay within this memory, such as 200MiB; if that is not enough, stop as
     /// Ctrl-C does
     #[arg(long, value_name = "SIZE", value_parser = size)]
     max_memory: Option<ByteSize>,

@@ -82,7 +82,7 @@ impl Files {
         self.apply()
     }
 
-    /// Watches all scenes in these folders, those of later included.
+    /// Watches all scenes in these folders, including those that are added later.
     ///
     /// # Errors
     /// If the system cannot watch one of the folders.
