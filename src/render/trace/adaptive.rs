@@ -170,9 +170,11 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
                 grid[from].include(&next);
             }
         }
-        estimates.clear();
+        estimates.resize(pixels.len(), Estimate::default());
         let least = self.tracer.plan.camera.samples;
-        estimates.extend(pixels.iter().map(|pixel| Estimate::new(grid[place(*pixel)], least)));
+        for (estimate, pixel) in estimates.iter_mut().zip(pixels) {
+            estimate.begin(grid[place(*pixel)], least);
+        }
     }
 
     /// Traces probes at corners, and reports what each found.

@@ -133,10 +133,13 @@ pub(super) struct Estimate {
 }
 
 impl Estimate {
-    /// Starts with what the probes around the pixel found, and with the number of samples that it is to have first.
+    /// Starts with what the probes around the pixel found, and with the number of samples that it is to have first. It is
+    /// too large to be copied into its place.
     #[inline]
-    pub fn new(around: Around, goal: u32) -> Self {
-        Self { around, goal, ..Self::default() }
+    pub fn begin(&mut self, around: Around, goal: u32) {
+        (self.count, self.goal) = (0, goal);
+        (self.sum, self.blocks, self.missing) = (Rgb::ZERO, [Rgb::ZERO; BLOCKS], 0.0);
+        self.around = around;
     }
 
     /// Tells whether rays here or around met different things on their paths.
@@ -156,14 +159,9 @@ impl Estimate {
         self.sum = found.colours.added_to(self.sum);
         // Each block has a power of two of them.
         let shift = shift(self.goal);
-        let (mut from, end) = (0, found.colours.len());
-        while from < end {
-            let left = (1 << shift) - (self.count as usize & ((1 << shift) - 1));
-            let to = end.min(from + left);
-            let block = &mut self.blocks[(self.count >> shift) as usize & (BLOCKS - 1)];
-            *block = found.colours.part(from..to).added_to(*block);
-            self.count += (to - from) as u32;
-            from = to;
+        for lane in 0..found.colours.len() {
+            self.blocks[(self.count >> shift) as usize & (BLOCKS - 1)] += found.colours.get(lane);
+            self.count += 1;
         }
     }
 
