@@ -50,6 +50,9 @@ pub(super) fn shine<F: Number>(
     }
     let path = Path { line: Line { origin: surface.at, dir: toward }, leaves: Some(surface.place) };
     let passed = passed(scene, &path);
+    if passed.is_none() && !scene.passes_fractions {
+        return None;
+    }
     let full = per_axis(|channel| scattered[channel] * sent[channel]);
     Some(per_axis(|channel| {
         let lit = match passed {

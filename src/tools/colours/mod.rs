@@ -211,6 +211,20 @@ mod tests {
     const BALL: &str = "sphere ball { material matt center 4 3 -3 radius 1 }";
 
     #[test]
+    fn light_behind_undecided_panes_is_open_where_a_tint_is_below_0() {
+        // Panes in one place are not decided. The green that they let pass is below 0, and darkens the ball.
+        let model = model(
+            "material matt { ambient 3.5 3.5 3.5 diffuse 1.25 1.25 1.25 }
+             material glass { diffuse 1 -1 1 transparency 0.5 }
+             plane one { material glass normal 0 1 0 point 0 4 0 }
+             plane other { material glass normal 0 1 0 point 0 4 0 }
+             sphere ball { material matt center 4 3 -3 radius 1 }",
+        );
+        let plan = Plan::new(&model);
+        assert_eq!(Prover::new(&plan).traced(1, 1).channels[1], Verdict::Open);
+    }
+
+    #[test]
     fn light_is_scattered_as_worked_out_by_hand() {
         // The light is at (0, 3, 4) from the point: 5 away, at a cosine of 4/5. It adds 1.25 * 8 * 4/5 / 5 to 1/2.
         let matt = "material matt { ambient 0.5 0.5 0.5 diffuse 1.25 1.25 1.25 }";

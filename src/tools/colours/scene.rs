@@ -53,6 +53,8 @@ pub(super) struct Scene<'p, 'm> {
     pub plan: &'p Plan<'m>,
     pub objects: &'m [Object],
     boxes: Vec<Option<Aabb>>,
+    /// Whether what glass lets pass of a channel is known to lie between none of it and all.
+    pub passes_fractions: bool,
 }
 
 /// What a line hits first.
@@ -86,7 +88,14 @@ impl<'p, 'm> Scene<'p, 'm> {
             let slack = SLACK * low.abs().max(high.abs()).max_element();
             Some(Aabb { low: low - slack, high: high + slack })
         };
-        Self { plan, objects, boxes: objects.iter().map(around).collect() }
+        // A tint is a part of the diffuse colour, which may be below 0.
+        let has_fractions = |object: &Object| match object.shader.uniform(&object.material) {
+            Some(look) => look.diffuse.min_element() >= 0.0,
+            None => object.shader.brightest(&object.material).is_some(),
+        };
+        let mut glass = objects.iter().filter(|object| object.material.transparency != 0.0);
+        let passes_fractions = glass.all(has_fractions);
+        Self { plan, objects, boxes: objects.iter().map(around).collect(), passes_fractions }
     }
 
     /// Returns what is certain about the first hit of a line with the object of this index.
