@@ -83,6 +83,19 @@ fn the_image_of_a_moment_is_compared_with_those_that_follow() {
 }
 
 #[test]
+fn an_image_is_not_compared_with_one_of_the_scene_before() {
+    let Some((watching, browser)) = opened(&shaded()) else { return };
+    browser.press('d');
+    choose(&browser, "classic");
+    compared(&browser, "1 classic");
+    // The other image of the next version does not come.
+    browser.run("window.fetch = () => new Promise(() => {})");
+    fs::write(watching.scene(), shaded().replace("radius 2", "radius 1")).expect("a file");
+    shown(&browser, 2);
+    assert_eq!(words(&browser), "rendering the other image");
+}
+
+#[test]
 fn the_line_is_dragged_and_moved_by_keys() {
     let Some((watching, browser)) = opened(&ball("9 0 0")) else { return };
     browser.press('d');

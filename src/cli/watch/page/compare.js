@@ -1,7 +1,7 @@
 // Two images compared: left of a line the one before or by other means, right of it the current one.
 
 const box = $('#comparing'), beforeCanvas = $('#before'), divider = $('#line')
-// The image left of the line: its colours and its size.
+// The image left of the line: its colours, its size, and the version of the scene that it must be compared with, if any.
 let before = null
 // Where the line is, in percent of the image's width.
 let line = 50
@@ -20,6 +20,9 @@ const moveLine = (to) => {
   divider.style.left = `${line}%`
   beforeCanvas.style.clipPath = `inset(0 ${100 - line}% 0 0)`
 }
+
+/// Whether the image left of the line is of a scene before: one by other means is then on its way.
+const isStale = () => before?.of && before.of !== version
 
 const fits = () => before && before.size[0] === width && before.size[1] === height
 
@@ -63,7 +66,7 @@ const compare = () => {
     before = { colours: colours.slice(), size: [width, height] }
     showBefore()
   }
-  if (!before) return
+  if (!before || isStale()) return
   tellDifference(fits() ? difference(before.colours, colours) : `the image before has ${before.size.join(' × ')} pixels, and this one ${width} × ${height}`)
   root.dataset.compared = `${version} ${means()}`
 }
@@ -90,7 +93,7 @@ const fetchOther = async () => {
   if (!answer.ok) return tellDifference((await answer.text()).trim())
   const bytes = await answer.arrayBuffer().catch(() => null)
   if (!bytes || !isWanted()) return
-  before = { colours: new Float32Array(bytes), size }
+  before = { colours: new Float32Array(bytes), size, of }
   tellDifference('')
   showBefore()
   compare()
