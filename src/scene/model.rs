@@ -53,6 +53,16 @@ impl Model {
             Kind::Background => self.background.iter().map(|item| &item.args).collect(),
         }
     }
+
+    /// Tells whether each [tint](Object::tint) is known to be from 0 to 1.
+    pub fn tints_are_fractions(&self) -> bool {
+        let is_fraction = |object: &Object| match object.shader.uniform(&object.material) {
+            Some(look) => look.diffuse.min_element() >= 0.0,
+            None => object.shader.brightest(&object.material).is_some(),
+        };
+        let mut glass = self.objects.iter().filter(|object| object.material.transparency != 0.0);
+        glass.all(is_fraction)
+    }
 }
 
 /// An entity of a scene: as it was given, and what the constructor made of them.
@@ -90,8 +100,9 @@ impl Object {
         SurfacePoint::seen(&*self.shape, sees, position, normal, side)
     }
 
-    /// Returns the fraction, from 0 to 1, of light that passes through at this point, for each channel: transparency
-    /// times the diffuse colour, scaled so that the strongest channel is 1. Glass without a diffuse colour is grey.
+    /// Returns the fraction of light that passes through at this point, for each channel: transparency times the diffuse
+    /// colour, scaled so that the strongest channel is 1. Glass without a diffuse colour is grey. The fraction is at most
+    /// 1, and below 0 where the diffuse colour is.
     pub fn tint(&self, at: &SurfacePoint) -> Rgb {
         let diffuse = self.shader.diffuse(&self.material, at);
         let strongest = diffuse.max_element();

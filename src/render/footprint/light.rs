@@ -61,7 +61,8 @@ pub(super) fn shine(
             Passes::Nothing => black[channel],
             Passes::All => full,
             Passes::Part(fraction) => full * fraction[channel],
-            Passes::Open => full.hull(black[channel]),
+            Passes::Open if scene.passes_fractions => full.hull(black[channel]),
+            Passes::Open => Affine::WHOLE,
         };
         let lit = if cosine.range().low > 0.0 { lit } else { lit.hull(black[channel]) };
         // From here on it is the mean over the light.
@@ -112,7 +113,7 @@ enum Passes {
     /// This fraction.
     Part(Colour),
     Nothing,
-    /// Anything from nothing to all.
+    /// It is not known: anything from nothing to all, where tints are fractions.
     Open,
 }
 

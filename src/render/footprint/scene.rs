@@ -34,6 +34,8 @@ pub(super) struct Scene<'a> {
     pub boxes: &'a [Option<Aabb>],
     /// A bound on any channel of what a primary ray returns, times the path length; infinite where there is none.
     pub most: f64,
+    /// Whether what glass lets pass of a channel is known to lie between none of it and all.
+    pub passes_fractions: bool,
     /// Whether an interface divides rays, so that colours are bounded only.
     pub is_split: bool,
 }

@@ -51,6 +51,22 @@ fn a_plane_half_in_shadow_has_the_mean_of_both_halves() {
 }
 
 #[test]
+fn light_behind_undecided_panes_may_be_below_0_where_a_tint_is() {
+    // Panes in one place are not decided. The green that they let pass is below 0, and darkens the wall.
+    let model = model(&format!(
+        "{CAMERA}
+         material glass {{ diffuse 1 -1 1 transparency 1 }}
+         light lamp {{ location 4 9 0 emissivity 25 25 25 }}
+         plane one {{ material glass normal 0 1 0 point 0 5 0 }}
+         plane other {{ material glass normal 0 1 0 point 0 5 0 }}
+         plane wall {{ material m normal 0 0 1 point 0 0 -8 }}"
+    ));
+    // The light adds 4 to the ambient 1/2, and what passes of green is -1 of it.
+    let proof = proof(&model, MIDDLE, 1.0 / 255.0);
+    assert!(proof.low[1] <= (0.5 - 4.0) / 16.0, "{proof:?}");
+}
+
+#[test]
 fn a_background_is_bounded_by_itself_and_beside_an_edge() {
     // The right half of the pixel sees the screen, 12 units from the viewer.
     let scene = |background: &str| {

@@ -88,14 +88,8 @@ impl<'p, 'm> Scene<'p, 'm> {
             let slack = SLACK * low.abs().max(high.abs()).max_element();
             Some(Aabb { low: low - slack, high: high + slack })
         };
-        // A tint is a part of the diffuse colour, which may be below 0.
-        let has_fractions = |object: &Object| match object.shader.uniform(&object.material) {
-            Some(look) => look.diffuse.min_element() >= 0.0,
-            None => object.shader.brightest(&object.material).is_some(),
-        };
-        let mut glass = objects.iter().filter(|object| object.material.transparency != 0.0);
-        let passes_fractions = glass.all(has_fractions);
-        Self { plan, objects, boxes: objects.iter().map(around).collect(), passes_fractions }
+        let boxes = objects.iter().map(around).collect();
+        Self { plan, objects, boxes, passes_fractions: plan.model.tints_are_fractions() }
     }
 
     /// Returns what is certain about the first hit of a line with the object of this index.
