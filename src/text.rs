@@ -155,8 +155,9 @@ pub fn and(words: &[&str]) -> String {
 
 /// Returns the article of a word: `a` or `an`.
 pub fn article(word: &str) -> &'static str {
-    // As `union`, which begins as `you` does.
-    if word.starts_with(['a', 'e', 'i', 'o', 'u']) && !word.starts_with("uni") { "an" } else { "a" }
+    // `union` begins as `you` does, and the first letter of `fplane` is spoken alone.
+    let is_vowel = word.starts_with(['a', 'e', 'i', 'o', 'u']) && !word.starts_with("uni");
+    if is_vowel || word.starts_with("fp") { "an" } else { "a" }
 }
 
 /// Writes a number that is not below 0 to about three significant digits.

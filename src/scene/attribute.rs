@@ -84,12 +84,10 @@ impl dyn Attribute + '_ {
             Type::File => "the name of a file".to_owned(),
             Type::Name(kind) if self.arity().most() > 1 => self.arity().told(&format!("{kind} name")),
             Type::Name(kind) => format!("the name of {}", kind.with_article()),
-            Type::Choice(choices) if choices.all().iter().any(|choice| choice.number.is_some()) => {
-                format!("the name or number of a {}", choices.what)
-            }
             Type::Choice(choices) => {
-                let article = if choices.what.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
-                format!("the name of {article} {}", choices.what)
+                let has_numbers = choices.all().iter().any(|choice| choice.number.is_some());
+                let name = if has_numbers { "name or number" } else { "name" };
+                format!("the {name} of {} {}", text::article(choices.what), choices.what)
             }
             Type::Formula(variables) => {
                 let what = match self.arity().most() {

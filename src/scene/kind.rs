@@ -1,5 +1,6 @@
 //! The kinds of entity that a scene is made of.
 
+use crate::text;
 use serde::Serialize;
 use std::fmt;
 
@@ -26,7 +27,8 @@ pub enum Kind {
 impl Kind {
     /// Returns the kind with its article: `a light`, `an object`.
     pub fn with_article(self) -> String {
-        format!("{} {self}", if self == Self::Object { "an" } else { "a" })
+        let name = self.to_string();
+        format!("{} {name}", text::article(&name))
     }
 }
 

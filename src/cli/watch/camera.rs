@@ -73,7 +73,11 @@ fn fixed(registry: &Registry, frame: &Frame, camera: &Record) -> Option<String> 
     let view = editor::read(registry, &frame.name, Text::new(frame.text.clone()));
     let mut moves = navigation::attributes(&args).map(|(attribute, _)| attribute).peekable();
     if moves.peek().is_none() {
-        return Some(format!("a {} does not say where it stands: change the text", args.entity.name));
+        return Some(format!(
+            "{} {} does not say where it stands: change the text",
+            text::article(args.entity.name),
+            args.entity.name
+        ));
     }
     if view.entity(name).is_none() {
         return Some(format!("`{name}` is repeated or included: change the text"));
