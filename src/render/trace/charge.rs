@@ -104,6 +104,15 @@ mod tests {
         assert!(long < 20_000 && cut == 6, "{long} rays, {cut} pixels");
     }
 
+    /// `rays` compares the two.
+    #[test]
+    fn copies_of_a_wild_profile_have_the_same_bits_in_packets_and_alone() {
+        for step in 0..12 {
+            let surface = WILD.replace("0.3 +", &format!("{} +", 0.2 + 0.05 * f64::from(step)));
+            rays(&format!("{surface}\nplace copy {{ object wild material glass rotation 0 0.1 0 }}"));
+        }
+    }
+
     #[test]
     fn rays_through_many_copies_count_as_many() {
         let copies = |name: &str, count: usize| -> String {

@@ -125,28 +125,6 @@ impl Placed {
         any || ends_within
     }
 
-    fn few_refined<const N: usize>(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        sides: Option<&[Side]>,
-        (near, far): (&[f64], &[f64]),
-        out: &mut [f64],
-    ) {
-        let count = out.len();
-        let own = Own::<N>::of(cpu, self, rays, &far[..count]);
-        let (mut own_near, mut own_far) = ([0.0; N], [0.0; N]);
-        for lane in 0..count {
-            let (near, far, length) = (near[lane], far[lane], own.lengths[lane]);
-            let error = if near == far { 0.0 } else { 4.0 * f64::EPSILON };
-            own_near[lane] = near * length * (1.0 - error);
-            own_far[lane] = far * length * (1.0 + error);
-        }
-        let brackets = (&own_near[..count], &own_far[..count]);
-        self.body.shape.packets().refine(cpu, own.rays(count), sides, brackets, out);
-        out.iter_mut().zip(own.lengths).for_each(|(out, length)| *out /= length);
-    }
-
     fn few_interact<const N: usize>(
         &self,
         cpu: Cpu,
@@ -225,25 +203,18 @@ impl Packets for Shape<Placed, ByPackets, ByPlacement> {
         })
     }
 
+    /// Searches again in the object's own coordinates, as for a single ray: a root depends on its bracket in the last bits,
+    /// and a bracket that was taken to the world depends on the packet.
     fn refine(
         &self,
-        cpu: Cpu,
+        _cpu: Cpu,
         rays: RayPacket,
         sides: Option<&[Side]>,
-        (near, far): (&[f64], &[f64]),
+        _brackets: (&[f64], &[f64]),
         out: &mut [f64],
     ) {
-        if self.shape.body.shape.packets().is_of_the_notes() {
-            for lane in 0..out.len() {
-                out[lane] = self.refine_one(&rays.get(lane), sides.map(|sides| sides[lane]));
-            }
-            return;
-        }
-        for part in split(out.len(), PART) {
-            let sides = sides.map(|sides| &sides[part.clone()]);
-            let brackets = (&near[part.clone()], &far[part.clone()]);
-            let rays = rays.part(part.clone());
-            self.shape.few_refined::<PART>(cpu, rays, sides, brackets, &mut out[part]);
+        for lane in 0..out.len() {
+            out[lane] = self.refine_one(&rays.get(lane), sides.map(|sides| sides[lane]));
         }
     }
 
