@@ -1,7 +1,8 @@
 //! Formulas in x, y and z, and in all that is known of a point of a surface.
 
-use super::step::{Function, MAX_DEPTH, Step};
-use super::{Formula, SMALL_STACK};
+use super::program::MOST_REGISTERS;
+use super::step::{Function, Step};
+use super::{FEW_REGISTERS, Formula};
 use crate::numeric::scalar::Scalar;
 use std::sync::Arc;
 
@@ -11,9 +12,9 @@ pub const SPACE: &[&str] = &["x", "y", "z"];
 /// The variables of a formula of a surface: the point, u and v, and the unit normal.
 pub const SURFACE: &[&str] = &["x", "y", "z", "u", "v", "nx", "ny", "nz"];
 
-/// The stack depth that suffices for most formulas of space, in values. A stack of [`MAX_DEPTH`] takes longer to set up
+/// The number of registers that suffices for most formulas of space, in values. [`MOST_REGISTERS`] take longer to set up
 /// than most formulas to evaluate.
-const MEDIUM_STACK: usize = 8;
+const SOME_REGISTERS: usize = 12;
 
 /// A formula in x, y and z: `x^2 + y^2 + z^2 - 1`.
 pub type Field = FieldOf<3>;
@@ -43,10 +44,7 @@ impl<const COUNT: usize> FieldOf<COUNT> {
         let mut quick = new(with_constants(&formula.steps));
         let of_surface = COUNT == SURFACE.len() && quick.steps.contains(&Step::Call(Function::Sqrt));
         if of_surface {
-            let rooted = new(with_roots(&quick.steps));
-            if rooted.stack_depth <= MAX_DEPTH {
-                quick = rooted;
-            }
+            quick = new(with_roots(&quick.steps));
         }
         Some(Self { formula, quick })
     }
@@ -73,13 +71,14 @@ impl<const COUNT: usize> FieldOf<COUNT> {
     /// Evaluates the formula at a point.
     #[inline(always)]
     pub fn at<N: Scalar>(&self, at: [N; COUNT]) -> N {
-        let depth = self.quick.stack_depth;
-        if depth <= SMALL_STACK {
-            self.quick.run(&at, &mut [at[0]; SMALL_STACK])
-        } else if depth <= MEDIUM_STACK {
-            self.quick.run(&at, &mut [at[0]; MEDIUM_STACK])
-        } else {
-            self.quick.run(&at, &mut [at[0]; MAX_DEPTH])
+        let with = |registers: &mut [N]| {
+            registers[..COUNT].copy_from_slice(&at);
+            self.quick.run(registers)
+        };
+        match self.quick.program.registers {
+            ..=FEW_REGISTERS if COUNT <= FEW_REGISTERS => with(&mut [at[0]; FEW_REGISTERS]),
+            ..=SOME_REGISTERS => with(&mut [at[0]; SOME_REGISTERS]),
+            _ => with(&mut [at[0]; MOST_REGISTERS]),
         }
     }
 }

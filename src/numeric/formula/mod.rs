@@ -2,6 +2,7 @@
 
 pub mod field;
 mod parser;
+mod program;
 mod spline;
 mod step;
 
@@ -14,9 +15,10 @@ use crate::numeric::scalar::{Scalar, apart_if};
 use crate::numeric::spline::Spline;
 use crate::simd::soa::LANES;
 use crate::text;
+use program::{Instruction, MOST_REGISTERS, Program};
 use std::fmt;
 use std::sync::Arc;
-use step::{Function, MAX_DEPTH, Step};
+use step::{Function, Step};
 
 /// The variable of a profile.
 pub const HEIGHT: &[&str] = &["y"];
@@ -28,16 +30,16 @@ pub struct Formula {
     variables: &'static [&'static str],
     /// The operations in postfix order: operands first.
     steps: Vec<Step>,
+    /// The same, to be run.
+    program: Program,
     /// The curve that [`Step::Spline`] evaluates.
     spline: Option<Arc<Spline>>,
-    /// The largest depth of the stack while the formula is evaluated, in values.
-    stack_depth: usize,
     /// Whether the formula can be evaluated for eight y at a time.
     is_plain: bool,
 }
 
-/// The stack depth that suffices for most formulas, in values.
-const SMALL_STACK: usize = 4;
+/// The number of registers that suffices for most formulas, in values.
+const FEW_REGISTERS: usize = 6;
 
 /// The size of a number, in bytes, from which each of its operations is a call.
 const LONG: usize = 64;
@@ -104,20 +106,20 @@ impl Formula {
     }
 
     fn new(text: String, variables: &'static [&'static str], steps: Vec<Step>) -> Self {
-        let stack_depth = stack_depth(&steps);
+        let program = Program::new(&steps, variables.len());
         // The derivative of a general power takes more than arithmetic.
-        let is_plain = stack_depth <= SMALL_STACK && !steps.contains(&Step::Call(Function::Pow));
-        Self { text, variables, steps, spline: None, stack_depth, is_plain }
+        let is_plain = program.registers <= FEW_REGISTERS && !steps.contains(&Step::Call(Function::Pow));
+        Self { text, variables, steps, program, spline: None, is_plain }
     }
 
     /// Evaluates a formula in y at y.
     #[inline(always)]
     pub fn at<N: Scalar>(&self, y: N) -> N {
-        // Most formulas need a small stack, which is quicker to set up.
-        if self.stack_depth <= SMALL_STACK {
-            self.run(&[y], &mut [y; SMALL_STACK])
+        // Few registers are quicker to set up.
+        if self.program.registers <= FEW_REGISTERS {
+            self.run(&mut [y; FEW_REGISTERS])
         } else {
-            self.run(&[y], &mut [y; MAX_DEPTH])
+            self.run(&mut [y; MOST_REGISTERS])
         }
     }
 
@@ -134,10 +136,10 @@ impl Formula {
         self.steps.iter().map(cost).sum()
     }
 
-    /// Evaluates the formula, given the values of its variables, on a stack that is deep enough; one function for each
-    /// number type, for any number of variables and stacks of any size.
-    fn run<N: Scalar>(&self, variables: &[N], stack: &mut [N]) -> N {
-        self.run_inline::<N, true>(variables, stack)
+    /// Evaluates the formula in registers, of which the first ones have the variables; one function for each number type,
+    /// for any number of registers.
+    fn run<N: Scalar>(&self, registers: &mut [N]) -> N {
+        self.run_inline::<N, true>(registers)
     }
 
     /// Evaluates the formula and its derivative at eight y, for kernels.
@@ -145,7 +147,7 @@ impl Formula {
     pub fn at_eight(&self, y: [f64; LANES]) -> Dual<F64x8> {
         if self.is_plain {
             let y = Dual::variable(F64x8(y));
-            return self.run_inline::<_, false>(&[y], &mut [y; SMALL_STACK]);
+            return self.run_inline::<_, false>(&mut [y; FEW_REGISTERS]);
         }
         let (mut value, mut slope) = ([0.0; LANES], [0.0; LANES]);
         for lane in 0..LANES {
@@ -155,7 +157,7 @@ impl Formula {
     }
 
     #[inline(always)]
-    fn run_inline<N: Scalar, const MAY_CALL: bool>(&self, variables: &[N], stack: &mut [N]) -> N {
+    fn run_inline<N: Scalar, const MAY_CALL: bool>(&self, registers: &mut [N]) -> N {
         /// Calls an operation of a long number, such as an interval with second derivatives, which takes up to thousands
         /// of instructions.
         macro_rules! long {
@@ -163,59 +165,39 @@ impl Formula {
                 apart_if!(MAY_CALL && size_of::<N>() >= LONG, $operation)
             };
         }
-        let mut top = 0_usize;
-        for step in &self.steps {
-            // The parser has checked that the operands are there and that they fit on the stack.
-            let (a, b) = (stack[top.saturating_sub(2)], stack[top.saturating_sub(1)]);
-            let (used, value) = match *step {
-                Step::Variable(index) => (0, variables[usize::from(index)]),
-                Step::Number(number) => (0, N::constant(number)),
-                Step::Neg => (1, -b),
-                Step::Powi(exponent) => (1, long!(b.powi(exponent))),
+        for &Instruction { step, operands, result } in &self.program.instructions {
+            let (a, b) = (registers[usize::from(operands[0])], registers[usize::from(operands[1])]);
+            registers[usize::from(result)] = match step {
+                // It is in its register.
+                Step::Variable(_) => a,
+                Step::Number(number) => N::constant(number),
+                Step::Neg => -a,
+                Step::Powi(exponent) => long!(a.powi(exponent)),
                 Step::Spline => match &self.spline {
-                    Some(spline) => (1, long!(b.spline(spline, 0))),
-                    None => (1, b),
+                    Some(spline) => long!(a.spline(spline, 0)),
+                    None => a,
                 },
-                Step::Scale(factor) => (1, long!(b.scaled(factor))),
-                Step::Shift(by) => (1, long!(b.shifted(by))),
-                Step::Add => (2, long!(a + b)),
-                Step::Sub => (2, long!(a - b)),
-                Step::Mul => (2, long!(a * b)),
-                Step::Div => (2, long!(a / b)),
-                Step::Call(Function::Sin) => (1, long!(b.sin())),
-                Step::Call(Function::Cos) => (1, long!(b.cos())),
-                Step::Call(Function::Tan) => (1, long!(b.tan())),
-                Step::Call(Function::Exp) => (1, long!(b.exp())),
-                Step::Call(Function::Ln) => (1, long!(b.ln())),
-                Step::Call(Function::Sqrt) => (1, long!(b.sqrt())),
-                Step::Call(Function::Abs) => (1, long!(b.abs())),
-                Step::Call(Function::Floor) => (1, long!(b.floor())),
-                Step::Call(Function::Min) => (2, long!(a.min(b))),
-                Step::Call(Function::Max) => (2, long!(a.max(b))),
-                Step::Call(Function::Pow) => (2, long!(a.pow(b))),
+                Step::Scale(factor) => long!(a.scaled(factor)),
+                Step::Shift(by) => long!(a.shifted(by)),
+                Step::Add => long!(a + b),
+                Step::Sub => long!(a - b),
+                Step::Mul => long!(a * b),
+                Step::Div => long!(a / b),
+                Step::Call(Function::Sin) => long!(a.sin()),
+                Step::Call(Function::Cos) => long!(a.cos()),
+                Step::Call(Function::Tan) => long!(a.tan()),
+                Step::Call(Function::Exp) => long!(a.exp()),
+                Step::Call(Function::Ln) => long!(a.ln()),
+                Step::Call(Function::Sqrt) => long!(a.sqrt()),
+                Step::Call(Function::Abs) => long!(a.abs()),
+                Step::Call(Function::Floor) => long!(a.floor()),
+                Step::Call(Function::Min) => long!(a.min(b)),
+                Step::Call(Function::Max) => long!(a.max(b)),
+                Step::Call(Function::Pow) => long!(a.pow(b)),
             };
-            top = top - used + 1;
-            stack[top - 1] = value;
         }
-        stack[0]
+        registers[usize::from(self.program.result)]
     }
-}
-
-/// Returns the largest depth of the stack while these operations are evaluated, in values.
-fn stack_depth(steps: &[Step]) -> usize {
-    let mut waiting = 0_usize;
-    let after = steps.iter().map(|step| {
-        let used = match step {
-            Step::Variable(_) | Step::Number(_) => 0,
-            Step::Neg | Step::Powi(_) | Step::Spline | Step::Scale(_) | Step::Shift(_) => 1,
-            Step::Add | Step::Sub | Step::Mul | Step::Div => 2,
-            Step::Call(Function::Min | Function::Max | Function::Pow) => 2,
-            Step::Call(_) => 1,
-        };
-        waiting = waiting + 1 - used.min(waiting);
-        waiting
-    });
-    after.max().unwrap_or(1)
 }
 
 /// Displays the text that the formula was parsed from.

@@ -22,6 +22,18 @@ pub(super) enum Step {
     Call(Function),
 }
 
+impl Step {
+    /// Returns the number of values that the operation is applied to.
+    pub fn operands(self) -> usize {
+        match self {
+            Self::Variable(_) | Self::Number(_) => 0,
+            Self::Add | Self::Sub | Self::Mul | Self::Div => 2,
+            Self::Call(Function::Min | Function::Max | Function::Pow) => 2,
+            Self::Neg | Self::Powi(_) | Self::Scale(_) | Self::Shift(_) | Self::Spline | Self::Call(_) => 1,
+        }
+    }
+}
+
 /// A function of one or two values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Function {
@@ -38,5 +50,5 @@ pub(super) enum Function {
     Pow,
 }
 
-/// The largest stack depth, in values, and with it the deepest nesting that a formula may have.
+/// The deepest nesting that a formula may have, in values that wait for an operation.
 pub(super) const MAX_DEPTH: usize = 32;

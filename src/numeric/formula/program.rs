@@ -1,0 +1,154 @@
+//! Formulas as programs: operations on registers, of which equal ones are made once.
+
+use super::step::Step;
+use std::collections::HashMap;
+use std::mem::{Discriminant, discriminant};
+
+/// One operation: reads two registers, of which it may use fewer, and writes one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Instruction {
+    pub step: Step,
+    pub operands: [u8; 2],
+    pub result: u8,
+}
+
+/// A formula's operations in their order.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Program {
+    pub instructions: Vec<Instruction>,
+    /// The register that has the result in the end.
+    pub result: u8,
+    /// The number of registers. The first ones have the variables.
+    pub registers: usize,
+}
+
+/// The number of registers of the largest program, in values: enough for all variables and the deepest nesting.
+pub(super) const MOST_REGISTERS: usize = 48;
+
+/// An operation and the values that it is applied to, by their indices.
+#[derive(Clone, Copy)]
+struct Value {
+    step: Step,
+    operands: [usize; 2],
+}
+
+impl Value {
+    /// Returns what values have in common that are the same number.
+    fn key(&self) -> (Discriminant<Step>, u64, [usize; 2]) {
+        let payload = match self.step {
+            Step::Number(number) | Step::Scale(number) | Step::Shift(number) => number.to_bits(),
+            Step::Variable(index) => index.into(),
+            Step::Powi(exponent) => exponent as u64,
+            Step::Call(function) => function as u64,
+            Step::Neg | Step::Add | Step::Sub | Step::Mul | Step::Div | Step::Spline => 0,
+        };
+        (discriminant(&self.step), payload, self.operands)
+    }
+
+    fn used(&self) -> &[usize] {
+        &self.operands[..self.step.operands()]
+    }
+}
+
+impl Program {
+    /// Makes a program of operations in postfix order. `variables` is the number of variables.
+    pub fn new(steps: &[Step], variables: usize) -> Self {
+        let shared = Self::of(&values(steps, variables, true), variables);
+        // What is shared waits in a register until its last use.
+        if shared.registers <= MOST_REGISTERS {
+            return shared;
+        }
+        Self::of(&values(steps, variables, false), variables)
+    }
+
+    fn of((values, result): &(Vec<Value>, usize), variables: usize) -> Self {
+        let mut last_uses = vec![0; values.len()];
+        for (index, value) in values.iter().enumerate() {
+            value.used().iter().for_each(|used| last_uses[*used] = index);
+        }
+        last_uses[*result] = values.len();
+        let (mut free, mut registers) = (Vec::new(), variables);
+        let mut places: Vec<usize> = (0..variables).collect();
+        let mut instructions = Vec::with_capacity(values.len() - variables);
+        for (index, value) in values.iter().enumerate().skip(variables) {
+            let mut operands = [0; 2];
+            for (operand, used) in operands.iter_mut().zip(value.used()) {
+                *operand = places[*used] as u8;
+            }
+            let mut ended = value.used().to_vec();
+            ended.dedup();
+            ended.retain(|used| *used >= variables && last_uses[*used] == index);
+            free.extend(ended.into_iter().map(|used| places[used]));
+            let place = free.pop().unwrap_or_else(|| {
+                registers += 1;
+                registers - 1
+            });
+            places.push(place);
+            instructions.push(Instruction { step: value.step, operands, result: place as u8 });
+        }
+        Self { instructions, result: places[*result] as u8, registers }
+    }
+}
+
+/// Returns the values of operations, the variables first, and the index of the last one; if they are shared, each value
+/// once.
+fn values(steps: &[Step], variables: usize, are_shared: bool) -> (Vec<Value>, usize) {
+    let variable = |index: usize| Value { step: Step::Variable(index as u8), operands: [0; 2] };
+    let mut values: Vec<_> = (0..variables).map(variable).collect();
+    let (mut known, mut waiting) = (HashMap::new(), Vec::new());
+    for step in steps {
+        if let Step::Variable(index) = *step {
+            waiting.push(usize::from(index));
+            continue;
+        }
+        let mut operands = [0; 2];
+        let count = step.operands();
+        for operand in operands[..count].iter_mut().rev() {
+            *operand = waiting.pop().unwrap_or(0);
+        }
+        let value = Value { step: *step, operands };
+        let new = values.len();
+        let index = if are_shared { *known.entry(value.key()).or_insert(new) } else { new };
+        if index == new {
+            values.push(value);
+        }
+        waiting.push(index);
+    }
+    let result = waiting.pop().unwrap_or(0);
+    (values, result)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numeric::formula::Formula;
+    use crate::numeric::formula::field::{Field, SPACE};
+    use std::sync::Arc;
+
+    #[test]
+    fn what_a_formula_says_twice_is_computed_once() {
+        let formula = Formula::parse_in("(x^2 + y^2 - 1)^2 * (y^2 + x*z - 1) + sin(x^2)*sin(x^2)", SPACE);
+        let formula = formula.expect("a formula");
+        let operations = &formula.program.instructions;
+        let squares = operations.iter().filter(|operation| operation.step == Step::Powi(2)).count();
+        // Of x, of y, and of the first factor.
+        assert_eq!((squares, operations.len()), (3, 13));
+        let field = Field::new(Arc::new(formula)).expect("its variables are x, y and z");
+        let expected = (9.0 + 4.0 - 1.0) * (9.0 + 4.0 - 1.0) * (4.0 + 1.5 - 1.0) + 9_f64.sin().powi(2);
+        assert!((field.at([3.0, 2.0, 0.5]) - expected).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_formula_that_shares_more_than_there_are_registers_is_computed_without_sharing() {
+        // Each square is needed again in the opposite order.
+        let squares: Vec<_> = (0..60).map(|index| format!("(y + {index})^2")).collect();
+        let (there, back) =
+            (squares.join(" + "), squares.iter().rev().cloned().collect::<Vec<_>>().join(" - "));
+        let formula = Formula::parse(&format!("{there} - ({back})")).expect("a formula");
+        assert!(formula.program.registers <= 5, "{}", formula.program.registers);
+        let sum = |numbers: &mut dyn Iterator<Item = f64>| numbers.map(|number| number * number).sum::<f64>();
+        let expected =
+            sum(&mut (0..60).map(f64::from)) - (2.0 * 59.0 * 59.0 - sum(&mut (0..60).map(f64::from)));
+        assert_eq!(formula.at(0.0), expected);
+    }
+}
