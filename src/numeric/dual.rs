@@ -4,7 +4,7 @@ use crate::numeric::scalar::{Scalar, apart_if};
 use crate::numeric::spline::Spline;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number and its derivative. A dual number of dual numbers has the second derivative, too.
+/// A number and its derivative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<N = f64> {
     /// The value.
@@ -33,32 +33,6 @@ impl<N: Scalar> Dual<N> {
     #[inline(always)]
     fn chain(self, value: N, derivative: N) -> Self {
         Self { value, slope: derivative * self.slope }
-    }
-}
-
-impl<N: Scalar> Dual<Dual<N>> {
-    /// Returns the variable itself, for first and second derivatives.
-    #[inline(always)]
-    pub fn variable_twice(value: N) -> Self {
-        Self::variable(Dual::variable(value))
-    }
-
-    /// Returns a number that does not depend on the variable, for first and second derivatives.
-    #[inline(always)]
-    pub fn fixed_twice(value: N) -> Self {
-        Self::fixed(Dual::fixed(value))
-    }
-
-    /// Returns the first derivative.
-    #[inline(always)]
-    pub fn first(&self) -> N {
-        self.value.slope
-    }
-
-    /// Returns the second derivative.
-    #[inline(always)]
-    pub fn second(&self) -> N {
-        self.slope.slope
     }
 }
 
@@ -252,6 +226,7 @@ impl<N: Scalar> Scalar for Dual<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numeric::jet::Jet;
 
     fn cube_and_root<N: Scalar>(x: N) -> N {
         x.powi(3) - x.sqrt() * x.exp() + x.ln().sin() / x.tan() + x.cos().abs() + x.pow(N::constant(1.5))
@@ -261,14 +236,14 @@ mod tests {
     fn derivatives_are_those_of_small_differences() {
         for x in [0.3, 1.1, 2.5, 4.0] {
             let Dual { value, slope } = cube_and_root(Dual::variable(x));
-            let twice = cube_and_root(Dual::variable_twice(x));
+            let jet = cube_and_root(Jet::variable(x));
             let step = 1e-5;
             let (before, after) = (cube_and_root(x - step), cube_and_root(x + step));
             assert_eq!(value, cube_and_root(x));
             assert!((slope - (after - before) / (2.0 * step)).abs() < 1e-7 * slope.abs().max(1.0));
-            assert_eq!(twice.first(), slope);
+            assert_eq!(jet.first, slope);
             let second = (after - 2.0 * value + before) / (step * step);
-            assert!((twice.second() - second).abs() < 1e-3 * second.abs().max(1.0), "{second} {twice:?}");
+            assert!((jet.second - second).abs() < 1e-3 * second.abs().max(1.0), "{second} {jet:?}");
         }
     }
 

@@ -11,6 +11,7 @@ use crate::geometry::ray::{RayRange, Side};
 use crate::geometry::roots::{newton, stretch::Stretch, twice};
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
+use crate::numeric::jet::Jet;
 use crate::numeric::scalar::Scalar;
 use std::ops::Range;
 
@@ -23,9 +24,10 @@ pub trait FunctionOnLine {
     /// is worth it where the line is mostly far from its roots.
     const VALUES_FIRST: bool = false;
 
-    /// Returns bounds of the second derivative on a piece.
-    fn curvature(&self, piece: Interval) -> Interval {
-        self.at(Dual::variable_twice(piece)).second()
+    /// Returns bounds of the second derivative on a piece; `None` where the value is seen to have no root there.
+    fn curvature(&self, piece: Interval) -> Option<Interval> {
+        let Jet { value, second, .. } = self.at(Jet::variable(piece));
+        value.has_zero().then_some(second)
     }
 
     /// Returns the root on a piece that bounds in `f64` cannot decide, however short: where rounding hides the
@@ -188,11 +190,11 @@ impl<L: FunctionOnLine> Search<'_, L> {
         if L::VALUES_FIRST && !self.line.at(piece).has_zero() {
             return Judgement::Free;
         }
+        let Some(curvature) = self.line.curvature(piece) else { return Judgement::Free };
         let middle = low + 0.5 * (high - low);
         let half = (middle - low).max(high - middle).next_up();
         let around = Interval { low: -half, high: half };
         let Dual { value, slope } = self.line.at(Dual::variable(Interval::constant(middle)));
-        let curvature = self.line.curvature(piece);
         // Taylor's theorem of the second order, or of the first where the curvature has no bound.
         let (values, slopes) = if curvature.is_bounded() {
             let bend = curvature * around;

@@ -9,6 +9,7 @@ use super::refiner::{Refiner, evenly, value_and_slope};
 use super::taylor::FunctionOnLine;
 use crate::geometry::ray::Side;
 use crate::numeric::dual::Dual;
+use crate::numeric::jet::Jet;
 use std::ops::Range;
 
 pub fn first_root(
@@ -32,8 +33,8 @@ pub fn first_root(
         // The function approaches 0 at first, and moves away from it in the end.
         if (slope < 0.0) == is_outside && (slope_there > 0.0) == is_outside {
             let slope_and_bend = |t| {
-                let at = line.at(Dual::variable_twice(t));
-                Dual { value: at.first(), slope: at.second() }
+                let Jet { first, second, .. } = line.at(Jet::variable(t));
+                Dual { value: first, slope: second }
             };
             let turn = newton::root(slope_and_bend, (low, high), !is_outside, 0.5 * (low + high), shortest);
             if has_crossed(line.at(turn)) {

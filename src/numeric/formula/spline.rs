@@ -20,6 +20,7 @@ mod tests {
     use super::*;
     use crate::numeric::dual::Dual;
     use crate::numeric::interval::Interval;
+    use crate::numeric::jet::Jet;
 
     #[test]
     fn a_spline_passes_its_points_and_bends_evenly() {
@@ -27,11 +28,11 @@ mod tests {
         let spline = Formula::through(&points);
         for [y, value] in points {
             assert!((spline.at(y) - value).abs() < 1e-13, "{} at {y}", spline.at(y));
-            let bend = |y: f64| spline.at(Dual::variable_twice(y)).second();
+            let bend = |y: f64| spline.at(Jet::variable(y)).second;
             assert!((bend(y - 1e-9) - bend(y + 1e-9)).abs() < 1e-6, "it bends evenly at {y}");
         }
         for end in [0.0, 4.0] {
-            assert!(spline.at(Dual::variable_twice(end)).second().abs() < 1e-12, "it does not bend at {end}");
+            assert!(spline.at(Jet::variable(end)).second.abs() < 1e-12, "it does not bend at {end}");
         }
         let line = Formula::through(&[[0.0, 1.0], [2.0, 4.0]]);
         assert_eq!(line.at(1.0), 2.5);

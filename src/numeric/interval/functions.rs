@@ -34,6 +34,42 @@ impl<F: Float> Interval<F> {
     }
 }
 
+impl<F: Float> Interval<F> {
+    #[inline(always)]
+    fn square(self) -> Self {
+        let zero = F::of(0.0);
+        let (low, high) = (self.low * self.low, self.high * self.high);
+        let (least, most) = if low < high { (low, high) } else { (high, low) };
+        let least = if self.low > zero || self.high < zero { least } else { zero };
+        let square = Self::outward(least, most);
+        Self { low: if square.low > zero { square.low } else { zero }, high: square.high }
+    }
+
+    /// Returns a power with an integer exponent other than 2.
+    #[inline(never)]
+    fn power(self, exponent: i32) -> Self {
+        if exponent < 0 {
+            return Self::constant(1.0) / self.powi(-exponent);
+        }
+        match exponent {
+            0 => return Self::constant(1.0),
+            1 => return self,
+            _ => {}
+        }
+        let base = if exponent % 2 == 0 { self.abs() } else { self };
+        let mut power = base;
+        for _ in 1..exponent {
+            let next = power * base;
+            // As after an underflow, whose numbers are also slow.
+            if next.low == power.low && next.high == power.high {
+                break;
+            }
+            power = next;
+        }
+        if exponent % 2 == 0 { Self { low: power.low.max(F::of(0.0)), high: power.high } } else { power }
+    }
+}
+
 impl Interval {
     /// Encloses the angles at the origin, in radians from -π to π, from the positive x axis to the points of a box whose y
     /// coordinates the interval contains.
@@ -173,36 +209,7 @@ impl<F: Float> Scalar for Interval<F> {
 
     #[inline(always)]
     fn powi(self, exponent: i32) -> Self {
-        apart_if!(F::IS_LONG, {
-            if exponent < 0 {
-                return Self::constant(1.0) / self.powi(-exponent);
-            }
-            let zero = F::of(0.0);
-            match exponent {
-                0 => return Self::constant(1.0),
-                1 => return self,
-                2 => {
-                    let Self { low, high } = self.abs();
-                    let square = Self::outward(low * low, high * high);
-                    return Self {
-                        low: if square.low > zero { square.low } else { zero },
-                        high: square.high,
-                    };
-                }
-                _ => {}
-            }
-            let base = if exponent % 2 == 0 { self.abs() } else { self };
-            let mut power = base;
-            for _ in 1..exponent {
-                let next = power * base;
-                // As after an underflow, whose numbers are also slow.
-                if next.low == power.low && next.high == power.high {
-                    break;
-                }
-                power = next;
-            }
-            if exponent % 2 == 0 { Self { low: power.low.max(zero), high: power.high } } else { power }
-        })
+        if exponent == 2 { apart_if!(F::IS_LONG, self.square()) } else { self.power(exponent) }
     }
 
     /// Encloses each piece that the interval meets, over what it has of the interval.

@@ -6,8 +6,8 @@ use crate::geometry::frame::BLUR;
 use crate::geometry::ray::Side;
 use crate::geometry::roots::taylor::FunctionOnLine;
 use crate::geometry::roots::twice;
-use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
+use crate::numeric::jet::Jet;
 use crate::numeric::scalar::{Scalar, per_axis};
 use crate::world::certify::Equation;
 
@@ -24,11 +24,11 @@ impl FunctionOnLine for ProfileOnRay<'_> {
     }
 
     /// Returns bounds of the second derivative; that of the squared distance from the axis is constant.
-    fn curvature(&self, piece: Interval) -> Interval {
+    fn curvature(&self, piece: Interval) -> Option<Interval> {
         let dir = self.local.dir.to_array().map(|part| Interval::about(part, BLUR));
         let height = self.local.place(1, piece);
-        let of_square = self.surface.square.at(Dual::variable_twice(height)).second();
-        Interval::constant(2.0) * (dir[0].powi(2) + dir[2].powi(2)) - of_square * dir[1].powi(2)
+        let of_square = self.surface.square.at(Jet::variable(height)).second;
+        Some(Interval::constant(2.0) * (dir[0].powi(2) + dir[2].powi(2)) - of_square * dir[1].powi(2))
     }
 
     /// Decides a piece in double-double arithmetic from the ray in the world and the axis as the scene gives it, which

@@ -1,9 +1,9 @@
 //! A slab: a range of heights in which a profile's square is a parabola to within a proven error.
 
 use super::budget::Budget;
-use crate::numeric::dual::Dual;
 use crate::numeric::formula::Formula;
 use crate::numeric::interval::Interval;
+use crate::numeric::jet::Jet;
 use crate::numeric::scalar::Scalar;
 
 /// A range of heights, in world units.
@@ -74,9 +74,9 @@ impl Slab {
         if !budget.charge(square, 2 * PARTS as u64 * 9) {
             return None;
         }
-        let parabola = |y: Dual<Dual<Interval>>| {
-            let v = y - Dual::constant(self.middle);
-            Dual::constant(self.c0) + v * Dual::constant(self.c1) + v.powi(2) * Dual::constant(self.c2)
+        let parabola = |y: Jet<Interval>| {
+            let v = y - Jet::constant(self.middle);
+            Jet::constant(self.c0) + v * Jet::constant(self.c1) + v.powi(2) * Jet::constant(self.c2)
         };
         let (mut error, mut slope_error, mut max_square) = (0.0_f64, 0.0_f64, 0.0_f64);
         let end = |part: usize| self.from + (self.to - self.from) * part as f64 / PARTS as f64;
@@ -85,23 +85,22 @@ impl Slab {
             let middle = 0.5 * (low + high);
             let reach = (high - middle).max(middle - low);
             let at = |y: Interval| {
-                let y = Dual::variable_twice(y);
+                let y = Jet::variable(y);
                 let value = square.at(y);
                 (value, value - parabola(y))
             };
             let (_, thin) = at(Interval::constant(middle));
             let (value, wide) = at(Interval { low, high });
-            let thin_value = thin.value.value.magnitude();
+            let thin_value = thin.value.magnitude();
             // Taylor's theorem of second and of first order, and the values themselves: the tightest bound counts.
-            let second = thin_value
-                + thin.first().magnitude() * reach
-                + 0.5 * wide.second().magnitude() * reach * reach;
-            let first = thin_value + wide.first().magnitude() * reach;
-            let plain = wide.value.value.magnitude();
+            let second =
+                thin_value + thin.first.magnitude() * reach + 0.5 * wide.second.magnitude() * reach * reach;
+            let first = thin_value + wide.first.magnitude() * reach;
+            let plain = wide.value.magnitude();
             error = larger_or_infinite(error, second.min(first).min(plain));
-            let slope = thin.first().magnitude() + wide.second().magnitude() * reach;
-            slope_error = larger_or_infinite(slope_error, slope.min(wide.first().magnitude()));
-            max_square = larger_or_infinite(max_square, value.value.value.high);
+            let slope = thin.first.magnitude() + wide.second.magnitude() * reach;
+            slope_error = larger_or_infinite(slope_error, slope.min(wide.first.magnitude()));
+            max_square = larger_or_infinite(max_square, value.value.high);
         }
         (self.error, self.slope_error, self.max_square) = (error, slope_error, max_square);
         Some(())

@@ -2,8 +2,8 @@
 
 use super::equation::{Found, Values, is_kept};
 use crate::geometry::sight::Line;
-use crate::numeric::dual::Dual;
 use crate::numeric::interval::{Float, Interval};
+use crate::numeric::jet::Jet;
 use crate::numeric::scalar::{Scalar, per_axis};
 
 /// A possible hit.
@@ -49,11 +49,11 @@ fn coefficients<F: Float>(shape: &dyn Values<Interval<F>>, line: &Line<Interval<
     let zero = Interval::constant(0.0);
     let at = per_axis(|axis| {
         let (origin, dir) = (line.origin[axis], line.dir[axis]);
-        Dual { value: Dual { value: origin, slope: dir }, slope: Dual { value: dir, slope: zero } }
+        Jet { value: origin, first: dir, second: zero }
     });
     let value = shape.bend(at);
     let half = Interval::constant(0.5);
-    [half * value.second(), half * value.first(), value.value.value]
+    [half * value.second, half * value.first, value.value]
 }
 
 /// Returns the roots, the nearer one first. A line that lies in the surface has none; for one that starts on the

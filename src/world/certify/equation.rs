@@ -3,6 +3,7 @@
 use crate::geometry::sight::Line;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::{Float, Interval};
+use crate::numeric::jet::Jet;
 use crate::numeric::scalar::Scalar;
 use glam::DVec3;
 
@@ -65,7 +66,7 @@ pub(super) trait Values<N: Scalar> {
     fn slope(&self, at: [Dual<N>; 3]) -> Dual<N>;
 
     /// Encloses the value and its first two derivatives.
-    fn bend(&self, at: [Dual<Dual<N>>; 3]) -> Dual<Dual<N>>;
+    fn bend(&self, at: [Jet<N>; 3]) -> Jet<N>;
 
     /// Returns a positive number where the surface is kept, and a negative one where it is cut off.
     fn kept(&self, at: [N; 3]) -> N;
@@ -91,7 +92,7 @@ impl<E: Equation, N: Scalar> Values<N> for E {
         Equation::value(self, at)
     }
 
-    fn bend(&self, at: [Dual<Dual<N>>; 3]) -> Dual<Dual<N>> {
+    fn bend(&self, at: [Jet<N>; 3]) -> Jet<N> {
         Equation::value(self, at)
     }
 

@@ -7,6 +7,7 @@ use crate::geometry::sight::Line;
 use crate::numeric::affine::{Affine, VARIABLES};
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
+use crate::numeric::jet::Jet;
 use crate::numeric::scalar::Scalar;
 
 /// The variable of [`Affine`] numbers that stands for the place in a piece of the lines.
@@ -124,11 +125,11 @@ fn coefficients(shape: &dyn Values<Affine>, line: &Line<Affine>, leaves: bool) -
     let zero = Affine::constant(0.0);
     let at = [0, 1, 2].map(|axis| {
         let (origin, dir) = (line.origin[axis], line.dir[axis]);
-        Dual { value: Dual { value: origin, slope: dir }, slope: Dual { value: dir, slope: zero } }
+        Jet { value: origin, first: dir, second: zero }
     });
     let value = shape.bend(at);
     let half = Affine::constant(0.5);
-    [half * value.second(), half * value.first(), if leaves { zero } else { value.value.value }]
+    [half * value.second, half * value.first, if leaves { zero } else { value.value }]
 }
 
 /// Returns the roots of a quadratic that may be positive, the nearer one first.

@@ -4,6 +4,7 @@ use super::equation::{Found, Values, is_kept};
 use crate::geometry::sight::Line;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::{Float, Interval};
+use crate::numeric::jet::Jet;
 use crate::numeric::scalar::per_axis;
 
 /// The length below which a piece is not cut where the value jumps, as a fraction of the whole line: a fraction of
@@ -140,10 +141,10 @@ impl<F: Float> Search<'_, F> {
 
     /// Encloses the second derivative.
     fn bend(&self, t: Interval<F>) -> Interval<F> {
-        let t = Dual::variable_twice(t);
+        let t = Jet::variable(t);
         let Line { origin, dir } = self.line;
-        let at = per_axis(|axis| Dual::fixed_twice(origin[axis]) + t * Dual::fixed_twice(dir[axis]));
-        self.shape.bend(at).second()
+        let at = per_axis(|axis| Jet::fixed(origin[axis]) + t * Jet::fixed(dir[axis]));
+        self.shape.bend(at).second
     }
 
     /// Judges a piece by the mean value theorem of first and then of second order.

@@ -1,0 +1,297 @@
+//! Jets of the second order: automatic differentiation, twice.
+
+use crate::numeric::dual::Dual;
+use crate::numeric::scalar::{Scalar, apart_if};
+use crate::numeric::spline::Spline;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A number and its first two derivatives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jet<N = f64> {
+    /// The value.
+    pub value: N,
+    /// The first derivative with respect to the variable.
+    pub first: N,
+    /// The second derivative.
+    pub second: N,
+}
+
+impl<N: Scalar> Jet<N> {
+    /// Whether operations are calls: those of numbers longer than an interval of `f64` are hundreds of instructions.
+    const IS_LONG: bool = size_of::<N>() > size_of::<[f64; 2]>();
+
+    /// Returns the variable itself.
+    #[inline(always)]
+    pub fn variable(value: N) -> Self {
+        Self { value, first: N::constant(1.0), second: N::constant(0.0) }
+    }
+
+    /// Returns a number that does not depend on the variable.
+    #[inline(always)]
+    pub fn fixed(value: N) -> Self {
+        Self { value, first: N::constant(0.0), second: N::constant(0.0) }
+    }
+
+    /// Returns the number with its first derivative alone.
+    #[inline(always)]
+    fn dual(self) -> Dual<N> {
+        Dual { value: self.value, slope: self.first }
+    }
+
+    /// Returns the first derivative, which has the second as its own.
+    #[inline(always)]
+    fn slope(self) -> Dual<N> {
+        Dual { value: self.first, slope: self.second }
+    }
+
+    #[inline(always)]
+    fn of(value: N, slope: Dual<N>) -> Self {
+        Self { value, first: slope.value, second: slope.slope }
+    }
+
+    /// Returns the square. That of the first derivative is known to be no less than 0.
+    #[inline(always)]
+    fn square(self) -> Self {
+        let bend = self.value * self.second + self.first.powi(2);
+        Self { value: self.value.powi(2), first: (self.value + self.value) * self.first, second: bend + bend }
+    }
+
+    /// Applies the chain rule: returns a function of the number, given the function's value there, and its derivative.
+    #[inline(always)]
+    fn chain(self, value: N, derivative: Dual<N>) -> Self {
+        Self::of(value, derivative * self.slope())
+    }
+}
+
+impl<N: Scalar> Add for Jet<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self {
+            value: self.value + other.value,
+            first: self.first + other.first,
+            second: self.second + other.second,
+        }
+    }
+}
+
+impl<N: Scalar> Sub for Jet<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self {
+            value: self.value - other.value,
+            first: self.first - other.first,
+            second: self.second - other.second,
+        }
+    }
+}
+
+impl<N: Scalar> Mul for Jet<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        apart_if!(Self::IS_LONG, {
+            let firsts = self.first * other.first;
+            Self {
+                value: self.value * other.value,
+                first: self.value * other.first + self.first * other.value,
+                second: (self.value * other.second + firsts) + (firsts + self.second * other.value),
+            }
+        })
+    }
+}
+
+impl<N: Scalar> Div for Jet<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        apart_if!(Self::IS_LONG, {
+            let value = self.value / other.value;
+            let first = (self.first - value * other.first) / other.value;
+            let bent = first * other.first;
+            let second = (self.second - (value * other.second + bent) - bent) / other.value;
+            Self { value, first, second }
+        })
+    }
+}
+
+impl<N: Scalar> Neg for Jet<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { value: -self.value, first: -self.first, second: -self.second }
+    }
+}
+
+impl<N: Scalar> Scalar for Jet<N> {
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        Self::fixed(N::constant(value))
+    }
+
+    #[inline(always)]
+    fn about(value: f64, error: f64) -> Self {
+        Self::fixed(N::about(value, error))
+    }
+
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = self.dual().sin_cos();
+        (self.chain(sin.value, cos), self.chain(cos.value, -sin))
+    }
+
+    fn tan(self) -> Self {
+        let tan = self.dual().tan();
+        self.chain(tan.value, Dual::constant(1.0) + tan.powi(2))
+    }
+
+    fn exp(self) -> Self {
+        let exp = self.dual().exp();
+        self.chain(exp.value, exp)
+    }
+
+    fn ln(self) -> Self {
+        self.chain(self.value.ln(), Dual::constant(1.0) / self.dual())
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        apart_if!(Self::IS_LONG, {
+            let root = self.dual().sqrt();
+            self.chain(root.value, Dual::constant(0.5) * self.dual().step() / root)
+        })
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        let sign = Dual::constant(2.0) * self.dual().step() - Dual::constant(1.0);
+        self.chain(self.value.abs(), sign)
+    }
+
+    #[inline(always)]
+    fn floor(self) -> Self {
+        self.chain(self.value.floor(), self.dual().jump())
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        -(-self).max(-other)
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        apart_if!(Self::IS_LONG, {
+            let own = (self.dual() - other.dual()).step();
+            let slope = own * self.slope() + (Dual::constant(1.0) - own) * other.slope();
+            Self::of(self.value.max(other.value), slope)
+        })
+    }
+
+    fn pow(self, exponent: Self) -> Self {
+        let (base, power) = (self.dual(), exponent.dual());
+        let value = base.pow(power);
+        let by_base = power * base.pow(power - Dual::constant(1.0));
+        // The exponent is nearly always a constant; then the base may be 0 or negative.
+        let is_constant = exponent.slope().is_zero();
+        let by_exponent = if is_constant { Dual::constant(0.0) } else { value * base.ln() };
+        Self::of(value.value, by_base * self.slope() + by_exponent * exponent.slope())
+    }
+
+    #[inline(always)]
+    fn powi(self, exponent: i32) -> Self {
+        apart_if!(Self::IS_LONG, {
+            match exponent {
+                0 => return Self::constant(1.0),
+                1 => return self,
+                2 => return self.square(),
+                _ => {}
+            }
+            let derivative = Dual::constant(f64::from(exponent)) * self.dual().powi(exponent - 1);
+            self.chain(self.value.powi(exponent), derivative)
+        })
+    }
+
+    #[inline(always)]
+    fn scaled(self, factor: f64) -> Self {
+        Self {
+            value: self.value.scaled(factor),
+            first: self.first.scaled(factor),
+            second: self.second.scaled(factor),
+        }
+    }
+
+    #[inline(always)]
+    fn shifted(self, by: f64) -> Self {
+        Self { value: self.value.shifted(by), ..self }
+    }
+
+    /// Differentiates the power as a whole: its derivatives have bounds where those of its base have none.
+    #[inline(always)]
+    fn ramp(self, exponent: i32) -> Self {
+        let derivative = if exponent == 1 {
+            self.dual().step()
+        } else {
+            Dual::constant(f64::from(exponent)) * self.dual().ramp(exponent - 1)
+        };
+        self.chain(self.value.ramp(exponent), derivative)
+    }
+
+    fn spline(self, spline: &Spline, order: usize) -> Self {
+        self.chain(self.value.spline(spline, order), self.dual().spline(spline, order + 1))
+    }
+
+    #[inline(always)]
+    fn step(self) -> Self {
+        self.chain(self.value.step(), self.dual().kink())
+    }
+
+    #[inline(always)]
+    fn kink(self) -> Self {
+        let kink = self.dual().kink();
+        self.chain(kink.value, kink)
+    }
+
+    #[inline(always)]
+    fn jump(self) -> Self {
+        let jump = self.dual().jump();
+        self.chain(jump.value, jump)
+    }
+
+    #[inline(always)]
+    fn is_zero(self) -> bool {
+        self.value.is_zero() && self.slope().is_zero()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns functions that use each operation, whose derivatives exist where x is above 0 and no integer.
+    fn functions<N: Scalar>(x: N) -> [N; 4] {
+        let n = N::constant;
+        [
+            x.powi(3) - x.sqrt() * x.exp() + x.ln().sin() / x.tan() + x.cos().abs() + x.pow(n(1.5)),
+            x.pow(x) / x.shifted(3.0).powi(-2) - x.powi(2).scaled(0.5).ramp(2) * x.floor(),
+            x.min(n(2.0) - x).max(-x.powi(2)) * x.sin() * x.ramp(1),
+            x.step() * x.powi(1) * x + x.powi(0) / (x + x.kink() + x.jump()),
+        ]
+    }
+
+    #[test]
+    fn derivatives_are_those_of_dual_numbers_of_dual_numbers() {
+        for x in [0.3, 1.1, 2.5, 4.25] {
+            let twice = functions(Dual::variable(Dual::variable(x)));
+            for (jet, twice) in functions(Jet::variable(x)).into_iter().zip(twice) {
+                let expected = [twice.value.value, twice.value.slope, twice.slope.slope];
+                assert_eq!([jet.value, jet.first, jet.second], expected, "at {x}");
+            }
+        }
+    }
+}
