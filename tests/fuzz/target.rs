@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 use tabray::cli::fuzz::{Image, Server};
 use tabray::numeric::double_double::DoubleDouble;
-use tabray::numeric::{Dual, Formula, Interval, Scalar, Wide};
+use tabray::numeric::{Dual, Formula, Interval, Jet, Scalar, Wide};
 use tabray::render::{Plan, Renderer, to_byte, trace};
 use tabray::scene::{self, Loaded, Registry, Syntax, dump};
 use tabray::simd::Cpu;
@@ -76,7 +76,7 @@ pub fn formula(bytes: &[u8]) {
             assert!(is_same(one.slope, eight.slope.0[7]), "{formula:?} at {y}: {one:?} and {eight:?}");
             let _: f64 = formula.at(y);
             let _: DoubleDouble = formula.at(DoubleDouble::from(y));
-            let _: Dual<Dual<f64>> = formula.at(Dual::variable(Dual::variable(y)));
+            let _: Jet = formula.at(Jet::variable(y));
             holds(formula.at(Interval::constant(y)));
             holds(formula.at(Interval { low: y - 0.5, high: y + 0.5 }));
             let Dual { value, slope } =

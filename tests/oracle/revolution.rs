@@ -156,7 +156,7 @@ impl Revolution {
 
     /// Returns certain bounds of the surface's function on a piece of a ray, and of its first and second derivatives.
     fn bounds(&self, ray: &Local, piece: Interval) -> Dual<Dual<Interval>> {
-        let t = Dual::variable_twice(piece);
+        let t = Dual::variable(Dual::variable(piece));
         let [x, y, z] = [0, 1, 2].map(|axis| {
             let [high, low] = [ray.at[axis].high, ray.at[axis].low].map(Interval::constant);
             let place =
@@ -228,7 +228,7 @@ impl Search<'_> {
         if !whole.value.value.has_zero() {
             return Piece::Empty;
         }
-        if !whole.first().has_zero() {
+        if !whole.value.slope.has_zero() {
             return Piece::Monotone;
         }
         let middle = from + (to - from) / 2.0;
@@ -236,7 +236,7 @@ impl Search<'_> {
         let Bounds { value, slope } = self.at(middle, half);
         // Outward rounding covers the rounding errors of these products and sums.
         let reach = Interval { low: -half, high: half };
-        let bend = whole.second();
+        let bend = whole.slope.slope;
         let value = value + slope * reach + Interval::constant(0.5) * bend * reach.powi(2);
         let slope = slope + bend * reach;
         if !value.has_zero() {
@@ -253,7 +253,7 @@ impl Search<'_> {
         let reach = self.ray.to - self.ray.from;
         if half > 1e-4 * reach {
             let there = self.surface.bounds(&self.ray, Interval::constant(t));
-            return Bounds { value: there.value.value, slope: there.first() };
+            return Bounds { value: there.value.value, slope: there.value.slope };
         }
         let Dual { value, slope } = self.surface.function(&self.ray, t.into());
         let size = self.surface.radius + reach;
