@@ -54,7 +54,7 @@ impl Model {
         }
     }
 
-    /// Tells whether each [tint](Object::tint) is known to be from 0 to 1.
+    /// Tells whether the fractions of light that objects let pass are all known to be from 0 to 1.
     pub fn tints_are_fractions(&self) -> bool {
         let is_fraction = |object: &Object| match object.shader.uniform(&object.material) {
             Some(look) => look.diffuse.min_element() >= 0.0,
