@@ -49,13 +49,6 @@ impl<N: Scalar> Jet<N> {
         Self { value, first: slope.value, second: slope.slope }
     }
 
-    /// Returns the square. That of the first derivative is known to be no less than 0.
-    #[inline(always)]
-    fn square(self) -> Self {
-        let bend = self.value * self.second + self.first.powi(2);
-        Self { value: self.value.powi(2), first: (self.value + self.value) * self.first, second: bend + bend }
-    }
-
     /// Applies the chain rule: returns a function of the number, given the function's value there, and its derivative.
     #[inline(always)]
     fn chain(self, value: N, derivative: Dual<N>) -> Self {
@@ -206,13 +199,12 @@ impl<N: Scalar> Scalar for Jet<N> {
     #[inline(always)]
     fn powi(self, exponent: i32) -> Self {
         apart_if!(Self::IS_LONG, {
-            match exponent {
+            let derivative = match exponent {
                 0 => return Self::constant(1.0),
                 1 => return self,
-                2 => return self.square(),
-                _ => {}
-            }
-            let derivative = Dual::constant(f64::from(exponent)) * self.dual().powi(exponent - 1);
+                2 => self.dual() + self.dual(),
+                _ => Dual::constant(f64::from(exponent)) * self.dual().powi(exponent - 1),
+            };
             self.chain(self.value.powi(exponent), derivative)
         })
     }
