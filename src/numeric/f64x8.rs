@@ -72,6 +72,9 @@ impl Neg for F64x8 {
 }
 
 impl Scalar for F64x8 {
+    /// Kernels inline them, to be compiled for their CPU level.
+    const IS_LONG: bool = false;
+
     #[inline(always)]
     fn constant(value: f64) -> Self {
         Self([value; LANES])

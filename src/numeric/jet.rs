@@ -1,4 +1,7 @@
-//! Jets of the second order: automatic differentiation, twice.
+//! Jets of the second order: forward-mode automatic differentiation, twice.
+//!
+//! Source: Griewank and Walther, Evaluating Derivatives, second edition, 2008, chapter 13, "Taylor and Tensor
+//! Coefficients".
 
 use crate::numeric::dual::Dual;
 use crate::numeric::scalar::{Scalar, apart_if};
@@ -17,9 +20,6 @@ pub struct Jet<N = f64> {
 }
 
 impl<N: Scalar> Jet<N> {
-    /// Whether operations are calls: those of numbers longer than an interval of `f64` are hundreds of instructions.
-    const IS_LONG: bool = size_of::<N>() > size_of::<[f64; 2]>();
-
     /// Returns the variable itself.
     #[inline(always)]
     pub fn variable(value: N) -> Self {
@@ -87,7 +87,7 @@ impl<N: Scalar> Mul for Jet<N> {
 
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        apart_if!(Self::IS_LONG, {
+        apart_if!(N::IS_LONG, {
             let firsts = self.first * other.first;
             Self {
                 value: self.value * other.value,
@@ -103,7 +103,7 @@ impl<N: Scalar> Div for Jet<N> {
 
     #[inline(always)]
     fn div(self, other: Self) -> Self {
-        apart_if!(Self::IS_LONG, {
+        apart_if!(N::IS_LONG, {
             let value = self.value / other.value;
             let first = (self.first - value * other.first) / other.value;
             let bent = first * other.first;
@@ -155,7 +155,7 @@ impl<N: Scalar> Scalar for Jet<N> {
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        apart_if!(Self::IS_LONG, {
+        apart_if!(N::IS_LONG, {
             let root = self.dual().sqrt();
             self.chain(root.value, Dual::constant(0.5) * self.dual().step() / root)
         })
@@ -173,13 +173,8 @@ impl<N: Scalar> Scalar for Jet<N> {
     }
 
     #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        -(-self).max(-other)
-    }
-
-    #[inline(always)]
     fn max(self, other: Self) -> Self {
-        apart_if!(Self::IS_LONG, {
+        apart_if!(N::IS_LONG, {
             let own = (self.dual() - other.dual()).step();
             let slope = own * self.slope() + (Dual::constant(1.0) - own) * other.slope();
             Self::of(self.value.max(other.value), slope)
@@ -198,7 +193,7 @@ impl<N: Scalar> Scalar for Jet<N> {
 
     #[inline(always)]
     fn powi(self, exponent: i32) -> Self {
-        apart_if!(Self::IS_LONG, {
+        apart_if!(N::IS_LONG, {
             let derivative = match exponent {
                 0 => return Self::constant(1.0),
                 1 => return self,
@@ -264,25 +259,55 @@ impl<N: Scalar> Scalar for Jet<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numeric::interval::Interval;
+    use std::fmt::Debug;
 
     /// Returns functions that use each operation, whose derivatives exist where x is above 0 and no integer.
-    fn functions<N: Scalar>(x: N) -> [N; 4] {
+    fn functions<N: Scalar>(x: N) -> [N; 6] {
         let n = N::constant;
+        let spline = Spline::new(&[[0.0, 1.0], [0.5, 2.0], [2.0, 1.5], [3.0, -1.0]]);
         [
             x.powi(3) - x.sqrt() * x.exp() + x.ln().sin() / x.tan() + x.cos().abs() + x.pow(n(1.5)),
             x.pow(x) / x.shifted(3.0).powi(-2) - x.powi(2).scaled(0.5).ramp(2) * x.floor(),
             x.min(n(2.0) - x).max(-x.powi(2)) * x.sin() * x.ramp(1),
             x.step() * x.powi(1) * x + x.powi(0) / (x + x.kink() + x.jump()),
+            x.spline(&spline, 0) * x.spline(&spline, 1),
+            N::about(1.5, 1e-9) * x.powi(2) / N::about(-2.0, 1e-3),
         ]
+    }
+
+    fn assert_same_as_dual_numbers_of_dual_numbers<N: Scalar + Debug + PartialEq>(x: N) {
+        let twice = functions(Dual::variable(Dual::variable(x)));
+        for (jet, twice) in functions(Jet::variable(x)).into_iter().zip(twice) {
+            let expected = [twice.value.value, twice.value.slope, twice.slope.slope];
+            assert_eq!([jet.value, jet.first, jet.second], expected, "at {x:?}");
+        }
     }
 
     #[test]
     fn derivatives_are_those_of_dual_numbers_of_dual_numbers() {
         for x in [0.3, 1.1, 2.5, 4.25] {
-            let twice = functions(Dual::variable(Dual::variable(x)));
-            for (jet, twice) in functions(Jet::variable(x)).into_iter().zip(twice) {
-                let expected = [twice.value.value, twice.value.slope, twice.slope.slope];
-                assert_eq!([jet.value, jet.first, jet.second], expected, "at {x}");
+            assert_same_as_dual_numbers_of_dual_numbers(x);
+        }
+    }
+
+    #[test]
+    fn bounds_are_those_of_dual_numbers_of_dual_numbers() {
+        for (low, high) in [(0.3, 0.31), (1.1, 1.9), (0.4, 2.1), (-1.5, 1.5), (-0.2, 0.0)] {
+            assert_same_as_dual_numbers_of_dual_numbers(Interval { low, high });
+        }
+    }
+
+    #[test]
+    fn second_derivatives_are_those_of_small_differences_of_first_ones() {
+        for x in [0.3, 1.1, 2.5, 4.25] {
+            let step = 1e-5;
+            let slopes = |x| functions(Dual::variable(x)).map(|dual: Dual| dual.slope);
+            let around = slopes(x + step).into_iter().zip(slopes(x - step));
+            for (jet, (after, before)) in functions(Jet::variable(x)).into_iter().zip(around) {
+                let difference = (after - before) / (2.0 * step);
+                let error = (jet.second - difference).abs();
+                assert!(error < 1e-6 * difference.abs().max(1.0), "{} {difference} at {x}", jet.second);
             }
         }
     }

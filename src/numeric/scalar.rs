@@ -31,6 +31,10 @@ pub(crate) fn apart<R>(operation: impl FnOnce() -> R) -> R {
 pub trait Scalar:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
+    /// Whether derivatives of the numbers are computed in calls: those of numbers longer than an interval of `f64` take
+    /// hundreds of instructions.
+    const IS_LONG: bool = size_of::<Self>() > size_of::<[f64; 2]>();
+
     /// Returns a constant.
     fn constant(value: f64) -> Self;
     /// Returns a number that is known to within an error: an interval for types with bounds, else the number itself.
@@ -65,7 +69,11 @@ pub trait Scalar:
     /// Returns the greatest integer that is not greater than the number.
     fn floor(self) -> Self;
     /// Returns the smaller of two numbers.
-    fn min(self, other: Self) -> Self;
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        -(-self).max(-other)
+    }
+
     /// Returns the larger of two numbers.
     fn max(self, other: Self) -> Self;
     /// Returns the number raised to a power.

@@ -20,7 +20,7 @@ pub trait FunctionOnLine {
     /// Returns the value at a place, in any number type.
     fn at<N: Scalar>(&self, t: N) -> N;
 
-    /// Whether bounds of the value alone are tried on a piece before its derivatives, which take ten times as long. That
+    /// Whether bounds of the value alone are tried on a piece before its derivatives, which take three to six times as long. That
     /// is worth it where the line is mostly far from its roots.
     const VALUES_FIRST: bool = false;
 

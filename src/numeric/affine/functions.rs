@@ -132,10 +132,6 @@ impl Scalar for Affine {
         self.by_range(Interval::floor)
     }
 
-    fn min(self, other: Self) -> Self {
-        -(-self).max(-other)
-    }
-
     fn max(self, other: Self) -> Self {
         let (one, two) = (self.range(), other.range());
         if one.low >= two.high {

@@ -76,7 +76,7 @@ impl<const COUNT: usize> FieldOf<COUNT> {
             self.quick.run(registers)
         };
         match self.quick.program.registers {
-            ..=FEW_REGISTERS if COUNT <= FEW_REGISTERS => with(&mut [at[0]; FEW_REGISTERS]),
+            ..=FEW_REGISTERS => with(&mut [at[0]; FEW_REGISTERS]),
             ..=SOME_REGISTERS => with(&mut [at[0]; SOME_REGISTERS]),
             _ => with(&mut [at[0]; MOST_REGISTERS]),
         }

@@ -30,7 +30,7 @@ pub struct Formula {
     variables: &'static [&'static str],
     /// The operations in postfix order: operands first.
     steps: Vec<Step>,
-    /// The same, to be run.
+    /// The operations as a program.
     program: Program,
     /// The curve that [`Step::Spline`] evaluates.
     spline: Option<Arc<Spline>>,
@@ -158,8 +158,8 @@ impl Formula {
 
     #[inline(always)]
     fn run_inline<N: Scalar, const MAY_CALL: bool>(&self, registers: &mut [N]) -> N {
-        /// Calls an operation of a long number, such as an interval with second derivatives, which takes up to thousands
-        /// of instructions.
+        /// Calls an operation of a long number, such as one with derivatives in wide precision, which takes up to
+        /// thousands of instructions.
         macro_rules! long {
             ($operation:expr) => {
                 apart_if!(MAY_CALL && size_of::<N>() >= LONG, $operation)

@@ -1,6 +1,7 @@
 //! Formulas as programs: operations on registers, of which equal ones are made once.
 
-use super::step::Step;
+use super::field::SURFACE;
+use super::step::{MAX_DEPTH, Step};
 use std::collections::HashMap;
 use std::mem::{Discriminant, discriminant};
 
@@ -22,8 +23,9 @@ pub(super) struct Program {
     pub registers: usize,
 }
 
-/// The number of registers of the largest program, in values: enough for all variables and the deepest nesting.
-pub(super) const MOST_REGISTERS: usize = 48;
+/// The number of registers of the largest program, in values: those of all variables and of the deepest nesting, in which
+/// the innermost operation is a square root that is made of its operand and a 0.
+pub(super) const MOST_REGISTERS: usize = SURFACE.len() + MAX_DEPTH + 1;
 
 /// An operation and the values that it is applied to, by their indices.
 #[derive(Clone, Copy)]
@@ -45,6 +47,7 @@ impl Value {
         (discriminant(&self.step), payload, self.operands)
     }
 
+    /// Returns the values that the operation is applied to.
     fn used(&self) -> &[usize] {
         &self.operands[..self.step.operands()]
     }
@@ -61,6 +64,7 @@ impl Program {
         Self::of(&values(steps, variables, false), variables)
     }
 
+    /// Assigns a register to each value, until its last use.
     fn of((values, result): &(Vec<Value>, usize), variables: usize) -> Self {
         let mut last_uses = vec![0; values.len()];
         for (index, value) in values.iter().enumerate() {
@@ -122,7 +126,7 @@ fn values(steps: &[Step], variables: usize, are_shared: bool) -> (Vec<Value>, us
 mod tests {
     use super::*;
     use crate::numeric::formula::Formula;
-    use crate::numeric::formula::field::{Field, SPACE};
+    use crate::numeric::formula::field::{Field, SPACE, SurfaceField};
     use std::sync::Arc;
 
     #[test]
@@ -150,5 +154,16 @@ mod tests {
         let expected =
             sum(&mut (0..60).map(f64::from)) - (2.0 * 59.0 * 59.0 - sum(&mut (0..60).map(f64::from)));
         assert_eq!(formula.at(0.0), expected);
+    }
+
+    #[test]
+    fn the_deepest_formulas_of_a_surface_have_registers() {
+        // Each sine waits for what follows it, and a root takes one register more.
+        let open = |depth: usize| (0..depth).map(|k| format!("(sin(x + {k}) + ")).collect::<String>();
+        let nested = |depth: usize| format!("{}sqrt(nz){}", open(depth), ")".repeat(depth));
+        let formulas = (1..100).map_while(|depth| Formula::parse_in(&nested(depth), SURFACE).ok());
+        let fields = formulas.filter_map(|formula| SurfaceField::new(Arc::new(formula)));
+        let depth = fields.map(|field| assert!(field.at([0.5; 8]).is_finite())).count();
+        assert!(depth + 4 >= MAX_DEPTH, "the nesting goes as deep as it may: {depth}");
     }
 }

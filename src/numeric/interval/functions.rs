@@ -35,6 +35,7 @@ impl<F: Float> Interval<F> {
 }
 
 impl<F: Float> Interval<F> {
+    /// Returns the square, which is not below 0.
     #[inline(always)]
     fn square(self) -> Self {
         let zero = F::of(0.0);

@@ -70,7 +70,7 @@ impl Slab {
     /// budget does not suffice.
     fn certify(&mut self, square: &Formula, budget: &mut Budget) -> Option<()> {
         const PARTS: usize = 8;
-        // Two evaluations in each part, with bounds of two derivatives: about nine times the cost of the value alone.
+        // Two evaluations in each part, with bounds of two derivatives, each of which is charged as nine of the value alone.
         if !budget.charge(square, 2 * PARTS as u64 * 9) {
             return None;
         }
