@@ -153,11 +153,26 @@ pub fn and(words: &[&str]) -> String {
     }
 }
 
-/// Returns the article of a word: `a` or `an`.
+/// Returns the article of a word in lower case: `a` or `an`.
 pub fn article(word: &str) -> &'static str {
-    // `union` begins as `you` does, and the first letter of `fplane` is spoken alone.
-    let is_vowel = word.starts_with(['a', 'e', 'i', 'o', 'u']) && !word.starts_with("uni");
-    if is_vowel || word.starts_with("fp") { "an" } else { "a" }
+    let mut letters = word.chars();
+    let (first, second) = (letters.next().unwrap_or(' '), letters.next().unwrap_or(' '));
+    let begins_with_vowel = match first {
+        'a' | 'e' | 'i' | 'o' => true,
+        // `union` begins as `you` does.
+        'u' => !word.starts_with("uni"),
+        // Before most consonants, the letter is spoken by its name: `fplane`, `rgb`.
+        'f' => !"aeiouylr".contains(second),
+        'h' | 'l' | 'm' | 'n' => !"aeiouy".contains(second),
+        'r' => !"aeiouyh".contains(second),
+        _ => false,
+    };
+    if begins_with_vowel { "an" } else { "a" }
+}
+
+/// Returns a word in lower case with its article: `a light`, `an object`.
+pub fn with_article(word: &str) -> String {
+    format!("{} {word}", article(word))
 }
 
 /// Writes a number that is not below 0 to about three significant digits.
@@ -219,5 +234,17 @@ mod tests {
     fn the_nearest_of_words_that_are_equally_far_has_more_letters_in_the_same_places() {
         assert_eq!(nearest("plain", ["place", "plane"]), Some("plane"));
         assert_eq!(nearest("texmode", ["texname", "mode"]), Some("mode"));
+    }
+
+    #[test]
+    fn articles_are_those_of_spoken_words() {
+        for word in ["ellipsoid", "angle", "object", "image", "umbrella", "fplane", "hdr", "nx", "rgb"] {
+            assert_eq!(article(word), "an", "{word}");
+        }
+        for word in
+            ["union", "pplane", "frustum", "flute", "hyperboloid", "light", "mesh", "rhombus", "sphere", ""]
+        {
+            assert_eq!(article(word), "a", "{word}");
+        }
     }
 }

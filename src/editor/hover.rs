@@ -71,10 +71,9 @@ fn value(
             let chosen = chosen.or_else(|| choices.named(&said))?;
             let number = chosen.number.map(|number| format!(" ({number})")).unwrap_or_default();
             format!(
-                "**{}**{number}, {} {}: {}",
+                "**{}**{number}, {}: {}",
                 chosen.name,
-                crate::text::article(choices.what),
-                choices.what,
+                crate::text::with_article(choices.what),
                 chosen.meaning
             )
         }

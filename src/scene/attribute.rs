@@ -87,7 +87,7 @@ impl dyn Attribute + '_ {
             Type::Choice(choices) => {
                 let has_numbers = choices.all().iter().any(|choice| choice.number.is_some());
                 let name = if has_numbers { "name or number" } else { "name" };
-                format!("the {name} of {} {}", text::article(choices.what), choices.what)
+                format!("the {name} of {}", text::with_article(choices.what))
             }
             Type::Formula(variables) => {
                 let what = match self.arity().most() {

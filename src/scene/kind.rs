@@ -27,8 +27,7 @@ pub enum Kind {
 impl Kind {
     /// Returns the kind with its article: `a light`, `an object`.
     pub fn with_article(self) -> String {
-        let name = self.to_string();
-        format!("{} {name}", text::article(&name))
+        text::with_article(&self.to_string())
     }
 }
 

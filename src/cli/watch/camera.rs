@@ -74,9 +74,8 @@ fn fixed(registry: &Registry, frame: &Frame, camera: &Record) -> Option<String> 
     let mut moves = navigation::attributes(&args).map(|(attribute, _)| attribute).peekable();
     if moves.peek().is_none() {
         return Some(format!(
-            "{} {} does not say where it stands: change the text",
-            text::article(args.entity.name),
-            args.entity.name
+            "{} does not say where it stands: change the text",
+            text::with_article(args.entity.name)
         ));
     }
     if view.entity(name).is_none() {

@@ -175,8 +175,7 @@ impl Against<'_, '_> {
             fault = fault.label(format!("did you mean `{near}`?")).meant(Some(near));
         }
         let names = list(entity.attributes().map(|attribute| attribute.name()));
-        let article = text::article(entity.name);
-        self.report.add(fault.help(format!("{article} {} takes {names}", entity.name)));
+        self.report.add(fault.help(format!("{} takes {names}", text::with_article(entity.name))));
     }
 
     /// Checks the values of one attribute for type, number and rule.
