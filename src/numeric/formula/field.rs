@@ -75,10 +75,13 @@ impl<const COUNT: usize> FieldOf<COUNT> {
             registers[..COUNT].copy_from_slice(&at);
             self.quick.run(registers)
         };
-        match self.quick.program.registers {
-            ..=FEW_REGISTERS => with(&mut [at[0]; FEW_REGISTERS]),
-            ..=SOME_REGISTERS => with(&mut [at[0]; SOME_REGISTERS]),
-            _ => with(&mut [at[0]; MOST_REGISTERS]),
+        let registers = self.quick.program.registers;
+        if registers <= FEW_REGISTERS {
+            with(&mut [at[0]; FEW_REGISTERS])
+        } else if registers <= SOME_REGISTERS {
+            with(&mut [at[0]; SOME_REGISTERS])
+        } else {
+            with(&mut [at[0]; MOST_REGISTERS])
         }
     }
 }
