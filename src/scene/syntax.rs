@@ -1,6 +1,6 @@
 //! The two syntaxes of a scene: how each writes names, attributes and values.
 
-use crate::numeric::formula::field::SPACE;
+use crate::numeric::formula::variables::SPACE;
 use crate::scene::attribute::Attribute;
 use crate::scene::counts::OneOf;
 use crate::scene::entity::Entity;

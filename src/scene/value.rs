@@ -1,7 +1,8 @@
 //! The types of attribute values that the scene language has.
 
-use crate::numeric::formula::field::{Field, SPACE, SURFACE, SurfaceField};
-use crate::numeric::formula::{Formula, HEIGHT};
+use crate::numeric::formula::Formula;
+use crate::numeric::formula::field::{Field, SurfaceField};
+use crate::numeric::formula::variables::{HEIGHT, SPACE, SURFACE};
 use crate::scene::choice::{Choice, ChoiceName, Choices};
 use crate::scene::counts::Counts;
 use crate::scene::kind::Kind;

@@ -2,15 +2,10 @@
 
 use super::program::MOST_REGISTERS;
 use super::step::{Function, Step};
+use super::variables::{SPACE, SURFACE};
 use super::{FEW_REGISTERS, Formula};
 use crate::numeric::scalar::Scalar;
 use std::sync::Arc;
-
-/// The variables of a formula of space.
-pub const SPACE: &[&str] = &["x", "y", "z"];
-
-/// The variables of a formula of a surface: the point, u and v, and the unit normal.
-pub const SURFACE: &[&str] = &["x", "y", "z", "u", "v", "nx", "ny", "nz"];
 
 /// The number of registers that suffices for most formulas of space, in values. [`MOST_REGISTERS`] take longer to set up
 /// than most formulas to evaluate.

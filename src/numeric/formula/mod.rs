@@ -5,6 +5,7 @@ mod parser;
 mod program;
 mod spline;
 mod step;
+pub mod variables;
 
 pub(crate) use parser::functions;
 pub use parser::{FormulaFault, Named, is_taken};
@@ -19,9 +20,7 @@ use program::{Instruction, MOST_REGISTERS, Program};
 use std::fmt;
 use std::sync::Arc;
 use step::{Function, Step};
-
-/// The variable of a profile.
-pub const HEIGHT: &[&str] = &["y"];
+use variables::HEIGHT;
 
 /// A formula, ready to be evaluated with any [`Scalar`].
 #[derive(Clone, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Formulas as programs: operations on registers, of which equal ones are made once.
 
-use super::field::SURFACE;
 use super::step::{MAX_DEPTH, Step};
+use super::variables::SURFACE;
 use std::collections::HashMap;
 use std::mem::{Discriminant, discriminant};
 
@@ -126,7 +126,8 @@ fn values(steps: &[Step], variables: usize, are_shared: bool) -> (Vec<Value>, us
 mod tests {
     use super::*;
     use crate::numeric::formula::Formula;
-    use crate::numeric::formula::field::{Field, SPACE, SurfaceField};
+    use crate::numeric::formula::field::{Field, SurfaceField};
+    use crate::numeric::formula::variables::SPACE;
     use std::sync::Arc;
 
     #[test]

@@ -1,6 +1,6 @@
 //! Draws values for attributes by their types and rules, the same in every run.
 
-use crate::numeric::formula::HEIGHT;
+use crate::numeric::formula::variables::HEIGHT;
 use crate::scene::attribute::Attribute;
 use crate::scene::choice::Choices;
 use crate::scene::entity::Entity;
