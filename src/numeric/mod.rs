@@ -7,6 +7,7 @@ pub(crate) mod f64x8;
 pub(crate) mod formula;
 pub(crate) mod interval;
 pub(crate) mod jet;
+pub(crate) mod polynomial;
 pub(crate) mod scalar;
 pub(crate) mod spline;
 

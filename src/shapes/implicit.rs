@@ -1,12 +1,14 @@
 //! Implicit surfaces: the points where f(x, y, z) = 0.
 //!
 //! A plugin gives the formula, once for every number type, and a bounding box. The rest follows: [`taylor`] isolates a
-//! ray's first hit by interval arithmetic, and [`Dual`] numbers give the normal.
+//! ray's first hit by interval arithmetic, or if the formula is a polynomial by its Bernstein coefficients along the ray,
+//! and [`Dual`] numbers give the normal.
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::facet::Facet;
 use crate::geometry::frame::{self, BLUR, Frame};
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
+use crate::geometry::roots::bernstein::Bernstein;
 use crate::geometry::roots::stretch::Stretch;
 use crate::geometry::roots::taylor::{self, Found};
 use crate::geometry::roots::{Method, twice};
@@ -14,6 +16,7 @@ use crate::geometry::sight::Line;
 use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
+use crate::numeric::polynomial::Polynomial;
 use crate::numeric::scalar::Scalar;
 use crate::world::body::Body;
 use crate::world::certify::Equation;
@@ -84,13 +87,18 @@ impl Body {
     /// Makes an object of an implicit surface, which looks like its material.
     pub fn implicit(formula: impl Implicit + 'static, frame: Frame) -> Self {
         let [low, high] = formula.bounds();
-        Self::plain(Shape::new(ImplicitShape { formula, frame, low, high }).bracketed().searched())
+        let place = Polynomial::along(Interval { low: -1.0, high: 1.0 });
+        let is_polynomial = formula.value([place; 3]).error().is_finite();
+        let shape = ImplicitShape { formula, is_polynomial, frame, low, high };
+        Self::plain(Shape::new(shape).bracketed().searched())
     }
 }
 
 /// A shape whose hits and normals are found by its formula.
 struct ImplicitShape<T> {
     formula: T,
+    /// Whether the formula is a polynomial, of a degree that [`Polynomial`]s may have.
+    is_polynomial: bool,
     frame: Frame,
     low: DVec3,
     high: DVec3,
@@ -145,7 +153,8 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
     }
 
     fn method(&self) -> String {
-        "first root isolated by interval arithmetic, then polished".to_owned()
+        let means = if self.is_polynomial { "coefficients of a polynomial" } else { "interval arithmetic" };
+        format!("first root isolated by {means}, then polished")
     }
 }
 
@@ -374,6 +383,13 @@ impl<T: Implicit> taylor::FunctionOnLine for FormulaOnRay<'_, T> {
 
     fn at<N: Scalar>(&self, t: N) -> N {
         self.shape.formula.value(self.on_line(t))
+    }
+
+    fn bernstein(&self, piece: Interval) -> Option<Bernstein> {
+        let is_polynomial = self.shape.is_polynomial;
+        is_polynomial
+            .then(|| Bernstein::of(&taylor::FunctionOnLine::at(self, Polynomial::along(piece))))
+            .flatten()
     }
 
     /// Decides a piece in double-double arithmetic from the ray in the world, which tells nearly all touches from

@@ -5,6 +5,7 @@
 //! [`newton`] refines the roots of both. The others are what other programs use; each file says where its method is
 //! from and where it fails.
 
+pub mod bernstein;
 pub mod bisection;
 mod chandrupatla;
 mod intervals;

@@ -8,6 +8,7 @@
 //! of the first order and shrink more slowly where a ray grazes.
 
 use crate::geometry::ray::{RayRange, Side};
+use crate::geometry::roots::bernstein::{Bernstein, Roots};
 use crate::geometry::roots::{newton, stretch::Stretch, twice};
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
@@ -28,6 +29,11 @@ pub trait FunctionOnLine {
     fn curvature(&self, piece: Interval) -> Option<Interval> {
         let Jet { value, second, .. } = self.at(Jet::variable(piece));
         value.has_zero().then_some(second)
+    }
+
+    /// Returns the function on a piece in Bernstein form, if it is a polynomial: that isolates roots with fewer operations.
+    fn bernstein(&self, _piece: Interval) -> Option<Bernstein> {
+        None
     }
 
     /// Returns the root on a piece that bounds in `f64` cannot decide, however short: where rounding hides the
@@ -59,6 +65,9 @@ const MAX_UNDECIDED: usize = 256;
 /// Pieces are not cut whose bounds are below this many times the rounding error of one evaluation: the part of the
 /// bounds that shrinks with the length of the piece is at most three times the part that does not.
 const HIDDEN: f64 = 4.0;
+
+/// How often a piece is halved on which the function is a polynomial, before bounds judge what is left.
+const HALVINGS: usize = 8;
 
 /// The capacity of the stack of pieces. A cut leaves pieces of at most half the length, and pieces of a few ulps are
 /// not cut, so that at most some 53 pieces wait.
@@ -104,7 +113,10 @@ pub fn first_root_within(
     let inner = stretch.inner.start.clamp(start, end)..stretch.inner.end.clamp(start, end);
     let root = if inner.start < inner.end || start == end {
         let before = search.at_an_end(start, inner.start);
-        let root = before.or_else(|| search.on_a_piece(inner.start, inner.end));
+        let root = before.or_else(|| match line.bernstein(Interval { low: inner.start, high: inner.end }) {
+            Some(form) => search.on_a_polynomial(inner.start, inner.end, &form, HALVINGS),
+            None => search.on_a_piece(inner.start, inner.end),
+        });
         root.or_else(|| search.at_an_end(inner.end, end))
     } else {
         search.at_an_end(start, end)
@@ -135,6 +147,30 @@ enum Judgement {
 }
 
 impl<L: FunctionOnLine> Search<'_, L> {
+    /// Returns the first root on a piece on which the function is a polynomial.
+    fn on_a_polynomial(&mut self, low: f64, high: f64, form: &Bernstein, halvings: usize) -> Option<f64> {
+        if self.base + high <= self.range.near || self.base + low >= self.range.far {
+            return None;
+        }
+        let at = |part: f64| low + part * (high - low);
+        let root = match form.roots() {
+            Roots::None => None,
+            Roots::One { rises, near } if self.counts(rises) => Some(self.newton(low, high, rises, at(near))),
+            Roots::One { .. } => None,
+            Roots::Monotone { rises, near } => match self.judge_monotone(low, high, rises, at(near)) {
+                Judgement::Root(root) => Some(root),
+                _ => None,
+            },
+            Roots::Unknown if halvings > 0 => {
+                let (middle, [left, right]) = (at(0.5), form.halves());
+                let root = self.on_a_polynomial(low, middle, &left, halvings - 1);
+                return root.or_else(|| self.on_a_polynomial(middle, high, &right, halvings - 1));
+            }
+            Roots::Unknown | Roots::Hidden => self.on_a_piece(low, high),
+        };
+        root.filter(|root| self.is_in_range(*root))
+    }
+
     /// Returns the first root on a piece.
     fn on_a_piece(&mut self, start: f64, end: f64) -> Option<f64> {
         let RayRange { near, far, .. } = *self.range;
@@ -155,13 +191,8 @@ impl<L: FunctionOnLine> Search<'_, L> {
             let may_cut = *self.pieces > 0 && count + 2 <= STACK_SIZE && high - low > self.shortest;
             let judgement = if may_cut { self.judge(low, high) } else { self.judge_uncut(low, high) };
             match judgement {
-                Judgement::Free => {}
-                Judgement::Root(root) => {
-                    let distance = self.base + root;
-                    if near < distance && distance < far {
-                        return Some(root);
-                    }
-                }
+                Judgement::Root(root) if self.is_in_range(root) => return Some(root),
+                Judgement::Free | Judgement::Root(_) => {}
                 Judgement::Open { left, right } => {
                     for (low, high) in [right, left] {
                         if low < high {
@@ -173,6 +204,16 @@ impl<L: FunctionOnLine> Search<'_, L> {
             }
         }
         None
+    }
+
+    fn is_in_range(&self, root: f64) -> bool {
+        let distance = self.base + root;
+        self.range.near < distance && distance < self.range.far
+    }
+
+    /// Tells whether a root counts at which the function rises, or falls: not if the ray leaves the surface to that side.
+    fn counts(&self, rises: bool) -> bool {
+        self.range.origin_side.is_none_or(|side| rises == (side == Side::Inside))
     }
 
     /// Returns the first root where rounding hides whether the line is still between the ends: there, nothing is
@@ -240,14 +281,13 @@ impl<L: FunctionOnLine> Search<'_, L> {
 
     /// Judges a piece on which the function is monotone.
     fn judge_monotone(&mut self, low: f64, high: f64, rises: bool, guess: f64) -> Judgement {
-        let origin_side = self.range.origin_side;
-        if origin_side.is_some_and(|side| rises == (side == Side::Outside)) {
+        if !self.counts(rises) {
             return Judgement::Free;
         }
         let at = |t| if rises { self.value(t) } else { -self.value(t) };
         let (at_low, at_high) = (at(low), at(high));
         // A line that leaves the surface starts on it.
-        let starts = origin_side.is_some() && low == self.start && at_low.has_zero();
+        let starts = self.range.origin_side.is_some() && low == self.start && at_low.has_zero();
         if at_low.low > 0.0 || at_high.high < 0.0 || starts {
             Judgement::Free
         } else if at_low.high < 0.0 && at_high.low > 0.0 {

@@ -1,6 +1,7 @@
 //! Tests of the search for roots.
 
 use super::*;
+use crate::numeric::polynomial::Polynomial;
 use std::cell::Cell;
 
 /// A double root at 1, and a single one at 3.
@@ -65,4 +66,54 @@ fn kinks_and_jumps_are_met_and_poles_are_not() {
     let jump = first(&Broken, 2.3..9.0, None).expect("a jump");
     assert!((jump - 3.0).abs() < 1e-14, "{jump}");
     assert_eq!(first(&Broken, 3.3..9.0, None), None);
+}
+
+/// The polynomial with these roots, which falls at the first one; isolated by its coefficients or by bounds.
+struct Product {
+    roots: Vec<f64>,
+    by_coefficients: bool,
+}
+
+impl FunctionOnLine for Product {
+    fn at<N: Scalar>(&self, t: N) -> N {
+        let factor = |root: &f64| N::constant(*root) - t;
+        self.roots.iter().map(factor).fold(N::constant(1.0), |product, factor| product * factor)
+    }
+
+    fn bernstein(&self, piece: Interval) -> Option<Bernstein> {
+        self.by_coefficients.then(|| Bernstein::of(&self.at(Polynomial::along(piece)))).flatten()
+    }
+}
+
+#[test]
+fn coefficients_find_the_roots_that_bounds_find() {
+    let mut random = 1_u32;
+    let mut draw = || {
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        f64::from(random >> 8) / f64::from(1 << 24)
+    };
+    for case in 0..2000 {
+        let mut roots: Vec<f64> = (0..2 + case % 9).map(|_| 10.0 * draw() - 1.0).collect();
+        match case % 4 {
+            0 => {}
+            1 => roots[1] = roots[0],
+            2 => roots[1] = roots[0] + 1e-9 * draw(),
+            _ => roots[1] = roots[0] + 1e-5 * draw(),
+        }
+        // The line starts on the surface in some cases.
+        let start = if case % 3 == 0 { roots[0].max(0.0) } else { 0.0 };
+        let sides = [None, Some(Side::Outside), Some(Side::Inside)];
+        // Which side a line is on where it touches the surface is not a question for a line that leaves it.
+        for origin_side in sides.into_iter().take(if case % 4 == 1 { 1 } else { 3 }) {
+            let by = |by_coefficients| {
+                first(&Product { roots: roots.clone(), by_coefficients }, start..9.0, origin_side)
+            };
+            let (expected, found) = (by(false), by(true));
+            let off = expected.unwrap_or(0.0) - found.unwrap_or(0.0);
+            assert!(
+                expected.is_some() == found.is_some() && off.abs() < 1e-6,
+                "{roots:?} from {start}, {origin_side:?}: {found:?} is not {expected:?}"
+            );
+        }
+    }
 }
