@@ -130,7 +130,7 @@ impl Div for Polynomial {
     type Output = Self;
 
     fn div(self, other: Self) -> Self {
-        self * other.map(|divisor| Interval::constant(1.0) / divisor)
+        self.mul(other.map(|divisor| Interval::constant(1.0) / divisor))
     }
 }
 

@@ -87,8 +87,8 @@ impl Body {
     /// Makes an object of an implicit surface, which looks like its material.
     pub fn implicit(formula: impl Implicit + 'static, frame: Frame) -> Self {
         let [low, high] = formula.bounds();
-        let place = Polynomial::along(Interval { low: -1.0, high: 1.0 });
-        let is_polynomial = formula.value([place; 3]).error().is_finite();
+        let along_a_diagonal = formula.value([Polynomial::along(Interval { low: -1.0, high: 1.0 }); 3]);
+        let is_polynomial = along_a_diagonal.error().is_finite();
         let shape = ImplicitShape { formula, is_polynomial, frame, low, high };
         Self::plain(Shape::new(shape).bracketed().searched())
     }
@@ -267,11 +267,7 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
     /// Returns a bracket of the first hits of all rays that this one stands for.
     fn bracket(&self, range: &RayRange) -> Bracket {
         let stretch = self.stretch();
-        let first = || {
-            let (shortest, mut pieces) = (shortest(&stretch.outer), MOST_DRIFTING);
-            taylor::first_root_within(self, &stretch, self.closest, range, shortest, &mut pieces)
-        };
-        let root = match first() {
+        let root = match self.first_root(&stretch, range, MOST_DRIFTING) {
             Found { root: Some(root), is_certain: true } => root,
             Found { root: None, is_certain: true } => return Bracket::MISS,
             _ => return Bracket::UNKNOWN,
@@ -318,21 +314,22 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         stretch
     }
 
+    /// Returns the first root of a stretch in a range, after judging at most this number of pieces.
+    fn first_root(&self, stretch: &Stretch, range: &RayRange, mut pieces: usize) -> Found {
+        let shortest = shortest(&stretch.outer);
+        taylor::first_root_within(self, stretch, self.closest, range, shortest, &mut pieces)
+    }
+
     fn first_hit(&self, range: &RayRange) -> Found {
         let stretch = self.stretch();
-        let ImplicitShape { low, high, .. } = self.shape;
-        let is_lost = self.blur > (*high - *low).max_element();
+        let is_lost = self.blur > (self.shape.high - self.shape.low).max_element();
         let pieces = if is_lost { FEW_PIECES } else { taylor::MAX_PIECES };
-        let first_root = |range: &RayRange| {
-            let (shortest, mut pieces) = (shortest(&stretch.outer), pieces);
-            taylor::first_root_within(self, &stretch, self.closest, range, shortest, &mut pieces)
-        };
         if !T::IS_CUT {
-            return first_root(range);
+            return self.first_root(&stretch, range, pieces);
         }
         let (mut range, mut all_certain) = (*range, true);
         loop {
-            let found = first_root(&range);
+            let found = self.first_root(&stretch, &range, pieces);
             let (is_kept, is_certain) = found.root.map_or((true, true), |root| self.kept(root));
             all_certain &= found.is_certain && is_certain;
             match found.root {
@@ -386,10 +383,8 @@ impl<T: Implicit> taylor::FunctionOnLine for FormulaOnRay<'_, T> {
     }
 
     fn bernstein(&self, piece: Interval) -> Option<Bernstein> {
-        let is_polynomial = self.shape.is_polynomial;
-        is_polynomial
-            .then(|| Bernstein::of(&taylor::FunctionOnLine::at(self, Polynomial::along(piece))))
-            .flatten()
+        let form = || Bernstein::of(&taylor::FunctionOnLine::at(self, Polynomial::along(piece)));
+        if self.shape.is_polynomial { form() } else { None }
     }
 
     /// Decides a piece in double-double arithmetic from the ray in the world, which tells nearly all touches from
