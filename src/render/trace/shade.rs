@@ -15,7 +15,7 @@ use crate::render::plan::depth::{Branch, STEPS, step};
 use crate::scene::model::Object;
 use crate::world::background::Background;
 use crate::world::interaction::SurfaceInteraction;
-use crate::world::interface::{Crossing, Interface};
+use crate::world::interface::Interface;
 use crate::world::material::Rgb;
 use crate::world::packets::shader::SurfacePoints;
 use glam::DVec3;
@@ -227,8 +227,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             .collect();
         (0..group.len).for_each(|lane| colours.set(lane, kept * colours.get(lane)));
 
-        let is_through = |crossing: &Crossing| crossing.onward.is_some();
-        if crossings[..group.len].iter().any(is_through) {
+        let is_through = |lane: usize| crossings[lane].onward.is_some();
+        if (0..group.len).any(is_through) {
             if W::SEES {
                 self.observer.see(Event::Begin(Purpose::Transmitted { tint: tints[0], kept }));
             }
@@ -238,7 +238,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             for lane in 0..count {
                 dir.set(lane, crossings[lane].onward.unwrap_or(DVec3::NEG_Z));
             }
-            self.go(group, shading, RayKind::Transmitted, branches.through, &crossings, is_through);
+            self.go(group, shading, RayKind::Transmitted, branches.through, is_through);
             flip(&mut shading.surface.sides[..count]);
             for lane in 0..group.len {
                 colours.set(lane, colours.get(lane) + tints[lane] * shading.behind.get(lane));
@@ -246,12 +246,10 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
 
         self.keep_first_reflections(group);
+        let steps: Vec<_> = crossings.iter().map(|crossing| step(crossing.reflected.max_element())).collect();
         for number in 0..=STEPS {
-            let is_its = |crossing: &Crossing| {
-                let most = crossing.reflected.max_element();
-                most > 0.0 && step(most) == number
-            };
-            if !crossings[..group.len].iter().any(is_its) {
+            let is_its = |lane: usize| steps[lane] == Some(number);
+            if !(0..group.len).any(is_its) {
                 continue;
             }
             if W::SEES {
@@ -267,36 +265,28 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             if surface.is_bent {
                 surface.keep_before(group.dir.view(count), &mut shading.dir);
             }
-            self.go(
-                group,
-                shading,
-                RayKind::Reflected,
-                branches.mirrored.reduced(number),
-                &crossings,
-                is_its,
-            );
-            for lane in (0..group.len).filter(|lane| is_its(&crossings[*lane])) {
+            self.go(group, shading, RayKind::Reflected, branches.mirrored.reduced(number), is_its);
+            for lane in (0..group.len).filter(|lane| is_its(*lane)) {
                 let seen = crossings[lane].reflected * shading.behind.get(lane);
                 colours.set(lane, colours.get(lane) + seen);
             }
         }
     }
 
-    /// Computes the light that returns along the rays whose crossings are chosen.
+    /// Computes the light that returns along the rays that are chosen.
     fn go(
         &mut self,
         group: &mut RayGroup,
         shading: &mut ShadingScratch,
         kind: RayKind,
         branch: Branch,
-        crossings: &[Crossing],
-        is_its: impl Fn(&Crossing) -> bool,
+        is_chosen: impl Fn(usize) -> bool,
     ) {
         let count = group.padded();
         let (travelled, goes) = (&shading.surface.travelled[..count], resized(&mut shading.goes, count));
         light::reach(self.cpu, travelled, MAX_DIST, goes);
-        for (goes, crossing) in goes.iter_mut().zip(crossings) {
-            *goes &= u64::from(is_its(crossing));
+        for (lane, goes) in goes.iter_mut().enumerate() {
+            *goes &= u64::from(is_chosen(lane));
         }
         group.leave_out(self.cpu, &branch, travelled, goes);
         self.end_bounces(goes);

@@ -45,16 +45,20 @@ pub(crate) const STEPS: i32 = 16;
 pub(super) const REFLECTED: f64 = 0.25;
 
 /// Returns the step of a reflected fraction: 0 for all, and else the largest number n, up to [`STEPS`], such that the
-/// fraction is at most 2 to the power 1 - n.
-pub(crate) fn step(reflected: f64) -> i32 {
+/// fraction is at most 2 to the power 1 - n; `None` where nothing is reflected.
+pub(crate) fn step(reflected: f64) -> Option<i32> {
+    if reflected.is_nan() || reflected <= 0.0 {
+        return None;
+    }
     if reflected >= 1.0 {
-        return 0;
+        return Some(0);
     }
-    let mut step = 1;
-    while step < STEPS && reflected <= 0.5_f64.powi(step) {
+    let (mut step, mut next) = (1, 0.5);
+    while step < STEPS && reflected <= next {
         step += 1;
+        next *= 0.5;
     }
-    step
+    Some(step)
 }
 
 impl Branch {
