@@ -8,12 +8,12 @@ use crate::numeric::scalar::Scalar;
 use crate::numeric::spline::Spline;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// The highest degree; a product of a higher one is unknown. A polynomial of this degree takes less than 128 bytes, more than
-/// which compilers do not copy inline.
+/// The highest degree; a product of a higher one is unknown. A polynomial of this degree takes 128 bytes, more than which
+/// compilers do not copy inline.
 pub const MAX_DEGREE: usize = 12;
 
-/// Exceeds the rounding of a sum of up to `MAX_DEGREE + 1` numbers above 0, and that of a few operations more.
-const ROUNDED_UP: f64 = 1.0 + 64.0 * f64::EPSILON;
+/// What a bound is multiplied by, so that it is one although up to eight operations on numbers above 0 were rounded.
+const ROUNDED_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 
 /// A polynomial in s.
 #[derive(Clone, Copy, Debug)]
@@ -21,12 +21,15 @@ pub struct Polynomial {
     /// The coefficients of the powers of s from 0 on; those above the degree are 0.
     coefficients: [f64; MAX_DEGREE + 1],
     degree: usize,
+    /// A bound of the sum of the coefficients' absolute values.
+    norm: f64,
     /// A bound of the sum of the coefficients' absolute errors; infinite if nothing is known.
     error: f64,
 }
 
 impl Polynomial {
-    const UNKNOWN: Self = Self { coefficients: [0.0; MAX_DEGREE + 1], degree: 0, error: f64::INFINITY };
+    const UNKNOWN: Self =
+        Self { coefficients: [0.0; MAX_DEGREE + 1], degree: 0, norm: f64::INFINITY, error: f64::INFINITY };
 
     /// Returns the place on a piece of a line: its lower end at s = -1, its upper end at s = 1. Stands also for places that
     /// are off by eight times the rounding of the ends.
@@ -34,7 +37,8 @@ impl Polynomial {
         let (middle, half) = (piece.middle(), 0.5 * (piece.high - piece.low));
         let mut place = Self::constant(middle);
         place.coefficients[1] = half;
-        Self { degree: 1, error: 8.0 * f64::EPSILON * (middle.abs() + half), ..place }
+        let norm = ROUNDED_UP * (middle.abs() + half);
+        Self { degree: 1, norm, error: 8.0 * f64::EPSILON * norm, ..place }
     }
 
     /// Returns the coefficients of the powers of s from 0 to the degree.
@@ -46,15 +50,6 @@ impl Polynomial {
     /// polynomial.
     pub fn error(&self) -> f64 {
         self.error
-    }
-
-    /// Returns the sum of the absolute values of the coefficients.
-    fn norm(&self) -> f64 {
-        let mut norm = 0.0;
-        for coefficient in self.coefficients() {
-            norm += coefficient.abs();
-        }
-        norm
     }
 
     /// Returns bounds of a constant; `None` for any other polynomial.
@@ -79,7 +74,8 @@ impl Polynomial {
         for power in 0..=other.degree {
             self.coefficients[power] += sign * other.coefficients[power];
         }
-        self.error = ROUNDED_UP * (self.error + other.error + f64::EPSILON * self.norm());
+        self.norm = ROUNDED_UP * (self.norm + other.norm);
+        self.error = ROUNDED_UP * (self.error + other.error + f64::EPSILON * self.norm);
         self
     }
 }
@@ -117,12 +113,12 @@ impl Mul for Polynomial {
         }
         // A coefficient is a sum of as many products as the smaller degree has powers: each product and each sum is rounded
         // by half an EPSILON, or vanishes below MIN_POSITIVE.
-        let (norm, other_norm) = (self.norm(), other.norm());
         let terms = (self.degree.min(other.degree) + 1) as f64;
-        let rounding = terms * f64::EPSILON * norm * other_norm + f64::MIN_POSITIVE;
-        let error = ROUNDED_UP * (self.error * (other_norm + other.error) + norm * other.error + rounding);
+        let norm = ROUNDED_UP * self.norm * other.norm + f64::MIN_POSITIVE;
+        let handed_on = self.error * (other.norm + other.error) + self.norm * other.error;
+        let error = ROUNDED_UP * (handed_on + terms * f64::EPSILON * norm + f64::MIN_POSITIVE);
         // Written so that a NaN, of infinite coefficients or errors, is unknown.
-        if error < f64::INFINITY { Self { coefficients, degree, error } } else { Self::UNKNOWN }
+        if error < f64::INFINITY { Self { coefficients, degree, norm, error } } else { Self::UNKNOWN }
     }
 }
 
@@ -153,7 +149,7 @@ impl Scalar for Polynomial {
     fn about(value: f64, error: f64) -> Self {
         let mut coefficients = [0.0; MAX_DEGREE + 1];
         coefficients[0] = value;
-        Self { coefficients, degree: 0, error }
+        Self { coefficients, degree: 0, norm: value.abs(), error }
     }
 
     fn sin_cos(self) -> (Self, Self) {
@@ -207,14 +203,15 @@ impl Scalar for Polynomial {
         for power in 0..=self.degree {
             self.coefficients[power] *= factor;
         }
-        let rounding = f64::EPSILON * self.norm() + f64::MIN_POSITIVE;
-        self.error = ROUNDED_UP * (self.error * factor.abs() + rounding);
+        self.norm = ROUNDED_UP * self.norm * factor.abs() + f64::MIN_POSITIVE;
+        self.error = ROUNDED_UP * (self.error * factor.abs() + f64::EPSILON * self.norm + f64::MIN_POSITIVE);
         self
     }
 
     fn shifted(mut self, by: f64) -> Self {
         self.coefficients[0] += by;
-        self.error = ROUNDED_UP * (self.error + f64::EPSILON * self.coefficients[0].abs());
+        self.norm = ROUNDED_UP * (self.norm + by.abs());
+        self.error = ROUNDED_UP * (self.error + f64::EPSILON * self.norm);
         self
     }
 
@@ -266,7 +263,7 @@ mod tests {
                 let value = terms.fold(point(0.0), |sum, coefficient| sum * point(s) + point(*coefficient));
                 let off = (value - formula(at)).coarse().magnitude();
                 assert!(off <= polynomial.error(), "{off:e} above {:e} at {s}", polynomial.error());
-                assert!(polynomial.error() < 1e-9 * polynomial.norm(), "{:e}", polynomial.error());
+                assert!(polynomial.error() < 1e-12 * polynomial.norm, "{:e}", polynomial.error());
             }
         }
     }

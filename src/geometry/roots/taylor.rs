@@ -6,6 +6,9 @@
 //! Newton's method refines the root), or what is left of the piece is cut in two. No step along the line is guessed, so
 //! no root is stepped over: D. P. Mitchell, "Robust ray intersection with interval arithmetic" (1990), whose bounds are
 //! of the first order and shrink more slowly where a ray grazes.
+//!
+//! Of a polynomial, the [`bernstein`](super::bernstein) coefficients are judged first. They tell most pieces' roots with a
+//! few sums; what they leave is judged as above.
 
 use crate::geometry::ray::{RayRange, Side};
 use crate::geometry::roots::bernstein::{Bernstein, Roots};
