@@ -20,14 +20,27 @@ struct Heart {
     size: f64,
 }
 
-impl Implicit for Heart {
-    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
+impl Heart {
+    /// Returns the terms of Taubin's formula, a^3 - b y^3: a, b and y.
+    fn terms<N: Scalar>(&self, at: [N; 3]) -> (N, N, N) {
         let n = N::constant;
         let [x, y, z] = per_axis(|axis| at[axis] / n(self.size));
         let ellipsoid = x.powi(2) + y.powi(2) + n(2.25) * z.powi(2) - n(1.0);
+        (ellipsoid, x.powi(2) + n(9.0) / n(80.0) * z.powi(2), y)
+    }
+}
+
+impl Implicit for Heart {
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
+        let (ellipsoid, bend, y) = self.terms(at);
         // The cube root of Taubin's formula: unlike the formula, it has a nonzero slope where `ellipsoid` and y are
         // both 0.
-        ellipsoid - (x.powi(2) + n(9.0) / n(80.0) * z.powi(2)).pow(n(1.0) / n(3.0)) * y
+        ellipsoid - bend.pow(N::constant(1.0) / N::constant(3.0)) * y
+    }
+
+    fn polynomial<N: Scalar>(&self, at: [N; 3]) -> N {
+        let (ellipsoid, bend, y) = self.terms(at);
+        ellipsoid.powi(3) - bend * y.powi(3)
     }
 
     fn openness(&self) -> Option<&'static str> {

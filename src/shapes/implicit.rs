@@ -4,6 +4,8 @@
 //! ray's first hit by interval arithmetic, or if the formula is a polynomial by its Bernstein coefficients along the ray,
 //! and [`Dual`] numbers give the normal.
 
+mod formula;
+
 use crate::geometry::aabb::Aabb;
 use crate::geometry::facet::Facet;
 use crate::geometry::frame::{self, BLUR, Frame};
@@ -24,6 +26,7 @@ use crate::world::coincidence::ROUNDING;
 use crate::world::hittable::{Bracketed, Certified, Hittable, Searched};
 use crate::world::packets::shape::by_distance;
 use crate::world::shape::Shape;
+pub use formula::Implicit;
 use glam::{DVec2, DVec3};
 use std::ops::Range;
 
@@ -40,54 +43,11 @@ const MOST_DRIFTING: usize = 256;
 /// How often the bracket of a root is made four times as wide, until the function has certain signs at both ends.
 const WIDENINGS: usize = 8;
 
-/// An implicit surface, in coordinates of its own.
-pub trait Implicit: Send + Sync {
-    /// Whether the box may be far larger than the shape, so that most of a ray in the box is far from the surface.
-    const IS_IN_WIDE_BOX: bool = false;
-
-    /// Returns the value of the formula at a point: below 0 inside the shape, above 0 outside, and 0 on the surface.
-    fn value<N: Scalar>(&self, at: [N; 3]) -> N;
-
-    /// Whether more than the box cuts the surface: without, [`kept`](Self::kept) is not asked.
-    const IS_CUT: bool = false;
-
-    /// Returns a number that is not below 0 where the surface is kept, and below 0 where it is cut off.
-    fn kept<N: Scalar>(&self, _at: [N; 3]) -> N {
-        N::constant(1.0)
-    }
-
-    /// Says why the surface is not that of a solid; `None` for a closed surface that lies within its box.
-    fn openness(&self) -> Option<&'static str> {
-        Some("it has no inside")
-    }
-
-    /// Returns the height of a closed shape that ends in planes at y = 0 and at this height, and has the same cross-section
-    /// between them; `None` for any other shape.
-    fn extruded(&self) -> Option<f64> {
-        None
-    }
-
-    /// Returns the coordinates u and v of a point of the surface, for shaders; `None` where it has none.
-    fn uv(&self, _at: DVec3) -> Option<DVec2> {
-        None
-    }
-
-    /// Encloses the coordinates u and v, as mathematics has them, of the points of the surface in a box; `None` where they
-    /// are not known, which is always correct. Proofs of colours ask for them.
-    fn uv_bounds(&self, _at: [Interval; 3]) -> Option<[Interval; 2]> {
-        None
-    }
-
-    /// Returns the low and the high corner of a box around the shape. What lies outside of the box is cut off, and a
-    /// shape that is cut shows its inside.
-    fn bounds(&self) -> [DVec3; 2];
-}
-
 impl Body {
     /// Makes an object of an implicit surface, which looks like its material.
     pub fn implicit(formula: impl Implicit + 'static, frame: Frame) -> Self {
         let [low, high] = formula.bounds();
-        let along_a_diagonal = formula.value([Polynomial::along(Interval { low: -1.0, high: 1.0 }); 3]);
+        let along_a_diagonal = formula.polynomial([Polynomial::along(Interval { low: -1.0, high: 1.0 }); 3]);
         let is_polynomial = along_a_diagonal.error().is_finite();
         let shape = ImplicitShape { formula, is_polynomial, frame, low, high };
         Self::plain(Shape::new(shape).bracketed().searched())
@@ -97,7 +57,7 @@ impl Body {
 /// A shape whose hits and normals are found by its formula.
 struct ImplicitShape<T> {
     formula: T,
-    /// Whether the formula is a polynomial, of a degree that [`Polynomial`]s may have.
+    /// Whether the formula has a [`polynomial`](Implicit::polynomial), of a degree that a [`Polynomial`] may have.
     is_polynomial: bool,
     frame: Frame,
     low: DVec3,
@@ -383,7 +343,7 @@ impl<T: Implicit> taylor::FunctionOnLine for FormulaOnRay<'_, T> {
     }
 
     fn bernstein(&self, piece: Interval) -> Option<Bernstein> {
-        let form = || Bernstein::of(&taylor::FunctionOnLine::at(self, Polynomial::along(piece)));
+        let form = || Bernstein::of(&self.shape.formula.polynomial(self.on_line(Polynomial::along(piece))));
         if self.shape.is_polynomial { form() } else { None }
     }
 

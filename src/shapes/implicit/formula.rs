@@ -1,0 +1,54 @@
+//! What a plugin says of an implicit surface.
+
+use crate::numeric::interval::Interval;
+use crate::numeric::scalar::Scalar;
+use glam::{DVec2, DVec3};
+
+/// An implicit surface, in coordinates of its own.
+pub trait Implicit: Send + Sync {
+    /// Whether the box may be far larger than the shape, so that most of a ray in the box is far from the surface.
+    const IS_IN_WIDE_BOX: bool = false;
+
+    /// Returns the value of the formula at a point: below 0 inside the shape, above 0 outside, and 0 on the surface.
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N;
+
+    /// Returns the value of a polynomial that is below 0, 0 and above 0 where the formula is: first hits are isolated faster
+    /// by one of at most the twelfth degree. By default, this is the formula itself, which may be no polynomial.
+    fn polynomial<N: Scalar>(&self, at: [N; 3]) -> N {
+        self.value(at)
+    }
+
+    /// Whether more than the box cuts the surface: without, [`kept`](Self::kept) is not asked.
+    const IS_CUT: bool = false;
+
+    /// Returns a number that is not below 0 where the surface is kept, and below 0 where it is cut off.
+    fn kept<N: Scalar>(&self, _at: [N; 3]) -> N {
+        N::constant(1.0)
+    }
+
+    /// Says why the surface is not that of a solid; `None` for a closed surface that lies within its box.
+    fn openness(&self) -> Option<&'static str> {
+        Some("it has no inside")
+    }
+
+    /// Returns the height of a closed shape that ends in planes at y = 0 and at this height, and has the same cross-section
+    /// between them; `None` for any other shape.
+    fn extruded(&self) -> Option<f64> {
+        None
+    }
+
+    /// Returns the coordinates u and v of a point of the surface, for shaders; `None` where it has none.
+    fn uv(&self, _at: DVec3) -> Option<DVec2> {
+        None
+    }
+
+    /// Encloses the coordinates u and v, as mathematics has them, of the points of the surface in a box; `None` where they
+    /// are not known, which is always correct. Proofs of colours ask for them.
+    fn uv_bounds(&self, _at: [Interval; 3]) -> Option<[Interval; 2]> {
+        None
+    }
+
+    /// Returns the low and the high corner of a box around the shape. What lies outside of the box is cut off, and a
+    /// shape that is cut shows its inside.
+    fn bounds(&self) -> [DVec3; 2];
+}
