@@ -139,10 +139,9 @@ impl Local {
         }
         // The search runs in `f64` first if `f64` represents the start of the range exactly.
         let known = along.known();
-        let fast = Known(known.0.iter().map(Fast::of).collect());
-        let ends = |at: &Dyadic| Fast::exact(at);
-        let search = match (ends(&from), ends(&end)) {
+        let search = match (Fast::exact(&from), Fast::exact(&end)) {
             (one, other) if one.low == one.high && one.low.is_finite() => {
+                let fast = Known(known.0.iter().map(Fast::of).collect());
                 first_root(along, &fast, one, other, 4000)
             }
             _ => Search::Unknown,
@@ -209,7 +208,14 @@ impl Along for OnRevolved<'_> {
     }
 }
 
-pub fn revolved(ray: &Ray, profile: &Formula, axis: &Vector, base: &Vector, height: &Dyadic) -> Hit {
+/// Returns the first hit of a surface of revolution; `widest` is an upper bound of its radius.
+pub fn revolved(
+    ray: &Ray,
+    (profile, widest): (&Formula, f64),
+    axis: &Vector,
+    base: &Vector,
+    height: &Dyadic,
+) -> Hit {
     let square = dot(axis, axis);
     let length = Wide::root_of(&square);
     let part = height.to_f64(true) / square.to_f64(false).sqrt();
@@ -226,16 +232,8 @@ pub fn revolved(ray: &Ray, profile: &Formula, axis: &Vector, base: &Vector, heig
         over(dot(&other, &other), &whole),
         Wide::exact(height),
     ];
-    // An upper bound of the profile: the greatest of the bounds over pieces of its height.
-    const PIECES: usize = 64;
-    let height = height.to_f64(true);
-    let widest = (0..PIECES).map(|piece| {
-        let at = |end: usize| height * end as f64 / PIECES as f64;
-        let y = Fast { low: at(piece), high: at(piece + 1).min(height) };
-        profile.at(&Jet::constant(y)).value.high
-    });
-    let widest = widest.fold(0.0, f64::max).min(1e150);
-    local.first_hit(&OnRevolved { profile, known: Known(known) }, (0.6 * height).hypot(widest) * 1.01)
+    let reach = (0.6 * height.to_f64(true)).hypot(widest) * 1.01;
+    local.first_hit(&OnRevolved { profile, known: Known(known) }, reach)
 }
 
 /// A formula of three variables, each `c0 + c1 s + c2 s^2` along the ray.

@@ -113,9 +113,8 @@ impl Dyadic {
         if extra <= 0 {
             return self;
         }
-        let cut = IBig::from(1) << extra as usize;
-        // Euclidean division by a positive number rounds down.
-        let mut whole = self.whole.div_euclid(&cut);
+        // A shift to the right rounds down.
+        let mut whole = self.whole >> extra as usize;
         if up {
             whole += IBig::from(1);
         }
@@ -165,11 +164,7 @@ impl Dyadic {
     /// Returns the number in units of 2^-`bits`, rounded down to an integer.
     pub fn fixed(&self, bits: i64) -> IBig {
         let shift = self.power + bits;
-        if shift >= 0 {
-            &self.whole << shift as usize
-        } else {
-            (&self.whole).div_euclid(&(IBig::from(1) << (-shift) as usize))
-        }
+        if shift >= 0 { &self.whole << shift as usize } else { &self.whole >> (-shift) as usize }
     }
 
     /// Returns an `f64` near the number: not below it if `up`, and not above it otherwise. Numbers of magnitude below

@@ -1,7 +1,7 @@
 //! Intervals with two `f64` ends, rounded outward in each operation. They decide most rays.
 
 use super::dyadic::Dyadic;
-use super::number::Number;
+use super::number::{Constant, Number};
 use super::wide::Wide;
 use std::cmp::Ordering;
 
@@ -37,6 +37,10 @@ impl Fast {
 impl Number for Fast {
     fn exact(value: &Dyadic) -> Self {
         Self { low: value.to_f64(false), high: value.to_f64(true) }
+    }
+
+    fn constant(of: &Constant) -> Self {
+        Self { low: of.low, high: of.high }
     }
 
     fn of(value: &Wide) -> Self {
@@ -173,5 +177,10 @@ impl Number for Fast {
 
     fn to_wide(&self) -> Wide {
         Wide::between(Dyadic::from(self.low), Dyadic::from(self.high))
+    }
+
+    fn int(number: i64) -> Self {
+        // Formulas and polynomials take integers far below 2^53, which are exact.
+        Self { low: number as f64, high: number as f64 }
     }
 }

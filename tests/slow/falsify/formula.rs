@@ -1,7 +1,8 @@
 //! Formulas in y, or in x, y and z, parsed and evaluated without any code of the program.
 
 use super::dyadic::Dyadic;
-use super::number::{Jet, Number};
+use super::fast::Fast;
+use super::number::{Constant, Jet, Number};
 use super::spline::Spline;
 
 /// A formula. Its constants are the nearest `f64`; everything else is exact.
@@ -10,7 +11,7 @@ pub enum Formula {
     /// A variable: x, y or z.
     Variable(usize),
     Spline(Spline),
-    Number(Dyadic),
+    Number(Constant),
     Neg(Box<Formula>),
     Two(char, Box<[Formula; 2]>),
     Whole(Box<Formula>, u32),
@@ -35,7 +36,7 @@ impl Formula {
         match self {
             Self::Variable(index) => y[*index].clone(),
             Self::Spline(spline) => spline.at(y[1]),
-            Self::Number(number) => Jet::constant(T::exact(number)),
+            Self::Number(number) => Jet::constant(T::constant(number)),
             Self::Neg(of) => of.of(y).neg(),
             Self::Whole(of, exponent) => {
                 let of = of.of(y);
@@ -75,9 +76,20 @@ impl Formula {
         }
     }
 
+    /// Returns an upper bound of the formula's values from 0 to a height: the greatest of the bounds over pieces of it.
+    pub fn most_up_to(&self, height: f64) -> f64 {
+        const PIECES: usize = 64;
+        let bounds = (0..PIECES).map(|piece| {
+            let at = |end: usize| height * end as f64 / PIECES as f64;
+            let y = Fast { low: at(piece), high: at(piece + 1).min(height) };
+            self.at(&Jet::constant(y)).value.high
+        });
+        bounds.fold(0.0, f64::max).min(1e150)
+    }
+
     /// Returns the sum of a formula and a number.
     pub fn plus(self, number: Dyadic) -> Self {
-        Self::Two('+', Box::new([self, Self::Number(number)]))
+        Self::Two('+', Box::new([self, Self::Number(number.into())]))
     }
 
     /// Returns the square of the formula's value. If the formula is a square root, this is its argument.
@@ -150,7 +162,7 @@ impl Reader<'_> {
         }
         let exponent = self.signed();
         if let Formula::Number(number) = &exponent {
-            let whole = number.to_f64(false);
+            let whole = number.low;
             if whole.fract() == 0.0 && (1.0..=1000.0).contains(&whole) {
                 return Formula::Whole(Box::new(base), whole as u32);
             }
@@ -189,6 +201,7 @@ impl Reader<'_> {
         let end = (0..bytes.len()).find(|at| !is_part(*at)).unwrap_or(bytes.len());
         let (word, rest) = self.rest.split_at(end);
         self.rest = rest;
-        Formula::Number(Dyadic::from(word.parse().unwrap_or_else(|_| panic!("a number, not `{word}`"))))
+        let number = Dyadic::from(word.parse().unwrap_or_else(|_| panic!("a number, not `{word}`")));
+        Formula::Number(number.into())
     }
 }

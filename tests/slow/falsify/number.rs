@@ -5,9 +5,24 @@ use super::dyadic::Dyadic;
 use super::wide::Wide;
 use std::cmp::Ordering;
 
+/// A number that a formula contains, with its bounds in `f64`: a search evaluates the formula many times.
+#[derive(Clone, Debug)]
+pub struct Constant {
+    pub exact: Dyadic,
+    pub low: f64,
+    pub high: f64,
+}
+
+impl From<Dyadic> for Constant {
+    fn from(exact: Dyadic) -> Self {
+        Self { low: exact.to_f64(false), high: exact.to_f64(true), exact }
+    }
+}
+
 /// An interval: a number that is only known to lie between two bounds.
 pub trait Number: Clone {
     fn exact(value: &Dyadic) -> Self;
+    fn constant(of: &Constant) -> Self;
     fn of(value: &Wide) -> Self;
     /// Returns the interval of all numbers.
     fn any() -> Self;
@@ -38,13 +53,10 @@ pub trait Number: Clone {
     /// Tells whether the interval is less than half as wide as another.
     fn is_half(&self, other: &Self) -> bool;
     fn to_wide(&self) -> Wide;
+    fn int(number: i64) -> Self;
 
     fn sub(&self, other: &Self) -> Self {
         self.add(&other.neg())
-    }
-
-    fn int(number: i64) -> Self {
-        Self::exact(&Dyadic::int(number))
     }
 }
 

@@ -70,8 +70,8 @@ pub fn hit(shape: &Shape, ray: &Ray) -> Hit {
         Shape::Quadric { coefficients, center, low, high } => {
             closed::quadric(ray, coefficients, center, low, high)
         }
-        Shape::Revolved { profile, direction, base, height } => {
-            curved::revolved(ray, profile, direction, base, height)
+        Shape::Revolved { profile, widest, direction, base, height } => {
+            curved::revolved(ray, (profile, *widest), direction, base, height)
         }
         Shape::Torus { center, direction, radius, tube } => {
             curved::torus(ray, center, direction, radius, tube)
@@ -133,7 +133,7 @@ fn normal(shape: &Shape, ray: &Ray, at: &Wide) -> [f64; 3] {
                 2.0 * k[2] * z + k[4] * x + k[5] * y + k[8],
             ]
         }
-        Shape::Revolved { profile, direction, base, height } => {
+        Shape::Revolved { profile, direction, base, height, .. } => {
             let (at, axis) = (near(base), unit(f64s(direction)));
             let y = dot(at, axis);
             let out = [0, 1, 2].map(|of| at[of] - y * axis[of]);

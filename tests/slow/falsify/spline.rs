@@ -1,11 +1,11 @@
 //! Natural cubic splines, their coefficients to 300 bits, evaluated piece by piece.
 
 use super::dyadic::Dyadic;
-use super::number::{Jet, Number};
+use super::number::{Constant, Jet, Number};
 
 /// A spline: its pieces, each with its ends and the coefficients of a cubic in the distance from its lower end.
 #[derive(Clone, Debug)]
-pub struct Spline(Vec<([Dyadic; 2], [Dyadic; 4])>);
+pub struct Spline(Vec<([Constant; 2], [Constant; 4])>);
 
 const BITS: i64 = 300;
 
@@ -38,17 +38,18 @@ impl Spline {
             let first = slope(piece).sub(&over(&width(piece).mul(&twice), &six));
             let third = over(&bend[piece + 1].sub(&bend[piece]), &six.mul(&width(piece)));
             let ends = [points[piece][0].clone(), points[piece + 1][0].clone()];
-            (ends, [points[piece][1].clone(), first, bend[piece].shifted(-1), third])
+            let coefficients = [points[piece][1].clone(), first, bend[piece].shifted(-1), third];
+            (ends.map(Constant::from), coefficients.map(Constant::from))
         });
         Self(all.collect())
     }
 
     pub fn at<T: Number>(&self, y: &Jet<T>) -> Jet<T> {
         let pieces = self.0.iter().filter_map(|([low, high], coefficients)| {
-            let value = y.value.meet(&T::exact(low).hull(&T::exact(high)))?;
+            let value = y.value.meet(&T::constant(low).hull(&T::constant(high)))?;
             let inner = Jet { value, slope: y.slope.clone() };
-            let from = inner.sub(&Jet::constant(T::exact(low)));
-            let [c0, c1, c2, c3] = coefficients.each_ref().map(|of| Jet::constant(T::exact(of)));
+            let from = inner.sub(&Jet::constant(T::constant(low)));
+            let [c0, c1, c2, c3] = coefficients.each_ref().map(|of| Jet::constant(T::constant(of)));
             Some(c0.add(&from.mul(&c1)).add(&from.square().mul(&c2.add(&from.mul(&c3)))))
         });
         pieces.reduce(|one, other| one.hull(&other)).unwrap_or(Jet { value: T::any(), slope: T::any() })

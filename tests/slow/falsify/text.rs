@@ -43,6 +43,8 @@ pub enum Shape {
     },
     Revolved {
         profile: Formula,
+        /// An upper bound of the profile.
+        widest: f64,
         direction: Vector,
         base: Vector,
         height: Dyadic,
@@ -81,6 +83,12 @@ pub enum Shape {
         operation: Operation,
         shapes: Vec<Rc<Shape>>,
     },
+}
+
+impl Shape {
+    fn revolved(profile: Formula, direction: Vector, base: Vector, height: Dyadic) -> Self {
+        Self::Revolved { widest: profile.most_up_to(height.to_f64(true)), profile, direction, base, height }
+    }
 }
 
 #[derive(Clone, Copy)]
@@ -337,12 +345,7 @@ impl Scene {
                     Some(text) => Formula::read(text[0]),
                     None => Formula::read(SURFERS[a.number("surfer").to_f64(false) as usize]),
                 };
-                Shape::Revolved {
-                    profile,
-                    direction: a.vector("direction"),
-                    base: a.vector("base"),
-                    height: a.number("height"),
-                }
+                Shape::revolved(profile, a.vector("direction"), a.vector("base"), a.number("height"))
             }
             "torus" => Shape::Torus {
                 center: a.vector("center"),
@@ -374,7 +377,6 @@ impl Scene {
                 let radius = a.number("radius");
                 let axis = a.vector_or(if kind == "disc" { "normal" } else { "direction" }, [0, 1, 0]);
                 let length = if kind == "disc" { Dyadic::zero() } else { a.number("height") };
-                let number = |of: &Dyadic| Formula::Number(of.clone());
                 let two =
                     |sign: char, one: Formula, other: Formula| Formula::Two(sign, Box::new([one, other]));
                 let wall = square().plus(radius.square().neg());
@@ -388,7 +390,7 @@ impl Scene {
                         (Formula::Call("max".to_owned(), vec![wall, two('*', height(), above)]), Vec::new())
                     }
                     _ => {
-                        let zero = || number(&Dyadic::zero());
+                        let zero = || Formula::Number(Dyadic::zero().into());
                         let under = Formula::Call("min".to_owned(), vec![height(), zero()]);
                         let over = Formula::Call("max".to_owned(), vec![above, zero()]);
                         let square = |of| Formula::Whole(Box::new(of), 2);
@@ -410,12 +412,9 @@ impl Scene {
             "lathe" => {
                 let points = a.numbers("points").expect("points");
                 let points: Vec<_> = points.chunks(2).map(|two| [two[0].clone(), two[1].clone()]).collect();
-                Shape::Revolved {
-                    height: points[points.len() - 1][0].clone(),
-                    profile: Formula::Spline(Spline::new(&points)),
-                    direction: a.vector_or("direction", [0, 1, 0]),
-                    base: a.vector("base"),
-                }
+                let profile = Formula::Spline(Spline::new(&points));
+                let height = points[points.len() - 1][0].clone();
+                Shape::revolved(profile, a.vector_or("direction", [0, 1, 0]), a.vector("base"), height)
             }
             "box" => {
                 let (center, size) = (a.vector("center"), a.vector("size"));

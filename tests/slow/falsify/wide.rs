@@ -1,7 +1,7 @@
 //! Intervals with two ends of 320 bits, rounded outward in each operation. They decide what `f64` does not.
 
 use super::dyadic::Dyadic;
-use super::number::Number;
+use super::number::{Constant, Number};
 use dashu_int::IBig;
 use dashu_int::ops::DivEuclid;
 use std::cmp::Ordering;
@@ -80,8 +80,9 @@ fn huge() -> Dyadic {
     Dyadic::int(1).shifted(100_000)
 }
 
+/// Divides an integer by 2^`bits`, and rounds down.
 fn halved(value: &IBig, bits: i64) -> IBig {
-    value.div_euclid(IBig::from(1) << bits as usize)
+    value >> bits as usize
 }
 
 /// Returns the inverse tangent, or the inverse hyperbolic tangent, of 1 / `of` in units of 2^-[`FIXED`].
@@ -226,6 +227,10 @@ impl Wide {
 impl Number for Wide {
     fn exact(value: &Dyadic) -> Self {
         Self::point(value)
+    }
+
+    fn constant(of: &Constant) -> Self {
+        Self::point(&of.exact)
     }
 
     fn of(value: &Wide) -> Self {
@@ -409,6 +414,10 @@ impl Number for Wide {
 
     fn to_wide(&self) -> Wide {
         self.clone()
+    }
+
+    fn int(number: i64) -> Self {
+        Self::exact(&Dyadic::int(number))
     }
 }
 
