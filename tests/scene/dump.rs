@@ -60,12 +60,17 @@ fn a_formula_on_several_lines_is_dumped_on_one() {
 #[test]
 fn a_dumped_scene_gives_the_same_picture() {
     for path in scenes().iter().filter(|path| path.to_string_lossy().contains("material")) {
+        let picture = |mut model: Model| {
+            // Mirrors that touch cost 20,000 rays per pixel, so a few pixels of them have to do.
+            if path.ends_with("touching-mirrors.ray") {
+                model.camera.value.pixels = [16, 12];
+            }
+            common::render(&model)
+        };
         let first = load(path);
-        let picture = common::render(&first);
-        for syntax in [Syntax::Notes, Syntax::Toml] {
-            let again = model(&dump::scene(&first, syntax));
-            assert!(picture == common::render(&again), "{}", path.display());
-        }
+        let dumped = [Syntax::Notes, Syntax::Toml].map(|syntax| model(&dump::scene(&first, syntax)));
+        let original = picture(first);
+        assert!(dumped.map(picture).iter().all(|picture| *picture == original), "{}", path.display());
     }
 }
 
