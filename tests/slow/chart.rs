@@ -7,6 +7,7 @@ use std::io;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::Command;
+use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 use tabray::scene::{self, Model};
 use tabray::tools::chart::{self, Chart, Panel, Progress};
@@ -48,6 +49,9 @@ fn measured(text: &str, patience: usize) -> Chart {
     };
     chart::measure("scene", &load, &mut Patience(patience)).expect("a chart")
 }
+
+/// The chart of the sphere in front of a wall, for all tests that look at it.
+static OF_EDGE: LazyLock<Chart> = LazyLock::new(|| measured(EDGE, usize::MAX));
 
 fn panel<'c>(chart: &'c Chart, part: &str) -> &'c Panel {
     chart
@@ -102,8 +106,7 @@ fn wrong_hits_are_counted_where_methods_have_them_and_the_default_has_none() {
 
 #[test]
 fn sobol_reaches_with_24_samples_what_random_reaches_with_64() {
-    let chart = measured(EDGE, usize::MAX);
-    let samples = panel(&chart, "edges");
+    let samples = panel(&OF_EDGE, "edges");
     assert!(error(samples, "sobol 24") <= error(samples, "random 64"));
     assert!(error(samples, "random 64") < 0.2 * error(samples, "sobol 1"));
     assert!(!samples.front()[samples.points.iter().position(|point| point.name == "random 64").expect("it")]);
@@ -118,14 +121,8 @@ fn what_breaks_off_keeps_what_is_measured() {
     );
 }
 
-fn numbers(folder: &Path) -> Value {
-    let text = std::fs::read_to_string(folder.join("edge-chart.json")).expect("the numbers");
-    serde_json::from_str(&text).expect("JSON")
-}
-
 /// Returns the errors in a chart's numbers, by panel and choice.
-fn errors(folder: &Path) -> Vec<(String, String, Value)> {
-    let numbers = numbers(folder);
+fn errors(numbers: &Value) -> Vec<(String, String, Value)> {
     let panels = numbers["panels"].as_array().expect("panels");
     panels
         .iter()
@@ -142,27 +139,25 @@ fn errors(folder: &Path) -> Vec<(String, String, Value)> {
 
 #[test]
 fn a_chart_has_all_its_files_and_its_errors_are_the_same_twice() {
-    let folders = [TempDir::new().expect("a folder"), TempDir::new().expect("a folder")];
-    for folder in &folders {
-        std::fs::write(folder.path().join("edge.ray"), EDGE).expect("a file");
-        let mut chart = cargo_bin_cmd!("tabray");
-        let output = chart
-            .current_dir(folder.path())
-            .args(["chart", "edge.ray", "-o", ".", "--time-limit", "1h"])
-            .output();
-        let output = output.expect("the program runs");
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        for extension in ["svg", "png", "csv", "json", "txt"] {
-            assert!(folder.path().join("edge-chart").with_extension(extension).is_file(), "{extension}");
-        }
-        let words = std::fs::read_to_string(folder.path().join("edge-chart.txt")).expect("the verdict");
-        assert_eq!(String::from_utf8_lossy(&output.stdout), words);
-        assert!(words.starts_with("What to do:\n  "), "{words}");
-        let csv = std::fs::read_to_string(folder.path().join("edge-chart.csv")).expect("the numbers");
-        assert_eq!(csv.lines().count(), 1 + errors(folder.path()).len());
-    }
-    assert_tells_fields("tools.md", &numbers(folders[0].path()));
-    assert_eq!(errors(folders[0].path()), errors(folders[1].path()));
+    let folder = TempDir::new().expect("a folder");
+    std::fs::write(folder.path().join("edge.ray"), EDGE).expect("a file");
+    let mut chart = cargo_bin_cmd!("tabray");
+    let args = ["chart", "edge.ray", "-o", ".", "--time-limit", "1h"];
+    let output = chart.current_dir(folder.path()).args(args).output().expect("the program runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let read = |extension: &str| {
+        let path = folder.path().join("edge-chart").with_extension(extension);
+        std::fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+    };
+    let [svg, png, csv, json, words] = ["svg", "png", "csv", "json", "txt"].map(read);
+    assert!(!svg.is_empty() && !png.is_empty());
+    assert_eq!(String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&words));
+    assert!(words.starts_with(b"What to do:\n  "), "{}", String::from_utf8_lossy(&words));
+    let numbers: Value = serde_json::from_slice(&json).expect("JSON");
+    assert_eq!(String::from_utf8_lossy(&csv).lines().count(), 1 + errors(&numbers).len());
+    assert_tells_fields("tools.md", &numbers);
+    let again = serde_json::from_str(&chart::json(&OF_EDGE)).expect("JSON");
+    assert_eq!(errors(&numbers), errors(&again));
 }
 
 #[test]
