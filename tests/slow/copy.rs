@@ -48,10 +48,10 @@ pub fn build(name: &str, more: Files) -> Built {
     let said = cargo(&folder).unwrap_or_else(|said| panic!("{said}"));
     let touched = read(&folder).into_iter().filter(|(path, bytes)| files.get(path) != Some(bytes));
     let touched = touched.map(|(path, _)| path).filter(|path| !path.ends_with("Cargo.lock")).collect();
-    // The next copy is built in the same place, so the programs are kept elsewhere.
+    // The copy that cannot be built is made in the same place, so the programs are kept elsewhere.
     let programs = base().join(name);
     fs::create_dir_all(&programs).expect("room for a folder");
-    for program in ["tabray", "contracts", "example-plugin"] {
+    for program in ["tabray", "contracts", "rival", "example-plugin"] {
         fs::copy(base().join("copy-target/debug").join(program), programs.join(program)).expect("a program");
     }
     drop(lock);
@@ -90,8 +90,10 @@ fn cargo(folder: &Path) -> Result<String, String> {
     // the libraries are already there.
     cargo.args(["build", "--offline", "--workspace", "--bins", "--examples"]).current_dir(folder);
     cargo.env("CARGO_TARGET_DIR", base().join("copy-target")).env("CARGO_BUILD_BUILD_DIR", base().join(".."));
-    // The images are small, so the time of compilation matters more than that of rendering.
+    // The images are small, so the time of compilation matters more than that of rendering. The crate with a plugin of
+    // its own takes seconds to compile, and its image half a minute without optimization.
     cargo.env("CARGO_PROFILE_DEV_OPT_LEVEL", "0");
+    cargo.args(["--config", "profile.dev.package.example-plugin.opt-level=2"]);
     // One copy after the other is built, each with other plugins.
     cargo.env("CARGO_INCREMENTAL", "1");
     let output = cargo.output().expect("cargo runs");
@@ -115,7 +117,12 @@ impl Built {
 
     /// Runs `tabray` with a scene on standard input, and returns its standard error.
     pub fn says(&self, args: &[&str], scene: &str) -> String {
-        let mut program = Command::new(self.programs.join("tabray"));
+        self.says_of("tabray", args, scene)
+    }
+
+    /// Runs a program of the copy with a scene on standard input, and returns its standard error.
+    pub fn says_of(&self, program: &str, args: &[&str], scene: &str) -> String {
+        let mut program = Command::new(self.programs.join(program));
         let mut program =
             program.args(args).stdin(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it runs");
         io::copy(&mut scene.as_bytes(), &mut program.stdin.take().expect("it is piped")).expect("it reads");

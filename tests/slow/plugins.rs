@@ -58,6 +58,7 @@ static PLUGINS: LazyLock<Files> = LazyLock::new(|| {
         files.insert(plugin(name), text.into_bytes());
     }
     files.insert(PathBuf::from("src/bin/contracts.rs"), CONTRACTS.into());
+    files.insert(PathBuf::from("src/bin/rival.rs"), RIVAL.into());
     files.extend(NEW.iter().map(|(path, bytes)| (path.clone(), bytes.clone())));
     files
 });
@@ -97,20 +98,6 @@ static NEW: LazyLock<Files> = LazyLock::new(|| {
 /// The programs with all of these plugins.
 static BUILT: LazyLock<Built> = LazyLock::new(|| copy::build("dropped-in", PLUGINS.clone()));
 
-/// The programs with a plugin that claims names and numbers of other plugins.
-static CONTRADICTORY: LazyLock<Built> = LazyLock::new(|| {
-    // This copy is built after the other one, and reuses what was compiled for it.
-    LazyLock::force(&BUILT);
-    copy::build("contradictory", with("rival", RIVAL))
-});
-
-/// Returns all files that are dropped in, and one more plugin.
-fn with(name: &str, text: &str) -> Files {
-    let mut files = PLUGINS.clone();
-    files.insert(plugin(name), text.into());
-    files
-}
-
 #[test]
 fn plugins_dropped_in_are_all_that_changes() {
     assert!(BUILT.touched.is_empty(), "{:?}", BUILT.touched);
@@ -131,8 +118,11 @@ fn a_file_that_registers_nothing_is_warned_of() {
 
 #[test]
 fn a_file_that_is_no_module_is_refused() {
-    LazyLock::force(&CONTRADICTORY);
-    let said = copy::cannot_be_built(with("Bad-Name", ""));
+    // This copy is built after the other one, in the same place.
+    LazyLock::force(&BUILT);
+    let mut files = PLUGINS.clone();
+    files.insert(plugin("Bad-Name"), Vec::new());
+    let said = copy::cannot_be_built(files);
     assert!(said.contains("Bad-Name.rs: a plugin's file name must be a Rust module name"), "{said}");
 }
 
@@ -232,18 +222,20 @@ fn plugins_that_contradict_each_other_are_told_with_their_places() {
     settings.set_snapshot_path(root().join("snapshots/refusals"));
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
-    let told = CONTRADICTORY.says(&["list"], "");
+    let told = BUILT.says_of("rival", &["list"], "");
     settings.bind(|| insta::assert_snapshot!("plugins-that-contradict-each-other", told));
 }
 
 #[test]
 fn a_name_that_is_taken_is_told_as_the_page_has_it() {
-    let told = CONTRADICTORY.says(&["list"], "");
+    let told = BUILT.says_of("rival", &["list"], "");
     let registered = "the entity type `sphere` is registered twice, at plugins/";
     let (_, places) = told.split_once(registered).unwrap_or_else(|| panic!("{told}"));
-    let (_, other) = places.split_once(" and ").expect("two places");
-    let (other, _) = other.split_once(".rs:").expect("a line");
-    assert!(page().contains(&format!("{registered}brick.rs:{} and {other}.rs:", line(&brick()))), "{told}");
+    let (taken, rival) = places.split_once(" and at ").expect("two places");
+    assert!(rival.starts_with("src/bin/rival.rs:"), "{told}");
+    let (taken, _) = taken.split_once(".rs:").expect("a line");
+    let mine = format!("{registered}brick.rs:{} and at plugins/{taken}.rs:", line(&brick()));
+    assert!(page().contains(&mine), "{told}");
 }
 
 // Profiles and shaders
@@ -337,9 +329,15 @@ fn main() {
 }
 ";
 
+/// A program with plugins that claim names and numbers of other plugins. They are not in the library, as no program that
+/// has them runs.
 const RIVAL: &str = "//! What others have already.
 
-use crate::prelude::*;
+use tabray::prelude::*;
+
+fn main() -> std::process::ExitCode {
+    tabray::cli::run()
+}
 
 inventory::submit! { Entity::shape(\"sphere\", \"another ball\", &[], |_| unreachable!()) }
 inventory::submit! { Profile::new(\"cone\", \"another cone\", \"1\") }
