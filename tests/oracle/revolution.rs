@@ -87,10 +87,9 @@ impl Revolution {
 
     /// Returns the distance from the surface of the point at a distance along a ray, to first order.
     pub fn off_surface(&self, ray: &Ray, distance: f64) -> f64 {
-        let local =
-            Local { start: distance, at: self.place_along(ray, distance), dir: [0.0; 3], from: 0.0, to: 0.0 };
-        let Dual { value: radius, slope } = self.formula.at(Dual::variable(local.at[1]));
-        let value = self.function(&local, DoubleDouble::from(0.0)).value.high;
+        let [x, y, z] = self.place_along(ray, distance);
+        let Dual { value: radius, slope } = self.formula.at(Dual::variable(y));
+        let value = (x * x + z * z - radius * radius).high;
         // The length of the gradient of x^2 + z^2 - g(y)^2 at a point of the surface.
         let gradient = 2.0 * radius.high * slope.high.hypot(1.0);
         (value / gradient).abs()
@@ -154,17 +153,33 @@ impl Revolution {
         x * x + z * z - self.formula.at(y).powi(2)
     }
 
+    /// Returns certain bounds of the surface's function at a place of a ray.
+    fn around(&self, ray: &Local, t: f64) -> Interval {
+        let [x, y, z] = [0, 1, 2]
+            .map(|axis| wide(ray.at[axis]) + Interval::constant(t) * Interval::constant(ray.dir[axis]));
+        x.powi(2) + z.powi(2) - self.formula.at(y).powi(2)
+    }
+
     /// Returns certain bounds of the surface's function on a piece of a ray, and of its first and second derivatives.
     fn bounds(&self, ray: &Local, piece: Interval) -> Dual<Dual<Interval>> {
         let t = Dual::variable(Dual::variable(piece));
         let [x, y, z] = [0, 1, 2].map(|axis| {
-            let [high, low] = [ray.at[axis].high, ray.at[axis].low].map(Interval::constant);
-            let place =
-                Dual { value: Dual { value: high + low, ..Dual::constant(0.0) }, ..Dual::constant(0.0) };
+            let place = Dual { value: wide(ray.at[axis]), ..Dual::constant(0.0) };
+            let place = Dual { value: place, ..Dual::constant(0.0) };
             place + t * Dual::constant(ray.dir[axis])
         });
         x.powi(2) + z.powi(2) - self.formula.at(y).powi(2)
     }
+}
+
+/// Returns an interval that contains a number.
+fn wide(number: DoubleDouble) -> Interval {
+    Interval::constant(number.high) + Interval::constant(number.low)
+}
+
+/// Tells whether a number is negative, by its bounds, and only where these do not decide, by more of its digits.
+fn is_negative(bounds: Interval, number: impl FnOnce() -> DoubleDouble) -> bool {
+    if bounds.has_zero() { number().is_negative() } else { bounds.high < 0.0 }
 }
 
 struct Search<'s> {
@@ -280,7 +295,7 @@ impl Search<'_> {
     }
 
     fn is_inside(&self, t: f64) -> bool {
-        self.surface.function(&self.ray, t.into()).value.is_negative()
+        is_negative(self.surface.around(&self.ray, t), || self.surface.function(&self.ray, t.into()).value)
     }
 
     /// Returns the only root of a piece, if there is one and it counts.
@@ -292,9 +307,11 @@ impl Search<'_> {
         let (mut low, mut high) = (DoubleDouble::from(from), DoubleDouble::from(to));
         let mut t = DoubleDouble::from(self.guess(from, to, inside_at_first));
         let half = DoubleDouble::from(0.5);
+        let mut slope = DoubleDouble::from(0.0);
         // Newton steps, and bisection where these leave the bracket.
         for _ in 0..120 {
-            let Dual { value, slope } = self.surface.function(&self.ray, t);
+            let value;
+            Dual { value, slope } = self.surface.function(&self.ray, t);
             if value.is_negative() == inside_at_first {
                 low = t;
             } else {
@@ -316,7 +333,7 @@ impl Search<'_> {
         };
         let sign = if inside_at_first { 1.0 } else { -1.0 };
         let slope = match kind {
-            Kind::Root => self.surface.function(&self.ray, t).slope.high,
+            Kind::Root => slope.high,
             Kind::Ledge => sign,
         };
         let counts = DoubleDouble::from(self.near) < distance && is_surface && self.crossings.count(sign);
@@ -326,7 +343,10 @@ impl Search<'_> {
     /// Tells whether there is a surface at the height of this point of the ray.
     fn is_surface(&self, t: DoubleDouble) -> bool {
         let y = self.ray.at[1] + t * self.ray.dir[1].into();
-        !y.is_negative() && y <= self.surface.height.into() && !self.surface.formula.at(y).is_negative()
+        let radius = &self.surface.formula;
+        !y.is_negative()
+            && y <= self.surface.height.into()
+            && !is_negative(radius.at(wide(y)), || radius.at(y))
     }
 
     /// Returns the root of a piece to about the precision of `f64`.

@@ -8,8 +8,8 @@ use crate::oracle::shapes::{self, Plane, Quadric};
 use crate::oracle::tally::{Tally, Tolerance, ulp};
 use crate::oracle::{Crossings, Truth};
 use glam::{DMat3, DVec3, dvec2, dvec3};
+use hashbrown::HashMap;
 use std::cell::RefCell;
-use std::collections::HashMap;
 use tabray::geometry::{MISS, Ray, RayRange, Side, Sight};
 use tabray::numeric::{Float, Wide};
 use tabray::scene::Model;
@@ -431,8 +431,8 @@ fn finds(name: &str, spelt: fn(f64) -> Spelt, farthest: i32, [exact, strict]: [f
     {
         let (text, truth) = spelt(scale);
         let truth = |ray: &Ray, near: f64| {
-            let numbers = ray.origin.to_array().into_iter().chain(ray.dir.to_array()).chain([near, scale]);
-            let key: Vec<u64> = numbers.map(f64::to_bits).collect();
+            let ([x, y, z], [u, v, w]) = (ray.origin.to_array(), ray.dir.to_array());
+            let key = [x, y, z, u, v, w, near, scale].map(f64::to_bits);
             *known.borrow_mut().entry(key).or_insert_with(|| truth(ray, near))
         };
         let model = scene(accuracy, &text);
