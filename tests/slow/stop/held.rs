@@ -117,7 +117,7 @@ fn a_time_limit_holds_for_pictures_beside() {
             assert!(err.ends_with(" has been reached\nthe image was not finished\n"), "{err}");
             return;
         }
-        limit = limit * 5 / 4;
+        limit *= 2;
     }
 }
 
