@@ -47,7 +47,7 @@ pub enum Promise {
     BackgroundIsSound,
     /// A camera's directions are unit vectors, the same each time and in packets.
     CameraLooks,
-    /// What a camera says of its rays is so.
+    /// What a camera says about its rays is true.
     CameraKnows,
     /// A profile's radius is finite, and somewhere above 0.
     ProfileIsFinite,
@@ -85,26 +85,26 @@ impl Promise {
     pub fn cure(self) -> &'static str {
         match self {
             Self::TakesWhatItsTableAllows => {
-                "state the rule of each attribute with `must`; refuse only what no single attribute shows"
+                "state the rule of each attribute with `must`; in the constructor, refuse only what depends on several attributes"
             }
             Self::DumpLoadsAgain => {
                 "give a default that satisfies its own rule, and rules that depend on the values alone"
             }
             Self::DistanceIsInItsSpan => {
-                "end `distance` with `range.keep(...)`: anything outside the span, or NaN, becomes `MISS`"
+                "end `distance` with `range.keep(...)`: a distance outside the ray range, or NaN, becomes `MISS`"
             }
-            Self::DistanceIsTheSameAgain => "make `distance` depend on the shape, the ray and the span alone",
+            Self::DistanceIsTheSameAgain => "make `distance` depend on the shape, the ray and the ray range alone",
             Self::PacketsAgree => {
-                "`t_bounds` contains `distance`, and `refine` equals it to the last bit or is NaN; if in doubt, leave out `Bracketed`, or `uniform`"
+                "make `t_bounds` contain `distance`, and `refine` equal it to the last bit or be NaN; if in doubt, leave out `Bracketed`, or `uniform`"
             }
             Self::NormalIsUnit => {
-                "end `normal` with `.normalize()`, and define it where the surface has none"
+                "end `normal` with `.normalize()`, and choose a normal where the surface has none"
             }
             Self::HitIsOnTheSurface => {
                 "make `distance` return the first hit of the same surface for every ray, from both sides and from inside"
             }
             Self::AgreesWithItsProof => {
-                "make `distance` and the shape's `Equation` describe the same surface, clipped alike"
+                "make `distance` and the shape's `Equation` describe the same surface, clipped in the same way"
             }
             Self::BoundsHoldHits => "make `bounds` contain every point of the shape; return none if in doubt",
             Self::HitIsTouched => {
@@ -126,7 +126,7 @@ impl Promise {
             Self::LightGoesOn => {
                 "clamp the reflected fraction, and normalize the direction in which the rest is transmitted"
             }
-            Self::LightIsFinite => "return `None` where no light goes, including the light's own location",
+            Self::LightIsFinite => "return `None` where no light arrives, including at the light's own location",
             Self::BackgroundIsSound => {
                 "state rules for the attributes, and leave out `enclose` if in doubt; `brightest` bounds all colours"
             }
@@ -150,20 +150,20 @@ impl fmt::Display for Promise {
         f.write_str(match self {
             Self::TakesWhatItsTableAllows => "the constructor accepts all values that the table allows",
             Self::DumpLoadsAgain => "a dumped scene loads again, and its dump is the same",
-            Self::DistanceIsInItsSpan => "a distance lies within the span, or is `MISS`",
+            Self::DistanceIsInItsSpan => "a distance lies within the ray range, or is `MISS`",
             Self::DistanceIsTheSameAgain => "the same ray always has the same distance",
             Self::PacketsAgree => "packets of rays get the same answers as single rays",
             Self::NormalIsUnit => "a normal is a unit vector",
             Self::HitIsOnTheSurface => "a hit is found wherever its ray starts",
             Self::AgreesWithItsProof => "the distance is that of the first hit that `certify` proves",
             Self::BoundsHoldHits => "the bounds contain every hit",
-            Self::HitIsTouched => "`touches` is true of the points where a shape is hit",
+            Self::HitIsTouched => "`touches` is true at each point where a ray hits the shape",
             Self::NormalIsUpright => "a normal is perpendicular to the surface",
             Self::NormalsAgree => "neighbouring normals point to the same side",
             Self::NormalsPointOut => "the normals of a convex shape point outward",
-            Self::IsNotMetAgain => "a shape that does not meet itself is not hit by rays that leave it",
+            Self::IsNotMetAgain => "a ray that leaves a shape does not hit it again where `can_hit_itself` is `false`",
             Self::StartIsNoHit => "a ray that leaves the surface hits what lies beyond, not its own start",
-            Self::IsMet => "rays hit the shape",
+            Self::IsMet => "some ray hits the shape",
             Self::ReflectivityIsSound => {
                 "a reflectivity is finite, and not negative unless the material's is"
             }
@@ -175,7 +175,7 @@ impl fmt::Display for Promise {
                 "a background's colours are finite, not negative, and within `brightest` and `enclose`"
             }
             Self::CameraLooks => "a camera has pixels, samples and rays with unit directions",
-            Self::CameraKnows => "what a camera says of its rays is so",
+            Self::CameraKnows => "what a camera says about its rays is true",
             Self::ProfileIsFinite => "a profile is finite from 0 to 4, and above 0 somewhere",
         })
     }
