@@ -4,7 +4,7 @@ use super::rainbow::{FREQUENCY, Hues, PHASE};
 use crate::prelude::*;
 
 static BRIGHTNESS: Pparm<f64> = Pparm::or("brightness", "half of the strongest colour", 1.0)
-    .must("not negative", |brightness| *brightness >= 0.0);
+    .must("0 or more", |brightness| *brightness >= 0.0);
 
 const TABLE: Table = &[&FREQUENCY, &PHASE, &BRIGHTNESS];
 

@@ -21,7 +21,7 @@ inventory::submit! {
         let body = solid.and_then(|solid| outline::body(solid, args.accuracy()).ok());
         body.ok_or(Refusal {
             attribute: Some("size"),
-            message: "is too small for where it is: its sides coincide, or are too far away".to_owned(),
+            message: "is too small at its position: its sides coincide, or are too far away".to_owned(),
             help: "a side must be longer than the rounding of its coordinates, about 1e-16 of their size",
         })
     })

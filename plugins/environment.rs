@@ -6,15 +6,15 @@ use std::sync::Arc;
 
 static TEXTURE: Pparm<Arc<Texture>> = Pparm::required(
     "texture",
-    "the equirectangular picture, whose middle lies toward -z and whose upper edge is straight up (y)",
+    "the equirectangular texture, whose middle lies toward -z and whose upper edge is straight up (y)",
 );
-static BRIGHTNESS: Pparm<f64> = Pparm::or("brightness", "the factor of the picture's colours", 1.0)
+static BRIGHTNESS: Pparm<f64> = Pparm::or("brightness", "the factor of the texture's colours", 1.0)
     .must("0 or more", |factor| *factor >= 0.0);
 
 const TABLE: Table = &[&TEXTURE, &BRIGHTNESS];
 
 inventory::submit! {
-    Entity::background("environment", "a picture all around where there is no object", &[TABLE], |args| {
+    Entity::background("environment", "a texture all around, where there is no object", &[TABLE], |args| {
         Ok(Box::new(Environment { texture: args.get(&TEXTURE), brightness: args.get(&BRIGHTNESS) }))
     })
 }

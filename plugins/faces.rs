@@ -4,7 +4,7 @@ use crate::prelude::*;
 
 static COLOURS: Pparm<List<Rgb, 1, 256>> = Pparm::required(
     "colours",
-    "what the ambient and diffuse colours of each face are multiplied by; after the last colour the first follows again",
+    "the factors of the ambient and diffuse colours of each face; after the last colour, the first follows again",
 )
 .alias(&["colors"])
 .must("0 or more in each channel", |colours: &List<Rgb, 1, 256>| {

@@ -10,7 +10,7 @@ static INDEX: Pparm<f64> = Pparm::or(
 .between(0.25, 4.0);
 static COLOUR: Pparm<Rgb> = Pparm::or(
     "colour",
-    "the tint of light that passes through a wall, scaled so that its strongest channel is 1",
+    "the tint of light that passes through a surface, scaled so that its strongest channel is 1",
     Rgb::ONE,
 )
 .alias(&["color"])
@@ -18,7 +18,7 @@ static COLOUR: Pparm<Rgb> = Pparm::or(
     colour.min_element() >= 0.0 && colour.max_element() > 0.0
 });
 static TRANSPARENCY: Pparm<f64> =
-    Pparm::or("transparency", "the fraction of what is not reflected that passes through a wall", 1.0)
+    Pparm::or("transparency", "the transmitted fraction of the light that is not reflected", 1.0)
         .must("more than 0 and at most 1", |fraction| *fraction > 0.0 && *fraction <= 1.0);
 
 const TABLE: Table = &[&INDEX, &COLOUR, &TRANSPARENCY];

@@ -5,10 +5,9 @@ use std::sync::Arc;
 
 static TEXTURE: Pparm<Arc<Texture>> = Pparm::required("texture", "the texture, defined earlier in the scene");
 static REPEAT: Pparm<[i64; 2]> =
-    Pparm::or("repeat", "how often the image stands side by side along u and along v", [1, 1])
-        .between(1.0, 1e6);
+    Pparm::or("repeat", "how often the image repeats along u and along v", [1, 1]).between(1.0, 1e6);
 static SMOOTH: Pparm<bool> =
-    Pparm::or("smooth", "whether colours between the middles of four texels blend into each other", false);
+    Pparm::or("smooth", "whether colours are interpolated between the centres of texels", false);
 
 const TABLE: Table = &[&TEXTURE, &REPEAT, &SMOOTH];
 

@@ -1,4 +1,4 @@
-//! An intersection: what lies in all of several objects.
+//! An intersection: the space that several objects share.
 
 use crate::prelude::*;
 use crate::shapes::{Objects, Operation, combined};
@@ -11,7 +11,7 @@ static OBJECTS: Pparm<Objects> = Pparm::required(
 const TABLE: Table = &[&OBJECTS as &dyn Row];
 
 inventory::submit! {
-    Entity::of_objects("intersection", "what lies in all of several objects", &[TABLE], |args| {
+    Entity::of_objects("intersection", "the space that several objects share", &[TABLE], |args| {
         combined(args, &OBJECTS, Operation::Intersection)
     })
 }

@@ -17,7 +17,7 @@ static ROTATION: Pparm<Rotation> = Pparm::or(
     "the angles by which the scaled mesh is rotated around x, then y, then z, or an axis and the angle around it, counterclockwise",
     Rotation::NONE,
 )
-.must("around an axis that is not zero", Rotation::has_axis);
+.must("around a nonzero axis", Rotation::has_axis);
 static TRANSLATION: Pparm<DVec3> =
     Pparm::or("translation", "where the file's origin lies", DVec3::ZERO).unit("world coordinates");
 static SMOOTH: Pparm<i64> =
@@ -115,11 +115,11 @@ fn unlike(args: &Args, painted: &Painted) -> Option<Warning> {
     (!unlike.is_empty()).then(|| Warning {
         attribute: "material",
         message: format!(
-            "has faces whose material is as shiny and transparent as that of the mesh: {}",
+            "ignores the shininess and transparency of its faces' materials: {}",
             some(&unlike)
         ),
         help:
-            "only the ambient, diffuse and specular colours differ from face to face: make a mesh of its own"
+            "only the ambient, diffuse and specular colours can differ from face to face: make these faces a mesh of their own"
                 .to_owned(),
     })
 }

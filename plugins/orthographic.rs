@@ -4,10 +4,11 @@ use super::look_at::{self, frame};
 use crate::prelude::*;
 use std::sync::Arc;
 
-static WIDTH: Pparm<f64> = Pparm::required("width", "the width of what the image shows")
-    .unit("world units")
-    .positive()
-    .pose(Pose::Extent);
+static WIDTH: Pparm<f64> =
+    Pparm::required("width", "the width of the part of the scene that the image shows")
+        .unit("world units")
+        .positive()
+        .pose(Pose::Extent);
 
 const TABLE: Table = &[&WIDTH as &dyn Row];
 

@@ -15,7 +15,7 @@ static ROTATION: Pparm<Rotation> = Pparm::or(
     "the angles by which the scaled object is rotated around x, then y, then z, or an axis and the angle around it, counterclockwise",
     Rotation::NONE,
 )
-.must("around an axis that is not zero", Rotation::has_axis);
+.must("around a nonzero axis", Rotation::has_axis);
 static TRANSLATION: Pparm<DVec3> =
     Pparm::or("translation", "where the object's origin lies", DVec3::ZERO).unit("world coordinates");
 

@@ -7,7 +7,7 @@ static POINTS: Pparm<List<DVec3, 3, 256>> =
     Pparm::required("points", "the corners; the side from which they run counterclockwise is lit")
         .unit("world coordinates")
         .must(
-            "corners in one plane, to a billionth of its size, whose edges do not meet",
+            "corners in one plane, to a billionth of the polygon's size, whose edges do not meet",
             |points: &List<DVec3, 3, 256>| triangles(&points.0).is_some(),
         );
 

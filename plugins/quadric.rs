@@ -80,7 +80,7 @@ impl<A: Marker> Hittable for Quadric<A> {
 
     fn openness(&self) -> Option<&'static str> {
         (!self.is_closed())
-            .then_some("it is no ellipsoid within its box, with an equation that is below J inside")
+            .then_some("it is not an ellipsoid within its box whose equation is below J inside")
     }
 
     fn is_two_sided(&self) -> bool {

@@ -3,11 +3,11 @@
 use super::tiles::Wall;
 use crate::prelude::*;
 
-pub static FREQUENCY: Pparm<i64> =
-    Pparm::or("frequency", "how often the hues come around", 2).between(1.0, 64.0);
-pub static PHASE: Pparm<f64> = Pparm::or("phase", "how far the hues are turned on", 0.0).unit("radians");
+pub static FREQUENCY: Pparm<i64> = Pparm::or("frequency", "how often the hues repeat", 2).between(1.0, 64.0);
+pub static PHASE: Pparm<f64> =
+    Pparm::or("phase", "the angle by which the hues are shifted", 0.0).unit("radians");
 static BRIGHTNESS: Pparm<f64> = Pparm::or("brightness", "half of the strongest colour", 6.0)
-    .must("not negative", |brightness| *brightness >= 0.0);
+    .must("0 or more", |brightness| *brightness >= 0.0);
 static ON: Pparm<Wall> = Pparm::or("on", "the wall along which the hues lie", Wall::Backwall);
 
 const TABLE: Table = &[&FREQUENCY, &PHASE, &BRIGHTNESS, &ON];

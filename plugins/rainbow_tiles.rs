@@ -5,7 +5,7 @@ use super::tiles::{Grid, WIDTH};
 use crate::prelude::*;
 
 static BRIGHTNESS: Pparm<f64> = Pparm::or("brightness", "half of the strongest colour", 6.0)
-    .must("not negative", |brightness| *brightness >= 0.0);
+    .must("0 or more", |brightness| *brightness >= 0.0);
 
 const TABLE: Table = &[&WIDTH, &rainbow::FREQUENCY, &rainbow::PHASE, &BRIGHTNESS];
 

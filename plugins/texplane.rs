@@ -61,8 +61,9 @@ impl Picture {
             None if is_tiled => {
                 return Err(Refusal {
                     attribute: Some("mode"),
-                    message: "has texels as large as pixels of an image plane, and the camera has none"
-                        .to_owned(),
+                    message:
+                        "has texels as large as pixels of an image plane, but the camera has no image plane"
+                            .to_owned(),
                     help: "`mode 0` fits the image to the rectangle; `mode 1` needs a `camera`, with its `worlddim`",
                 });
             }

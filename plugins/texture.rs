@@ -8,7 +8,7 @@ static FILENAME: Pparm<String> =
 const TABLE: Table = &[&FILENAME];
 
 inventory::submit! {
-    Entity::texture("texture", "an image for texplanes and projectors", &[TABLE], |args| {
+    Entity::texture("texture", "an image for texplanes, projectors, shaders and environments", &[TABLE], |args| {
         Ok(Texture::new(args.setting.folder.join(args.get(&FILENAME))))
     })
 }

@@ -5,11 +5,11 @@ use crate::prelude::*;
 use std::sync::Arc;
 
 static APERTURE: Pparm<f64> =
-    Pparm::required("aperture", "the diameter of the lens, through whose middle a single sample goes")
+    Pparm::required("aperture", "the diameter of the lens; a single sample passes through its centre")
         .unit("world units")
         .positive();
 static FOCUS: Pparm<Option<f64>> =
-    Pparm::or("focus", "the distance of the plane that is sharp (by default that of `target`)", None)
+    Pparm::or("focus", "the distance of the plane in focus (by default that of `target`)", None)
         .unit("world units")
         .must("positive", |focus: &Option<f64>| focus.is_none_or(|focus| focus > 0.0));
 

@@ -107,7 +107,7 @@ fn a_course_scene_gives_the_courses_picture_in_one_command_that_says_where_the_d
         ("fplane/fplane1", 100.0, None),
         ("proj/proj3", 100.0, None),
         ("revsurf/revsurff", 100.0, Some("silhouettes that the course's method loses")),
-        ("trans/translucent", 62.19, Some("far walls, which the course's method never meets")),
+        ("trans/translucent", 62.19, Some("far walls, which the course's method never hits")),
     ] {
         let path = folder.join(scene);
         let image = target.path().join("course.png");

@@ -110,7 +110,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What was measured, for the heading.
+/// The measured scene and its counts, for the heading.
 struct About {
     name: String,
     size: [usize; 2],
@@ -238,7 +238,7 @@ struct Rate {
     rays: u64,
     /// The number of rays per second; null where there are none or their share of the time is too small to measure.
     rays_per_second: Option<f64>,
-    /// The time for all of them, in seconds.
+    /// The time for all rays, in seconds.
     seconds: f64,
 }
 

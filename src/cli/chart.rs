@@ -46,7 +46,7 @@ Examples:
   tabray chart ball.ray
   tabray chart ball.ray -o ball.svg --time-limit 5m";
 
-/// How long a chart may take if no time limit is given: on a quiet machine, most scenes take less.
+/// The time that a chart may take if no time limit is given: on a quiet machine, most scenes take less.
 const LIMIT: Duration = Duration::from_secs(120);
 
 const NOTHING: &str = "nothing has been measured yet";
@@ -141,7 +141,7 @@ fn end(chart: &Chart, files: Files, is_late: bool) -> Result<(), Failure> {
         return Err(Failure::Interrupted("the chart shows what has been measured so far"));
     }
     if !chart.is_whole {
-        messages::note("the time did not suffice for all of the chart; `--time-limit` gives it more");
+        messages::note("there was not enough time for all of the chart; `--time-limit` gives it more");
     }
     Ok(())
 }

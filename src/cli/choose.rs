@@ -55,7 +55,7 @@ Examples:
   tabray choose ball.ray --max-error 0.01
   tabray choose ball.ray --max-time 2 --worst";
 
-/// How long choosing may take if no time limit is given.
+/// The time that choosing may take if no time limit is given.
 const LIMIT: Duration = Duration::from_secs(10);
 
 /// The ratio of costs or errors from which on another choice than the first is worth taking.
@@ -158,7 +158,7 @@ impl<'e> Weighed<'e> {
                     let least = least(&|one| one.bound);
                     let least = if least.is_finite() { format!("{least:.2e}") } else { "unknown".to_owned() };
                     format!(
-                        "no choice has an error of at most {most:e} for certain; the least bound is {least}"
+                        "no choice is certain to have an error of at most {most:e}; the least bound is {least}"
                     )
                 }
                 Goal::Time { most, .. } => {
@@ -212,7 +212,7 @@ impl<'e> Weighed<'e> {
         };
         let Estimates { pixels: [measured, all], against, is_short, .. } = *self.estimates;
         let sure = if measured == all { "" } else { ", with a confidence of 99 %" };
-        let short = if is_short { "; the time did not suffice for more" } else { "" };
+        let short = if is_short { "; there was no time for more" } else { "" };
         let _ = write!(
             text,
             "\nThe marked choice is {why}{sure}. Errors were measured on {measured} of {all} pixels, against {against} \

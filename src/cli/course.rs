@@ -15,7 +15,7 @@ const MOST: usize = 1000;
 /// The maximum number of objects that are named.
 const NAMED: usize = 4;
 
-/// Where the default may differ from an image of the course's methods.
+/// The parts of a scene where the default may differ from an image of the course's methods.
 #[derive(Default)]
 pub struct Differences {
     /// The objects of which the default finds hits that the course's methods lose.
@@ -61,9 +61,9 @@ impl Differences {
         };
         let lost = part(
             &self.lost,
-            "silhouettes that the course's method loses, and places where the surface meets its own rays",
+            "silhouettes that the course's method loses, and places where rays that leave the surface hit it again",
         );
-        let walls = part(&self.walls, "far walls, which the course's method never meets");
+        let walls = part(&self.walls, "far walls, which the course's method never hits");
         let parts: Vec<_> = lost.into_iter().chain(walls).collect();
         if !parts.is_empty() {
             let parts = parts.join(", and at ");

@@ -103,8 +103,7 @@ fn frames(name: &Path) -> Result<Vec<PathBuf>, Failure> {
         return Err(Failure::Usage(
             format!("frame {} of `{}` is missing", missing.0, name.display()),
             Some(
-                "an image that was stopped or a frame of another number of digits may be the reason"
-                    .to_owned(),
+                "its render may have been stopped, or its name may have another number of digits".to_owned(),
             ),
         ));
     }
@@ -155,7 +154,10 @@ fn animation(path: &Path, frames: &[PathBuf], rate: u16) -> Result<(), Failure> 
         if frame.dimensions() != (width, height) {
             progress.end();
             return Err(Failure::Usage(
-                format!("`{}` is not {width} x {height} pixels large as the first frame is", file.display()),
+                format!(
+                    "`{}` does not have {width} x {height} pixels, as the first frame does",
+                    file.display()
+                ),
                 None,
             ));
         }

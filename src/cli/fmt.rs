@@ -58,7 +58,7 @@ fn one(registry: &Registry, path: &Path, only_check: bool) -> Result<bool, Failu
         let mut report = Report::new(&name, body.to_owned(), view.syntax);
         if let Some((place, message)) = problem(&view) {
             let fault = Fault::error(Some(place), message);
-            report.add(fault.help("a scene is formatted when its form has no errors"));
+            report.add(fault.help("only a scene without syntax errors can be formatted"));
         }
         return Err(Failure::Scene(report));
     };

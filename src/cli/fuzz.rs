@@ -105,9 +105,9 @@ pub struct Server {
 
 type Respond = Box<dyn Fn(&[u8]) -> Served>;
 
-/// What came of a connection.
+/// The result of a connection.
 pub struct Served {
-    /// What was sent to the client.
+    /// The bytes that were sent to the client.
     pub sent: Vec<u8>,
     /// Whether a request was let in and has been answered.
     pub is_let_in: bool,
@@ -179,7 +179,8 @@ impl Server {
 /// A client that sends bytes, waits for the answer if they are a request that is let in, and closes the connection.
 struct Client<'c> {
     unread: &'c [u8],
-    /// How often the server may ask for more before the connection is closed: it asks before it looks at what it has.
+    /// The number of times that the server may ask for more before the connection is closed: it asks before it looks at
+    /// the bytes that it has.
     patience: u32,
     is_let_in: &'c Cell<bool>,
     sent: &'c mut Vec<u8>,

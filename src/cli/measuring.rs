@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 /// The time between two lines of progress.
 const LINES: Duration = Duration::from_secs(10);
 
-/// How much longer than its limit a measurement that is under way may take, as a fraction of the limit.
+/// The time that a measurement under way may take beyond its limit, as a divisor of the limit.
 const GRACE: u32 = 10;
 
 /// A measurement under way.
@@ -30,7 +30,7 @@ pub struct Work {
 pub struct Time {
     start: Instant,
     limit: Duration,
-    /// When the current panel began, and when it must end.
+    /// The times at which the current panel began and must end.
     panel: [Instant; 2],
 }
 
@@ -43,7 +43,7 @@ impl Time {
         Self { start: now, limit, panel: [now, now.checked_add(limit).unwrap_or(now)] }
     }
 
-    /// Gives the next panel its share of what is left for this many panels.
+    /// Gives the next panel its share of the remaining time, of this many panels.
     pub fn share(&mut self, panels: usize) {
         let now = Instant::now();
         let left = self.limit.saturating_sub(self.start.elapsed());

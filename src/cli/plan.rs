@@ -38,7 +38,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
 
 /// Returns the decisions of a plan, one on each line.
 pub fn text(plan: &Plan) -> String {
-    let best = format!("{}, the highest level of this machine; the image is the same with any", Cpu::best());
+    let best = format!("{}, the highest level of this machine; the image does not depend on it", Cpu::best());
     let cpu = Decision { subject: "instructions", text: best };
     decisions::of(plan).iter().chain([&cpu]).map(|decision| format!("{decision}\n")).collect()
 }

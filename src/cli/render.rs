@@ -27,7 +27,7 @@ use crate::world::accuracy::Accuracy;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Render scenes
+/// Render scenes to images
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
@@ -50,7 +50,7 @@ pub struct Args {
     compress: Compression,
     #[command(flatten)]
     size: size::Args,
-    /// The exposure in stops: each doubles all colours, and each below 0 halves them
+    /// The exposure in stops: each stop doubles all colours, and each negative stop halves them
     #[arg(long, value_name = "STOPS", default_value = "0", value_parser = exposure, allow_negative_numbers = true)]
     #[arg(help_heading = "Image")]
     exposure: f64,
@@ -99,7 +99,7 @@ pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
         let Some(frames) = frames else { return one(registry, &args, (&scene, path), &stop) };
         if path == Path::new("-") || input::is_standard(&scene) {
             return Err(Failure::Usage(
-                "frames are read from a file, and written to files".to_owned(),
+                "`--frames` needs a scene in a file, and writes files".to_owned(),
                 Some("name the scene, and the images with `-o FILE`".to_owned()),
             ));
         }
@@ -119,7 +119,7 @@ pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
     }
     if args.frames.frames.is_some() {
         return Err(Failure::Usage(
-            "frames are those of one scene".to_owned(),
+            "`--frames` takes one scene".to_owned(),
             Some("render the scenes one after the other, each with `-o FILE`".to_owned()),
         ));
     }
@@ -139,7 +139,7 @@ impl Args {
         self.stop.resume && (self.frames.frames.is_none() || resume::beside(path).exists())
     }
 
-    /// Tells whether an image that is there already is not rendered again: a frame with `--resume`, that is not begun.
+    /// Tells whether an existing image is not rendered again: with `--resume`, a complete frame.
     fn skips(&self, path: &Path, model: &Model) -> Result<bool, Failure> {
         let is_resumed = self.stop.resume && !self.continues(path);
         Ok(is_resumed && aov::wanted(&self.aov, model)?.is_empty())
@@ -183,7 +183,7 @@ fn one(
         );
     }
     if args.skips(&path, &model)? && made::is_there(&path, &made, warnings.files()) {
-        messages::note(&format!("{} is there already", path.display()));
+        messages::note(&format!("{} exists already", path.display()));
         return Ok(());
     }
     let output = Output::open(&path)?;
@@ -251,7 +251,7 @@ fn share(
 ) -> Result<(), Failure> {
     if path == Path::new("-") {
         return Err(Failure::Usage(
-            "standard output has no place beside it for a part".to_owned(),
+            "a part cannot be written beside standard output".to_owned(),
             Some("name the image with `-o FILE`".to_owned()),
         ));
     }

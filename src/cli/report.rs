@@ -29,7 +29,7 @@ pub struct Item {
     pub change: Change,
     /// Explanations of the pixel that differs most.
     pub explanations: Vec<Explanation>,
-    /// How to accept or reject the change, where the user is to decide.
+    /// The commands that accept or reject the change, if the user is to decide.
     pub decision: Option<Decision>,
 }
 
@@ -126,7 +126,7 @@ struct Data<'d> {
 /// An item, as the page receives it.
 #[derive(Serialize)]
 struct Shown<'d> {
-    /// How to decide about the item; left out where there is nothing to decide.
+    /// The commands that decide about the item; left out where there is nothing to decide.
     #[serde(skip_serializing_if = "Option::is_none")]
     decision: Option<&'d Decision>,
     /// Explanations of the pixel that differs most: titles and texts.

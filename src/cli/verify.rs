@@ -21,14 +21,15 @@ use std::path::PathBuf;
 /// Prove for each pixel which object is seen, or the bytes of its colour
 ///
 /// The proof is about the real ray through the centre of the pixel and the scene's numbers as they are written. It uses
-/// intervals of 53 bits that contain all rounding errors and, where these do not decide, of 237 bits; it is independent
-/// of the methods that render the image. What 237 bits leave undecided is a tie, as where two objects coincide. The exit
-/// status is 1 if the tracer finds an object that is neither the first nor part of a tie.
+/// intervals of 53 bits that contain all rounding errors and, where these do not decide, intervals of 237 bits; it is
+/// independent of the methods that render the image. A pixel that 237 bits leave undecided is a tie, such as a point
+/// where two objects coincide. The exit status is 1 if the tracer finds an object that is neither the first nor part of
+/// a tie.
 ///
-/// With --colours, every decision behind a pixel is proven: each hit, shadow, mirror and pane, and the tile or texel that
-/// is met. Its colour is enclosed in intervals, and the pixel is proven where these hold one colour in bytes, which is that
-/// of the image. The image may differ by rounding, where the true ray passes exactly through an edge or a level is a whole
-/// number; the exit status is 1 if it differs by more.
+/// With --colours, every decision behind a pixel is proven: each hit, shadow, mirror and pane, and the tile or texel
+/// that is hit. Intervals enclose the colour, and a pixel is proven if they contain a single colour in bytes, which is
+/// that of the image. The image may differ by rounding, where the true ray passes exactly through an edge or a level is
+/// a whole number; the exit status is 1 if it differs by more.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {

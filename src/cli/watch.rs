@@ -35,7 +35,7 @@ use std::thread;
 use std::time::Duration;
 use watched::Watched;
 
-/// How long a file must have been left alone before it is read: many editors write a file in several steps.
+/// The time for which a file must have been left alone before it is read: many editors write a file in several steps.
 const SETTLED: Duration = Duration::from_millis(10);
 
 /// Show the image in the browser, and render it again whenever the scene changes

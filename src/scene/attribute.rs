@@ -31,17 +31,17 @@ pub trait Attribute: Sync {
     fn arity(&self) -> Counts;
     /// Returns the values where a scene gives none, or `None` where a scene must give them.
     fn default(&self) -> Option<Datum>;
-    /// Returns what the values must be, such as "positive", or an empty string where every value is allowed.
+    /// Returns the rule of the values, such as "positive", or an empty string where every value is allowed.
     fn rule(&self) -> Cow<'static, str>;
     /// Returns the least and the greatest number that each value may be, where there are such numbers.
     fn range(&self) -> Option<[f64; 2]>;
-    /// Returns what the values say of where a camera stands, if they say anything of it.
+    /// Returns which part of a camera's pose the values give, if they give any.
     fn pose(&self) -> Option<Pose>;
     /// Tells whether values of the right type and number satisfy the rule.
     fn allows(&self, datum: &Datum) -> bool;
 }
 
-/// What an attribute says of where a camera stands: by this, cameras of any type are moved on a page.
+/// The part of a camera's pose that an attribute gives. By this, a page can move cameras of any type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pose {
     /// The point where the viewer is. A camera without a [`Target`](Self::Target) looks through an image plane that stays

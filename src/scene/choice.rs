@@ -20,7 +20,7 @@ pub trait Choice: Copy + Send + Sync + 'static {
     fn option(&self) -> ChoiceName;
 }
 
-/// How a scene names one alternative.
+/// The name, number and meaning of an alternative in scenes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChoiceName {
     /// The name.

@@ -43,5 +43,5 @@ pub(super) static SAMPLES: Pparm<i64> =
 pub(super) static ACCURACY: Pparm<Accuracy> =
     Pparm::or("accuracy", "how exactly hits are computed", Accuracy::Exact).not_dumped();
 
-/// What every camera has before and after its own attributes.
+/// The attributes that every camera has before and after its own.
 pub(super) const FILM: [Table; 2] = [&[&PIXELDIM], &[&SAMPLES, &ACCURACY]];

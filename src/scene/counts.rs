@@ -2,7 +2,7 @@
 
 use crate::text;
 
-/// How many values an attribute may take.
+/// The numbers of values that an attribute may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Counts {
     /// One of these numbers of values.
@@ -80,7 +80,7 @@ impl Counts {
 /// Attributes of which a scene gives exactly one. As a row of a table, it stands beside the rows of the attributes,
 /// which by themselves may be left out.
 pub struct OneOf {
-    /// What each of the attributes is, with its article: "the profile curve".
+    /// The noun for each of the attributes, with its article: "the profile curve".
     pub meaning: &'static str,
     /// The names of the attributes.
     pub names: &'static [&'static str],

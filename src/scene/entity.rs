@@ -251,7 +251,7 @@ impl Entity {
     }
 }
 
-/// What a constructor may know of the scene beside the entity's own values.
+/// The scene around an entity, as far as its constructor may know it.
 #[derive(Clone, Debug, Default)]
 pub struct Setting {
     /// The scene's camera. Only objects and lights are certain to be constructed after it; other entities may see a
@@ -261,7 +261,7 @@ pub struct Setting {
     pub folder: PathBuf,
     /// The scene's materials by their names; only objects and lights are certain to see all of them.
     pub materials: Arc<BTreeMap<String, Arc<Material>>>,
-    /// How many bytes of memory an object may take beside the scene.
+    /// The memory that an object may take beside the scene, in bytes.
     pub memory: u64,
 }
 
@@ -312,7 +312,7 @@ impl Args {
         self.setting.camera.accuracy
     }
 
-    /// Returns the z, in world units, beyond which the scene's camera lets planes not be there, if it has such a rule.
+    /// Returns the z, in world units, beyond which the scene's camera cuts off planes, if it does.
     pub fn planes_end_at(&self) -> Option<f64> {
         self.setting.camera.camera.planes_end_at()
     }
@@ -375,8 +375,8 @@ impl Deref for Args {
 pub struct Refusal {
     /// The attribute to mark; if `None`, the entity's name is marked.
     pub attribute: Option<&'static str>,
-    /// What is wrong, phrased to follow the entity's name: "has an `xdir` parallel to its `normal`".
+    /// The error, phrased to follow the entity's name: "has an `xdir` parallel to its `normal`".
     pub message: String,
-    /// What would be right.
+    /// How to correct it.
     pub help: &'static str,
 }

@@ -12,10 +12,10 @@ pub struct Schema {
     /// The schema dialect, given only at the top level.
     #[serde(rename = "$schema", skip_serializing_if = "Option::is_none")]
     pub language: Option<&'static str>,
-    /// What fields that are not in `properties` may hold.
+    /// The schema of fields that are not in `properties`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub additional_properties: Option<Others>,
-    /// Where the schema is that matches in place of this one.
+    /// The path of a schema that stands for this one.
     #[serde(rename = "$ref", skip_serializing_if = "Option::is_none")]
     pub reference: Option<String>,
     /// Schemas that must all match.
@@ -27,7 +27,7 @@ pub struct Schema {
     /// The description that editors show.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
-    /// What must match where `condition` does not.
+    /// The schema that must match where `condition` does not.
     #[serde(rename = "else", skip_serializing_if = "Option::is_none")]
     pub otherwise: Option<Box<Schema>>,
     /// All allowed values.
@@ -36,8 +36,8 @@ pub struct Schema {
     /// The number that all numbers must be above.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub exclusive_minimum: Option<f64>,
-    /// What decides whether `then` or `otherwise` must match. Where these name the fault, editors show it once, in its
-    /// place; of alternatives (`anyOf`, `oneOf`), they show that none matches, for all of an entity.
+    /// The schema that decides whether `then` or `otherwise` must match. If these name the error, editors show it once,
+    /// in its place. Of alternatives (`anyOf`, `oneOf`), editors only show, for the whole entity, that none matches.
     #[serde(rename = "if", skip_serializing_if = "Option::is_none")]
     pub condition: Option<Box<Schema>>,
     /// The schema of each value of an array.
@@ -61,7 +61,7 @@ pub struct Schema {
     /// The minimum number of fields of an object.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub min_properties: Option<usize>,
-    /// What must not match.
+    /// A schema that must not match.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub not: Option<Box<Schema>>,
     /// The schemas of an object's fields.
@@ -70,7 +70,7 @@ pub struct Schema {
     /// The fields that an object must have.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub required: Option<Vec<&'static str>>,
-    /// What must match where `condition` does.
+    /// The schema that must match where `condition` does.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub then: Option<Box<Schema>>,
     /// The title that editors show.
@@ -92,7 +92,7 @@ pub enum Sort {
     Any(Vec<&'static str>),
 }
 
-/// What fields may hold that a schema does not name.
+/// The values of fields that a schema does not name.
 #[derive(Clone, Serialize)]
 #[serde(untagged)]
 pub enum Others {

@@ -20,7 +20,7 @@ pub enum Kind {
     Object,
     /// A source of light, which is itself not visible.
     Light,
-    /// What is seen where there is no object; a scene has at most one.
+    /// The colour of rays that hit nothing; a scene has at most one.
     Background,
 }
 

@@ -5,7 +5,8 @@ use crate::scene::value::{Datum, Type, Value};
 use crate::world::body::NamedBody;
 use std::sync::Arc;
 
-/// A list of values, each of one or several numbers or the name of an object, with a least and a most number of them.
+/// A list of values, each of one or several numbers or the name of an object, with a minimum and a maximum number of
+/// values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct List<T, const LEAST: usize, const MOST: usize>(pub Vec<T>);
 

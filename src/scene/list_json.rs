@@ -59,7 +59,7 @@ pub struct Attribute {
     pub counts: &'static [usize],
     /// The values where a scene gives none: one value, or several in an array; null where there is no default.
     pub default: Option<Constant>,
-    /// How many values a list takes; null for other attributes.
+    /// The numbers of values that a list takes; null for other attributes.
     pub list: Option<ListOf>,
     /// The meaning, in a few words.
     pub meaning: &'static str,
@@ -85,7 +85,7 @@ pub struct Attribute {
     pub variables: Option<&'static [&'static str]>,
 }
 
-/// How many values a list takes.
+/// The numbers of values that a list takes.
 #[derive(Serialize)]
 pub struct ListOf {
     /// The number of values in each group.
@@ -99,9 +99,9 @@ pub struct ListOf {
 /// Attributes of which a scene gives exactly one.
 #[derive(Serialize)]
 pub struct Group {
-    /// What each of them is.
+    /// The noun for each of the attributes, with its article.
     pub meaning: &'static str,
-    /// Their names.
+    /// The names of the attributes.
     pub names: &'static [&'static str],
 }
 

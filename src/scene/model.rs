@@ -29,7 +29,7 @@ pub struct Model {
     pub patterns: Vec<Item<NamedBody>>,
     /// The lights, in the order of the scene.
     pub lights: Vec<Item<AnyLight>>,
-    /// What is seen where there is no object; black without one.
+    /// The colour of rays that hit nothing; black without a background.
     pub background: Option<Item<AnyBackground>>,
 }
 
@@ -65,11 +65,11 @@ impl Model {
     }
 }
 
-/// An entity of a scene: as it was given, and what the constructor made of them.
+/// An entity of a scene: its attributes as they were given, and the value that the constructor made of them.
 pub struct Item<T> {
     /// The entity's type, name and values.
     pub args: Record,
-    /// What the constructor made.
+    /// The value that the constructor made.
     pub value: T,
 }
 

@@ -16,7 +16,7 @@ use std::ptr;
 pub trait Row: Sync {
     /// Returns the attribute that this row describes, or `None` where the row is only a line of the dump.
     fn attribute(&self) -> Option<&dyn Attribute>;
-    /// Returns what the notes' dump prints for this row, line ends included.
+    /// Returns the text of this row in the notes' dump, including line ends.
     fn dump(&self, attributes: &Attributes) -> String;
     /// Returns the attributes of which exactly one must be given, or `None` where the row says nothing of that.
     fn one_of(&self) -> Option<&OneOf> {

@@ -46,7 +46,7 @@ impl Profile {
         ProfileLine { radius: parse(self.formula), slope: self.slope.map(parse) }
     }
 
-    /// Returns what is wrong with the formulas, if anything is.
+    /// Returns the error of the formulas, if there is one.
     pub(crate) fn fault(&self) -> Option<String> {
         let fault = |text| Formula::parse(text).err().map(|fault| (text, fault));
         let (text, fault) = fault(self.formula).or_else(|| self.slope.and_then(fault))?;

@@ -235,8 +235,8 @@ fn value(attribute: &'static dyn Attribute) -> Schema {
     Schema { description: Some(description(attribute)), default, ..any }
 }
 
-/// Returns the least number of an attribute of one number whose rule has words and no range, and the number that it must
-/// be above: 0 for one of them, or no number.
+/// Returns the bounds of an attribute of one number whose rule has words and no range: the least number, and the number
+/// that it must be above. One of them is 0, or neither is given.
 fn least(attribute: &dyn Attribute) -> [Option<f64>; 2] {
     let allows = |number: i64| {
         attribute.allows(&match attribute.value_type() {

@@ -35,7 +35,7 @@ pub enum NoField {
 }
 
 impl NoField {
-    /// Returns what is wrong with the formula and what would help, for messages: "has a formula ...".
+    /// Returns the error of the formula and its correction, for messages: "has a formula ...".
     pub fn told(self) -> (String, &'static str) {
         let place = |DVec3 { x, y, z }: DVec3| format!("near x = {x:.4}, y = {y:.4}, z = {z:.4}");
         match self {

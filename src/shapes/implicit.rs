@@ -40,7 +40,8 @@ const FEW_PIECES: usize = 256;
 /// The number of pieces that are judged of a ray that stands for others, as a copy's does: what takes more is proven.
 const MOST_DRIFTING: usize = 256;
 
-/// How often the bracket of a root is made four times as wide, until the function has certain signs at both ends.
+/// The maximum number of times that the bracket of a root is made four times as wide, until the function has certain
+/// signs at both ends.
 const WIDENINGS: usize = 8;
 
 impl Body {

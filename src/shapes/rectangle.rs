@@ -141,8 +141,7 @@ impl<A: Marker> FinitePlane<A> {
         self.quickly_has_crossing(ray, distance).unwrap_or_else(|| self.precisely_has_crossing(ray))
     }
 
-    /// Returns what [`has_crossing`](Self::has_crossing) does, or `None` where the point is on a side to within
-    /// rounding.
+    /// Computes [`has_crossing`](Self::has_crossing), or `None` where the point is on a side to within rounding.
     #[inline(always)]
     pub fn quickly_has_crossing(&self, ray: &Ray, distance: f64) -> Option<bool> {
         let slack = match A::ACCURACY {
@@ -154,8 +153,8 @@ impl<A: Marker> FinitePlane<A> {
         if is_doubtful { None } else { Some(inside >= 0.0) }
     }
 
-    /// Returns what [`has_crossing`](Self::has_crossing) does, in double-double arithmetic. A point that is as near to
-    /// a side as the rounding error counts as on the side.
+    /// Computes [`has_crossing`](Self::has_crossing) in double-double arithmetic. A point within the rounding error of
+    /// a side counts as on the side.
     #[inline(never)]
     fn precisely_has_crossing(&self, ray: &Ray) -> bool {
         let distance = self.plane.exact_crossing(ray);

@@ -82,7 +82,7 @@ pub fn first_hit<A: Marker>(line: &SphereLine, radius: f64) -> f64 {
     if quick.is_nan() { in_double_double(line, radius) } else { quick }
 }
 
-/// Returns what [`first_hit`] does, or NaN where rounding could decide it.
+/// Computes [`first_hit`], or NaN where rounding could decide it.
 #[inline(always)]
 pub fn quick_hit<A: Marker>(line: &SphereLine, radius: f64) -> f64 {
     let (from, dir) = (high(&line.from), high(&line.dir));
@@ -153,7 +153,7 @@ pub fn distance<A: Marker>(line: &SphereLine, radius: f64, origin_side: Option<S
     }
 }
 
-/// Returns what [`distance`] does, or NaN where rounding could decide it.
+/// Computes [`distance`], or NaN where rounding could decide it.
 #[inline(always)]
 pub fn refine<A: Marker>(line: &SphereLine, radius: f64, origin_side: Option<Side>) -> f64 {
     let distance = match origin_side {

@@ -105,7 +105,7 @@ impl<A> Triangle<A> {
         })
     }
 
-    /// Returns what [`is_passed_by`](Self::is_passed_by) does, or `None` where rounding could have changed a sign.
+    /// Computes [`is_passed_by`](Self::is_passed_by), or `None` where rounding could have changed a sign.
     #[inline(always)]
     pub fn passed(&self, ray: &Ray) -> Option<bool> {
         let [a, b, c] = self.corners.map(|corner| corner - ray.origin);
@@ -124,8 +124,8 @@ impl<A> Triangle<A> {
     }
 }
 
-/// Returns a number whose sign tells on which side of the line from one point to another a ray passes; 0 where the
-/// ray's line meets it.
+/// Returns a number whose sign tells on which side of the line from one point to another a ray passes; 0 where the two
+/// lines intersect.
 #[inline(never)]
 fn exact_side(from: DVec3, to: DVec3, ray: &Ray) -> f64 {
     let place =
@@ -148,8 +148,8 @@ fn exact_normal(corners: [DVec3; 3]) -> [DoubleDouble; 3] {
     if is_known { normal } else { slow_normal(corners) }
 }
 
-/// Returns what [`exact_normal`] does, without branches, and whether it is that: where edges are plain numbers of common
-/// sizes, as they mostly are.
+/// Computes [`exact_normal`] without branches, and returns whether the result is certain: it is where edges are plain
+/// numbers of common sizes, as they mostly are.
 #[inline(always)]
 fn quick_normal([a, b, c]: [DVec3; 3]) -> ([DoubleDouble; 3], bool) {
     let edge = |to: DVec3| {
@@ -200,7 +200,7 @@ pub fn unit_normals(corners: &[Vectors<LANES>; 3]) -> Vectors<LANES> {
     normals
 }
 
-/// Returns what [`exact_normal`] does, in all cases.
+/// Computes [`exact_normal`] in all cases.
 #[inline(never)]
 fn slow_normal([a, b, c]: [DVec3; 3]) -> [DoubleDouble; 3] {
     let edge = |to: DVec3| {

@@ -70,6 +70,6 @@ fn full_range_images_are_refused_where_they_cannot_be_had() {
     }
     fs::write(folder.path().join("bad.pfm"), "PF\n9 9\n-1\n").expect("a file");
     let (status, said) = run(&folder, &["diff", "bad.pfm", "bad.pfm"]);
-    assert!(status == 2 && said.contains("it is no PFM of three channels"), "{said}");
+    assert!(status == 2 && said.contains("it is not a PFM of three channels"), "{said}");
     assert!(!fs::exists(folder.path().join("a.exr")).expect("a folder"));
 }

@@ -163,7 +163,7 @@ fn a_part_that_is_killed_or_stopped_is_resumed() {
     assert_eq!(names_in(folder.path()), left);
     let words = arguments("2/4");
     let said = succeeds(&folder, &words.iter().map(String::as_str).collect::<Vec<_>>());
-    assert!(said.contains("a.png.part-2-of-4 is there already"), "{said}");
+    assert!(said.contains("a.png.part-2-of-4 exists already"), "{said}");
 }
 
 #[test]
@@ -187,7 +187,7 @@ fn a_part_that_is_there_loses_its_checkpoint() {
     // As if the program had been killed between the two.
     fs::write(&checkpoint, &kept).expect("a checkpoint");
     let said = succeeds(&folder, &words);
-    assert!(said.contains("is there already") && !checkpoint.exists(), "{said}");
+    assert!(said.contains("exists already") && !checkpoint.exists(), "{said}");
     // A file that is none of its own stays.
     fs::write(&checkpoint, "notes").expect("a file");
     succeeds(&folder, &words);
@@ -246,10 +246,7 @@ fn parts_that_do_not_belong_together_are_refused_with_the_reason() {
     let label = good.iter().position(|byte| *byte == b'{').expect("a label");
     let text = String::from_utf8_lossy(&good[label..]).replace("\"part\":[7,8]", "\"part\":[7,100000000000]");
     fs::write(&seventh, [&good[..label], text.as_bytes()].concat()).expect("a file");
-    refused(
-        &[],
-        "cannot read `a.png.part-7-of-8`: it is damaged: its beginning says nothing that makes sense",
-    );
+    refused(&[], "cannot read `a.png.part-7-of-8`: it is damaged: its header makes no sense");
     let mut other = good.clone();
     let end = other.len();
     other[end - 1] ^= 1;
@@ -275,7 +272,7 @@ fn parts_that_there_cannot_be_are_refused() {
         (&["--part", "1/0"], "give a part as `3/16`"),
         (&["--part", "1/100001"], "give a part as `3/16`"),
         (&["--part", "3/100000"], "cannot have 100000 parts"),
-        (&["--part", "1/2", "-o", "-"], "standard output has no place beside it for a part"),
+        (&["--part", "1/2", "-o", "-"], "a part cannot be written beside standard output"),
     ] {
         let (status, said) = run(&folder, &[&["render", "a.ray"], options].concat());
         assert!(status == 2 && said.contains(says), "{options:?}: {said}");
@@ -401,7 +398,7 @@ texplane p { material m normal 0 0 1 point 0 0 -1 dimensions 3 3 texname t xdir 
     let names: Vec<_> = (1..=5).map(|number| format!("film-{number:04}.png")).collect();
     let resumes = |options: &[&str]| {
         let said = succeeds(&folder, &[&film[..], &["--resume"], options].concat());
-        let is_there = |name: &&String| said.contains(&format!("{name} is there already"));
+        let is_there = |name: &&String| said.contains(&format!("{name} exists already"));
         names.iter().filter(is_there).cloned().collect::<Vec<_>>()
     };
     let read = || names.iter().map(|name| fs::read(place(name)).expect("a frame")).collect::<Vec<_>>();

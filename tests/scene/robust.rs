@@ -160,7 +160,7 @@ fn errors_that_differ_in_their_places_alone_are_one() {
     let [fault] = report.faults() else { panic!("{report}") };
     assert_eq!((fault.message.as_str(), fault.alike.0), ("stray `}`", 4_999));
     let told = report.to_string();
-    assert!(told.contains("note: the same in 4999 more places, first in line 4, 5, 6\n"), "{told}");
+    assert!(told.contains("note: the same in 4999 more places, first in lines 4, 5, 6\n"), "{told}");
     assert!(told.ends_with("\nmany: 5000 errors\n"), "{told}");
     assert_eq!(report.short().lines().count(), 1);
     assert_eq!(report.json().lines().count(), 1);
@@ -276,7 +276,7 @@ fn a_fault_within_curly_quotes_is_shown_in_whole_letters() {
         let read = scene::read(registry(), "any", Path::new(""), text.as_bytes(), None);
         let report = read.err().expect("faults");
         for shown in [report.to_string(), report.short(), report.json()] {
-            assert!(shown.contains("curly quotes are letters like others"), "{shown}");
+            assert!(shown.contains("curly quotes do not quote a name"), "{shown}");
         }
         for fault in report.faults() {
             assert!(fault.place.as_ref().is_none_or(|place| text.get(place.clone()).is_some()), "{fault:?}");

@@ -333,7 +333,7 @@ fn a_chain_of_solids_is_read_and_one_without_end_is_refused() {
     };
     assert_eq!(model(&chain(256)).patterns.len(), 257);
     let said = refused(&chain(2000));
-    assert!(said.contains("difference `d257` has more than 256 solids within each other"), "{said}");
+    assert!(said.contains("difference `d257` nests solids more than 256 deep"), "{said}");
 }
 
 #[test]

@@ -17,7 +17,7 @@ use std::path::Path;
 const TRUTH: u32 = 1024;
 const TRUTH_OF_LIMITS: u32 = 4096;
 
-/// How often each choice is timed.
+/// The number of times that each choice is timed.
 const ROUNDS: usize = 2;
 
 /// The part of the pixels for which `--max-error` is meant to hold.
@@ -26,7 +26,7 @@ const PROMISED: f64 = 0.99;
 /// The number of the levels that `--max-error` is asked for, the first ones of [`LEVELS`].
 const ASKED: usize = 3;
 
-/// What is compared.
+/// A question that a comparison answers.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Question {
     /// Time against the RMS error of the image, against 1024 samples

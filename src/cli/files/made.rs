@@ -25,8 +25,8 @@ pub fn texts(source: &Source, set: &set::Args, camera: &Film, part: &Part) -> Ve
     ]
 }
 
-/// Tells whether an image is there already, whole: a PNG that has these texts, and is newer than the program and than the
-/// files that its scene names. Their content is not in the texts.
+/// Tells whether a complete image exists: a PNG that has these texts, and is newer than the program and than the files
+/// that its scene names. The texts do not contain the content of these files.
 pub fn is_there(path: &Path, texts: &[(&str, String)], named: &[PathBuf]) -> bool {
     let changed = |path: &Path| fs::metadata(path).and_then(|meta| meta.modified()).ok();
     let made = changed(path);

@@ -31,7 +31,7 @@ impl Picture {
         let file: &mut dyn ImageBytes = &mut BufReader::new(file);
         let picture = match format {
             FullRange::Pfm => full_range::read_pfm(file).map_err(|error| match error.kind() {
-                io::ErrorKind::InvalidData => "it is no PFM of three channels".to_owned(),
+                io::ErrorKind::InvalidData => "it is not a PFM of three channels".to_owned(),
                 _ => text::reason(&error),
             }),
             FullRange::Exr => ImageReader::with_format(file, ImageFormat::OpenExr)

@@ -55,8 +55,8 @@ fn is_file_name(path: &Path) -> bool {
     name == "-" || path.is_file() || (is_image && !path.is_dir() && !name.ends_with(path::is_separator))
 }
 
-/// Does something with each scene, goes on after a failure, and says at the end how many have failed. The exit status
-/// is the worst of all.
+/// Runs a function for each scene, continues after a failure, and reports at the end how many have failed. The exit
+/// status is the worst of all.
 pub fn each(scenes: &[PathBuf], mut one: impl FnMut(usize) -> Result<(), Failure>) -> Result<(), Failure> {
     let start = Instant::now();
     let (mut worst, mut failed) = (0, Vec::new());

@@ -13,7 +13,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What the server knows.
+/// The state of the server.
 pub struct Server<'r> {
     documents: Documents<'r>,
     faults: &'r Faults,
@@ -224,7 +224,7 @@ impl<'r> Server<'r> {
     }
 
     fn prepare_rename(&self, asked: &Asked) -> Result<Value, String> {
-        let meant = editor::meant(&asked.view, asked.at).ok_or("there is no name that the scene gives")?;
+        let meant = editor::meant(&asked.view, asked.at).ok_or("there is no name of the scene here")?;
         if editor::definitions(&self.group(asked), asked.at).is_empty() {
             return Err(format!("the {} `{}` is not defined", meant.what, meant.text));
         }
@@ -254,7 +254,7 @@ impl<'r> Server<'r> {
     fn format(&self, asked: &Asked) -> Result<Value, String> {
         let Some(new) = editor::formatted(&asked.view) else {
             let what = editor::problem(&asked.view).map_or_else(String::new, |(_, message)| message);
-            return Err(format!("a scene whose form has errors is not formatted: {what}"));
+            return Err(format!("a scene with syntax errors cannot be formatted: {what}"));
         };
         // What is the same at the beginning and at the end stays, and the cursor with it.
         let old = asked.view.text.as_str();
@@ -290,7 +290,7 @@ impl<'r> Server<'r> {
         text_of(&hints.iter().map(|hint| HintedValue::of(&asked.view.text, hint)).collect::<Vec<_>>())
     }
 
-    /// Returns what would put right the faults in a range.
+    /// Returns the corrections of the errors in a range.
     fn actions(&self, asked: &Asked) -> Result<Value, String> {
         let wanted = asked.range();
         let mut actions = Vec::new();

@@ -24,7 +24,7 @@ pub struct Document {
     view: SharedView,
 }
 
-/// What a text says, which is found once, by the first thread that asks.
+/// The view of a text, which is made once, by the first thread that asks.
 type SharedView = Arc<OnceLock<Arc<View>>>;
 
 /// A scene as it is in the editor, to be read by another thread.

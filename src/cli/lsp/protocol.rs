@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// What is asked, whatever it is about; what is not in a question has a default.
+/// The parameters of a request of any kind; those that a request does not have get a default.
 #[derive(Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 pub struct Question {
@@ -57,7 +57,7 @@ pub struct Change {
     pub text: String,
 }
 
-/// What the server can do.
+/// Returns the capabilities of the server.
 pub fn capabilities() -> Value {
     json!({
         "textDocumentSync": { "openClose": true, "change": 2, "save": true },

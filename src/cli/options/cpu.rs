@@ -8,8 +8,8 @@ use crate::text;
 #[group(id = "instructions")]
 #[command(next_help_heading = "Speed")]
 pub struct Args {
-    /// The highest level of CPU instructions to use, by default the highest that this machine has; the image is the
-    /// same with any
+    /// The highest level of CPU instructions to use, by default the highest that this machine has; the image does not
+    /// depend on it
     #[arg(long, value_name = "NAME")]
     cpu: Option<Level>,
 }

@@ -39,7 +39,7 @@ pub struct Range(RangeInclusive<u32>);
 pub struct Frame {
     /// The path of its image.
     pub path: PathBuf,
-    /// What `--set` is to set.
+    /// The values for `--set`.
     pub sets: Vec<String>,
 }
 
@@ -94,7 +94,7 @@ pub fn path(picture: &Path, number: u32, last: u32) -> PathBuf {
     picture.with_file_name(name)
 }
 
-/// Returns what a sweep sets at a time from 0 to 1.
+/// Returns the value that a sweep sets at a time from 0 to 1.
 fn at(sweep: &str, t: f64) -> String {
     let (name, values) = sweep.split_once('=').unwrap_or((sweep, ""));
     // Every second piece between quotes is a formula.

@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-/// Returns a parser of whole numbers in a range, which says what the range is where a value is none of them.
+/// Returns a parser of whole numbers in a range; its error names the range.
 pub fn whole<N: TryFrom<u32>>(range: RangeInclusive<u32>) -> impl Fn(&str) -> Result<N, String> + Clone {
     move |text| {
         let number = text.parse().ok().filter(|number| range.contains(number)).map(N::try_from);

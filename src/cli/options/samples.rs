@@ -70,16 +70,15 @@ impl Args {
         camera.certain = self.certain;
         if camera.certain && camera.accuracy == Accuracy::Classic {
             return Err(Failure::Usage(
-                "`--certain` proves the true colours, and the classic method has colours of its own"
+                "`--certain` proves the true colours, but the classic method has colours of its own"
                     .to_owned(),
                 Some("leave out `--certain`, or give `--method exact`".to_owned()),
             ));
         }
         if camera.certain && !camera.is_enclosed() {
             return Err(Failure::Usage(
-                "`--certain` proves what all rays through a pixel see, and the scene's camera does not say where they lie"
-                    .to_owned(),
-                Some("leave out `--certain`; `camera`, `look_at` and `orthographic` say it".to_owned()),
+                "`--certain` needs a camera that says where all rays through a pixel lie".to_owned(),
+                Some("use a `camera`, a `look_at` or an `orthographic`, or leave out `--certain`".to_owned()),
             ));
         }
         Ok(())

@@ -3,7 +3,7 @@
 use anstream::ColorChoice;
 use std::ffi::OsString;
 
-/// When messages have colours.
+/// The rule by which messages have colours.
 #[derive(Clone, Copy, Default, PartialEq, clap::ValueEnum)]
 pub enum Color {
     /// On a terminal, unless NO_COLOR is set

@@ -22,13 +22,13 @@ pub enum Failure {
     Failed(String),
     /// A file that the command names cannot be read; with what was probably meant.
     Unread(String, Option<String>),
-    /// The user interrupted the command; with what is left of its work.
+    /// The user interrupted the command; with the state of its work.
     Interrupted(&'static str),
     /// The command stopped with a part of its work done, and the user was told already.
     Stopped,
     /// Faults were printed already.
     Told,
-    /// Some of several scenes failed, which was printed already; with the worst exit status of them.
+    /// Some of several scenes failed, which was printed already; with the worst exit status of these.
     Several(u8),
 }
 

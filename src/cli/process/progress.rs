@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 /// The bar that is shown, if there is one.
 static SHOWN: Mutex<Option<ProgressBar>> = Mutex::new(None);
 
-/// Which of several scenes is under way, and how many there are.
+/// The index of the scene under way, and the number of scenes.
 static OVERALL: Mutex<Option<[usize; 2]>> = Mutex::new(None);
 
 /// Says that a scene begins, after so many others, of so many.

@@ -93,7 +93,7 @@ impl Temporary {
     }
 }
 
-/// Returns what `make` makes under a hidden, unused name in a folder.
+/// Calls `make` with a hidden, unused name in a folder, and returns its result.
 fn hidden<T>(folder: &Path, make: impl FnMut(&Path) -> io::Result<T>) -> io::Result<NamedTempFile<T>> {
     let file = tempfile::Builder::new().prefix(".tabray-").make_in(folder, make)?;
     HIDDEN.lock().unwrap_or_else(PoisonError::into_inner).insert(file.path().to_owned());

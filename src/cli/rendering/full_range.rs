@@ -18,7 +18,7 @@ use std::path::Path;
 pub const PIXEL: usize = 12 * 4;
 
 /// The message if a render is stopped.
-const UNKEPT: &str = "an EXR or a PFM is written once it is whole: nothing is written";
+const UNKEPT: &str = "an EXR or a PFM is written only when it is complete: nothing is written";
 
 /// Renders a part of an image, and writes it once it is whole: its formats have no place for what is not rendered.
 pub fn render(
@@ -51,7 +51,7 @@ pub fn render(
 /// Returns the error for options that these formats cannot serve.
 pub fn refuse(path: &Path, what: &str) -> Failure {
     Failure::Usage(
-        format!("`{}` cannot be {what}: an EXR or a PFM is written once it is whole", path.display()),
+        format!("`{}` cannot be {what}: an EXR or a PFM is written only when it is complete", path.display()),
         Some("name a .png or .ppm file, or leave out the option".to_owned()),
     )
 }

@@ -35,7 +35,7 @@ pub struct Job<'a> {
     pub format: Format,
     /// The path of the image.
     pub path: &'a Path,
-    /// What the image was made of and with, for a PNG.
+    /// The texts that a PNG records about how the image was made.
     pub made: &'a [(&'static str, String)],
     /// The maximum number of pixels in memory at one time.
     pub at_once: usize,

@@ -61,10 +61,10 @@ pub fn beside(picture: &Path, [number, of]: [usize; 2]) -> PathBuf {
 /// A part that is to be rendered.
 pub struct Share<'a> {
     pub part: [usize; 2],
-    /// What the image was made of and with, for a PNG.
+    /// The texts that a PNG records about how the image was made.
     pub made: &'a [(&'a str, String)],
     pub plan: &'a Plan<'a>,
-    /// What is rendered of the image.
+    /// The part of the image that is rendered.
     pub region: &'a Part,
     pub renderer: &'a Renderer,
     /// The path of the image, and that of an image whose name those beside it have.

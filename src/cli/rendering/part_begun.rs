@@ -10,7 +10,7 @@ use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// Tells whether a part is there already, whole.
+/// Tells whether a complete part exists.
 pub fn is_there((path, label): &(PathBuf, Label)) -> Result<bool, Failure> {
     let Ok(mut reader) = files::open(path).and_then(Reader::open) else { return Ok(false) };
     let there = &reader.label;
@@ -18,12 +18,12 @@ pub fn is_there((path, label): &(PathBuf, Label)) -> Result<bool, Failure> {
         && (label.tiles, label.what, &label.beside) == (there.tiles, there.what, &there.beside);
     let is_there = is_same && !there.unfinished && reader.check().is_ok();
     if is_there {
-        messages::note(&format!("{} is there already", path.display()));
+        messages::note(&format!("{} exists already", path.display()));
     }
     Ok(is_there)
 }
 
-/// What a render that was stopped has left of a part.
+/// The unfinished part that a stopped render left.
 pub struct Begun {
     path: PathBuf,
     reader: Reader,
@@ -33,7 +33,7 @@ pub struct Begun {
 }
 
 impl Begun {
-    /// Opens what is left of a part, if there is anything.
+    /// Opens an unfinished part, if there is one.
     pub fn open(path: &Path, label: &Label) -> Result<Option<Self>, Failure> {
         let file = match files::open(path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
@@ -62,7 +62,7 @@ impl Begun {
         Ok(Some(Self { path: path.to_owned(), reader, mask, next: 0 }))
     }
 
-    /// Removes what is left of a part that is there, if there is anything.
+    /// Removes the unfinished part beside a complete one, if there is one.
     pub fn remove(path: &Path, label: &Label) -> Result<(), Failure> {
         match Self::open(path, label) {
             Ok(Some(_)) => remove(path),

@@ -19,11 +19,11 @@ const RUNS: usize = 12;
 pub struct Parts {
     /// The label of the first.
     pub label: Label,
-    /// All of them, in their order.
+    /// The files of all parts, in their order.
     pub paths: Vec<PathBuf>,
 }
 
-/// What is known of a part, but for what all have in common.
+/// The label of a part that was found, without what all parts have in common.
 struct Found {
     path: PathBuf,
     tiles: Range<usize>,

@@ -17,8 +17,8 @@ use std::time::{Duration, Instant};
 #[group(id = "statistics")]
 #[command(next_help_heading = "Looking inside")]
 pub struct Args {
-    /// Print statistics of the render to standard error, as a table or as JSON: rays by kind, pixels that were cut off,
-    /// tests by entity type, the time of each stage and the peak memory
+    /// Print statistics of the render to standard error, as a table or as JSON: rays by kind, pixels that used up their
+    /// ray budget, tests by entity type, the time of each stage and the peak memory
     #[arg(long, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "table")]
     stats: Option<Format>,
 }
@@ -77,7 +77,7 @@ impl Sum {
         self.get().cuts
     }
 
-    /// Returns what is proven of pixels' colours.
+    /// Returns the proven bounds of pixels' colours.
     pub fn proofs(&self) -> Proofs {
         self.get().proofs
     }
@@ -216,9 +216,9 @@ struct Proven {
     certain: u64,
     /// The number of footprints that were examined.
     footprints: u64,
-    /// How much any of the other pixels may be off at most, in levels of a channel, from 0 to 255.
+    /// The maximum error of the other pixels, in levels of a channel, from 0 to 255.
     levels: f64,
-    /// How much the other pixels may be off on average, in levels.
+    /// The mean of the bounds of the other pixels' errors, in levels.
     mean_levels: f64,
     /// The number of the other pixels.
     open: u64,

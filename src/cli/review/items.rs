@@ -15,7 +15,7 @@ use std::ffi::OsStr;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-/// Returns the pending snapshots below a folder, and whether all of them could be read; faults were printed.
+/// Returns the pending snapshots below a folder, and whether all of them could be read; errors were printed.
 pub fn items(
     registry: &Registry,
     folder: &Path,

@@ -38,7 +38,7 @@ pub struct Args {
     json: bool,
 }
 
-/// What was found.
+/// The result of a proof.
 pub struct Proof {
     size: [usize; 2],
     /// The pixels in rows from the top; `None` where the time was up.
@@ -64,7 +64,7 @@ struct First {
     contradicted: Vec<[usize; 2]>,
 }
 
-/// What is printed as JSON.
+/// The numbers that are printed as JSON.
 #[derive(Serialize)]
 struct Numbers {
     pixels: Counts,

@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 struct Held<'c> {
     /// The camera's name.
     name: &'c str,
-    /// Where it stands, with the values that are tried out.
+    /// The pose of the camera, with the values that are tried out.
     stand: Stand,
     /// Whether its image plane stays in its place when the viewer moves.
     is_window: bool,
@@ -29,11 +29,11 @@ struct Held<'c> {
 /// A movement of the camera, as a page sends it.
 #[derive(Deserialize)]
 struct Move {
-    /// Where the camera stood before it.
+    /// The pose of the camera before the movement.
     stand: Stand,
     /// The point around which it goes, in world coordinates.
     around: [f64; 3],
-    /// As in [`Movement`].
+    /// The angles of the orbit, as in [`Movement`].
     orbit: [f64; 2],
     pan: [f64; 2],
     dolly: f64,
@@ -90,7 +90,7 @@ fn fixed(registry: &Registry, frame: &Frame, camera: &Record) -> Option<String> 
 /// Moves the camera: its new values are tried out.
 pub fn go(desk: &Desk, body: &[u8]) -> Response<Body> {
     let (Ok(wanted), Some(frame)) = (serde_json::from_slice::<Move>(body), desk.board.last()) else {
-        return serve::text(StatusCode::BAD_REQUEST, "this is no movement\n");
+        return serve::text(StatusCode::BAD_REQUEST, "this is not a movement of the camera\n");
     };
     let Move { stand, around, orbit, pan, dolly } = wanted;
     let (record, around) = (&frame.model.camera.args, DVec3::from(around));

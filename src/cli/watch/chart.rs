@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 /// The longest time that a page may give a chart, in seconds.
 pub const MOST_SECONDS: u64 = 3600;
 
-/// How often it is looked whether the chart is still wanted.
+/// The time between two checks whether the chart is still wanted.
 const LOOK: Duration = Duration::from_millis(50);
 
 /// A measurement under way, as it is seen by the thread that measures.

@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The state that the program and its pages share.
 pub struct Desk {
-    /// What the pages show.
+    /// The board with the state that the pages show.
     pub board: Board,
     /// The values that a page tries out.
     pub tries: Tries,
@@ -67,7 +67,7 @@ impl Desk {
     pub fn try_out(&self, body: &[u8]) -> Response<Body> {
         match self.tries.set(body) {
             Some(()) => self.done("tried\n"),
-            None => serve::text(StatusCode::BAD_REQUEST, "these are no numbers\n"),
+            None => serve::text(StatusCode::BAD_REQUEST, "these are not numbers\n"),
         }
     }
 
@@ -89,7 +89,7 @@ impl Desk {
         };
         let shown = self.board.text();
         if shown.as_deref() != Some(text.strip_prefix('\u{feff}').unwrap_or(&text)) {
-            return refuse("the scene has changed since: try again\n".to_owned());
+            return refuse("the scene has changed meanwhile: try again\n".to_owned());
         }
         let file = self.path.display().to_string();
         let written = match self.tries.written(self.registry, &file, &text) {

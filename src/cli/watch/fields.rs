@@ -38,7 +38,7 @@ struct Field {
     name: &'static str,
     /// The meaning, the unit and the rule, as people read them.
     about: String,
-    /// What each of the values is, where the table names them.
+    /// The name of each value, where the table has names.
     each: &'static [&'static str],
     /// The values, as a scene writes them.
     values: Vec<String>,

@@ -119,7 +119,7 @@ impl Files {
 fn reason(error: &notify::Error) -> String {
     match &error.kind {
         ErrorKind::Io(error) => text::reason(error),
-        ErrorKind::MaxFilesWatch => "the system already watches as many files as it may".to_owned(),
+        ErrorKind::MaxFilesWatch => "the system watches as many files as it allows".to_owned(),
         _ => text::reason(&io::Error::other(error.to_string())),
     }
 }

@@ -31,7 +31,7 @@ pub struct Frame {
     pub sets: Vec<String>,
     /// The accuracy that overrides the scene's own.
     pub accuracy: Option<Accuracy>,
-    /// How far its chart is.
+    /// The state of its chart.
     pub charting: Charting,
     /// Whether a newer scene has replaced this one.
     pub stale: AtomicBool,
@@ -62,7 +62,7 @@ impl Frame {
     }
 }
 
-/// How far the chart of a scene is.
+/// The state of the chart of a scene.
 #[derive(Default)]
 pub struct Charting {
     /// Whether it is being measured.

@@ -14,7 +14,7 @@ use std::io;
 use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
-/// What is other than in the scene.
+/// The setting that differs from that of the scene.
 #[derive(Clone, Copy)]
 pub enum How {
     Accuracy(Accuracy),

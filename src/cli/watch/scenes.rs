@@ -20,13 +20,13 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 /// The scenes that are watched.
 pub struct Scenes {
     registry: &'static Registry,
-    /// What the command names, and whether it is a folder.
+    /// The paths that the command names, and whether each is a folder.
     named: Vec<(PathBuf, bool)>,
     changed: Changed,
     known: Mutex<Known>,
 }
 
-/// What is known of the scenes.
+/// The scenes that are known.
 #[derive(Default)]
 struct Known {
     /// All scenes that there have been, by their numbers: a number never comes to mean another scene.
@@ -52,7 +52,7 @@ impl Scenes {
         let (folders, alone) = (of_kind(true), of_kind(false));
         for folder in &folders {
             if found(folder)?.is_empty() {
-                let message = format!("cannot read a scene in `{}`: no file there is one", folder.display());
+                let message = format!("there is no scene in the folder `{}`", folder.display());
                 return Err(Failure::Unread(
                     message,
                     Some("the names of scenes end in .ray or .toml".to_owned()),
@@ -84,7 +84,7 @@ impl Scenes {
         }
     }
 
-    /// Returns what is watched, for people.
+    /// Returns the name of the watched scenes, for messages.
     pub fn name(&self) -> String {
         let count = || text::count(self.known().list.len(), "scene");
         self.only().map_or_else(count, |scene| scene.display().to_string())

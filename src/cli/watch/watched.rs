@@ -56,7 +56,7 @@ fn stamp(file: &Path) -> Option<Stamp> {
     Some((meta.modified().ok()?, meta.len()))
 }
 
-/// What an image was made from.
+/// The text and files that an image was made from.
 #[derive(PartialEq)]
 struct Read {
     /// The scene.
@@ -77,7 +77,7 @@ pub struct Watched {
     accuracy: Option<Accuracy>,
     /// The files that the scene names.
     named: Vec<PathBuf>,
-    /// What was read last.
+    /// The text and files that were read last.
     last: Option<Read>,
     /// The number of times that the scene was valid.
     version: u64,
@@ -188,7 +188,7 @@ impl Watched {
     }
 }
 
-/// Reports that the program failed at a scene. It goes on with the next one.
+/// Reports that the program failed on a scene. It continues with the next one.
 fn crashed(board: &Board, name: &str, text: &str, failure: &Failure) {
     tell(failure);
     let Failure::Failed(message) = failure else { return };

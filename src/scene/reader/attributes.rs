@@ -269,7 +269,7 @@ impl Against<'_, '_> {
                 let message = format!("{title} names `{}` twice", word.text);
                 let fault =
                     Fault::error(word.place.clone(), message).also(first.place.clone(), "named here first");
-                self.report.add(fault.help("an object is part of it or not: leave out one of the names"));
+                self.report.add(fault.help("name each object once"));
                 is_right = false;
             } else if let Datum::Object { name, body } = self.names.resolve(self.store, kind, word) {
                 all.push((name, body));

@@ -89,8 +89,9 @@ fn alike(fault: &Fault, part: &Lines<'_>) -> Option<String> {
     let here = places.iter().flatten().filter(|place| part.has(place.start));
     let mut lines: Vec<_> = here.map(|place| line(part.place(place).start, &part.ends)).collect();
     lines.dedup();
+    let word = if lines.len() == 1 { "line" } else { "lines" };
     let lines = lines.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
-    let first = if lines.is_empty() { String::new() } else { format!(", first in line {lines}") };
+    let first = if lines.is_empty() { String::new() } else { format!(", first in {word} {lines}") };
     (*count > 0).then(|| format!("the same in {}{first}", text::count(*count, "more place")))
 }
 

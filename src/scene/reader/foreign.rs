@@ -62,8 +62,8 @@ impl Way {
                 "a colour is red, green and blue, and 1 is the brightest that an image can show",
             ),
             Self::Quotes => (
-                "curly quotes are letters like others",
-                "a word with white space stands in straight quotes, which word processors replace by curly ones",
+                "curly quotes do not quote a name",
+                "put a word with white space in straight quotes; word processors replace these with curly ones",
             ),
             Self::Brackets => {
                 ("values are not written with brackets or commas", "separate values by white space")

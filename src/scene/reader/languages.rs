@@ -54,7 +54,7 @@ fn of_notes(registry: &Registry, name: &str, text: &str) -> Option<Fault> {
     }
     let first = has_entities(registry, text)?;
     Some(
-        Fault::error(Some(first), "this is a scene as .ray files have it, not one in TOML")
+        Fault::error(Some(first), "this scene is in the syntax of .ray files, not in TOML")
             .label("in TOML, an entity is a table, `[TYPE.NAME]`")
             .help("give the file a name that ends in .ray; `tabray convert A.ray A.toml` writes it in TOML"),
     )
@@ -86,8 +86,8 @@ fn of_pov(text: &str, name: &str) -> Option<Fault> {
     }
     let is_told = found.len() >= ENOUGH || name.ends_with(".pov");
     first.filter(|_| is_told && !found.is_empty()).map(|place| {
-        Fault::error(Some(place), "this is a scene of POV-Ray, whose language is another one").help(
-            "`tabray new scene NAME` writes a scene to start from; `tabray list` lists the types of entities",
+        Fault::error(Some(place), "this is a POV-Ray scene, in another language").help(
+            "`tabray new scene NAME` writes a scene to start from; `tabray list` lists the entity types",
         )
     })
 }

@@ -18,7 +18,7 @@ pub fn warning(material: &Args) -> Option<(&'static str, Fault)> {
                 && numbers.iter().any(|number| *number >= LEAST) =>
         {
             let right: Vec<_> = numbers.iter().map(|number| short(number / 255.0)).collect();
-            let fault = Fault::warning(None, "a colour is not given from 0 to 255")
+            let fault = Fault::warning(None, "colours do not range from 0 to 255")
                 .label(format!("write `{}`", right.join(" ")))
                 .help("1 is the brightest that an image can show, and such a material will look white");
             Some((attribute.name(), fault))

@@ -165,7 +165,11 @@ impl Names {
                     format!("{what} `{text}` and {} are defined more than once", text::count(names, "other"))
                 }
             };
-            let label = if more == 0 { "ignored".to_owned() } else { format!("ignored, as are {more} more") };
+            let label = match more {
+                0 => "ignored".to_owned(),
+                1 => "ignored, as is 1 more".to_owned(),
+                _ => format!("ignored, as are {more} more"),
+            };
             report.add(
                 Fault::warning(place(orders[1]), message)
                     .label(label)
@@ -277,7 +281,7 @@ impl Names {
                     let usage = report.syntax().entity_usage(entity, "NAME");
                     Fault::error(first.clone(), format!("there is no shader `{text}`"))
                         .label(suggestion(None, *count))
-                        .help(format!("`{text}` is a type of shader: define one before this: {usage}"))
+                        .help(format!("`{text}` is a type of shader: define one first: {usage}"))
                 }
                 None => {
                     let known = known.get(kind).filter(|_| is_told).into_iter().flatten().copied();
@@ -285,10 +289,7 @@ impl Names {
                     Fault::error(first.clone(), format!("there is no {kind} `{text}`"))
                         .label(suggestion(near, *count))
                         .meant(near)
-                        .help(format!(
-                            "define it before this: {}",
-                            registry.example(*kind, text, report.syntax())
-                        ))
+                        .help(format!("define it first: {}", registry.example(*kind, text, report.syntax())))
                 }
             };
             report.add(fault);

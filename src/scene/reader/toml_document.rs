@@ -112,7 +112,7 @@ impl<'a, 'r, 't> Reader<'a, 'r, 't> {
         let text = self.text;
         let wrong = |place| {
             let what = text.get(key.span()).unwrap_or_default();
-            Fault::error(Some(place), format!("this is not the form of `{what}`")).help(help)
+            Fault::error(Some(place), format!("wrong form of `{what}`")).help(help)
         };
         match (keyword, value) {
             (Keyword::Let, value) => {

@@ -54,7 +54,7 @@ pub fn warning(model: &Model) -> Option<Fault> {
     };
     if all_are(model, is_aside) {
         return black(
-            "all objects are outside of the picture",
+            "all objects are outside the image",
             match camera.camera.screen() {
                 Some(screen) => format!(
                     "the viewer at {} looks through the rectangle from 0 0 0 to {}",

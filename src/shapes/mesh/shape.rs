@@ -160,7 +160,7 @@ impl<A: Bounded> Hittable for Mesh<A> {
             _ => format!("open at {open_edges} edges, and so lit on one side"),
         };
         let nodes = text::count(tree.size(), "node");
-        format!("a tree of {nodes} over {}; {sides}", text::count(self.surface.face_count(), "face"))
+        format!("a BVH of {nodes} over {}; {sides}", text::count(self.surface.face_count(), "face"))
     }
 
     fn clearance(&self, from: DVec3) -> Option<f64> {

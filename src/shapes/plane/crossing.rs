@@ -92,8 +92,7 @@ impl<A: Marker> Plane<A> {
         if quick.is_nan() { self.exact_crossing(ray).high } else { quick }
     }
 
-    /// Returns what [`crossing`](Self::crossing) does, or NaN where that takes more than plain or compensated
-    /// arithmetic.
+    /// Computes [`crossing`](Self::crossing), or NaN where that takes more than plain or compensated arithmetic.
     #[inline(always)]
     pub fn quick_crossing(&self, ray: &Ray) -> f64 {
         match A::ACCURACY {
@@ -180,7 +179,7 @@ impl<A: Marker> Plane<A> {
         }
     }
 
-    /// Returns what [`keep`](Self::keep) does, or NaN where the point is on the image plane to within rounding; NaN for
+    /// Computes [`keep`](Self::keep), or NaN where the point is on the image plane to within rounding. Returns NaN for
     /// NaN.
     #[inline(always)]
     pub fn quick_keep(&self, distance: f64, ray: &Ray, range: &RayRange) -> f64 {

@@ -122,7 +122,7 @@ impl<A> Quadric<A> {
 }
 
 impl<A: Marker> Quadric<A> {
-    /// How hits are found, in a few words.
+    /// The description of how hits are found, in a few words.
     pub const METHOD: &str = match A::ACCURACY {
         Accuracy::Classic => "the notes' formula",
         Accuracy::Strict => "a closed form in twice the precision",

@@ -20,7 +20,7 @@ pub struct Quadratic {
     pub(super) high: DVec3,
     /// The exponent of the power of two that lengths in world units are multiplied by.
     pub(super) exponent: i32,
-    /// That power of two, and its reciprocal.
+    /// The power of two that lengths in world units are multiplied by, and its reciprocal.
     pub(super) scale: f64,
     pub(super) unscale: f64,
 }

@@ -117,8 +117,8 @@ kernels! {
         (low <= high).then(|| (from_order(low), from_order(high)))
     }
 
-    /// Returns whether any ray may meet the surface in a run of slabs before its hit so far, with twice the margin that
-    /// the slabs have, as a ray's squared distance from the axis rounds differently at another place.
+    /// Returns whether any ray may hit the surface in a run of slabs before its hit so far. The margin is twice that of
+    /// the slabs, because a ray's squared distance from the axis rounds differently at another point.
     fn may_meet_any<const N>(lanes: &Lanes<N>, run: &Slab, count: usize) -> bool {
         let count = count.min(N);
         let mut any = 0;

@@ -30,7 +30,7 @@ pub enum NoSurface {
 }
 
 impl NoSurface {
-    /// Returns what is wrong with the profile and what would help, for messages: "has a profile ...".
+    /// Returns the error of the profile and its correction, for messages: "has a profile ...".
     pub fn told(self) -> (String, &'static str) {
         match self {
             Self::Unbounded { near } => (

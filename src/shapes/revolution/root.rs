@@ -139,7 +139,7 @@ fn eight_vectors(of: &View, first: usize) -> [F64x8; 3] {
     [eight(of.x, first), eight(of.y, first), eight(of.z, first)]
 }
 
-/// Does what [`Frame::direction`] does, for eight directions.
+/// Computes [`Frame::direction`] for eight directions.
 #[inline(always)]
 fn directions(frame: &Frame, [x, y, z]: [F64x8; 3]) -> [F64x8; 3] {
     [frame.axes.x_axis, frame.axes.y_axis, frame.axes.z_axis]

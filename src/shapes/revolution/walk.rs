@@ -89,8 +89,8 @@ impl Revolution {
         }
     }
 
-    /// Returns what [`first_hit`](Self::first_hit) does, by another method in the same bounding cylinder; only the
-    /// course notes' steps go all the way between the surface's heights, as in the notes.
+    /// Finds the first hit of [`first_hit`](Self::first_hit) by another method in the same bounding cylinder. Only the
+    /// course notes' steps search all of the ray between the surface's heights, as in the notes.
     pub fn first_hit_by(&self, method: Method, frame: &Frame, ray: &Ray, range: &RayRange) -> f64 {
         let widest = if method == Method::Steps { f64::INFINITY } else { self.slabs.widest() };
         let Some(local) = Local::new(frame, ray, range, self.height, widest) else { return MISS };
@@ -104,7 +104,7 @@ impl Revolution {
 
     /// Returns the distance of the first crossing of the surface, and whether that is certain for all rays that this
     /// one may have been rounded from. For a ray that leaves the surface to a side, only crossings from that side
-    /// count. At most `left` pieces of the ray are judged; what is left over of them is returned there.
+    /// count. At most `left` pieces of the ray are judged, and `left` is reduced by their number.
     fn walk(
         &self,
         local: &Local,

@@ -9,7 +9,7 @@ use crate::world::certify::{Found, Precise, Proven};
 /// A crossing of a line and a closed shape.
 #[derive(Clone, Copy, Debug)]
 pub struct Crossing<F> {
-    /// Where on the line it is.
+    /// The position of the crossing on the line.
     pub at: Interval<F>,
     /// The part of the shape that is crossed.
     pub part: usize,

@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// The largest number of parts of a solid. Each of them may have to be compared with all others.
 const MOST_PARTS: usize = 1024;
 
-/// The largest number of solids within each other. The name of a part tells all of them.
+/// The maximum depth to which solids may be nested. The name of a part contains the names of all solids around it.
 const DEEPEST: usize = 256;
 
 /// The objects of which a solid is made.
@@ -42,32 +42,32 @@ enum NoSolid {
     Open(Arc<str>, &'static str),
     /// There are too many parts.
     TooMany,
-    /// There are too many solids within each other.
+    /// Solids are nested too deeply.
     TooDeep,
     /// No point lies in the solid.
     Empty,
 }
 
 impl NoSolid {
-    /// Returns what is wrong and what would help, for messages: "encloses nothing".
+    /// Returns the error and its correction, for messages: "is empty".
     fn told(self) -> (String, &'static str) {
         match self {
             Self::Open(name, why) => (
                 format!("cannot be made of `{name}`, which is open: {why}"),
-                "what is combined must be closed: a sphere, a box, a cylinder with its ends, a lathe that begins and ends \
-                 on its axis, a mesh without holes; for a cut along a plane, a large box",
+                "only closed shapes can be combined: a sphere, a box, a cylinder with its ends, a lathe that begins and ends \
+                 on its axis, a mesh without holes; for a cut along a plane, use a large box",
             ),
             Self::TooMany => (
                 format!("has more than {MOST_PARTS} parts"),
-                "a `union` of what does not overlap can be left out: the objects are seen without it",
+                "a `union` of objects that do not overlap can be left out: the objects are seen without it",
             ),
             Self::TooDeep => (
-                format!("has more than {DEEPEST} solids within each other"),
+                format!("nests solids more than {DEEPEST} deep"),
                 "a solid takes up to 256 objects at once: `difference rest { objects block one two three }`",
             ),
             Self::Empty => (
-                "encloses nothing: its objects do not meet as they would have to".to_owned(),
-                "an intersection is where all of its objects overlap, a difference what is left of the first one",
+                "is empty: its objects do not overlap as they must".to_owned(),
+                "an intersection is the space in all of its objects, a difference what is left of the first",
             ),
         }
     }

@@ -103,7 +103,7 @@ impl<F: Precise> Onward<F> for Trimmed {
     }
 }
 
-/// Where a hit of the part may not be seen, what comes after it is not known.
+/// Where a hit of the part may be hidden, the hits behind it are not known.
 impl OverFootprint for Trimmed {
     fn hits(&self, line: &Line<Affine>, leaves: Option<usize>, met: &mut dyn FnMut(Met, usize)) {
         if let Some(around) = self.around()

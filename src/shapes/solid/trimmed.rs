@@ -19,11 +19,12 @@ use std::sync::Arc;
 /// The largest number of hits of a part along a ray that are visited.
 const MOST_HITS: usize = 1024;
 
-/// How far from a surface that may coincide with another one it is asked what lies on both sides, as a multiple of the
-/// error of the point.
+/// The distance from a surface, which may coincide with another one, at which both of its sides are examined, as a
+/// multiple of the error of the point.
 const BESIDE: f64 = 256.0;
 
-/// How far before a hit it is asked whether a ray is in the solid, as a fraction of what the hit is computed from.
+/// The distance before a hit at which a ray is tested for being in the solid, as a fraction of the numbers that the hit
+/// is computed from.
 const SHORTLY: f64 = 1e-6;
 
 /// Marks a shape of which only a part is seen, whose hits are proven as the shape's.
@@ -38,7 +39,7 @@ pub struct Trimmed {
     pub(super) index: usize,
     /// Whether the solid lies on the outer side of the part.
     pub(super) is_outer: bool,
-    /// What a point near this surface must lie in to lie in the solid.
+    /// The condition on the parts that contain a point near this surface, by which the point lies in the solid.
     pub(super) tree: Tree,
     /// The way to the part through the tree.
     way: Vec<usize>,

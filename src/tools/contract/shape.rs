@@ -13,9 +13,9 @@ use crate::world::certify::{Enclosure, Precision};
 use crate::world::interaction::SurfaceInteraction;
 use glam::DVec3;
 
-/// How far rounding may shift a ray sideways, as a fraction of the numbers from which its distance is computed. It is
-/// above 2^-52 to the power of 2/3, about 4e-11, for methods that lose a third of the digits. The tolerance of a
-/// distance is derived from it.
+/// The maximum distance by which rounding may shift a ray sideways, as a fraction of the numbers from which its
+/// distance is computed. It is above 2^-52 to the power of 2/3, about 4e-11, for methods that lose a third of the
+/// digits. The tolerance of a distance is derived from it.
 const ASIDE: f64 = 1e-10;
 
 /// A step, as a fraction of the same numbers, that is longer than the rounding error of a hit that does not graze:
@@ -166,7 +166,7 @@ impl Tried<'_> {
             let until = self.in_span(&self.ray, &RayRange { far, ..RayRange::ALL })?;
             if until != distance {
                 return Err(Promise::HitIsOnTheSurface.fault(format!(
-                    "`distance` gives {distance}, and {until} where the span ends at {far}, {}",
+                    "`distance` gives {distance}, and {until} where the ray range ends at {far}, {}",
                     told(&self.ray)
                 )));
             }

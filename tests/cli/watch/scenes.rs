@@ -138,7 +138,7 @@ fn what_is_no_scene_is_refused_before_anything_is_watched() {
     for (args, status, said) in [
         (&["a.ray", "-"] as &[_], 2, "standard input cannot be watched"),
         (&["-", "-"], 2, "standard input cannot be watched"),
-        (&["a.ray", "empty"], 1, "cannot read a scene in `empty`: no file there is one"),
+        (&["a.ray", "empty"], 1, "there is no scene in the folder `empty`"),
         (&["a.ray", "b.ray"], 1, "cannot read `b.ray`"),
         (&[], 2, "SCENE|DIR"),
     ] {

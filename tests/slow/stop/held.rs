@@ -49,7 +49,7 @@ fn a_time_limit_holds_within_a_tile_of_an_image_that_is_written_whole() {
         let (status, _, err) = render(&folder, &["mirrors.ray", "-o", name, "--time-limit", "300ms"]);
         assert!(start.elapsed() < SOON, "{:?}", start.elapsed());
         let said = "the time limit of 300ms has been reached\n\
-            an EXR or a PFM is written once it is whole: nothing is written\n";
+            an EXR or a PFM is written only when it is complete: nothing is written\n";
         assert_eq!((status, err.as_str()), (130, said));
     }
     assert_eq!(names_in(folder.path()), ["large.ray", "mirrors.ray"]);

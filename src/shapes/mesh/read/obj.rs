@@ -173,7 +173,7 @@ fn corner(word: &[u8], count: usize) -> Result<u32, String> {
     let index = index.ok_or_else(|| format!("`{}` is not a vertex's number", shown(word)))?;
     let found = match index {
         1.. => usize::try_from(index - 1).ok(),
-        0 => return Err("vertices count from 1, and there is none of number 0".to_owned()),
+        0 => return Err("vertices are counted from 1, so there is no vertex 0".to_owned()),
         _ => usize::try_from(index.unsigned_abs()).ok().and_then(|back| count.checked_sub(back)),
     };
     found.filter(|index| *index < count).map(|index| index as u32).ok_or_else(|| {

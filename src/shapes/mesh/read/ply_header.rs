@@ -191,5 +191,5 @@ pub(super) fn unexpected(line: &[u8], is_header: bool) -> String {
     let wrong = words(line).find_map(|word| coordinate(word).err());
     wrong
         .filter(|_| !is_header)
-        .unwrap_or_else(|| format!("`{}` is not what the header makes expect here", shown(line.trim_ascii())))
+        .unwrap_or_else(|| format!("`{}` is not what the header announces here", shown(line.trim_ascii())))
 }

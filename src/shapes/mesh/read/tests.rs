@@ -121,7 +121,7 @@ fn a_broken_text_is_told_with_its_line() {
     for (line, message) in [
         ("f 1 2 4", "there is no vertex 4: 3 vertices precede this face"),
         ("f 1 2 -4", "there is no vertex -4: 3 vertices precede this face"),
-        ("f 0 1 2", "vertices count from 1, and there is none of number 0"),
+        ("f 0 1 2", "vertices are counted from 1, so there is no vertex 0"),
         ("f 1 2 99999999999999999999", "`99999999999999999999` is not a vertex's number"),
         ("f 1 2", "a face needs three vertices, and this one has 2"),
         ("f", "a face needs three vertices, and this one has 0"),
@@ -140,13 +140,8 @@ fn a_broken_text_is_told_with_its_line() {
         ("3 1 2 3", "3 1 2 4", 18, "face 2 refers to vertex 4, and there are 4, from 0"),
         ("3 1 2 3", "3 1 2 -1", 18, "face 2 refers to vertex -1, and there are 4, from 0"),
         ("3 1 2 3", "2 1 2", 18, "face 2 has 2 vertices, and needs three"),
-        ("3 1 2 3", "200 1 2 3", 18, "`200 1 2 3` is not what the header makes expect here"),
-        (
-            "property float y",
-            "property flat y",
-            6,
-            "`property flat y` is not what the header makes expect here",
-        ),
+        ("3 1 2 3", "200 1 2 3", 18, "`200 1 2 3` is not what the header announces here"),
+        ("property float y", "property flat y", 6, "`property flat y` is not what the header announces here"),
     ] {
         let text = ply_text().replace(wrong, right);
         let broken = ply::read(text.as_bytes()).expect_err(right);
