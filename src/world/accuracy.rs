@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// How exactly shapes find their hits.
+/// The accuracy with which shapes find their hits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Accuracy {
     /// The course notes' methods, with the hits that they lose and the artefacts that they make.

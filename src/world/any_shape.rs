@@ -1,4 +1,4 @@
-//! A shape of any type, whatever it has opted into.
+//! A shape of any type, together with the traits that it implements beyond [`Hittable`].
 
 use crate::geometry::facet::Facet;
 use crate::geometry::ray::{Bracket, Ray, RayRange, Side};
@@ -43,25 +43,25 @@ impl AnyShape {
         self.0.holds(at, error)
     }
 
-    /// Returns the facet in whose plane all of a closed shape's surface within an error in world units of a point lies;
+    /// Returns the plane that contains all of a closed shape's surface within an error, in world units, of a point;
     /// `None` where that is not known.
     pub fn facet(&self, at: DVec3, error: f64) -> Option<Facet> {
         self.0.facet(at, error)
     }
 
-    /// Returns what is certain about a ray's first hit. For a shape without an equation, nothing is.
+    /// Returns what is proven about a ray's first hit. For a shape without an equation, that is nothing.
     pub fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
         self.0.certify(sight, precision)
     }
 
-    /// Returns what proofs about other rays than primary ones need; `None` for a shape without an equation.
+    /// Returns the functions for proofs about other rays than primary ones; `None` for a shape without an equation.
     pub(crate) fn proven(&self) -> Option<&dyn Proven> {
         self.0.proven()
     }
 
     /// Merges the hits of a packet's rays with this shape into the nearest hits so far, and tells whether the order of
-    /// any is in doubt. `sides` has the side of this shape that each ray leaves, if the rays leave this shape; `id` is
-    /// the object's index in the scene plus 1.
+    /// any two hits is in doubt. `sides` is the side of this shape that each ray leaves, if the rays leave this shape;
+    /// `id` is the object's index in the scene plus 1.
     pub fn closest_hits(
         &self,
         cpu: Cpu,
@@ -82,7 +82,7 @@ impl Deref for AnyShape {
     }
 }
 
-/// Wraps a shape that has opted into nothing.
+/// Wraps a shape that implements none of the optional traits.
 impl<T: Hittable + 'static> From<T> for AnyShape {
     fn from(shape: T) -> Self {
         Shape::new(shape).into()

@@ -1,4 +1,4 @@
-//! Backgrounds: the trait that a plugin implements for what is seen where there is no object.
+//! Backgrounds: the trait that a plugin implements for the colour of rays that hit no object.
 
 use crate::numeric::interval::Interval;
 use crate::world::material::Rgb;
@@ -7,9 +7,10 @@ use glam::DVec3;
 /// Any [`Background`].
 pub type AnyBackground = Box<dyn Background>;
 
-/// The light that rays return which hit nothing: primary, reflected and transmitted ones.
+/// The colour of rays that hit nothing: primary, reflected and transmitted ones.
 ///
-/// It comes from infinitely far away, so it is not divided by the distance. It is seen, but lights no surface.
+/// Its light comes from infinitely far away, so it is not divided by the distance. It is seen, but it lights no
+/// surface.
 pub trait Background: Send + Sync {
     /// Returns the colour in a direction, given by a unit vector. Every channel is finite and 0 or more.
     fn colour(&self, toward: DVec3) -> Rgb;
@@ -17,8 +18,8 @@ pub trait Background: Send + Sync {
     /// Returns an upper bound of all colours, per channel. It decides how deep rays are followed into mirrors and glass.
     fn brightest(&self) -> Rgb;
 
-    /// Encloses the colours, as mathematics has them, in all directions of a box, per channel. Proofs of colours ask for
-    /// them. The default is always correct.
+    /// Encloses the true colours, before any rounding, in all directions of a box, per channel. Proofs of colours ask
+    /// for them. The default is always correct.
     fn enclose(&self, _toward: [Interval; 3]) -> [Interval; 3] {
         self.brightest().to_array().map(|high| Interval { low: 0.0, high })
     }

@@ -13,12 +13,13 @@ use std::sync::{Arc, OnceLock};
 /// Any [`Shader`]: `Box::new(shader)` makes one.
 pub type AnyShader = Box<dyn PacketShader>;
 
-/// What a shader entity of a scene makes: a shader for each object that it is given to.
+/// What a shader entity of a scene makes: a function that makes the shader of each object that names the entity.
 #[derive(Clone)]
 pub struct Paint(Arc<dyn Fn(Anchor) -> AnyShader + Send + Sync>);
 
 impl Paint {
-    /// Calls a function for each object, with the origin and the unit of length of the pattern there.
+    /// Makes a paint of a function, which is called for each object with the origin and the unit of length of the
+    /// pattern on it.
     pub fn new<S: Shader + 'static>(make: impl Fn(Anchor) -> S + Send + Sync + 'static) -> Self {
         Self(Arc::new(move |anchor| Box::new(make(anchor))))
     }
@@ -29,14 +30,14 @@ impl Paint {
     }
 }
 
-/// What looks like the material.
+/// The paint that leaves an object with the reflectivities of its material.
 impl Default for Paint {
     fn default() -> Self {
         Self::new(|_| Plain)
     }
 }
 
-/// All are equal: their names tell them apart.
+/// All paints are equal: a scene tells them apart by their names.
 impl PartialEq for Paint {
     fn eq(&self, _other: &Self) -> bool {
         true
@@ -52,8 +53,8 @@ impl fmt::Debug for Paint {
 /// Any [`Light`](crate::world::light::Light): `Box::new(light)` makes one.
 pub type AnyLight = Box<dyn PacketLight>;
 
-/// The body of a named object, for other entities that refer to it. It is empty until the object is made, and stays empty
-/// where that is faulty.
+/// The body of a named object, for other entities that refer to it. It is empty until the object is made, and stays
+/// empty if the object has an error.
 #[derive(Clone, Default)]
 pub struct NamedBody(Arc<OnceLock<Arc<Body>>>);
 
@@ -69,7 +70,7 @@ impl NamedBody {
     }
 }
 
-/// All are equal: their names tell them apart.
+/// All named bodies are equal: a scene tells them apart by their names.
 impl PartialEq for NamedBody {
     fn eq(&self, _other: &Self) -> bool {
         true
@@ -82,7 +83,7 @@ impl fmt::Debug for NamedBody {
     }
 }
 
-/// Makes a shader of one that sees an object in its own coordinates.
+/// Wraps a shader so that it sees points of a copied object in the coordinates of the original.
 pub type ToOwn = Box<dyn Fn(AnyShader) -> AnyShader + Send + Sync>;
 
 /// What an object's constructor returns: the object's shape and its shader.
@@ -93,21 +94,21 @@ pub struct Body {
     pub shader: AnyShader,
     /// The origin and the unit of length of patterns on it; `None` for those of its bounding box.
     pub anchor: Option<Anchor>,
-    /// Takes a shader to the object's own coordinates, where it has such.
+    /// Wraps a shader so that it sees points in the coordinates of the original, if the object is a copy.
     pub to_own: Option<ToOwn>,
-    /// What the user should know of the object, although it can be rendered.
+    /// What the user should know about the object, although it can be rendered.
     pub warnings: Vec<Warning>,
     /// The memory that the object takes beside the scene, in bytes.
     pub bytes: u64,
-    /// The number of objects that lie within each other in it: 1 for a copy of a shape, 2 for a copy of a copy.
+    /// The number of objects nested in it: 1 for a copy of a shape, 2 for a copy of a copy.
     pub depth: u32,
-    /// The name that the scene gives it, where others refer to it.
+    /// The name that the scene gives the object, if others refer to it.
     pub name: Option<Arc<str>>,
-    /// The material, where it is not that of the entity that the body is made for.
+    /// The material, if it differs from that of the entity that the body is made for.
     pub material: Option<Arc<Material>>,
-    /// The solid, if it is made of several parts.
+    /// The parts of a solid, if the object is one.
     pub solid: Option<Box<Solid>>,
-    /// The bodies that are seen together with this one.
+    /// Further bodies that are seen together with this one.
     pub more: Vec<Body>,
 }
 
@@ -116,7 +117,7 @@ pub struct Body {
 pub struct Solid {
     /// Its parts.
     pub parts: Vec<Part>,
-    /// The parts that a point must lie in to lie in the solid.
+    /// The condition on the parts that a point lies in, which decides whether the point lies in the solid.
     pub tree: Tree,
 }
 
@@ -148,9 +149,9 @@ impl Solid {
 pub struct Warning {
     /// The attribute to mark.
     pub attribute: &'static str,
-    /// What may not be as intended, phrased to follow the entity's name: "leaves out 3 faces".
+    /// What may differ from what the user intended, phrased to follow the entity's name: "leaves out 3 faces".
     pub message: String,
-    /// What would be right, or what happens otherwise.
+    /// How to correct it, or what happens otherwise.
     pub help: String,
 }
 
@@ -206,7 +207,7 @@ impl Body {
         body
     }
 
-    /// Warns where the shader sees what the shape does not have.
+    /// Warns if the shader needs coordinates or faces that the shape does not have.
     fn warn_of_what_it_lacks(&mut self) {
         let (sees, at) = (self.shader.sees(), self.anchor().origin);
         let lacks = [
@@ -216,8 +217,8 @@ impl Body {
         for what in lacks.into_iter().flatten() {
             self.warnings.push(Warning {
                 attribute: "shader",
-                message: format!("has no {what}, which its shader sees"),
-                help: format!("where a shape has no {what}, a shader sees 0 or the material alone"),
+                message: format!("has no {what}, which its shader uses"),
+                help: format!("on a shape without {what}, the shader takes 0, or shows the material alone"),
             });
         }
     }

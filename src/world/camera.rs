@@ -8,23 +8,24 @@ use crate::numeric::scalar::Scalar;
 use glam::{DVec2, DVec3};
 use std::fmt;
 
-/// A camera: which ray is seen at each place of the image.
+/// A camera: which ray belongs to each point of the image.
 ///
-/// Only [`ray`](Self::ray) and [`origins`](Self::origins) must be given. What else is known of the rays makes renders
-/// faster and lets more be proven; every default is correct.
+/// Only [`ray`](Self::ray) and [`origins`](Self::origins) must be given. The other functions tell more about the rays,
+/// which makes renders faster and lets more be proven; every default is correct.
 pub trait Camera: fmt::Debug + Send + Sync + 'static {
-    /// Returns the ray that is seen at a place, which may lie up to two pixels outside of the image. `lens` is a point of
-    /// the unit disc, (0, 0) its centre, which only cameras whose lens has a size take into account.
+    /// Returns the ray through a point of the image, which may lie up to two pixels outside of it. `lens` is a point of
+    /// the unit disc, (0, 0) its centre; cameras whose lens has no size ignore it.
     fn ray(&self, at: &ImagePoint, lens: DVec2) -> Ray;
 
-    /// Returns what [`ray`](Self::ray) does; where that takes more than plain arithmetic, a direction whose x or y is 0 may
-    /// stand for it. Of many rays, these alone are asked for again.
+    /// Returns the same ray as [`ray`](Self::ray), or, where that ray takes more than plain arithmetic, a ray with a
+    /// direction whose x or y is 0, which stands for "unknown". Packets of rays call this function first, and `ray`
+    /// again for the unknown ones alone.
     fn plain_ray(&self, at: &ImagePoint, lens: DVec2) -> Ray {
         self.ray(at, lens)
     }
 
-    /// Returns a ball that holds the origins of all rays to places in an image with this width and height in pixels, and
-    /// up to two pixels outside of it.
+    /// Returns a ball that contains the origins of all rays through an image of this width and height in pixels, and
+    /// through points up to two pixels outside of it.
     fn origins(&self, pixels: [usize; 2]) -> Origins;
 
     /// Tells whether the rays at one place of the image differ from point to point of a lens. Every sample of a pixel
@@ -33,27 +34,29 @@ pub trait Camera: fmt::Debug + Send + Sync + 'static {
         false
     }
 
-    /// Returns where a point in world coordinates is seen in an image with this width and height in pixels.
+    /// Returns the point of an image, of this width and height in pixels, that shows a point in world coordinates.
     fn project(&self, _point: DVec3, _pixels: [usize; 2]) -> Projected {
         Projected::Unknown
     }
 
-    /// Returns the unit vectors from the viewer to the corners of an image with this width and height in pixels, half a
-    /// pixel and a fraction `margin` of the image outside of the outermost pixels' centres: in the order around the
-    /// image. `None` where rays start at different points, or where not all are between these.
+    /// Returns the unit vectors from the viewer to the corners of an image of this width and height in pixels, in their
+    /// order around the image. The corners lie half a pixel and a fraction `margin` of the image outside of the
+    /// outermost pixels' centres. `None` where rays start at different points, or where not all of them lie between
+    /// these vectors.
     fn corners(&self, _pixels: [usize; 2], _margin: f64) -> Option<[DVec3; 4]> {
         None
     }
 
-    /// Returns the ray before anything is rounded: each component of [`ray`](Self::ray)'s direction is at most 3 units
-    /// of 2^-53 from it, and the origin is the same. By default the numbers of `ray` are taken for exact, so that it is
-    /// the rays as computed about which something is proven.
+    /// Returns the ray before anything is rounded: each component of the direction that [`ray`](Self::ray) returns is
+    /// within 3 units of 2^-53 of it, and the origin is the same. The default takes the numbers of `ray` for exact, so
+    /// that proofs are about the rays as computed.
     fn sight(&self, at: &ImagePoint, lens: DVec2) -> Sight {
         Sight::along(&self.ray(at, lens))
     }
 
-    /// Returns the line of the ray that is seen at a place, of any length, in any number type; `None` where that is not
-    /// known, or where rays differ from point to point of a lens. Proofs about all rays through a pixel ask for it.
+    /// Returns the line of the ray through a point of the image, with a direction of any length, in any number type;
+    /// `None` where that is not known, or where rays differ from point to point of a lens. Proofs about all rays
+    /// through a pixel ask for it.
     fn line<N: Scalar>(&self, _at: ImagePoint<N>) -> Option<Line<N>>
     where
         Self: Sized,
@@ -66,18 +69,18 @@ pub trait Camera: fmt::Debug + Send + Sync + 'static {
         None
     }
 
-    /// Returns the z, in world units, beyond which planes are not there; `None` where there is no such rule.
+    /// Returns the z, in world units, beyond which planes are cut off; `None` where there is no such rule.
     fn planes_end_at(&self) -> Option<f64> {
         None
     }
 }
 
-/// A ball that holds the origins of a camera's rays.
+/// A ball that contains the origins of a camera's rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Origins {
     /// The middle, in world coordinates.
     pub middle: DVec3,
-    /// The radius in world units; 0 where all rays start at the middle.
+    /// The radius in world units; 0 if all rays start at the middle.
     pub radius: f64,
 }
 
@@ -93,10 +96,10 @@ impl Origins {
     }
 }
 
-/// Where a point in the world is seen.
+/// Where the image shows a point of the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projected {
-    /// At this place, in pixels from the centre of the lower left pixel; it may lie outside of the image.
+    /// At this point, in pixels from the centre of the lower left pixel; it may lie outside of the image.
     At(DVec2),
     /// Nowhere: no ray leads there, or infinitely many do.
     Nowhere,

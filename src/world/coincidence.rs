@@ -1,8 +1,8 @@
-//! Several surfaces through one point: which of them a ray hits first, and which it leaves when it starts there.
+//! Several surfaces through one point: which of them a ray hits first, and which ones a ray that starts there leaves.
 //!
-//! The point where a ray hits a surface is rounded. Another surface that lies within the rounding error of the point
-//! holds it as well, and a ray that starts there leaves both: a floor casts no shadow on a rug that lies on it, and the
-//! edge where a floor meets a wall shows no dots. The size of the error follows from the numbers that the point was
+//! The point where a ray hits a surface is rounded. Another surface within the rounding error of the point counts as
+//! passing through it, and a ray that starts there leaves both: a floor casts no shadow on a rug that lies on it, and
+//! the edge where a floor meets a wall shows no dots. The size of the error follows from the numbers that the point was
 //! computed from.
 
 use crate::geometry::aabb::larger;

@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// Any [`Camera`](crate::world::camera::Camera): `Arc::new(camera)` makes one.
 pub type AnyCamera = Arc<dyn PacketCamera>;
 
-/// What every camera has: the image's size, its samples and its exposure; and how the camera projects onto it.
+/// The film of a camera: the image's size, its samples and its exposure, and the camera that projects onto it.
 #[derive(Clone, Debug)]
 pub struct Film {
     /// The camera itself: which ray is seen at each place of the image.
@@ -26,18 +26,18 @@ pub struct Film {
     pub pixels: [usize; 2],
     /// The number of primary rays per pixel, from 1 to [`Sampler::MOST`].
     pub samples: u32,
-    /// When a pixel takes more primary rays than `samples`; `None` where all take the same number.
+    /// The rule by which a pixel takes more primary rays than `samples`; `None` if all take the same number.
     pub adaptive: Option<Adaptive>,
     /// Whether pixels whose colours are proven to be within the error that adaptive sampling allows take no primary rays.
     pub certain: bool,
-    /// How the rays are placed within a pixel, if there is more than one.
+    /// The distribution of the rays within a pixel, if there is more than one.
     pub sampler: Sampler,
-    /// What the samplers' sequences are scrambled with beside the pixel: 0 in a render, and another number where the
-    /// same image is wanted with independent samples.
+    /// A number that scrambles the samplers' sequences together with the pixel: 0 in a render, and another one for the
+    /// same image with independent samples.
     pub scramble: u32,
     /// The exposure in stops: colours are multiplied by 2 to this power.
     pub exposure: f64,
-    /// How exactly hits are found.
+    /// The accuracy with which hits are found.
     pub accuracy: Accuracy,
 }
 
@@ -48,13 +48,13 @@ impl Default for Film {
     }
 }
 
-/// How many primary rays a pixel takes, where pixels differ in that: [`Film::samples`], and then twice as many again
-/// and again, each time by the sampler's sequence, until its estimated error is small enough.
+/// How many primary rays a pixel takes in adaptive sampling: [`Film::samples`], and then twice as many again and again,
+/// each time the next ones of the sampler's sequence, until its estimated error is small enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Adaptive {
     /// The maximum number of primary rays per pixel: [`Film::samples`] times a power of two.
     pub most: u32,
-    /// The error of a pixel's colour, where 1 is white, that is to be estimated at last; `None` where the samples are to
+    /// The error of a pixel's colour, where 1 is white, at which its estimate must arrive; `None` if the samples are to
     /// lower the error of the whole image.
     pub error: Option<f64>,
 }
@@ -75,12 +75,12 @@ impl Film {
         }
     }
 
-    /// Returns the factor of all colours.
+    /// Returns the factor by which the exposure multiplies all colours.
     pub(crate) fn gain(&self) -> f64 {
         libm::exp2(self.exposure)
     }
 
-    /// Returns what the sequence of a pixel's samples depends on. The pixel may lie outside of the image.
+    /// Returns the seed of a pixel's sequence of samples. The pixel may lie outside of the image.
     #[inline]
     pub(crate) fn seed(&self, x: i64, y: i64) -> u32 {
         (y * self.pixels[0] as i64 + x) as u32 ^ self.scramble
@@ -156,25 +156,25 @@ impl Film {
         }
     }
 
-    /// Returns the place in the image at a distance from the centre of the lower left pixel, in pixels.
+    /// Returns the point of the image at a distance, in pixels, from the centre of the lower left pixel.
     #[inline(always)]
     fn point(&self, x: f64, y: f64) -> ImagePoint {
         ImagePoint { at: [x, y], pixels: self.pixels }
     }
 
-    /// Returns the ray that is seen at an image position, through the centre of the lens, if the camera has one. `x`
-    /// counts pixels from the left and `y` from the bottom.
+    /// Returns the ray through an image position and the centre of the lens, if the camera has one. `x` counts pixels
+    /// from the left and `y` from the bottom.
     pub fn ray(&self, x: f64, y: f64) -> Ray {
         self.camera.ray(&self.point(x, y), DVec2::ZERO)
     }
 
-    /// Returns the ray at an image position, as [`ray`](Self::ray) has it, before anything is rounded.
+    /// Returns the ray that [`ray`](Self::ray) returns, before anything is rounded.
     pub fn sight(&self, x: f64, y: f64) -> Sight {
         self.sight_through(x, y, DVec2::ZERO)
     }
 
-    /// Returns the ray at an image position, in pixels, through a point of the lens, in its radius, before anything is
-    /// rounded.
+    /// Returns the ray through an image position, in pixels, and a point of the lens, in units of its radius, before
+    /// anything is rounded.
     pub(crate) fn sight_through(&self, x: f64, y: f64, lens: DVec2) -> Sight {
         self.camera.sight(&self.point(x, y), lens)
     }
@@ -185,12 +185,12 @@ impl Film {
         self.sight_through(place.x, place.y, sample.map_or(DVec2::ZERO, Sample::on_lens))
     }
 
-    /// Returns where a point in world coordinates is seen.
+    /// Returns the image position that shows a point in world coordinates.
     pub(crate) fn project(&self, point: DVec3) -> Projected {
         self.camera.project(point, self.pixels)
     }
 
-    /// Returns a ball that holds the origins of all primary rays.
+    /// Returns a ball that contains the origins of all primary rays.
     pub(crate) fn origins(&self) -> Origins {
         self.camera.origins(self.pixels)
     }
@@ -207,7 +207,8 @@ impl Film {
         self.camera.footprint(ImagePoint { at: [x, y], pixels: self.pixels }).is_some()
     }
 
-    /// Returns places in the image for the camera, each with its point of the lens, in its radius, if any.
+    /// Returns points of the image for the camera, each with its point of the lens, in units of its radius, if the lens
+    /// has a size.
     pub(crate) fn places_of<'p>(&self, [x, y]: [&'p [f64]; 2], lens: [&'p [f64]; 2]) -> Places<'p> {
         Places { pixels: self.pixels, x, y, lens }
     }

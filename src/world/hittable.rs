@@ -14,8 +14,8 @@ use glam::{DMat3, DVec2, DVec3};
 
 /// A shape that rays can hit. Shapes do not change while an image is rendered.
 ///
-/// A plugin implements `distance` and `normal`, and overrides those other methods of which it knows more. Each default
-/// is correct for every shape, except for [`reach`](Self::reach) of a shape without bounds.
+/// A plugin implements `distance` and `normal`, and overrides other methods if it knows more than their defaults. Each
+/// default is correct for every shape, except that of [`reach`](Self::reach) for a shape without bounds.
 pub trait Hittable: Send + Sync {
     /// Returns the distance from the ray's origin to its first hit of the shape within the range, in world units, or
     /// [`MISS`](crate::geometry::ray::MISS).
@@ -24,8 +24,8 @@ pub trait Hittable: Send + Sync {
     /// Returns the unit normal at a point of the surface.
     fn normal(&self, at: DVec3) -> DVec3;
 
-    /// Returns the unit normal with which a point of the surface is shaded, where it is not that of the surface: that
-    /// of a mesh which looks smooth. `normal` is that of the surface, flipped to face the ray where both sides are lit.
+    /// Returns the unit normal for shading at a point of the surface, where it differs from the surface's own: a mesh
+    /// may look smooth. `normal` is that of the surface, flipped to face the ray where both sides are lit.
     fn shading_normal(&self, _at: DVec3, normal: DVec3) -> DVec3 {
         normal
     }
@@ -35,15 +35,15 @@ pub trait Hittable: Send + Sync {
         None
     }
 
-    /// Returns a bounding box of what a linear map makes of the shape, up to rounding, where it is tighter than that of
-    /// the corners of its box.
+    /// Returns a bounding box of the image of the shape under a linear map, up to rounding, if the shape knows one that
+    /// is tighter than that of the corners of its box.
     fn bounds_after(&self, _linear: &DMat3) -> Option<Aabb> {
         None
     }
 
-    /// Tells whether a ray that leaves the shape on this side may hit it again. Where it may not, the ray is not tested
-    /// against the shape. A plane is not hit again, a sphere only from inside. `true` is correct for every shape whose
-    /// [`distance`](Self::distance) respects `range.origin_side`.
+    /// Tells whether a ray that leaves the shape on this side may hit it again. If not, the ray is not tested against
+    /// the shape. A ray that leaves a plane cannot hit it again, and a ray that leaves a sphere only from inside.
+    /// `true` is correct for every shape whose [`distance`](Self::distance) respects `range.origin_side`.
     #[inline]
     fn can_hit_itself(&self, _leaving: Side) -> bool {
         true
@@ -55,8 +55,8 @@ pub trait Hittable: Send + Sync {
         false
     }
 
-    /// Says why the surface is not that of a solid, to follow "is open: "; `None` for a closed surface, whose normal points
-    /// outward and whose equation, if it has one, is below 0 inside. Only closed shapes can be parts of solids.
+    /// Says why the surface is not closed, phrased to follow "is open: "; `None` for a closed surface, whose normal
+    /// points outward and whose equation, if it has one, is below 0 inside. Only closed shapes can be parts of solids.
     fn openness(&self) -> Option<&'static str> {
         Some("it has no inside")
     }
@@ -72,8 +72,8 @@ pub trait Hittable: Send + Sync {
         None
     }
 
-    /// Returns the coordinates u and v of a point of the surface, for shaders: from 0 to 1 where the shape is all of its
-    /// kind, such as the longitude and the latitude of a sphere. `None` for a shape that has none.
+    /// Returns the coordinates u and v of a point of the surface, for shaders, such as the longitude and the latitude
+    /// of a sphere. They are from 0 to 1 on a whole shape. `None` for a shape that has none.
     fn uv(&self, _at: DVec3) -> Option<DVec2> {
         None
     }
@@ -84,12 +84,12 @@ pub trait Hittable: Send + Sync {
         None
     }
 
-    /// Passes on what the shape has read from files beside the scene, as bytes: a finished part of an image fits only
-    /// the same bytes.
+    /// Passes the bytes that the shape has read from files beside the scene to a function: a part of an image can only
+    /// be continued with the same bytes.
     fn read_from_files(&self, _each: &mut dyn FnMut(&[u8])) {}
 
-    /// Tells whether no part of the shape lies in a region, which may be unbounded. An unbounded shape may know more
-    /// than the default does; `false` is always correct.
+    /// Tells whether no part of the shape lies in a region, which may be unbounded. The default asks the bounding box;
+    /// an unbounded shape may know more. `false` is always correct.
     fn is_clear_of(&self, region: &Aabb) -> bool {
         self.bounds().is_some_and(|bounds| !bounds.overlaps(region))
     }
@@ -101,14 +101,14 @@ pub trait Hittable: Send + Sync {
         None
     }
 
-    /// Tells whether the search for a ray's hit may take as long as several plain rays; of a shape without bounds, that
-    /// is not asked.
+    /// Tells whether the search for a ray's hit may take as long as several plain rays. Shapes without bounds are not
+    /// asked.
     fn may_be_costly(&self) -> bool {
         false
     }
 
-    /// Returns how many plain rays take as long as the search for a ray's hit, beyond the ray itself. It depends on
-    /// the ray alone, and on the side of the shape that it leaves, if it does.
+    /// Returns the cost of the search for a ray's hit, in plain rays, beyond the ray itself. It depends only on the
+    /// ray, and on the side of the shape that the ray leaves, if it does.
     fn search_cost(&self, _ray: &Ray, _origin_side: Option<Side>) -> u32 {
         0
     }
@@ -129,8 +129,8 @@ pub trait Hittable: Send + Sync {
 
 /// A shape whose [`distance`](Hittable::distance) is expensive, and which can quickly bracket it.
 ///
-/// Branch-free arithmetic on several rays at a time finds the shape that each ray may hit first, and the exact distance
-/// is computed for that shape alone.
+/// Branch-free arithmetic on several rays at a time uses the brackets to find the shape that each ray may hit first.
+/// The exact distance is then computed for that shape alone.
 pub trait Bracketed: Hittable {
     /// Returns a bracket of [`distance`](Hittable::distance).
     ///
@@ -138,21 +138,21 @@ pub trait Bracketed: Hittable {
     /// the bracket has no certain upper end.
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket;
 
-    /// Returns a bracket of the distances of all rays within a drift of this one, none of which starts on the shape.
-    /// Where it is unknown, as by default, the hits of a camera ray in a copy of the shape are proven, which takes a
+    /// Returns a bracket of the distances of all rays within a drift of this one, none of which starts on the shape. If
+    /// the bracket is unknown, as by default, the hits of camera rays on copies of the shape are proven, which takes a
     /// hundred times as long.
     #[inline(always)]
     fn t_bounds_within(&self, _ray: &Ray, _range: &RayRange, _drift: Drift) -> Bracket {
         Bracket::UNKNOWN
     }
 
-    /// Returns what [`distance`](Hittable::distance) returns, to the last bit, for a ray whose hit a bracket has found
-    /// for certain, or NaN where it takes more than plain arithmetic. For other rays it need not detect a miss.
-    /// `origin_side` is the side of the shape that the ray starts on, if it starts on the shape.
+    /// Returns the distance that [`distance`](Hittable::distance) returns, to the last bit, for a ray whose hit a
+    /// bracket has found for certain, or NaN where it takes more than plain arithmetic. For other rays it need not
+    /// detect a miss. `origin_side` is the side of the shape that the ray starts on, if it starts on the shape.
     fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64;
 }
 
-/// A shape given by an equation, so that what is certain about its hits can be proven.
+/// A shape given by an equation, by which its hits can be proven.
 pub trait Certified: Hittable + Equation {
     /// Tells whether a point lies on the surface, up to an error in world units and to the rounding of the shape's own
     /// numbers. Rays that start at such a point leave the shape.
@@ -160,8 +160,8 @@ pub trait Certified: Hittable + Equation {
         coincidence::touches(self, at, error)
     }
 
-    /// Returns the facet in whose plane all of a closed shape's surface within an error in world units of a point lies;
-    /// `None` where that is curved, has an edge or is not known.
+    /// Returns the plane that contains all of a closed shape's surface within an error, in world units, of a point;
+    /// `None` where the surface is curved, has an edge there, or where that is not known.
     fn facet(&self, _at: DVec3, _error: f64) -> Option<Facet> {
         None
     }

@@ -1,4 +1,4 @@
-//! Interfaces: the trait for how light goes on where it meets a surface, which a material may have.
+//! Interfaces: how light continues at a surface. A material may have one.
 
 use crate::geometry::ray::Side;
 use glam::DVec3;
@@ -7,21 +7,22 @@ use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// How light goes on at a surface: which part of it is reflected, and where the rest is transmitted to, if it is.
+/// How light continues at a surface: which fraction is reflected, and in which direction the rest is transmitted.
 ///
-/// A material without one transmits light in a straight line, and reflects what its specular reflectivity says.
+/// A material without an interface transmits light in a straight line, and reflects the fraction given by its specular
+/// reflectivity.
 pub trait Interface: Send + Sync {
-    /// Returns how a ray goes on that hits the surface on a side. `dir` is its unit direction, and `normal` the unit normal
-    /// that faces it: `dir.dot(normal)` is at most 0.
+    /// Returns how a ray continues that hits the surface on a side. `dir` is its unit direction, and `normal` the unit
+    /// normal that faces it: `dir.dot(normal)` is at most 0.
     fn cross(&self, dir: DVec3, normal: DVec3, side: Side) -> Crossing;
 }
 
-/// How a ray goes on at an interface.
+/// How a ray continues at an interface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
     /// The fraction of the light that is reflected as by a mirror, from 0 to 1, in red, green and blue.
     pub reflected: DVec3,
-    /// The unit direction in which the rest is transmitted; `None` where it is not.
+    /// The unit direction in which the rest is transmitted; `None` if it is absorbed.
     pub onward: Option<DVec3>,
 }
 
@@ -51,7 +52,7 @@ impl<I: Interface + PartialEq + 'static> Comparable for I {
 }
 
 impl AnyInterface {
-    /// Makes one of an interface.
+    /// Wraps an interface.
     pub fn new(interface: impl Interface + PartialEq + 'static) -> Self {
         Self(Arc::new(interface))
     }

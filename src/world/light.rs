@@ -21,8 +21,8 @@ pub trait Light: Send + Sync {
         None
     }
 
-    /// Encloses the light sent toward every point of a box, as mathematics has it, 0 where it does not point there;
-    /// `None` where it is not known. Proofs of colours ask for it. `None` is always correct.
+    /// Encloses the light sent toward every point of a box, before any rounding, 0 where the light does not point
+    /// there; `None` where it is not known. Proofs of colours ask for it. `None` is always correct.
     fn enclose<F: Precise>(&self, _toward: [Interval<F>; 3]) -> Option<[Interval<F>; 3]>
     where
         Self: Sized,
@@ -36,8 +36,8 @@ pub trait Light: Send + Sync {
         self.uniform()
     }
 
-    /// Tells whether the light shines on no point of a region, which may be unbounded: [`emissivity`](Self::emissivity) is
-    /// `None` there. Then it is left out where nothing else is seen. `false` is always correct.
+    /// Tells whether the light shines on no point of a region, which may be unbounded: [`emissivity`](Self::emissivity)
+    /// is `None` there. A scene in which only such regions are seen leaves the light out. `false` is always correct.
     fn is_clear_of(&self, _region: &Aabb) -> bool {
         false
     }

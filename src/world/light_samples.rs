@@ -12,12 +12,12 @@ pub struct ShadingPoints<'p> {
     pub normals: View<'p>,
     /// The point of the light that each point sees, in world coordinates; `None` for the light's own position.
     pub lights: Option<View<'p>>,
-    /// How far short of the light the shadow rays end, as a fraction of the sum of the distance to the light and of the
-    /// largest magnitude of the point's coordinates.
+    /// The distance before the light at which the shadow rays end, as a fraction of the sum of the distance to the
+    /// light and of the largest magnitude of the point's coordinates.
     pub slack: f64,
 }
 
-/// What a light sends to shading points, and along which directions.
+/// The light that a light source sends to shading points, and its directions.
 pub struct LightSamples<'f> {
     /// The unit vectors toward the light.
     pub toward: ViewMut<'f>,
@@ -26,13 +26,13 @@ pub struct LightSamples<'f> {
     /// The cosines of the angles between `toward` and the normals, divided by the distances to the light in world
     /// units.
     pub cos_over_distance: &'f mut [f64],
-    /// Where the shadow rays end, in world units from the points; 0 where no shadow ray is needed.
+    /// The ends of the shadow rays, in world units from the points; 0 where no shadow ray is needed.
     pub t_max: &'f mut [f64],
     /// 0 for a point that the light does not shine on or lies behind; otherwise 1.
     pub shines: &'f mut [u64],
 }
 
-/// Whether any of some shading points is lit.
+/// Whether any of several shading points is lit.
 pub struct AnyLit {
     /// Whether any point faces the light.
     pub any_faces: bool,

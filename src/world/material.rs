@@ -19,8 +19,8 @@ pub struct Material {
     pub shininess: f64,
     /// The fraction of light that passes through the surface, from 0 to 1.
     pub transparency: f64,
-    /// What decides how light goes on from the surface; `None` where it is transmitted in a straight line, and mirrored as
-    /// `specular` says.
+    /// How light continues at the surface; `None` if it is transmitted in a straight line, and reflected as `specular`
+    /// says.
     pub interface: Option<AnyInterface>,
 }
 

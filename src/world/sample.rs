@@ -10,7 +10,7 @@ use std::array;
 use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
-/// How a pixel's samples are distributed.
+/// The distribution of a pixel's samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Sampler {
     /// Evenly spread (a Sobol sequence).
@@ -29,18 +29,18 @@ impl Sampler {
     pub const MOST: u32 = 1 << 16;
 }
 
-/// What sequences are scrambled with for an image that shares no samples with a render.
+/// The number that scrambles the sequences of an image that shares no samples with a render.
 pub(crate) const SCRAMBLE: u32 = 0x5bd1_e995;
 
-/// One of several samples of a pixel.
+/// A sample of a pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
-    /// How the sample is drawn.
+    /// The distribution from which the sample is drawn.
     pub sampler: Sampler,
     /// The sample's index among the pixel's samples, from 0.
     pub index: u32,
-    /// What tells the pixel's samples from those of others: its index in the image, scrambled; for probes, the number of
-    /// a point on the rim of a light.
+    /// A number that tells the pixel's samples from those of others: its index in the image, scrambled; for probes, the
+    /// number of a point on the rim of a light.
     pub pixel: u32,
 }
 
@@ -50,7 +50,7 @@ impl Sample {
         self.draw(JITTER) - 0.5
     }
 
-    /// Returns two random numbers from 0 to 1 that choose a point on the light of this index.
+    /// Returns two random numbers from 0 to 1, which choose a point on the light of this index.
     pub fn on_light(&self, light: usize) -> DVec2 {
         self.draw(on_light(light))
     }
@@ -76,8 +76,8 @@ impl Sample {
         }
     }
 
-    /// Returns what the pixel's sequence is scrambled with. Purposes differ in their scrambling, not in their dimension,
-    /// so that any number of lights has a sequence.
+    /// Returns the seed that scrambles the pixel's sequence. Purposes differ in their seed, not in their dimension, so
+    /// that any number of lights has a sequence.
     fn seed(&self, purpose: u32) -> u32 {
         self.pixel ^ purpose.wrapping_mul(0x9e37_79b9)
     }
@@ -94,7 +94,7 @@ fn on_light(light: usize) -> u32 {
 /// The purpose of the numbers that choose a point on the camera's lens.
 const ON_LENS: u32 = u32::MAX;
 
-/// Returns the point of the unit disc that two numbers from 0 to 1 choose: all parts of equal area are as likely.
+/// Returns the point of the unit disc that two numbers from 0 to 1 choose, uniformly by area.
 fn on_disc(numbers: DVec2) -> DVec2 {
     let (sin, cos) = libm::sincos(TAU * numbers.y);
     numbers.x.sqrt() * DVec2::new(cos, sin)

@@ -8,13 +8,12 @@ use crate::world::hittable::Hittable;
 use crate::world::material::{Look, Material, Rgb};
 use glam::{DVec2, DVec3};
 
-/// A point of a surface, as a shader sees it. Of an object that is a copy of another one, it is in the coordinates of that
-/// other one.
+/// A point of a surface, as a shader sees it. On a copy of an object, the point is in the coordinates of the original.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
     /// The point, in world coordinates.
     pub position: DVec3,
-    /// The unit normal, outward: that with which the point would be shaded. It is 0 unless the shader [sees](Sees) it.
+    /// The unit normal for shading, outward. It is 0 unless the shader [sees](Sees) it.
     pub normal: DVec3,
     /// The side that a ray hits. It is the outside unless the shader sees normals.
     pub side: Side,
@@ -41,7 +40,7 @@ impl SurfacePoint {
     }
 }
 
-/// What a shader sees of a point beside its position. What it does not see is not computed.
+/// The properties of a point that a shader needs beside its position. The others are not computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sees {
     /// Whether it sees the normal and the side.
@@ -72,7 +71,7 @@ impl Sees {
 /// Points of a surface, in a box.
 #[derive(Clone, Copy, Debug)]
 pub struct PointBounds<F> {
-    /// The positions, in world coordinates, or in those of the object that is copied.
+    /// The positions, in world coordinates, or on a copy in those of the original.
     pub position: [Interval<F>; 3],
     /// The unit normals, outward; `None` where they are not known.
     pub normal: Option<[Interval<F>; 3]>,
@@ -83,7 +82,7 @@ pub struct PointBounds<F> {
 }
 
 impl<F: Precise> PointBounds<F> {
-    /// Returns points of a part of a shape with what a shader sees of them.
+    /// Returns bounds of points of a part of a shape, with what a shader sees of them.
     pub fn seen(
         shape: &dyn Proven,
         sees: Sees,
@@ -150,13 +149,13 @@ pub trait Shader: Send + Sync {
         at.normal
     }
 
-    /// Returns the three reflectivities, if each is the same at every point. Then the methods above are not called for
-    /// each point, but for [`bend`](Self::bend). `None` is always correct.
+    /// Returns the three reflectivities, if each is the same at every point. Then only [`bend`](Self::bend) is called
+    /// for each point, not the methods above. `None` is always correct.
     fn uniform(&self, _material: &Material) -> Option<Look> {
         None
     }
 
-    /// Encloses the three reflectivities, as mathematics has them, at every point of a box; `None` where they are not
+    /// Encloses the three reflectivities, before any rounding, at every point of a box; `None` where they are not
     /// known. Proofs of colours ask for them. `None` is always correct.
     fn enclose<F: Precise>(&self, material: &Material, _at: &PointBounds<F>) -> Option<LookBounds<F>>
     where
@@ -165,9 +164,9 @@ pub trait Shader: Send + Sync {
         self.uniform(material).map(LookBounds::from)
     }
 
-    /// Returns the tile or the texel at a point, as two whole numbers that differ from those of its neighbours. Between
-    /// points in different ones, an image may need more samples than their colours tell. Two zeros everywhere are
-    /// correct.
+    /// Returns the tile or the texel at a point, as two whole numbers that differ from those of its neighbours.
+    /// Adaptive sampling takes more samples between points on different tiles than their colours alone would suggest.
+    /// Two zeros everywhere are correct.
     #[inline]
     fn tile(&self, _at: &SurfacePoint) -> DVec2 {
         DVec2::ZERO
@@ -192,7 +191,7 @@ pub struct LookBounds<F> {
     pub specular: [Interval<F>; 3],
 }
 
-/// Takes the numbers for exact.
+/// Takes the reflectivities for exact.
 impl<F: Float> From<Look> for LookBounds<F> {
     fn from(Look { ambient, diffuse, specular }: Look) -> Self {
         let exactly = |colour: Rgb| per_axis(|channel| Interval::constant(colour[channel]));

@@ -1,4 +1,4 @@
-//! A shape together with what it has opted into.
+//! A shape together with the ways in which its hits are found and proven.
 
 use crate::world::certify::Equation;
 use crate::world::hittable::{Bracketed, Certified, Hittable, Searched};
@@ -48,9 +48,9 @@ impl<T: Searched, S> Shape<T, S> {
 }
 
 impl<T: Hittable + Equation> Shape<T> {
-    /// Finds hits by a formula of the notes, whose distance is as quick as a bracket. It is taken as it is: where the
-    /// shape coincides with another surface, the order of their hits is not refined. The equation states the surface
-    /// that the notes mean.
+    /// Finds hits by a formula of the notes, which computes a distance as quickly as a bracket. The distance is not
+    /// refined, even where the shape coincides with another surface. The equation states the surface that the notes
+    /// mean.
     pub fn classic(self) -> Shape<T, ByDistance, ByFormula> {
         self.by()
     }

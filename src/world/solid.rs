@@ -1,4 +1,4 @@
-//! How closed shapes are combined to a solid: which of them a point must lie in.
+//! How closed shapes are combined into a solid: which of them a point must lie in.
 
 use crate::geometry::aabb::Aabb;
 use std::sync::Arc;
@@ -6,28 +6,28 @@ use std::sync::Arc;
 /// A way in which solids are combined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operation {
-    /// What lies in any of them.
+    /// The points in any of the solids.
     Union,
-    /// What lies in all of them.
+    /// The points in all of the solids.
     Intersection,
-    /// What lies in the first and in none of the others.
+    /// The points in the first solid and in none of the others.
     Difference,
 }
 
 /// A condition on the parts that a point lies in, which are given by their indices.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Tree {
-    /// Holds everywhere or nowhere.
+    /// Holds everywhere (true) or nowhere (false).
     Known(bool),
-    /// Holds where a point lies in this part.
+    /// Holds for points in the part of this index.
     Part(usize),
     /// Combines several conditions by an operation.
     Combined(Operation, Arc<[Tree]>),
 }
 
 impl Tree {
-    /// Tells whether the condition holds at a point, of which `inside` tells whether it lies in a part; `None` where that
-    /// is open.
+    /// Tells whether the condition holds at a point; `None` where that is undecided. `inside` tells the same of the
+    /// part of an index.
     pub fn holds(&self, inside: &mut dyn FnMut(usize) -> Option<bool>) -> Option<bool> {
         match self {
             Self::Known(known) => Some(*known),
@@ -59,7 +59,7 @@ impl Tree {
         }
     }
 
-    /// Returns the same condition on parts whose indices are this much larger.
+    /// Returns the same condition on parts whose indices are larger by `by`.
     pub fn moved(&self, by: usize) -> Self {
         match self {
             Self::Known(known) => Self::Known(*known),
@@ -70,7 +70,7 @@ impl Tree {
         }
     }
 
-    /// Returns how many operations lie within each other in the condition, at most.
+    /// Returns the maximum number of operations nested in the condition.
     pub fn depth(&self) -> usize {
         match self {
             Self::Known(_) | Self::Part(_) => 0,
@@ -78,12 +78,12 @@ impl Tree {
         }
     }
 
-    /// Returns what is left of the condition for points that lie outside of some parts. What stays as it is, is shared.
+    /// Returns the condition for points that lie outside of some parts. Conditions that do not change are shared.
     pub fn without(&self, is_outside: &dyn Fn(usize) -> bool) -> Self {
         self.changed(is_outside).unwrap_or_else(|| self.clone())
     }
 
-    /// Returns what [`without`](Self::without) does, or `None` where that is the condition itself.
+    /// Returns the condition that [`without`](Self::without) returns, or `None` if it is this condition itself.
     fn changed(&self, is_outside: &dyn Fn(usize) -> bool) -> Option<Self> {
         let (operation, all) = match self {
             Self::Part(part) => return is_outside(*part).then_some(Self::Known(false)),
@@ -119,9 +119,9 @@ impl Tree {
         })
     }
 
-    /// Returns the way to a part through the condition, and whether the solid lies on the outer side of the part; `None`
-    /// if the condition does not name the part. The way has the index of what the part lies in, in each operation, from
-    /// the innermost one outward.
+    /// Returns the path to a part through the condition, and whether the solid lies on the outer side of the part;
+    /// `None` if the condition does not name the part. The path has, for each operation from the innermost one outward,
+    /// the index of the operand that contains the part.
     pub fn way_to(&self, part: usize) -> Option<(Vec<usize>, bool)> {
         let (operation, of) = match self {
             Self::Known(_) => return None,
@@ -134,8 +134,8 @@ impl Tree {
         Some((way, is_outer != (operation == Operation::Difference && index > 0)))
     }
 
-    /// Tells whether the surface of the part at the end of a [way](Self::way_to) is that of the solid at a point, of which
-    /// `inside` tells whether it lies in another part; `None` where that is open.
+    /// Tells whether a point on the surface of the part at the end of a [path](Self::way_to) lies on the surface of the
+    /// solid; `None` where that is undecided. `inside` tells whether the point lies in another part.
     pub fn is_bare(&self, way: &[usize], inside: &mut dyn FnMut(usize) -> Option<bool>) -> Option<bool> {
         let (Self::Combined(operation, of), Some((own, inner))) = (self, way.split_last()) else {
             return Some(true);
@@ -159,7 +159,7 @@ impl Tree {
         all
     }
 
-    /// Returns a box that holds all points where the condition holds; `None` if there is no such box.
+    /// Returns a box that contains all points for which the condition holds; `None` if there is no such box.
     pub fn bounds(&self, of_part: &dyn Fn(usize) -> Option<Aabb>) -> Option<Aabb> {
         match self {
             Self::Known(true) => None,
@@ -175,9 +175,9 @@ impl Tree {
         }
     }
 
-    /// Returns the part to whose surface a point belongs that lies in some parts on the one side of it, and in others on
-    /// the other side; `None` if it does not lie on the solid's surface. Of several surfaces through the point, it is
-    /// the first one that is the solid's by itself.
+    /// Returns the part whose surface is that of the solid at a point; `None` if the point does not lie on the solid's
+    /// surface. `one` and `other` tell for each part whether it contains the points beside the point, on either side of
+    /// the surface. If several parts have a surface there, the first one that is the solid's by itself counts.
     pub fn owner(&self, one: &[bool], other: &[bool]) -> Option<usize> {
         let holds = |inside: &[bool]| self.holds(&mut |part| Some(inside[part]));
         if holds(one) == holds(other) {
@@ -207,7 +207,7 @@ fn any(of: &[Tree], inside: &mut dyn FnMut(usize) -> Option<bool>) -> Option<boo
     any
 }
 
-/// Returns what two boxes have in common; `None` stands for all of space.
+/// Returns the intersection of two boxes; `None` stands for all of space.
 pub fn common(one: Option<Aabb>, other: Option<Aabb>) -> Option<Aabb> {
     let (Some(one), Some(other)) = (one, other) else { return one.or(other) };
     Some(Aabb { low: one.low.max(other.low), high: one.high.min(other.high) })

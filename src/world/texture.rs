@@ -12,10 +12,10 @@ use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-/// What a decoder may take beside the picture, in bytes.
+/// The memory that a decoder may take beside the image, in bytes.
 const ASIDE: u64 = 1 << 20;
 
-/// The number of columns or rows from which on an enclosure no longer looks at each texel.
+/// The number of columns or rows from which on an enclosure no longer examines each texel.
 const MOST_TEXELS: usize = 8;
 
 /// An image in a file. It is read once, when it is first needed.
@@ -93,7 +93,7 @@ impl Texture {
         picture.map_or(0, |picture| picture.as_raw().len() as u64)
     }
 
-    /// Tells whether there is nothing at the path.
+    /// Tells whether no file exists at the path.
     pub fn is_missing(&self) -> bool {
         fs::metadata(&self.path).is_err_and(|error| error.kind() == io::ErrorKind::NotFound)
     }
@@ -112,8 +112,7 @@ impl Texture {
         Rgb::from_array(pixel.0.map(f64::from)) / 256.0
     }
 
-    /// Encloses the texels of some columns and rows, of which there is one each at least. Where they are many, the channels
-    /// may be anything from 0 to 1.
+    /// Encloses the texels of at least one column and row. If they are many, the channels may be anything from 0 to 1.
     pub fn enclose<F: Float>(
         &self,
         columns: impl Iterator<Item = u32> + Clone,

@@ -19,10 +19,10 @@ const PIECES: usize = 80;
 /// The length below which a piece is not cut, as a fraction of the part of the lines that may meet the shape.
 const SHORTEST: f64 = 1.0 / 256.0;
 
-/// How many times the piece that a line leaves is halved before that is given up.
+/// The maximum number of times that the piece in which a line leaves the shape is halved.
 const HALVINGS: usize = 20;
 
-/// What is certain about a hit of the lines of a footprint.
+/// What is proven about a hit of the lines of a footprint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Met {
     /// Each line has a hit at this t.
@@ -43,7 +43,7 @@ impl Met {
     }
 }
 
-/// What can be proven of a shape's hits along all lines of a footprint.
+/// Proofs about a shape's hits along all lines of a footprint.
 pub trait OverFootprint {
     /// Calls `met` with the possible hits with t > 0, each with its part of the shape: of each part up to the first that
     /// every line certainly has. `leaves` is the part on which the lines' true starts lie, if they lie on the shape.

@@ -25,7 +25,7 @@ use equation::Values;
 use f256::f256;
 use glam::DVec3;
 
-/// What is certain about a ray's first hit of a shape. Distances are multiples of the length of the sight's direction.
+/// What is proven about a ray's first hit of a shape. Distances are multiples of the length of the sight's direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Enclosure {
     /// There is no hit.
@@ -91,7 +91,7 @@ pub enum Precision {
     Octuple,
 }
 
-/// Returns what is certain about a ray's first hit of a shape.
+/// Returns what is proven about a ray's first hit of a shape.
 pub fn first_hit(shape: &impl Equation, sight: &Sight, precision: Precision) -> Enclosure {
     match precision {
         Precision::Double => match solve::<f64>(shape, sight, PIECES) {

@@ -13,10 +13,10 @@ use crate::numeric::interval::{Fine, Float, Fraction, Interval, Wide};
 use crate::numeric::scalar::{Scalar, per_axis};
 use f256::f256;
 
-/// What can be proven of a shape's hits along any line, in one precision.
+/// Proofs about a shape's hits along any line, in one precision.
 pub trait Onward<F: Float> {
-    /// Returns what is certain about a line's first hit with t > 0, and the part of the shape that is hit. The line is in
-    /// world coordinates; `leaves` is the part on which the line's true start lies, if it lies on the shape.
+    /// Returns what is proven about a line's first hit with t > 0, and the part of the shape that is hit. The line is
+    /// in world coordinates; `leaves` is the part on which the line's true start lies, if it lies on the shape.
     fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (Found<F>, usize);
 
     /// Encloses the value of the equation of a part at a point in world coordinates, and its derivative.
@@ -48,7 +48,7 @@ pub trait Onward<F: Float> {
     }
 }
 
-/// What can be proven of a shape's hits along any line, in every precision.
+/// Proofs about a shape's hits along any line, in every precision.
 pub trait Proven: Onward<f64> + Onward<f256> + Onward<Fraction> + OverFootprint {}
 
 impl<T: Onward<f64> + Onward<f256> + Onward<Fraction> + OverFootprint> Proven for T {}
@@ -100,7 +100,7 @@ pub trait Precise: Float {
     /// Returns a shape's proofs in this precision.
     fn proofs(shape: &dyn Proven) -> &dyn Onward<Self>;
 
-    /// Returns what is certain about a line's first hit. With `leaves`, the line's true start lies on the shape.
+    /// Returns what is proven about a line's first hit. With `leaves`, the line's true start lies on the shape.
     fn along(shape: &impl Equation, line: &Line<Interval<Self>>, leaves: bool) -> Found<Self>;
 
     /// Converts an interval, rounded outward. Numbers that need no rounding stay as they are.

@@ -117,7 +117,7 @@ struct Search<'s, F> {
     line: &'s Line<Interval<F>>,
 }
 
-/// What is certain about the roots in a piece of a line.
+/// What is proven about the roots in a piece of a line.
 enum Judgement<F> {
     /// The piece has no root.
     Free,

@@ -14,9 +14,9 @@ pub trait PacketCamera: Camera {
     fn look(&self, cpu: Cpu, places: &Places, dirs: ViewMut);
     /// Writes the origins and the directions of the rays that are seen at many places.
     fn look_from(&self, cpu: Cpu, places: &Places, origins: ViewMut, dirs: ViewMut);
-    /// Returns what [`Camera::line`] does.
+    /// Calls [`Camera::line`].
     fn footprint(&self, at: ImagePoint<Affine>) -> Option<Line<Affine>>;
-    /// Returns what [`Camera::line`] does, rounded.
+    /// Calls [`Camera::line`] for rounded numbers.
     fn rounded_line(&self, at: ImagePoint) -> Option<Line<f64>>;
 }
 

@@ -19,7 +19,7 @@ pub trait PacketLight: Light + EncloseLight<f64> + EncloseLight<f256> + EncloseL
 
 /// A light that is enclosed in one precision. Every [`Light`] is one.
 pub trait EncloseLight<F> {
-    /// Returns what [`Light::enclose`] does.
+    /// Calls [`Light::enclose`].
     fn sent(&self, toward: [Interval<F>; 3]) -> Option<[Interval<F>; 3]>;
 }
 

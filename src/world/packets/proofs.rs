@@ -32,10 +32,10 @@ pub trait Proofs: Send + Sync {
     /// can be computed.
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble>;
 
-    /// Returns what is certain about a ray's first hit.
+    /// Returns what is proven about a ray's first hit.
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure;
 
-    /// Returns what proofs about other rays than primary ones need; `None` for a shape without an equation.
+    /// Returns the proofs about other rays than primary ones; `None` for a shape without an equation.
     fn proven(&self) -> Option<&dyn Proven> {
         None
     }

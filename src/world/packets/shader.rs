@@ -39,7 +39,7 @@ pub trait PacketShader: Shader + EncloseLook<f64> + EncloseLook<f256> + EncloseL
 
 /// A shader whose looks are enclosed in one precision. Every [`Shader`] is one.
 pub trait EncloseLook<F> {
-    /// Returns what [`Shader::enclose`] does.
+    /// Calls [`Shader::enclose`].
     fn look(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>>;
 }
 
@@ -70,7 +70,7 @@ impl<T: Shader> PacketShader for T {
     }
 }
 
-/// Does something with each point. For a shader that sees positions alone, the loop is one over positions.
+/// Runs a statement for each point. For a shader that sees positions alone, the loop is over positions.
 macro_rules! each {
     ($shader:expr, $points:expr, $lane:ident, $at:ident, $body:block) => {
         let count = $points.positions.len();
