@@ -7,7 +7,7 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
-/// How long a program may take to begin to write to a named pipe.
+/// The time that a program may take to begin to write to a named pipe.
 const PATIENCE: Duration = Duration::from_secs(5);
 
 /// The bytes of an image's file. Decoders are given a `&mut dyn` of it, so that each is compiled once.

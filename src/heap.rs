@@ -1,6 +1,6 @@
-//! The program's allocator: the system's, with a say in what happens when the system refuses memory.
+//! The program's allocator: the system's, except that a function is called when the system refuses memory.
 //!
-//! Rust ends a program with a signal where memory is refused, unless the code asked for it in a way that can fail. No
+//! Rust ends a program with a signal if memory is refused, unless the code asked for memory in a way that can fail. No
 //! stable interface changes that, so the allocator itself calls a function of the command line, which tells the user.
 #![allow(
     unsafe_code,
@@ -16,15 +16,15 @@ struct Heap;
 #[global_allocator]
 static HEAP: Heap = Heap;
 
-/// What is called with the length in bytes of an allocation that is refused.
+/// The function that is called with the length, in bytes, of a refused allocation.
 static REFUSED: OnceLock<fn(usize)> = OnceLock::new();
 
 thread_local! {
     static MAY_FAIL: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Registers what is called, with the length of the allocation in bytes, where memory is refused. If it returns, the
-/// program ends with a signal.
+/// Registers the function that is called, with the length of the allocation in bytes, if memory is refused. If it
+/// returns, the program ends with a signal.
 pub fn when_refused(call: fn(usize)) {
     REFUSED.get_or_init(|| call);
 }
@@ -48,7 +48,7 @@ pub fn has_room(bytes: usize) -> bool {
     may_fail(|| Vec::<u8>::new().try_reserve_exact(bytes).is_ok())
 }
 
-/// Does work in which a refused allocation is an ordinary error.
+/// Runs work in which a refused allocation is an ordinary error.
 pub fn may_fail<T>(work: impl FnOnce() -> T) -> T {
     let before = MAY_FAIL.replace(true);
     let done = work();

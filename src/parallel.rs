@@ -15,7 +15,7 @@ const PARTS: usize = 32;
 /// The number of places that are filled by one thread together.
 const FILLED: usize = 1 << 12;
 
-/// Does some work on the threads of a pool, and returns its result.
+/// Runs work on the threads of a pool, and returns its result.
 pub fn on<T: Send>(pool: &ThreadPool, work: impl FnOnce() -> T + Send) -> T {
     let (mut work, mut result) = (Some(work), None);
     let mut once = || result = work.take().map(|work| work());
@@ -27,13 +27,13 @@ fn install(pool: &ThreadPool, work: &mut (dyn FnMut() + Send)) {
     pool.install(work);
 }
 
-/// Does some work for each index below a number.
+/// Runs work for each index below a number.
 pub fn each(count: usize, work: &(dyn Fn(usize) + Sync)) {
     (0..count).into_par_iter().with_max_len(1).for_each(work);
 }
 
-/// Does some work for each index below a number, in their order: each thread takes the next one when it is free. What
-/// the work needs besides is made once on each thread.
+/// Runs work for each index below a number, in their order: each thread takes the next index when it is free. Each
+/// thread makes the state that the work needs once.
 pub fn turns<S: Default>(count: usize, work: &(dyn Fn(&mut S, usize) + Sync)) {
     let next = AtomicUsize::new(0);
     each(rayon::current_num_threads(), &|_| {
@@ -48,13 +48,13 @@ pub fn turns<S: Default>(count: usize, work: &(dyn Fn(&mut S, usize) + Sync)) {
     });
 }
 
-/// Returns what some work returns for each index below a number, in their order.
+/// Runs work for each index below a number, and returns the results in their order.
 pub fn map<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
     ranges(count, 2, &|range| range.map(&work).collect())
 }
 
-/// Returns what some work returns for ranges that cover all indices below a number, in their order; on this thread alone
-/// where the indices are fewer than `many`.
+/// Runs work for ranges that cover all indices below a number, and returns the results in their order. If the indices
+/// are fewer than `many`, this thread does all of the work.
 pub fn ranges<T: Send>(count: usize, many: usize, work: &(dyn Fn(Range<usize>) -> Vec<T> + Sync)) -> Vec<T> {
     if count < many {
         return work(0..count);
@@ -88,7 +88,7 @@ pub fn fill<T: Send>(all: &mut [T], work: impl Fn(usize) -> T + Sync) {
     });
 }
 
-/// Does some work for each chunk of a slice, with its index, until it breaks; then chunks may be left out.
+/// Runs work for each chunk of a slice, with its index, until the work breaks; then chunks may be left out.
 pub fn chunks<T: Send>(
     all: &mut [T],
     size: usize,

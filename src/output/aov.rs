@@ -111,7 +111,7 @@ impl Aov {
     }
 }
 
-/// What the colours of an image beside the main one depend on, besides the numbers of its pixels.
+/// The settings of a render on which the colours of an auxiliary image depend, besides the numbers of its pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Setting {
     /// The width and height of the image in pixels.

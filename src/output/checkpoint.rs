@@ -233,7 +233,7 @@ pub fn write(
 
 /// A checkpoint to continue from, which is read band by band.
 pub struct Checkpoint {
-    /// What the checkpoint's image depends on.
+    /// The settings and inputs on which the checkpoint's image depends.
     pub identity: Identity,
     png: png::Reader<BufReader<File>>,
     /// The number of columns, which may be wrong until [`fits`](Self::fits) is asked.

@@ -95,7 +95,7 @@ impl fmt::Display for FullRangeComparison {
     }
 }
 
-/// One pixel in both images.
+/// A pixel that differs, in both images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pixel {
     /// The column, from 0 at the left.

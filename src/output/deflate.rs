@@ -16,7 +16,7 @@ pub enum Compression {
     Fast,
     /// Smaller files.
     ///
-    /// About half as large, which takes longer than most pictures take to render.
+    /// About half as large; compressing takes longer than most images take to render.
     #[value(name = "default")]
     Balanced,
     /// Smallest files.

@@ -5,7 +5,7 @@ use std::iter;
 /// The number of bytes of a pixel.
 const PIXEL: usize = 3;
 
-/// How rows are filtered.
+/// The filters of rows.
 #[derive(Clone, Copy)]
 pub(super) enum Filter {
     /// Not at all.
@@ -83,7 +83,7 @@ fn each(above: &[u8], row: &[u8], filtered: &mut [u8], prediction: impl Fn(u8, u
     }
 }
 
-/// Returns which of three bytes is nearest to `left + up - corner`, the first of them where two are.
+/// Returns the one of three bytes that is nearest to `left + up - corner`; of two equally near ones, the first.
 #[inline(always)]
 fn paeth(left: u8, up: u8, corner: u8) -> u8 {
     let [a, b, c] = [left, up, corner].map(i16::from);

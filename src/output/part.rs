@@ -30,7 +30,7 @@ const LONGEST: u64 = 1 << 26;
 /// The length of the checksum at the end of a file in bytes.
 const CHECKSUM: usize = 32;
 
-/// What a part contains.
+/// The format of the pixels of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum What {
@@ -52,7 +52,7 @@ mod by_name {
     use super::{Compression, ValueEnum, text};
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
-    /// One compression, or perhaps none.
+    /// A compression, or none.
     pub trait Named: Sized {
         fn name(&self) -> Option<String>;
         fn of(name: Option<String>) -> Option<Self>;
@@ -91,7 +91,7 @@ mod by_name {
 }
 
 impl What {
-    /// Returns what a picture of this format consists of.
+    /// Returns the format of the parts of an image of this format.
     pub fn picture(format: Format) -> Self {
         match format {
             Format::Ppm => Self::Ppm,
@@ -99,7 +99,7 @@ impl What {
         }
     }
 
-    /// Returns what a picture of full range consists of.
+    /// Returns the format of the parts of an image of full range.
     pub fn full_range(format: FullRange) -> Self {
         match format {
             FullRange::Exr => Self::Exr,
@@ -117,7 +117,7 @@ impl What {
     }
 }
 
-/// What a part is a part of, and which one.
+/// The label of a part: the image that it belongs to, and which of its parts it is.
 #[derive(Serialize, Deserialize)]
 pub struct Label {
     /// The number of the part, from 1, and of how many.
@@ -126,13 +126,13 @@ pub struct Label {
     pub tiles: [usize; 2],
     /// The width and height of the image in pixels.
     pub size: [usize; 2],
-    /// What it contains.
+    /// The format of the pixels.
     pub what: What,
     /// The images beside the main one, which have parts of their own.
     pub beside: Vec<Aov>,
-    /// What the pixels depend on.
+    /// The settings and inputs on which the pixels depend.
     pub identity: Identity,
-    /// What the image was made of and with, for a PNG: texts, each with its keyword.
+    /// The texts that a PNG records about how the image was made, each with its keyword.
     pub made: Vec<(String, String)>,
     /// Whether tiles may be missing.
     pub unfinished: bool,
@@ -213,7 +213,7 @@ impl<W: Write> Writer<W> {
         Ok(self.out)
     }
 
-    /// Returns what is written to.
+    /// Returns the writer that the part is written to.
     pub fn out(&mut self) -> &mut W {
         &mut self.out
     }
@@ -221,7 +221,7 @@ impl<W: Write> Writer<W> {
 
 /// Reads a part.
 pub struct Reader {
-    /// What the part is.
+    /// The label of the part.
     pub label: Label,
     file: BufReader<File>,
     hasher: Sha256,
@@ -244,18 +244,17 @@ impl Reader {
             io::ErrorKind::UnexpectedEof => Ok(false),
             _ => Err(error),
         })? {
-            return Err(wrong("it is no part of an image"));
+            return Err(wrong("it is not a part of an image"));
         }
         let mut line = Vec::new();
         file.by_ref().take(LONGEST).read_until(b'\n', &mut line)?;
         let label = serde_json::from_slice::<Label>(&line).ok().filter(Label::is_sound);
-        let label =
-            label.ok_or_else(|| wrong("it is damaged: its beginning says nothing that makes sense"))?;
+        let label = label.ok_or_else(|| wrong("it is damaged: its header makes no sense"))?;
         hasher.update(first);
         hasher.update(&line);
         let left = label.len();
         if len != (FIRST.len() + line.len() + CHECKSUM) as u64 + left {
-            return Err(wrong("it is damaged: it is longer or shorter than its beginning says"));
+            return Err(wrong("it is damaged: it is longer or shorter than its header says"));
         }
         Ok(Self { label, file, hasher, left })
     }

@@ -1,5 +1,5 @@
-//! Which objects may be culled by their bounds. Shapes of the notes never are, since the notes' program tests every ray
-//! against every shape.
+//! The objects that may be culled by their bounds. Shapes of the notes never are, since the notes' program tests every
+//! ray against every shape.
 
 use crate::geometry::aabb::Aabb;
 use crate::scene::model::Object;

@@ -22,12 +22,12 @@ use std::sync::Arc;
 /// The maximum number of names that are listed.
 const NAMED: usize = 4;
 
-/// The levels up to which it is said how little a light changes.
+/// The number of levels up to which a decision says how little a light changes.
 const FAINT: f64 = 2.0;
 
 /// A decision, and the reason for it.
 pub struct Decision {
-    /// What the decision is about, in a word.
+    /// The subject of the decision, in a word.
     pub subject: &'static str,
     /// The decision and its reason.
     pub text: String,

@@ -72,13 +72,14 @@ impl Grid {
 /// The maximum number of pixels that are looked at, and the minimum.
 const LOOKED_AT: [usize; 2] = [256, 1 << 14];
 
-/// The number of samples of a part for each pixel that is looked at: looking traces rays one by one, which takes some
-/// times as long as rendering them, and is to take about a hundredth of the time of a part.
+/// The number of samples of a part for each pixel that is looked at. Looking traces rays one by one, which takes
+/// several times as long as rendering them, and should take about a hundredth of the time of a part.
 const SAMPLES_PER_LOOK: usize = 500;
 
-/// The work of a sample beside its rays, of a primary or shadow ray, of a ray that goes on at a mirror or through glass,
-/// and of the test of an object for one ray. With these weights the times of 16 parts of the gallery's scenes spread by 9
-/// to 25 %, and with the number of rays alone by 12 to 38 % (the standard deviation of their logarithms).
+/// The work of a sample beside its rays, of a primary or shadow ray, of a ray reflected by a mirror or transmitted by
+/// glass, and of the test of an object for one ray. With these weights, the times of 16 parts of the gallery's scenes
+/// spread by 9 to 25 %; weighted by the number of rays alone, by 12 to 38 % (the standard deviation of their
+/// logarithms).
 const BESIDE: u64 = 1;
 const RAY: u64 = 2;
 const RAY_ONWARD: u64 = 4;
@@ -136,7 +137,8 @@ impl Look {
         Self { cells, work: renderer.run(|| parallel::map(cells[0] * cells[1], work)) }
     }
 
-    /// Returns the work of a tile: that of the cell of its middle, for each pixel.
+    /// Returns the work of a tile: that of the pixel looked at in the cell of the tile's middle, for each pixel of the
+    /// tile.
     fn work(&self, grid: Grid, tile: usize) -> u64 {
         let [columns, rows] = grid.tile(tile);
         let cell = |side: usize, range: &Range<usize>| {

@@ -1,5 +1,5 @@
-//! Which boxes the rays of a packet may enter, for each sub-packet: the rays of a sub-packet lie closer together than
-//! those of the whole packet, and so may hit fewer objects.
+//! The boxes that the rays of a packet may enter, for each sub-packet: the rays of a sub-packet lie closer together
+//! than those of the whole packet, and so may hit fewer objects.
 
 use crate::geometry::aabb::{Aabb, SLACK, larger, range, smaller};
 use crate::geometry::ray_packet::{PACKET_SIZE, RayPacket, split};

@@ -1,4 +1,4 @@
-//! How far light is followed, and how many rays a primary ray may cost.
+//! The limits of how far light is followed, and of how many rays a primary ray may cost.
 
 /// The path length from the viewer, in world units, beyond which no reflected or transmitted ray is followed.
 pub(crate) const MAX_DIST: f64 = 20.0;
@@ -12,6 +12,6 @@ pub(crate) const MAX_RAYS: usize = 20_000;
 /// ray budget: that of primary rays, and that of the rays which these continue as.
 pub(crate) const KEPT_DEPTH: usize = 2;
 
-/// The part of a primary ray's budget that is kept for each such reflection, as a divisor. At most three of them follow
-/// from one primary ray, so that the budget is exceeded by less than a twentieth.
+/// The divisor of a primary ray's budget that gives the part reserved for each such reflection. At most three of them
+/// follow from one primary ray, so that the budget is exceeded by less than a twentieth.
 pub(crate) const KEPT_PART: u32 = 64;

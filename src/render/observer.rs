@@ -27,7 +27,7 @@ impl TraceObserver for () {
 /// An observer behind `dyn`: the tracer is compiled once for all that see events, and once for all that do not.
 pub(crate) struct DynObserver<'o, const SEES: bool>(pub &'o mut dyn Receiver);
 
-/// What a [`TraceObserver`] receives, for use behind `dyn`.
+/// The interface of a [`TraceObserver`] behind `dyn`.
 pub(crate) trait Receiver {
     /// Receives an event.
     fn see(&mut self, event: Event);
@@ -65,7 +65,7 @@ pub enum Count {
     Rays(RayKind, usize),
     /// The object of this index was tested against a number of rays.
     Tested(usize, usize),
-    /// The object of this index was not tested against a number of rays, since they do not meet its bounds.
+    /// The object of this index was not tested against a number of rays, because they miss its bounds.
     Culled(usize, usize),
     /// A pixel took a number of samples, where pixels differ in that.
     Sampled(u32),
@@ -112,12 +112,12 @@ impl fmt::Display for RayKind {
     }
 }
 
-/// What happens to rays.
+/// An event of a ray.
 ///
 /// A ray begins (`Begin`). Its search starts (`Search`), tests objects (`Tested`) and ends (`Met`), or the ray is not
-/// followed (`Dropped`). Unless it is a shadow ray, a hit is followed by the surface (`Surface`), for each light by its
-/// shadow rays and then its outcome (`Light`), by the shaded colour (`Shaded`), and by the reflected and transmitted
-/// rays; and with or without a hit by the ray's colour (`Colour`).
+/// followed (`Dropped`). Unless it is a shadow ray, its hit is followed by the surface (`Surface`), for each light by
+/// its shadow rays and then its outcome (`Light`), by the shaded colour (`Shaded`), and by the reflected and
+/// transmitted rays. With or without a hit, the ray's colour comes last (`Colour`).
 #[derive(Clone, Copy)]
 pub enum Event<'e> {
     /// A ray begins.
@@ -154,7 +154,7 @@ pub enum Event<'e> {
     Colour(Rgb),
 }
 
-/// What a ray is for.
+/// The purpose of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Purpose {
     /// A ray from the viewer through a pixel.
@@ -178,12 +178,12 @@ pub enum Purpose {
     },
 }
 
-/// Why a ray is not followed.
+/// The reason why a ray is not followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reason {
     /// The path from the viewer is too long.
     TooFar,
-    /// What the ray can add to the pixel is too little to be seen.
+    /// The light that the ray can add to the pixel is too faint to be seen.
     TooFaint,
     /// The ray budget is used up.
     TooMany,
@@ -202,7 +202,7 @@ pub enum Outcome {
     Shines {
         /// The fraction of each channel that passes through glass on the way.
         passed: Rgb,
-        /// What the light adds to the colour, before the division by the path length.
+        /// The colour that the light adds, before the division by the path length.
         colour: Rgb,
     },
 }

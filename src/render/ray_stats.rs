@@ -1,4 +1,4 @@
-//! How much work an image took: its rays by kind, and their tests by object.
+//! The work of an image: its rays by kind, and their tests by object.
 
 use crate::render::observer::{Count, RayKind, TraceObserver};
 use crate::scene::model::Model;
@@ -15,32 +15,32 @@ pub struct RayStats {
     tests: Vec<TestCounts>,
     /// The pixels that have used up their ray budget.
     pub cuts: Cuts,
-    /// The pixels of whose colours something is proven.
+    /// The pixels with proven bounds of their colours.
     pub proofs: Proofs,
     /// The numbers of pixels that took 1, 2, 4 ... samples, where pixels differ in that.
     sampled: [u64; SAMPLE_COUNTS],
 }
 
-/// How many different numbers of samples a pixel can take: the powers of two up to [`Sampler::MOST`].
+/// The number of different numbers of samples that a pixel can take: the powers of two up to [`Sampler::MOST`].
 const SAMPLE_COUNTS: usize = Sampler::MOST.ilog2() as usize + 1;
 
-/// The pixels of whose colours something is proven.
+/// The pixels with proven bounds of their colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Proofs {
     /// The number of pixels that are within the limit for certain.
     pub certified: u64,
-    /// The number of the others.
+    /// The number of pixels that are not certified.
     pub open: u64,
-    /// The greatest error that any of the others may have, where 1 is white.
+    /// The greatest error that any pixel that is not certified may have, where 1 is white.
     pub most: f64,
-    /// The sum of the errors that the others may have, each rounded up, in parts of which [`PARTS`] are white: a whole number,
-    /// so that the order of the sum makes no difference.
+    /// The sum of the errors that pixels that are not certified may have, each rounded up, in units of which [`PARTS`]
+    /// are white: a whole number, so that the order of the sum makes no difference.
     sum: u64,
     /// The number of footprints that were examined.
     pub footprints: u64,
 }
 
-/// The parts of white that errors are summed in.
+/// The number of units in white, in which errors are summed.
 const PARTS: f64 = 1e9;
 
 impl Proofs {
@@ -67,9 +67,9 @@ impl Proofs {
 /// The pixels that have used up their ray budget. It is an observer that counts nothing else.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cuts {
-    /// The number of such pixels.
+    /// The number of pixels that have used up their ray budget.
     pub pixels: u64,
-    /// A bound on the light that any one of them lacks, in any channel; infinite where nothing bounds it.
+    /// A bound on the light that any of these pixels lacks, in any channel; infinite where nothing bounds it.
     pub most: f64,
 }
 
@@ -94,7 +94,7 @@ impl TraceObserver for Cuts {
 /// The tests against one object, or against all objects of an entity type.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct TestCounts {
-    /// The number of rays that were not tested, since they do not meet the object's bounds.
+    /// The number of rays that were not tested, because they miss the object's bounds.
     ///
     /// Objects that the BVH skips, rays that leave the object, and rays that another object has blocked before count
     /// neither as tested nor as culled.

@@ -218,10 +218,10 @@ impl Renderer {
     }
 }
 
-/// How often somebody asks whether rendering is to stop, where no tile is finished that would.
+/// The time between two questions whether rendering is to stop, while no tile is finished that would ask.
 const ASK: Duration = Duration::from_millis(20);
 
-/// How long tiles that are under way when rendering stops may take to be finished.
+/// The time that unfinished tiles may take when rendering stops.
 const GRACE: Duration = Duration::from_millis(100);
 
 /// Renders that do not wait for the last tile when they stop: one packet of rays may take minutes.

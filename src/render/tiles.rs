@@ -76,7 +76,7 @@ impl Band {
         self.strips.iter().all(|strip| locked(strip).tiles.iter().all(|is_done| *is_done))
     }
 
-    /// Copies what is rendered of the band. Threads that are still at work on the band add nothing to the copy.
+    /// Copies the rendered tiles of the band. Threads that are still at work on the band add nothing to the copy.
     pub fn copied(&self) -> Self {
         let copy = |strip: &Mutex<Strip>| {
             let Strip { pixels, tiles } = &*locked(strip);
@@ -124,8 +124,8 @@ pub struct Tiles {
     strips: Vec<Done>,
 }
 
-/// What is rendered of a row of tiles. An image has few strips that are partly rendered, so this takes little memory even for large
-/// images.
+/// The rendered tiles of a row of tiles. An image has few rows that are partly rendered, so this takes little memory
+/// even for large images.
 enum Done {
     Nothing,
     Whole,

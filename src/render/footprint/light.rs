@@ -106,14 +106,14 @@ fn power(cosine: Affine, shininess: f64) -> Affine {
     cosine.pow(Affine::constant(shininess))
 }
 
-/// What passes of the light to points.
+/// The fraction of a light that reaches points.
 enum Passes {
     /// All of it.
     All,
     /// This fraction.
     Part(Colour),
     Nothing,
-    /// It is not known: anything from nothing to all, where tints are fractions.
+    /// An unknown fraction: anything from nothing to all, if tints are fractions.
     Open,
 }
 

@@ -32,7 +32,7 @@ use scene::Scene;
 /// The maximum number of footprints that are examined for a pixel.
 pub(crate) const MAX_FOOTPRINTS: usize = 1 + 4 * 256;
 
-/// How many times a footprint may be cut into quarters.
+/// The maximum number of times that a footprint may be cut into quarters.
 pub(crate) const MAX_CUTS: u32 = 10;
 
 /// The number of footprints from which on it is judged whether [`MAX_FOOTPRINTS`] will be enough.
@@ -41,7 +41,7 @@ const JUDGED: usize = 1 + 4 * 16;
 /// More than the roundings of a colour within its bounds, where 1 is white.
 const ROUNDING: f64 = 1e-14;
 
-/// What is proven of a pixel's colour.
+/// Proven bounds of a pixel's colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Proof {
     /// The least colour that it may be, before exposure; infinite where nothing is known.
@@ -100,7 +100,7 @@ impl Proof {
 struct Footprint {
     /// The image position of its middle, in pixels.
     middle: [f64; 2],
-    /// How many times it was cut.
+    /// The number of times that it was cut.
     cuts: u32,
     /// The mean of its colours.
     mean: [Interval; 3],
@@ -182,7 +182,7 @@ impl Prover {
     }
 }
 
-/// Returns what is proven of a pixel that consists of these footprints.
+/// Returns the bounds of the colour of a pixel that consists of these footprints.
 fn proof(all: &[Footprint], count: usize) -> Proof {
     let mut sum = [Interval::constant(0.0); 3];
     for footprint in all {

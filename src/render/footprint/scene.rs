@@ -76,7 +76,7 @@ impl Scene<'_> {
         }
     }
 
-    /// Returns what the lines may hit first, and whether each certainly hits something.
+    /// Returns the first hits that the lines may have, and whether each line certainly has one.
     pub fn first(&self, path: &Path) -> (Vec<(Met, Place)>, bool) {
         let (mut all, mut end) = (Vec::new(), f64::INFINITY);
         self.hits(

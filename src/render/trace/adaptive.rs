@@ -1,13 +1,13 @@
 //! Pixels that take more samples where their colour is less certain.
 //!
 //! A pixel first takes [`Film::samples`] samples, and then twice as many again and again, by the sampler's sequence,
-//! until [`Estimate::error`] is small enough. That depends on the pixel's own samples and on probes at the corners of the
-//! pixel and of the eight around it, and so not on tiles, threads, or the part of the image that is rendered. A pixel that
-//! ends with N samples has the colour that it has in an image of N samples per pixel.
+//! until [`Estimate::error`] is small enough. That depends on the pixel's own samples and on probes at the corners of
+//! the pixel and of the eight around it, and so not on tiles, threads, or the part of the image that is rendered. A
+//! pixel that ends with N samples has the colour that it has in an image of N samples per pixel.
 //!
-//! Probes add nothing to colours. They are where samples never are: a straight edge that crosses a pixel separates its
-//! corners, and the shadow of one that crosses a light separates points of the light's rim, to each of which the rays of
-//! some probe go.
+//! Probes add nothing to colours. They go through points that no sample goes through: a straight edge that crosses a
+//! pixel separates its corners, and a shadow edge that crosses a light separates points of the light's rim, to each of
+//! which the rays of some probe go.
 //!
 //! [`Film::samples`]: crate::world::film::Film::samples
 
@@ -26,25 +26,25 @@ use crate::world::sample::{self, Sample};
 use std::mem::take;
 use std::ops::Range;
 
-/// How many estimated errors the error of a pixel may be, where it is limited.
+/// The error of a pixel as a multiple of its estimate, if the error is limited.
 const CONFIDENCE: f64 = 2.0;
 
-/// How many times its standard error the mean of a pixel's samples may be off, where its error is limited, for each
-/// of [`CONFIDENCE`]: few blocks of samples tell little of rare ones.
+/// The factor of the standard error of a pixel's mean, if its error is limited, for each of [`CONFIDENCE`]: few blocks
+/// of samples tell little about rare ones.
 const DOUBT: f64 = 1.5;
 
 /// The estimated error, where 1 is white, up to which one sample would be enough where no error is limited. It grows with
 /// the root of the number of samples: so the samples go where each lowers the mean square error of the image most.
 const BALANCED: f64 = 0.25 / 255.0;
 
-/// The number of samples that a pixel takes at least if anything crosses it, even where all that is known has one colour.
+/// The least number of samples of a pixel that an edge crosses, even if all its samples and probes have one colour.
 const CROSSED_SAMPLES: u32 = 16;
 
 /// The number of corners of a pixel and of those around it, along each axis.
 const AROUND: usize = 4;
 
-/// Returns which point of the rim of lights the probe at a corner goes to: one of 16, all of which are around each pixel.
-/// Those at the corners of a pixel are in different quarters.
+/// Returns the number of the point on the rim of lights to which the probe at a corner goes: one of 16, all of which
+/// are around each pixel. The points of the four corners of a pixel are in different quarters.
 fn rim_point(column: usize, row: usize) -> u32 {
     let quarter = |column: usize, row: usize| (2 * (row & 1) + ((row + column) & 1)) as u32;
     4 * quarter(column, row) + quarter(column >> 1, row >> 1)
@@ -123,7 +123,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     }
 }
 
-/// Collects samples until there is a packet of them.
+/// A buffer of samples until there is a packet of them.
 struct Rays<'r, 'm, 'w, W> {
     tracer: &'r mut Tracer<'m, 'w, W>,
     group: &'r mut RayGroup,
@@ -177,7 +177,7 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
         }
     }
 
-    /// Traces probes at corners, and reports what each found.
+    /// Traces probes at corners, and reports the results of each.
     fn probe(&mut self, corners: &[[usize; 2]], mut report: impl FnMut([usize; 2], Around)) {
         let Self { tracer, group, seen, is_unbounded, .. } = self;
         let (len, camera) = (corners.len(), &tracer.plan.camera);
@@ -198,7 +198,7 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
         corners.iter().enumerate().for_each(|(lane, corner)| report(*corner, Around::of(&found, lane)));
     }
 
-    /// Returns what the rays of some lanes found.
+    /// Returns the results of the rays of some lanes.
     #[inline]
     fn found(&self, lanes: Range<usize>) -> Found<'_> {
         let Trails { is_on, marks, distances, .. } = &self.tracer.scratch.trails;
@@ -210,7 +210,8 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
         }
     }
 
-    /// Takes the samples that active pixels lack, of those pixels where rays have met different things or of the others.
+    /// Traces the samples that active pixels lack, either of the pixels where rays have hit different surfaces, or of
+    /// the others.
     fn take_samples(
         &mut self,
         active: &[u32],

@@ -13,7 +13,7 @@ fn limit(adaptive: Option<Adaptive>) -> f64 {
     adaptive.and_then(|adaptive| adaptive.error).unwrap_or(0.0)
 }
 
-/// Returns what is proven of a pixel's colour, where that is wanted.
+/// Returns the proven bounds of a pixel's colour, if the render asks for them.
 pub(super) fn proof(plan: &Plan, x: usize, y: usize) -> Option<Proof> {
     let prover = plan.prover.as_ref()?;
     let limit = limit(plan.camera.adaptive);

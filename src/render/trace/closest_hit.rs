@@ -74,7 +74,7 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
         self.observer.see(Event::Met(hit.as_ref()));
     }
 
-    /// Returns one ray of a group, with what is known of its errors.
+    /// Returns one ray of a group, with the bounds of its errors.
     fn start(&self, group: &RayGroup, lane: usize) -> Start {
         let [x, y] = &self.scratch.places;
         let lens = |side: usize| self.scratch.lens[side].get(lane).copied().unwrap_or_default();

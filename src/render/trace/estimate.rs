@@ -1,4 +1,4 @@
-//! What is known of a pixel's colour after some of its samples.
+//! The estimate of a pixel's colour after some of its samples.
 
 use crate::render::bytes::shown;
 use crate::simd::soa::View;
@@ -10,12 +10,13 @@ use std::ops::Range;
 /// The number of blocks of samples whose means are compared.
 const BLOCKS: usize = 8;
 
-/// What part of the contrast around a pixel may lie unseen between its samples: this, divided by their number. The
-/// second one holds where all of them have met the same on their paths.
+/// The fraction of the contrast around a pixel that may lie unseen between its samples; it is divided by their number.
+/// The second number holds if all samples have hit the same surfaces on their paths.
 const UNSEEN: f64 = 0.25;
 const UNSEEN_WITHIN: f64 = 0.06;
 
-/// How many estimated errors a colour beyond white or black may be off: so much may bring back one that cannot be shown.
+/// The number of estimated errors by which a colour beyond white or black may be off: one that is farther beyond cannot
+/// become a colour that can be shown.
 const FAR: f64 = 4.0;
 
 /// The scratch space of pixels that take more samples where that is needed.
@@ -23,7 +24,7 @@ const FAR: f64 = 4.0;
 pub(super) struct AdaptiveScratch {
     /// The corners that are probed, by column and row.
     pub probes: Vec<[usize; 2]>,
-    /// What is found at each place of a grid of corners around the pixels.
+    /// The results at each point of a grid of corners around the pixels.
     pub grid: Vec<Around>,
     /// The pixels' estimates.
     pub estimates: Vec<Estimate>,
@@ -50,25 +51,26 @@ pub(super) struct Run {
     pub samples: Range<u32>,
     /// The lanes of their rays.
     pub lanes: Range<usize>,
-    /// The number of rays that each may cost, where that is not the usual one.
+    /// The number of rays that each sample may cost, if it is not the usual one.
     pub ray_budget: Option<u32>,
 }
 
-/// What rays found, one after the other.
+/// The results of rays, one after the other.
 pub(super) struct Found<'f> {
     pub colours: View<'f>,
-    /// What each met on its path, and the distance of its first hit in world units; empty where that is not recorded.
+    /// A mark of the path of each ray, and the distance of its first hit in world units; empty where that is not
+    /// recorded.
     pub marks: &'f [u64],
     pub distances: &'f [f64],
 }
 
-/// What rays found together.
+/// The results of rays, combined.
 #[derive(Clone, Copy)]
 pub(super) struct Around {
     /// The least and the greatest colour.
     low: Rgb,
     high: Rgb,
-    /// What the first of them met, and whether another met anything else.
+    /// The mark of the first ray's path, and whether another ray's path has another mark.
     mark: u64,
     is_crossed: bool,
     /// The distance of the farthest first hit, in world units.
@@ -82,7 +84,7 @@ impl Default for Around {
 }
 
 impl Around {
-    /// Returns what one ray found.
+    /// Returns the results of one ray.
     #[inline]
     pub fn of(found: &Found, lane: usize) -> Self {
         let colour = found.colours.get(lane);
@@ -90,7 +92,7 @@ impl Around {
         Self { low: colour, high: colour, mark, is_crossed: false, distance }
     }
 
-    /// Includes what others found.
+    /// Includes the results of other rays.
     #[inline]
     pub fn include(&mut self, other: &Self) {
         (self.low, self.high) = (self.low.min(other.low), self.high.max(other.high));
@@ -98,7 +100,7 @@ impl Around {
         self.distance = self.distance.max(other.distance);
     }
 
-    /// Includes what rays found.
+    /// Includes the results of rays.
     #[inline]
     fn include_all(&mut self, found: &Found) {
         for lane in 0..found.colours.len() {
@@ -114,27 +116,27 @@ impl Around {
     }
 }
 
-/// What is known of a pixel's colour.
+/// The estimate of a pixel's colour.
 #[derive(Clone, Default)]
 pub(super) struct Estimate {
     /// The number of samples.
     pub count: u32,
     /// The number of samples that the pixel is to have next, a power of two.
     pub goal: u32,
-    /// The sum of their colours.
+    /// The sum of the samples' colours.
     sum: Rgb,
     /// The sums of the colours of equally long runs of samples, as many as there are samples but no more than
     /// [`BLOCKS`].
     blocks: [Rgb; BLOCKS],
-    /// The sum of the bounds on the light that they lack.
+    /// The sum of the bounds on the light that the samples lack.
     pub missing: f64,
-    /// What its samples and the probes around it found.
+    /// The results of its samples and of the probes around it.
     around: Around,
 }
 
 impl Estimate {
-    /// Starts with what the probes around the pixel found, and with the number of samples that it is to have first. It is
-    /// too large to be copied into its place.
+    /// Starts with the results of the probes around the pixel, and with the number of samples that it is to have first.
+    /// The estimate is too large to be copied into its place.
     #[inline]
     pub fn begin(&mut self, around: Around, goal: u32) {
         (self.count, self.goal) = (0, goal);
@@ -142,7 +144,7 @@ impl Estimate {
         self.around = around;
     }
 
-    /// Tells whether rays here or around met different things on their paths.
+    /// Tells whether rays here or around hit different surfaces on their paths.
     pub fn is_crossed(&self) -> bool {
         self.around.is_crossed
     }
@@ -220,7 +222,7 @@ impl Estimate {
     }
 }
 
-/// Returns the binary logarithm of the number of samples in each block of so many samples, a power of two.
+/// Returns the binary logarithm of the number of samples in each block, for a number of samples that is a power of two.
 #[inline]
 fn shift(samples: u32) -> u32 {
     samples.trailing_zeros().saturating_sub(BLOCKS.trailing_zeros())

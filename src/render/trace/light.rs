@@ -7,7 +7,7 @@ use crate::simd::soa::{View, ViewMut};
 use crate::world::material::{Look, Rgb};
 use crate::world::packets::shader::is_any;
 
-/// What rays on the same path, from object to object, can add to a pixel.
+/// The light that rays on the same path, from object to object, can add to a pixel.
 #[derive(Clone, Copy)]
 pub(super) struct Worth {
     /// The largest factor by which the rays' light is multiplied on the path.

@@ -77,7 +77,7 @@ pub fn observe_pixel(plan: &Plan, x: usize, y: usize, observer: &mut impl TraceO
     if camera.exposure == 0.0 { colour } else { camera.gain() * colour }
 }
 
-/// What is proven of a pixel's colour.
+/// Proven bounds of a pixel's colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PixelBound {
     /// A bound on the error of the colour as it is shown, the largest of its channels, where 1 is white.
@@ -88,7 +88,7 @@ pub struct PixelBound {
     pub footprints: u32,
 }
 
-/// Returns what is proven of a pixel's colour, where that is wanted.
+/// Returns the proven bounds of a pixel's colour, if the render asks for them.
 pub fn bounded(plan: &Plan, x: usize, y: usize) -> Option<PixelBound> {
     let (proof, gain) = (certain::proof(plan, x, y)?, plan.camera.gain());
     let is_certified = certain::is_certified(plan, &proof);
@@ -209,8 +209,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
     }
 
-    /// Computes the colours of pixels by the same number of samples of each, as many of them together as fit into a
-    /// packet.
+    /// Computes the colours of pixels with the same number of samples each. As many pixels are traced together as fit
+    /// into a packet.
     fn fixed_samples(&mut self, pixels: &[[usize; 2]], primary: &mut PrimaryScratch) {
         let camera = &self.plan.camera;
         let PrimaryScratch { group, seen, colours, .. } = primary;

@@ -7,7 +7,7 @@ use crate::world::any_shape::AnyShape;
 use crate::world::certify::{self, Enclosure, Precision};
 use crate::world::coincidence::CLOSE;
 
-/// A rounded ray, and what is known of the true ray that it stands for.
+/// A rounded ray, and the bounds of the true ray that it stands for.
 pub(super) struct Start {
     pub ray: Ray,
     /// A bound on the error of the origin, in world units.

@@ -38,7 +38,7 @@ pub(super) fn is_before(
     (distance != far).then_some(distance < far)
 }
 
-/// Tells whether two distances may be equal up to rounding, and there are no more digits of one of them, as of a copy.
+/// Tells whether two distances may be equal up to rounding, and one of them has no more digits, as in a copy.
 pub(super) fn is_unclear(
     ray: &Ray,
     (one, distance): (&AnyShape, f64),

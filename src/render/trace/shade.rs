@@ -318,8 +318,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.depth -= 1;
     }
 
-    /// Does the work of [`onward`](Self::onward) where all rays of the group are reflected. The rays are not needed
-    /// here afterwards, so their arrays are swapped, not copied.
+    /// Does the work of [`onward`](Self::onward) if all rays of the group are reflected. The rays are not needed here
+    /// afterwards, so their arrays are swapped, not copied.
     fn onward_all(&mut self, group: &mut RayGroup, shading: &mut ShadingScratch, branch: Branch) {
         let ShadingScratch { surface, dir, onward, behind, .. } = shading;
         self.observer.count(Count::Rays(RayKind::Reflected, group.len));
