@@ -1,4 +1,4 @@
-//! All that a plugin needs, in one `use`: `crate::prelude::*` in `plugins/`, `tabray::prelude::*` elsewhere.
+//! Everything that a plugin needs, in one `use`: `crate::prelude::*` in `plugins/`, `tabray::prelude::*` elsewhere.
 //!
 //! Arithmetic that only some shapes share is not included; it is in [`shapes`](crate::shapes) and
 //! [`double_double`](crate::numeric::double_double).

@@ -14,7 +14,7 @@ pub struct Diagnosis {
     /// The file.
     pub path: PathBuf,
     pub severity: Severity,
-    /// What is wrong, and what would be right.
+    /// The error and its correction.
     pub message: String,
     /// The beginning and the end of what is marked.
     pub range: [Position; 2],

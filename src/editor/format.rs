@@ -235,7 +235,7 @@ impl Writer<'_> {
         self.at = repeat.place.end;
     }
 
-    /// Returns what stands between two values on a line. The groups of a long row may be apart.
+    /// Returns the text between two values on a line. Groups of a long row may be apart.
     fn between(&self, attribute: &Attribute, gap: Range<usize>) -> &'static str {
         let is_long = attribute.known.is_some_and(|known| known.arity().most() > SHORT_ROW);
         if is_long && gap.len() > 1 { "  " } else { " " }

@@ -19,16 +19,16 @@ struct Line {
     comment: String,
 }
 
-/// What is written so far.
+/// A writer, with the text so far.
 #[derive(Default)]
 struct Writer {
     lines: Vec<Line>,
     line: Line,
-    /// What stands between the last word and the next one.
+    /// The text between the last word and the next one.
     between: &'static str,
     /// Whether a line of an array begins, which is indented already.
     begins: bool,
-    /// How many arrays and tables on one line are open.
+    /// The number of arrays and tables on one line that are open.
     arrays: usize,
     tables: usize,
 }

@@ -15,7 +15,7 @@ use std::ops::Range;
 /// The most lines of a definition that are shown.
 const MOST_LINES: usize = 16;
 
-/// What is to be said about a word.
+/// The explanation of a word.
 #[derive(Clone, Debug)]
 pub struct Hover {
     /// The text, in Markdown.

@@ -5,7 +5,7 @@ use crate::scene::kind::Kind;
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// What has a name.
+/// The kinds of things that have names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Sort {
     /// An entity of a kind.
@@ -14,14 +14,14 @@ pub enum Sort {
     Number,
 }
 
-/// How a name stands in the text.
+/// The forms in which a name occurs in a text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stands {
-    /// As a word that is a key, or a word of the notes' syntax.
+    /// A word that is a key, or a word of the notes' syntax.
     Key(Word),
-    /// As a value.
+    /// A value.
     Value(Word),
-    /// In a formula.
+    /// A word of a formula.
     InFormula,
 }
 
@@ -35,11 +35,11 @@ pub struct Name {
     pub stands: Stands,
 }
 
-/// Where a name is given.
+/// The definition of a name.
 #[derive(Clone, Debug)]
 pub struct Definition {
     pub name: Name,
-    /// Where else the same name is written for the same thing.
+    /// The other places where the definition writes the same name.
     pub again: Vec<Name>,
     /// The range of what has the name.
     pub whole: Range<usize>,

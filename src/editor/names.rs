@@ -105,7 +105,7 @@ impl View {
 /// A name that the cursor is at.
 #[derive(Clone, Debug)]
 pub struct Meant {
-    /// What it names, in a word: `material`, `number`.
+    /// The noun for the named thing: `material`, `number`.
     pub what: String,
     /// The name.
     pub text: String,

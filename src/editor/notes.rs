@@ -12,13 +12,13 @@ use crate::text::nearest;
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// How deep what is repeated may be nested. Deeper, it is skipped.
+/// The maximum depth of nested `repeat`s. Deeper ones are skipped.
 const DEEPEST: usize = 64;
 
 /// The most misspelt words for which the attribute that was meant is looked up.
 const MOST_GUESSES: usize = 1000;
 
-/// Returns what a text consists of, and where it is not as a scene is written.
+/// Parses a text into items, and returns the places where it is not in the form of a scene.
 pub fn read(registry: &Registry, text: &str) -> (Vec<Item>, Vec<Break>) {
     let mut report = Report::default();
     let tokens = Tokens::of(text, &mut report);

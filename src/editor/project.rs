@@ -12,7 +12,7 @@ const MOST_FILES: usize = 1000;
 
 /// Gives access to files, as they are in the editor or else as they are stored.
 pub trait Files {
-    /// Returns what a file says, if it can be read.
+    /// Returns the view of a file, if it can be read.
     fn view(&self, path: &Path) -> Option<Arc<View>>;
 }
 
@@ -167,7 +167,7 @@ pub fn usages(group: &Group, at: usize, with_definition: bool) -> Vec<Found> {
 /// Why it cannot.
 pub fn renamed(group: &Group, at: usize, new: &str) -> Result<Vec<(Found, String)>, String> {
     let names = all_names(group);
-    let id = definition(&names, at).ok_or("there is no name that the scene gives")?;
+    let id = definition(&names, at).ok_or("there is no name of the scene here")?;
     let defined = &names[id.0].definitions[id.1];
     check_name(defined.name.sort, new)?;
     if new == defined.name.text {

@@ -5,7 +5,7 @@ use super::types::value_name;
 use super::view::View;
 use std::ops::Range;
 
-/// What an attribute takes.
+/// The values that an attribute takes.
 #[derive(Clone, Debug)]
 pub struct Signature {
     /// The attribute with its values: `center x y z`.
@@ -18,7 +18,7 @@ pub struct Signature {
     pub about: String,
 }
 
-/// Returns what the attribute at a position takes.
+/// Returns the signature of the attribute at a position.
 pub fn signature(view: &View, at: usize) -> Option<Signature> {
     let entity = view.entity_at(at)?;
     let is_before =

@@ -10,13 +10,13 @@ use toml_parser::decoder::Encoding;
 use toml_parser::parser::{Event, EventKind, RecursionGuard, parse_document};
 use toml_parser::{ParseError, Source, Span};
 
-/// How deep arrays and tables may be nested.
+/// The maximum depth of nested arrays and tables.
 const DEEPEST: u32 = 64;
 
 /// The most parts of a key. Longer ones are skipped.
 const MOST_PARTS: usize = 128;
 
-/// How many of the last items are searched for one that goes on.
+/// The number of last items that are searched for one that continues.
 const NEAR: usize = 64;
 
 /// Returns the events of a text, and its syntax errors.
@@ -36,7 +36,7 @@ fn range(span: Span) -> Range<usize> {
     span.start()..span.end().max(span.start())
 }
 
-/// Returns what a text consists of, and where it is not as a scene is written.
+/// Parses a text into items, and returns the places where it is not in the form of a scene.
 pub fn read(registry: &Registry, text: &str) -> (Vec<Item>, Vec<Break>) {
     let (events, breaks) = events(text);
     let mut reader = Reader { registry, text, items: Vec::new(), path: Path::new() };
@@ -162,7 +162,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Begins what a title names, unless it goes on.
+    /// Begins the item that a title names, unless the title continues the last one.
     fn open(&mut self, path: &[Word], title: Range<usize>, is_new: bool) {
         if path.len() > MOST_PARTS {
             return;
@@ -197,7 +197,7 @@ fn says(text: &str, word: Word) -> &str {
     &text[word.inner()]
 }
 
-/// Returns the item that goes on at the end.
+/// Returns the item that continues at the end.
 fn last(items: &mut [Item]) -> Option<&mut Item> {
     let goes_on = matches!(items.last(), Some(Item::Repeat(repeat)) if !repeat.items.is_empty());
     match (items.last_mut()?, goes_on) {

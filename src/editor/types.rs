@@ -6,7 +6,7 @@ use crate::scene::choice::Choices;
 use crate::scene::kind::Kind;
 use crate::scene::value::Type;
 
-/// What the values of an attribute are.
+/// The values that an attribute takes.
 #[derive(Clone, Copy)]
 pub enum Wanted {
     /// Numbers, or formulas of named numbers in quotes.
@@ -25,7 +25,7 @@ pub enum Wanted {
     Word,
 }
 
-/// Returns what the values of an attribute are.
+/// Returns the values that an attribute takes.
 pub fn wanted(entity: &Entity, attribute: &dyn Attribute) -> Wanted {
     match attribute.value_type() {
         Type::Whole | Type::Number | Type::Rotation => Wanted::Numbers,

@@ -13,7 +13,7 @@ use std::sync::OnceLock;
 use toml_parser::decoder::Encoding;
 use toml_parser::{ParseError, Raw, Span};
 
-/// What a scene consists of.
+/// An item of a scene.
 #[derive(Debug)]
 pub enum Item {
     /// An entity.
@@ -22,7 +22,7 @@ pub enum Item {
     Let(Let),
     /// Files that are included.
     Include(Include),
-    /// What is repeated.
+    /// A `repeat`.
     Repeat(Repeat),
 }
 
@@ -47,18 +47,18 @@ pub struct Entity {
     pub known: Option<&'static entity::Entity>,
     /// Its name.
     pub name: Option<Word>,
-    /// Where else its name stands: TOML may write it with each attribute.
+    /// The other places of its name: TOML may write it with each attribute.
     pub again: Vec<Word>,
     pub attributes: Vec<Attribute>,
     pub place: Range<usize>,
-    /// Where its attributes stand or may stand.
+    /// The range in which its attributes stand or may stand.
     pub body: Range<usize>,
 }
 
 /// An attribute and its values.
 pub struct Attribute {
     pub name: Word,
-    /// What the table of the entity's type says of it.
+    /// The attribute in the table of the entity's type, if it has one of this name.
     pub known: Option<&'static dyn attribute::Attribute>,
     /// The first byte after the `=` in TOML, or after the name otherwise; `None` where there is no `=` yet.
     pub values_from: Option<usize>,
@@ -88,29 +88,29 @@ pub struct Include {
     pub place: Range<usize>,
 }
 
-/// What is repeated.
+/// A `repeat` with its entities.
 #[derive(Debug)]
 pub struct Repeat {
     pub name: Option<Word>,
-    /// Where else its name stands.
+    /// The other places of its name.
     pub again: Vec<Word>,
     pub count: Option<Word>,
     pub items: Vec<Item>,
     pub place: Range<usize>,
-    /// Where its entities stand or may stand.
+    /// The range in which its entities stand or may stand.
     pub body: Range<usize>,
 }
 
 /// A place at which a text is not as a scene is written, and why.
 pub type Break = (Range<usize>, String);
 
-/// What a text says.
+/// The items of a text.
 #[derive(Debug)]
 pub struct View {
     pub text: Text,
     pub syntax: Syntax,
     pub items: Vec<Item>,
-    /// Where the text is not as a scene is written; empty if its form is sound.
+    /// The places where the text is not in the form of a scene; empty if there are none.
     pub breaks: Vec<Break>,
     /// The names, once they are found.
     pub(super) names: OnceLock<Names>,
@@ -126,7 +126,7 @@ impl View {
         self.text.as_str().get(place).unwrap_or_default()
     }
 
-    /// Returns what a word says, without quotes and escape sequences.
+    /// Returns the text of a word, without quotes and escape sequences.
     pub fn word(&self, word: Word) -> Cow<'_, str> {
         let inner = self.slice(word.inner());
         match word.form {
@@ -217,7 +217,7 @@ impl View {
     }
 }
 
-/// Returns what a word in quotes says in TOML.
+/// Returns the text of a word in quotes in TOML.
 fn unescaped(quoted: &str) -> Cow<'_, str> {
     let encoding = if quoted.starts_with("\"\"\"") { Encoding::MlBasicString } else { Encoding::BasicString };
     let raw = Raw::new_unchecked(quoted, Some(encoding), Span::new_unchecked(0, quoted.len()));

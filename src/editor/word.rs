@@ -9,11 +9,11 @@ pub struct Word {
     pub start: usize,
     /// The first byte after it.
     pub end: usize,
-    /// How it is quoted.
+    /// The form of its quotes.
     pub form: Form,
 }
 
-/// How a word is quoted.
+/// The forms of quotes around a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// Not at all.

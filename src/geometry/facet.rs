@@ -10,7 +10,7 @@ pub struct Facet {
     plane: Plane,
     /// Whether the shape's outward normal points to where the plane's coordinate, or height, grows.
     is_upward: bool,
-    /// Where the plane lies in the world; `None` where its numbers are those of the world.
+    /// The placement of the plane in the world; `None` if its numbers are world coordinates.
     placement: Option<Placement>,
 }
 
@@ -63,8 +63,8 @@ impl Facet {
         Some(Self { placement: Some(placement), ..self })
     }
 
-    /// Tells for the outer side of a facet and for the inner one whether the shape of this facet, which is met at the same
-    /// point, lies there; `None` where the two may lie in different planes.
+    /// Tells for the outer and the inner side of a facet whether the shape of this facet, which passes through the same
+    /// point, contains the space beside it; `None` where the two may lie in different planes.
     pub fn beside(&self, other: &Self) -> Option<[bool; 2]> {
         let is_same = self.plane == other.plane && self.placement == other.placement;
         is_same.then_some(if self.is_upward == other.is_upward { [false, true] } else { [true, false] })

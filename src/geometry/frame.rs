@@ -1,4 +1,4 @@
-//! Frames: where a shape's own coordinate system lies in the world.
+//! Frames: a shape's own coordinate system, and its position in the world.
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::facet::Facet;

@@ -1,9 +1,9 @@
-//! Places in an image.
+//! Points of an image.
 
 use crate::numeric::scalar::Scalar;
 use glam::DVec2;
 
-/// A place in an image, in any number type: how far from the left and from the bottom it lies.
+/// A point of an image, in any number type: its distances from the left and from the bottom.
 #[derive(Clone, Copy, Debug)]
 pub struct ImagePoint<N = f64> {
     /// The distances in pixels from the centre of the lower left pixel, to the right and up.
@@ -13,8 +13,8 @@ pub struct ImagePoint<N = f64> {
 }
 
 impl<N: Scalar> ImagePoint<N> {
-    /// Returns the place as fractions of the distances between the centres of the outermost pixels, as the notes count
-    /// them. A single pixel has only its middle.
+    /// Returns the point as fractions of the distances between the centres of the outermost pixels, as the notes count
+    /// them. An image of a single pixel has only its middle.
     pub fn fraction(&self) -> [N; 2] {
         [0, 1].map(|side| match self.pixels[side] {
             1 => N::constant(0.5),
@@ -22,7 +22,7 @@ impl<N: Scalar> ImagePoint<N> {
         })
     }
 
-    /// Returns the place in units of half the image's width, to the right and up from the image's middle. The left and
+    /// Returns the point in units of half the image's width, to the right and up from the image's middle. The left and
     /// the right edge of the image, which are half a pixel beyond the centres of the outermost pixels, lie at -1 and 1.
     #[inline(always)]
     pub fn from_middle(&self) -> [N; 2] {
@@ -33,14 +33,14 @@ impl<N: Scalar> ImagePoint<N> {
 }
 
 impl ImagePoint {
-    /// Returns the place in another number type.
+    /// Returns the point in another number type.
     #[inline(always)]
     pub fn exactly<N: Scalar>(&self) -> ImagePoint<N> {
         ImagePoint { at: [N::constant(self.at[0]), N::constant(self.at[1])], pixels: self.pixels }
     }
 }
 
-/// Returns the place, in pixels from the centre of the lower left pixel, that [`ImagePoint::from_middle`] takes to this
+/// Returns the point, in pixels from the centre of the lower left pixel, that [`ImagePoint::from_middle`] takes to this
 /// one.
 pub fn from_middle(place: DVec2, pixels: [usize; 2]) -> DVec2 {
     let [width, height] = pixels.map(|side| side as f64);

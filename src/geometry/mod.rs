@@ -1,4 +1,4 @@
-//! Rays, bounding boxes and frames: space without shapes.
+//! Geometry without shapes: rays, bounding boxes and frames.
 
 pub(crate) mod aabb;
 pub(crate) mod bvh;

@@ -1,9 +1,9 @@
-//! Placements: where a copy of a shape lies in the world.
+//! Placements: the position, size and rotation of a copy of a shape in the world.
 
 use crate::numeric::scalar::{Scalar, cross, dot, per_axis};
 use glam::{DMat3, DVec3};
 
-/// π as a sum: of four numbers, the last of which is known to [`PI_ERROR`].
+/// π as the sum of four numbers, to within [`PI_ERROR`].
 const PI: [f64; 4] = [
     std::f64::consts::PI,
     1.224_646_799_147_353_2e-16,
@@ -11,7 +11,7 @@ const PI: [f64; 4] = [
     1.112_454_220_863_365_3e-49,
 ];
 
-/// A bound on what [`PI`] lacks.
+/// A bound on the difference between π and the sum of [`PI`].
 const PI_ERROR: f64 = 1e-64;
 
 /// A rotation, counterclockwise as seen from the end of the axis.
@@ -29,7 +29,7 @@ pub enum Rotation {
 }
 
 impl Rotation {
-    /// The rotation that turns nothing.
+    /// The rotation by 0 degrees.
     pub const NONE: Self = Self::Angles(DVec3::ZERO);
 
     /// Tells whether the axis, where there is one, has a direction.

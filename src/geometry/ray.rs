@@ -109,7 +109,7 @@ impl Bracket {
     pub const UNKNOWN: Self = Self { near: 0.0, far: MISS };
 }
 
-/// How far a ray that was transformed and rounded may be from the one that it stands for.
+/// The maximum distance of a ray that was transformed and rounded from the ray that it stands for.
 #[derive(Clone, Copy, Debug)]
 pub struct Drift {
     /// A bound on the distance between the origins, in units of the coordinates that the ray was taken to.
@@ -119,6 +119,6 @@ pub struct Drift {
 }
 
 impl Drift {
-    /// That of a ray that stands for itself.
+    /// The drift of a ray that was not transformed.
     pub const NONE: Self = Self { origin: 0.0, dir: 0.0 };
 }

@@ -1,4 +1,4 @@
-//! Rays whose digits are all known, so that something can be proven about them.
+//! Rays whose digits are all known, for proofs about them.
 
 use crate::geometry::image_point::ImagePoint;
 use crate::geometry::placement::Placement;
@@ -37,7 +37,7 @@ enum Toward {
     ImagePoint { at: DVec2, last: DVec2, size: DVec2 },
     /// The direction forward of a frame.
     Forward(Arc<ViewFrame>),
-    /// A place in the image of a frame, whose width is seen at this angle in degrees.
+    /// A point of the image of a frame, whose width is seen at this angle in degrees.
     Ahead(Arc<(ViewFrame, f64, ImagePoint)>),
 }
 
@@ -85,8 +85,8 @@ impl Sight {
         Self { origin, toward: Toward::Forward(Arc::new(*frame)), within: None }
     }
 
-    /// Returns the ray from a frame's viewer that is seen at a place in an image whose width is seen at an angle in
-    /// degrees, and whose pixels are square.
+    /// Returns the ray from a frame's viewer through a point of an image whose width is seen at an angle in degrees,
+    /// and whose pixels are square.
     pub fn ahead(frame: &ViewFrame, angle: f64, at: ImagePoint) -> Self {
         Self { origin: frame.position(), toward: Toward::Ahead(Arc::new((*frame, angle, at))), within: None }
     }
@@ -159,8 +159,8 @@ impl Within {
     }
 }
 
-/// Returns the rounded unit vector from a viewpoint to a point of the image plane. A component is 0 only where the scene's
-/// numbers make it 0, so that a ray along a plane is told from one that meets it far away.
+/// Returns the rounded unit vector from a viewpoint to a point of the image plane. A component is 0 only where the
+/// scene's numbers make it 0, so that a ray parallel to a plane differs from one that hits the plane far away.
 #[inline(always)]
 pub(crate) fn direction(viewpoint: DVec3, at: DVec2, last: DVec2, size: DVec2) -> DVec3 {
     let mut toward = toward(viewpoint, at, last, size);
@@ -176,8 +176,8 @@ pub(crate) fn toward(viewpoint: DVec3, at: DVec2, last: DVec2, size: DVec2) -> D
     (at / last * size).extend(0.0) - viewpoint
 }
 
-/// Returns a vector from a viewpoint to a point of the image plane with what is left of the components that rounding makes
-/// 0, as where the viewpoint has the x 3.2 and the point 8 times 6/15.
+/// Returns a vector from a viewpoint to a point of the image plane, and computes exactly the components that rounding
+/// makes 0, as where the viewpoint has the x 3.2 and the point 8 times 6/15.
 #[cold]
 #[inline(never)]
 fn unless_cancelled(toward: DVec3, viewpoint: DVec3, at: DVec2, last: DVec2, size: DVec2) -> DVec3 {

@@ -1,4 +1,4 @@
-//! How a viewer stands: where, toward what, and which way is up.
+//! The frame of a viewer: the position, the direction of view, and the direction up.
 
 use crate::geometry::image_point::ImagePoint;
 use crate::geometry::placement::radians;
@@ -70,24 +70,25 @@ impl ViewFrame {
         self.given.axes()[2]
     }
 
-    /// Returns the unit vector toward a place in an image with square pixels, of whose width half is seen at an angle with
-    /// this tangent. Before it is made a unit vector, each component is rounded about once, however much of it cancels.
+    /// Returns the unit vector toward a point of an image with square pixels, half of whose width is seen at an angle
+    /// with this tangent. Before the vector is normalized, each component is rounded about once, however much of it
+    /// cancels.
     #[inline(always)]
     pub fn direction(&self, tangent: DoubleDouble, at: &ImagePoint) -> DVec3 {
         let ([x, y, z], [right, up]) = (self.axes, across(tangent, at));
         DVec3::from(per_axis(|axis| (z[axis] + right * x[axis] + up * y[axis]).high)).normalize()
     }
 
-    /// Returns a vector toward a place in an image with square pixels whose width is seen at an angle in degrees, in any
-    /// number type.
+    /// Returns a vector toward a point of an image with square pixels whose width is seen at an angle in degrees, in
+    /// any number type.
     pub fn exact_direction<N: Scalar>(&self, angle: f64, at: ImagePoint<N>) -> [N; 3] {
         let ([x, y, z], tangent) = (self.given.axes::<N>(), half_tangent::<N>(angle));
         let [right, up] = at.from_middle().map(|side| tangent * side);
         per_axis(|axis| z[axis] + right * x[axis] + up * y[axis])
     }
 
-    /// Returns the point that is seen at a place in an image with square pixels, which is as wide as this in world units
-    /// and has the viewer in its middle. Each coordinate is rounded about once.
+    /// Returns the point of the world at a point of an image with square pixels, which has this width in world units
+    /// and the viewer in its middle. Each coordinate is rounded about once.
     #[inline(always)]
     pub fn beside(&self, width: f64, at: &ImagePoint) -> DVec3 {
         let ([x, y, _], from) = (self.axes, self.given.position);
@@ -95,7 +96,7 @@ impl ViewFrame {
         DVec3::from(per_axis(|axis| (right * x[axis] + up * y[axis] + DoubleDouble::from(from[axis])).high))
     }
 
-    /// Returns what [`beside`](Self::beside) does, in any number type.
+    /// Computes the vector of [`beside`](Self::beside) in any number type.
     pub fn exact_beside<N: Scalar>(&self, width: f64, at: ImagePoint<N>) -> [N; 3] {
         let ([x, y, _], from) = (self.given.axes::<N>(), self.given.position);
         let [right, up] = at.from_middle().map(|side| side.scaled(0.5 * width));
@@ -103,7 +104,8 @@ impl ViewFrame {
     }
 }
 
-/// Returns a place in units of which half the image's width has this many, to the right and up from its middle.
+/// Returns a point of an image in units of which half the image's width has this many, to the right and up from its
+/// middle.
 #[inline(always)]
 fn across(half: DoubleDouble, at: &ImagePoint) -> [DoubleDouble; 2] {
     // The same for all places of an image.

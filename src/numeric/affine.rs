@@ -1,9 +1,10 @@
-//! Affine arithmetic: quantities over a small region, as linear functions of the place in it with a bound on the rest.
+//! Affine arithmetic: quantities over a small region, as linear functions of the position in it with a bound on the
+//! rest.
 //!
-//! An interval knows only the range of a quantity, and forgets what it depends on: over a pixel, the range of a formula's
-//! result is then many times too wide. An [`Affine`] number keeps the linear part, so that what is left open shrinks with
-//! the square of the region's size; and the mean over the region is known to within that rest alone, however steep the
-//! linear part is.
+//! An interval knows only the range of a quantity, and forgets what the quantity depends on: over a pixel, the range of
+//! a formula's result is then many times too wide. An [`Affine`] number keeps the linear part, so that the uncertain
+//! rest shrinks with the square of the region's size. The mean over the region is known to within that rest alone,
+//! however steep the linear part is.
 
 mod functions;
 
@@ -30,7 +31,7 @@ pub struct Affine {
 /// product of two numbers, each term takes part in at most 12 sums and one product.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// More than what terms lose that underflow.
+/// A bound on the error of terms that underflow.
 const UNDERFLOW: f64 = 1e-300;
 
 impl Affine {

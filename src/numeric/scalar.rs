@@ -112,10 +112,10 @@ pub trait Scalar:
     fn is_zero(self) -> bool;
 }
 
-/// Returns what a function returns for axis 0, 1 and 2.
+/// Calls a function for axes 0, 1 and 2, and returns the three results.
 ///
-/// `map` of an array does the same, but guards against panics half way, which costs the compiler much for each number
-/// type, and nothing is gained by it.
+/// `map` of an array does the same, but it guards against panics half way, which costs compile time for each number
+/// type and gains nothing here.
 #[inline(always)]
 pub fn per_axis<T>(mut of: impl FnMut(usize) -> T) -> [T; 3] {
     [of(0), of(1), of(2)]

@@ -19,8 +19,8 @@ use crate::world::sample::{SCRAMBLE, Sampler};
 const IMAGES: u32 = 8;
 const SAMPLES: u32 = 512;
 
-/// How many standard errors of the mean of [`IMAGES`] colours are beyond what is possible: of numbers that are distributed
-/// normally, one in a million is farther off.
+/// The number of standard errors of the mean of [`IMAGES`] colours beyond which a difference contradicts a proof: of
+/// normally distributed numbers, one in a million is farther off.
 const IMPOSSIBLE: f64 = 16.0;
 
 /// A colour as samples have it, as it is shown, and the standard error of each channel.
@@ -30,7 +30,7 @@ pub struct Sampled {
     error: Rgb,
 }
 
-/// What is found of a limit. Errors are in levels of 1/255.
+/// The results for a limit. Errors are in levels of 1/255.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     /// The fraction of pixels that are certified.
@@ -43,7 +43,7 @@ pub struct Outcome {
     pub open: [f64; 2],
     /// The CPU time of one thread, in seconds.
     pub seconds: f64,
-    /// That of the same render without proofs.
+    /// The CPU time of the same render without proofs, in seconds.
     pub without: f64,
     /// The mean number of footprints per pixel.
     pub footprints: f64,
@@ -129,7 +129,7 @@ pub fn measure(renderer: &Renderer, model: &mut Model, limit: f64, truth: &[Samp
     }
 }
 
-/// Renders a model on one thread, in rows from the top: its colours, what is proven of them, and the CPU time.
+/// Renders a model on one thread, in rows from the top. Returns its colours, their proven bounds, and the CPU time.
 fn render(renderer: &Renderer, model: &Model) -> (Vec<Rgb>, Vec<PixelBound>, f64) {
     renderer.run(|| {
         let (mut scratch, mut bounds) = (Scratch::default(), Bounds::default());

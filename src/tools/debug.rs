@@ -10,7 +10,7 @@ use clap::ValueEnum;
 use std::fmt;
 use std::io::{self, Write};
 
-/// One of the notes' debug aids.
+/// A kind of the notes' debug lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum LogLine {
     /// The pixel: its row and its column.

@@ -26,7 +26,7 @@ pub struct Movement {
     pub dolly: f64,
 }
 
-/// Where a camera stands: the values of those attributes that a movement changes, by their names.
+/// The pose of a camera: the values of those attributes that a movement changes, by their names.
 pub type Stand = BTreeMap<String, Vec<f64>>;
 
 /// Lists the attributes of a camera that a movement may change, with what they say. Other things have none.
@@ -86,7 +86,7 @@ struct Rig<'c> {
     forward: DVec3,
     /// The unit vector around which the viewer goes to the sides.
     up: DVec3,
-    /// How far pixels are apart at the distance of the point, in world units: to the right, and up.
+    /// The distance between neighbouring pixels at the distance of the point, in world units: to the right, and up.
     pixel: [DVec3; 2],
 }
 

@@ -20,16 +20,16 @@ use std::ops::Range;
 /// Numbers of samples per pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct Samples {
-    /// How samples are distributed.
+    /// The distribution of the samples.
     pub sampler: Sampler,
     /// The number of samples, or the least of the numbers.
     pub samples: u32,
-    /// Where pixels take more.
+    /// The rule by which pixels take more samples.
     pub adaptive: Option<Adaptive>,
 }
 
-/// What numbers of samples cost, and how wrong they are. Errors are in levels of 1/255, of colours as they are shown but
-/// not rounded to levels.
+/// The cost and the error of a number of samples. Errors are in levels of 1/255, of colours as they are shown but not
+/// rounded to levels.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Measured {
     /// The CPU time of one thread, in seconds: the least of some rounds.

@@ -11,7 +11,7 @@ use f256::f256;
 use std::io;
 use std::ops::ControlFlow;
 
-/// What is proven of a pixel, for the exact ray through its centre.
+/// The verdict on a pixel, for the exact ray through its centre.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Verdict {
     /// The tracer finds the object that is certainly hit first, or nothing where nothing is hit.
@@ -24,7 +24,7 @@ pub enum Verdict {
     Contradicted,
 }
 
-/// What may be hit first.
+/// The objects that may be hit first.
 #[derive(Debug, PartialEq)]
 enum First {
     /// This object, by its index, or nothing: for certain.

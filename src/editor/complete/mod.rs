@@ -14,7 +14,7 @@ use crate::scene::syntax::Syntax;
 use proposal::At;
 pub use proposal::{Completion, What};
 
-/// Returns what can be written at a position of the group's first file.
+/// Returns the completions at a position of the group's first file.
 pub fn completions(registry: &Registry, group: &Group, at: usize) -> Vec<Completion> {
     let Some((path, view)) = group.first() else { return Vec::new() };
     let at = crate::text::boundary(view.text.as_str(), at);

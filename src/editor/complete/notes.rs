@@ -40,7 +40,7 @@ impl At<'_> {
         line.split_whitespace().next_back().and_then(Keyword::of) == Some(keyword)
     }
 
-    /// Returns what can stand between the braces of an entity.
+    /// Returns the completions between the braces of an entity.
     fn in_entity(&self, entity: &Entity) -> Vec<Completion> {
         let last = entity.attributes.iter().rfind(|attribute| attribute.name.start < self.at);
         let Some(last) = last else { return self.attributes(entity) };

@@ -9,7 +9,7 @@ use crate::scene::syntax::Syntax;
 use std::ops::Range;
 use std::path::Path;
 
-/// What a proposal is.
+/// The kind of a proposal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum What {
     Type,
@@ -26,14 +26,14 @@ pub enum What {
 /// A proposal of what to write.
 #[derive(Clone, Debug)]
 pub struct Completion {
-    /// What is shown, and compared with what was typed.
+    /// The text that is shown, and compared with what was typed.
     pub label: String,
     pub what: What,
     /// A few words beside the label.
     pub detail: String,
     /// More about it, in Markdown.
     pub about: String,
-    /// What is written: places to fill in are as in `${1:N}`.
+    /// The text that is inserted: places to fill in are as in `${1:N}`.
     pub snippet: String,
     /// Whether there are such places.
     pub has_places: bool,

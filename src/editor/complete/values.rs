@@ -89,7 +89,7 @@ impl At<'_> {
         }
     }
 
-    /// Returns what a formula can contain.
+    /// Returns the words that a formula can contain.
     pub(super) fn in_formula(&self, variables: &[&str]) -> Vec<Completion> {
         let before = &self.view.text.as_str()[..self.at];
         let start = before.rfind(|c: char| !c.is_alphanumeric() && c != '_');

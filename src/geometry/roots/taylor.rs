@@ -98,7 +98,8 @@ pub fn first_root(
     first_root_within(line, stretch, base, range, shortest, &mut MAX_PIECES.clone())
 }
 
-/// Returns what [`first_root`] does, and takes the pieces that are judged from `pieces`: none are cut after the last.
+/// Finds the same root as [`first_root`]. Subtracts the pieces that it judges from `pieces`, and cuts no more when none
+/// are left.
 pub fn first_root_within(
     line: &impl FunctionOnLine,
     stretch: &Stretch,

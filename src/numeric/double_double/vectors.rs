@@ -93,7 +93,7 @@ pub fn rounded_unit(vector: [DoubleDouble; 3]) -> [f64; 3] {
     [rounded(vector[0]), rounded(vector[1]), rounded(vector[2])]
 }
 
-/// Returns what [`rounded_unit`] does, without branches, and whether it is that.
+/// Computes [`rounded_unit`] without branches, and returns whether the result is certain.
 #[inline(always)]
 pub fn quick_unit(vector: [DoubleDouble; 3]) -> ([f64; 3], bool) {
     let square = product(vector, vector);

@@ -22,7 +22,7 @@ pub type SurfaceField = FieldOf<8>;
 pub struct FieldOf<const N: usize> {
     /// The formula as it was read.
     formula: Arc<Formula>,
-    /// The same with fewer operations.
+    /// The same formula with fewer operations.
     quick: Formula,
 }
 

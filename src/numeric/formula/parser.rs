@@ -10,9 +10,9 @@ use std::ops::Range;
 pub struct FormulaFault {
     /// The byte range of the text to mark.
     pub place: Range<usize>,
-    /// What is wrong.
+    /// The error, for messages.
     pub message: String,
-    /// What would be right.
+    /// The correction, for messages.
     pub help: String,
     /// The name that is unknown, if that is what is wrong.
     pub unknown: Option<String>,

@@ -5,7 +5,7 @@ use super::variables::SURFACE;
 use std::collections::HashMap;
 use std::mem::{Discriminant, discriminant};
 
-/// One operation: reads two registers, of which it may use fewer, and writes one.
+/// An operation: reads up to two registers, and writes one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Instruction {
     pub step: Step,

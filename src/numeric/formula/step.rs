@@ -1,6 +1,6 @@
 //! The operations of a formula.
 
-/// One operation of a formula.
+/// An operation of a formula.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Step {
     /// A variable, by its index.

@@ -213,7 +213,7 @@ impl<F: Float> Scalar for Interval<F> {
         if exponent == 2 { apart_if!(F::IS_LONG, self.square()) } else { self.power(exponent) }
     }
 
-    /// Encloses each piece that the interval meets, over what it has of the interval.
+    /// Encloses the values of each piece of the spline that the interval overlaps, over their intersection.
     fn spline(self, spline: &Spline, order: usize) -> Self {
         let Interval { low, high } = self.coarse();
         let [first, last] = [low, high].map(|end| spline.piece(end));

@@ -48,7 +48,7 @@ pub struct Speed {
 pub struct Cost {
     /// The number of rays in a frame.
     pub rays: u64,
-    /// The time for all of them, in seconds.
+    /// The time for all rays, in seconds.
     pub seconds: f64,
 }
 

@@ -33,7 +33,7 @@ pub enum Marker {
     Star,
 }
 
-/// Which point of a text lies at its position.
+/// The point of a text that lies at its position.
 #[derive(Clone, Copy)]
 pub enum Align {
     Left,

@@ -8,7 +8,7 @@ use super::times::Times;
 pub struct Chart {
     /// The name of the scene.
     pub scene: String,
-    /// Where and when the times were measured.
+    /// The machine, the build and the date of the measurement.
     pub machine: Machine,
     /// One panel for each question.
     pub panels: Vec<Panel>,
@@ -23,13 +23,13 @@ pub struct Panel {
     pub title: String,
     /// A note on the rays or pixels that are compared.
     pub note: String,
-    /// What the errors are errors of.
+    /// The quantity whose errors are compared.
     pub subject: Subject,
     /// The choices.
     pub points: Vec<Point>,
 }
 
-/// What errors are errors of.
+/// A quantity whose errors are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Subject {
     /// Distances of hits, in world units. Times are for one ray and one object.
@@ -44,7 +44,7 @@ pub enum Subject {
     Whole,
 }
 
-/// One choice.
+/// A choice, with its cost and its error.
 #[derive(Clone)]
 pub struct Point {
     /// The choice's name.
@@ -113,7 +113,7 @@ pub enum Family {
 }
 
 impl Panel {
-    /// Returns what the errors are, as a table calls them.
+    /// Returns the name of the errors in tables.
     pub fn measure(&self) -> &'static str {
         match self.subject {
             Subject::Distances => "error of the distance, 99th percentile (world units)",
@@ -123,7 +123,7 @@ impl Panel {
         }
     }
 
-    /// Returns what the times are for, with their unit, and the number of these units in a second.
+    /// Returns the name and the unit of the times, and the number of these units in a second.
     pub fn unit(&self) -> (&'static str, f64) {
         match self.subject {
             Subject::Distances => ("CPU time per ray and object (ns)", 1e9),

@@ -27,7 +27,7 @@ use std::time::Instant;
 /// The numbers of samples to choose from, and the number of samples that they are compared with.
 const STAGES: [(&[u32], u32); 2] = [(&[1, 2, 4, 8, 16, 32, 64], 256), (&[128, 256], 1024)];
 
-/// How many times as many samples there are at least in what pixels with different numbers are compared with.
+/// The least ratio of the number of samples of the reference to that of an adaptive choice.
 const MORE: u32 = 4;
 
 /// The rays that a measurement may always take, and twice as many for the worst pixels; else it may take this fraction of
@@ -52,7 +52,7 @@ const ROUND: f64 = 0.05;
 /// The most that another accuracy than the scene's may take of its time, in each round, to be a choice.
 const GAIN: f64 = 0.8;
 
-/// What a choice is about.
+/// The goal of a choice.
 #[derive(Clone, Copy)]
 pub enum Goal {
     /// A maximum error.
@@ -66,7 +66,7 @@ pub enum Goal {
     Time {
         /// The time for the image on all cores, in seconds.
         most: f64,
-        /// As for an error.
+        /// Whether the error is that of the worst pixels, as for an error.
         worst: bool,
     },
 }
@@ -87,7 +87,7 @@ pub struct Estimate {
     pub seconds: f64,
     /// The measured error, where 1 is white.
     pub error: f64,
-    /// What the error of the whole image is at most, with a confidence of 99 %.
+    /// The upper bound of the error of the whole image, with a confidence of 99 %.
     pub bound: f64,
     /// The largest measured error of a pixel, where 1 is white.
     pub worst: f64,
@@ -206,7 +206,7 @@ pub(super) fn panel(load: Load, progress: &mut dyn Progress) -> io::Result<Panel
     })
 }
 
-/// What a measurement needs.
+/// The inputs and the state of a measurement.
 struct Study {
     threads: Renderer,
     own: Accuracy,

@@ -81,7 +81,7 @@ struct Document<'c> {
 /// Choices that answer one question.
 #[derive(Serialize)]
 struct Compared<'c> {
-    /// What `error` and `worst` of the points are, and their unit.
+    /// The meaning and the unit of `error` and `worst` of the points.
     error: &'static str,
     /// A note on the rays or pixels that are compared.
     note: &'c str,
@@ -91,7 +91,7 @@ struct Compared<'c> {
     title: &'c str,
 }
 
-/// One choice. Counts of rays are 0 where colours are compared; fields that only colours have are null elsewhere.
+/// A choice. Counts of rays are 0 where colours are compared; fields that only colours have are null elsewhere.
 #[derive(Serialize)]
 struct Measured<'c> {
     /// The number of pixels, out of `pixels`, with other bytes in the image.

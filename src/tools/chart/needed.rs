@@ -22,7 +22,7 @@ use std::ops::Range;
 /// About how many rays all choices take of a pixel that is measured alone, with the probes around it.
 pub(super) const RAYS: u32 = 120;
 
-/// How many times a choice is timed, after a first time that does not count.
+/// The number of times that a choice is timed, after a first time that does not count.
 const ROUNDS: usize = 2;
 
 /// The measured cost and colours of a choice.

@@ -53,7 +53,7 @@ const TIMED_TILES: usize = 16;
 /// The maximum number of tests for an image by another method.
 const METHOD_TESTS: usize = 500_000;
 
-/// What the samples of an image smooth.
+/// The parts of an image that samples smooth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Seen {
     /// Edges, and shadows where they are soft.

@@ -8,13 +8,13 @@ use crate::render::renderer::Renderer;
 use crate::world::material::Rgb;
 use std::io;
 
-/// How many standard deviations the mean of the squared errors may be off: a normal distribution stays below 2.33 with a
-/// confidence of 99 %.
+/// The number of standard deviations by which the mean of the squared errors may be off: a normal distribution stays
+/// below 2.33 with a confidence of 99 %.
 const DEVIATIONS: f64 = 3.0;
 
-/// How much of the skewness is added to the deviations, divided by the root of the number of pixels. Few pixels have most
-/// of the error, and where too few of these are measured, the deviation is too small as well (N. Johnson, "Modified t
-/// tests and confidence intervals for asymmetrical populations", 1978).
+/// The factor of the skewness that is added to the deviations, divided by the root of the number of pixels. Few pixels
+/// have most of the error, and if too few of these are measured, the deviation is too small as well (N. Johnson,
+/// "Modified t tests and confidence intervals for asymmetrical populations", 1978).
 const SKEWNESS: f64 = (1.0 + 2.0 * DEVIATIONS * DEVIATIONS) / 6.0;
 
 /// The part of the pixels that may be worse than the error of the worst pixels.

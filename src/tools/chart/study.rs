@@ -5,7 +5,7 @@ use crate::render::renderer::Renderer;
 use crate::world::accuracy::Accuracy;
 use std::io;
 
-/// What a measurement needs.
+/// The inputs of a measurement.
 pub(super) struct Study {
     pub candidates: Vec<Candidate>,
     /// The index of the candidate with the scene's own accuracy.

@@ -23,7 +23,7 @@ use rays::Tracer;
 use scene::{Colour, Number, Scene};
 use std::ops::ControlFlow;
 
-/// What is proven of a byte, or of a pixel: the last in this order of those of its bytes.
+/// The verdict on a byte, or on a pixel: the last in this order of those of its bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     /// The byte is that of the true colour.
@@ -57,7 +57,7 @@ impl Pixel {
     }
 }
 
-/// What one precision tells of a pixel.
+/// The result of one precision for a pixel.
 struct Attempt {
     pixel: Pixel,
     /// Whether the colour was enclosed at all.

@@ -57,7 +57,7 @@ pub(super) struct Scene<'p, 'm> {
     pub passes_fractions: bool,
 }
 
-/// What a line hits first.
+/// The first hit of a line.
 pub(super) enum First<F> {
     /// Nothing, for certain.
     Nothing,
@@ -65,7 +65,7 @@ pub(super) enum First<F> {
     Hit(Interval<F>, Place),
     /// One of these places, at a t in the interval beside it, or nothing.
     OneOf(Vec<(Interval<F>, Place)>, MayBeNothing),
-    /// It is not known.
+    /// An unknown hit.
     Open,
 }
 
@@ -92,7 +92,7 @@ impl<'p, 'm> Scene<'p, 'm> {
         Self { plan, objects, boxes, passes_fractions: plan.model.tints_are_fractions() }
     }
 
-    /// Returns what is certain about the first hit of a line with the object of this index.
+    /// Returns what is proven about the first hit of a line with the object of this index.
     pub fn hit<F: Precise>(
         &self,
         path: &Path<F>,
@@ -111,7 +111,7 @@ impl<'p, 'm> Scene<'p, 'm> {
         }
     }
 
-    /// Returns what is certain about the next hit of a line with an object that it may pass through in a place.
+    /// Returns what is proven about the next hit of a line with an object, behind a hit that it may pass through.
     fn behind<F: Precise>(&self, path: &Path<F>, start: Interval<F>, place: Place) -> (Found<F>, usize) {
         let line = Line { origin: path.line.at(start), dir: path.line.dir };
         let onward = Path { line, leaves: Some(place) };
@@ -125,7 +125,7 @@ impl<'p, 'm> Scene<'p, 'm> {
         (found, part)
     }
 
-    /// Returns what a line hits first.
+    /// Returns the first hit of a line.
     pub fn first<F: Precise>(&self, path: &Path<F>) -> First<F> {
         let coarse = coarse(&path.line);
         let mut found = Vec::new();

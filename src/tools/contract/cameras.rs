@@ -14,8 +14,8 @@ use glam::{DVec2, DVec3};
 const LENSES: [DVec2; 4] =
     [DVec2::ZERO, DVec2::new(1.0, 0.0), DVec2::new(-0.6, 0.8), DVec2::new(0.125, -0.5)];
 
-/// How far the ray at the place where a point is projected may lead from it: the length of the difference between unit
-/// vectors.
+/// The maximum difference between the direction to a point and that of the ray through its projection: the length of
+/// the difference between unit vectors.
 const DIRECTION_OFF: f64 = 1e-6;
 
 /// More than the rounding of a direction, which is a unit vector.

@@ -41,9 +41,9 @@ pub struct Breach {
     pub plugin: String,
     /// The file and line that register the plugin.
     pub place: String,
-    /// What the plugin should do.
+    /// The promise that is broken.
     pub promise: Promise,
-    /// What the plugin does instead.
+    /// What the plugin does instead, for messages.
     pub found: String,
     /// A scene that shows the breach; empty where none is needed.
     pub scene: String,

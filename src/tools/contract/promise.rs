@@ -93,7 +93,9 @@ impl Promise {
             Self::DistanceIsInItsSpan => {
                 "end `distance` with `range.keep(...)`: a distance outside the ray range, or NaN, becomes `MISS`"
             }
-            Self::DistanceIsTheSameAgain => "make `distance` depend on the shape, the ray and the ray range alone",
+            Self::DistanceIsTheSameAgain => {
+                "make `distance` depend on the shape, the ray and the ray range alone"
+            }
             Self::PacketsAgree => {
                 "make `t_bounds` contain `distance`, and `refine` equal it to the last bit or be NaN; if in doubt, leave out `Bracketed`, or `uniform`"
             }
@@ -126,7 +128,9 @@ impl Promise {
             Self::LightGoesOn => {
                 "clamp the reflected fraction, and normalize the direction in which the rest is transmitted"
             }
-            Self::LightIsFinite => "return `None` where no light arrives, including at the light's own location",
+            Self::LightIsFinite => {
+                "return `None` where no light arrives, including at the light's own location"
+            }
             Self::BackgroundIsSound => {
                 "state rules for the attributes, and leave out `enclose` if in doubt; `brightest` bounds all colours"
             }
