@@ -1,5 +1,5 @@
-//! What has to be so of a formula in x, y and z before its surface can be met: on the whole surface within its box, the
-//! formula and its slope are bounded, which is proven by interval arithmetic on smaller and smaller parts of the box.
+//! The conditions on a formula in x, y and z under which its surface can be hit: on the whole surface within its box,
+//! the formula and its slope are bounded. Interval arithmetic proves that on smaller and smaller parts of the box.
 
 use crate::numeric::dual::Dual;
 use crate::numeric::formula::field::Field;
@@ -20,12 +20,12 @@ const PARTS: usize = 1 << 14;
 pub enum NoField {
     /// The formula has no bounds, or is not defined.
     Unbounded {
-        /// A point near which that is so.
+        /// A point near which the formula is unbounded or not defined.
         near: DVec3,
     },
     /// The slope has no bounds where the formula may be 0.
     Steep {
-        /// A point near which that is so.
+        /// A point near which the slope is unbounded.
         near: DVec3,
     },
     /// The formula is nowhere 0.
@@ -66,7 +66,7 @@ type Part = ([DVec3; 2], u32);
 /// Proves that a formula and its slope are bounded on its surface in a box, and that there may be such a surface.
 ///
 /// # Errors
-/// Why there is none.
+/// The reason why the formula makes no surface.
 pub fn check(field: &Field, corners: [DVec3; 2]) -> Result<(), NoField> {
     let mut left = OPERATIONS / (field.formula().cost().max(1) * 16);
     let (mut waiting, mut smooth) = (vec![(corners, 0)], Vec::new());

@@ -37,7 +37,8 @@ const RAYS_PER_SEARCH: u32 = 32;
 /// where it is hit, however many pieces there are.
 const FEW_PIECES: usize = 256;
 
-/// The number of pieces that are judged of a ray that stands for others, as a copy's does: what takes more is proven.
+/// The number of pieces that are judged of a ray that stands for others, as a copy's does. A ray that takes more is
+/// proven.
 const MOST_DRIFTING: usize = 256;
 
 /// The maximum number of times that the bracket of a root is made four times as wide, until the function has certain
@@ -45,7 +46,7 @@ const MOST_DRIFTING: usize = 256;
 const WIDENINGS: usize = 8;
 
 impl Body {
-    /// Makes an object of an implicit surface, which looks like its material.
+    /// Makes an object of an implicit surface with the reflectivities of its material.
     pub fn implicit(formula: impl Implicit + 'static, frame: Frame) -> Self {
         let [low, high] = formula.bounds();
         let along_a_diagonal = formula.polynomial([Polynomial::along(Interval { low: -1.0, high: 1.0 }); 3]);
@@ -106,8 +107,8 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
         true
     }
 
-    /// Returns the same for all rays that enter the box, because a search that is made again to be counted takes as long
-    /// as the first one.
+    /// Returns the same cost for all rays that enter the box, because a search that is repeated to count it takes as
+    /// long as the first one.
     fn search_cost(&self, ray: &Ray, _origin_side: Option<Side>) -> u32 {
         let outer = FormulaOnRay::new(self, ray).stretch().outer;
         if outer.start <= outer.end { RAYS_PER_SEARCH } else { 0 }

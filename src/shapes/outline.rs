@@ -120,7 +120,7 @@ pub fn polygon(vertices: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Model {
 /// Makes an object of triangles.
 ///
 /// # Errors
-/// Why there is none.
+/// The reason why the triangles make none.
 pub fn body(model: Model, accuracy: Accuracy) -> Result<Body, Unfit> {
     let surface =
         Arc::new(Surface::new(model, &ToWorld::new(DVec3::ONE, Rotation::NONE, DVec3::ZERO), false)?);

@@ -300,8 +300,8 @@ are two adjacent planes or that are multiplied by up to 1e150; triangles as thin
 and rectangles. *Camera* rays are aimed at them from nearby, *far* rays from up to 1e9 away; *grazing* rays pass a
 silhouette or an edge at 1e-2 to 1e-15, or are parallel to a plane up to that angle, from up to 1e9 away. The ground truth
 has 300 bits; it starts from the numbers of the scene's text and takes a ray's numbers as they are. *Ties* are rays that
-touch a shape or an edge as far as 300 bits can tell. *Wrong* are hits that are missed, invented or at an intersection
-after the first; *ulp* is the maximum error of the others in units in the last place of the distance.
+touch a shape or an edge as far as 300 bits can tell. *Wrong* hits are missed, invented or at an intersection after the
+first; *ulp* is the maximum error of the others in units in the last place of the distance.
 
 "
     );
@@ -316,19 +316,21 @@ fn the_accuracy_of_each_method_is_measured() {
     let mut text = format!(
         "# How exact the methods are
 
-The `accuracy` of a camera chooses how hits are computed. This page counts the errors of each choice against the ground
-truth: every intersection of a ray and a surface isolated by interval arithmetic, with its distance to 30 digits. The
-numbers of each part come from a separate run of
+The `accuracy` of a camera chooses how hits are computed. This page counts the errors of each choice: first the wrong
+hits, which are missed, invented or later than the first, and then the errors of the distances of all others.
+
+The ground truth is every intersection of a ray and a surface, isolated by interval arithmetic, with its distance to 30
+digits. The numbers come from
 
 ```sh
 {COMMAND}
 ```
 
-with `hard_rays` in place of its last word for the second part alone.
+To measure the second part alone, replace the last word by `hard_rays`.
 
 *Missed* are hits that were not found, *invented* are hits that do not exist, *later* are hits at an intersection after
-the first. The errors are those of the distances of all other hits, in world units; *off the surface* is the distance of
-the worst of these points from the surface. *Time* is per ray, relative to the notes' `steps` in the same run, measured in
+the first. The errors are those of the distances of all other hits, in world units; *off the surface* is the greatest
+distance of their points from the surface. *Time* is per ray, relative to the notes' `steps` in the same run, measured in
 alternating rounds over all rays, including those that miss the surface's heights. Rays are traced one by one here; in
 packets, as in a render, the default takes less time: see the [charts](charts.md).
 

@@ -137,8 +137,8 @@ fn the_gallery_of_charts_is_drawn() {
 const INTRODUCTION: &str = "# Speed against accuracy
 
 What does each choice cost, how large is its error, and is the default the right choice? `tabray chart SCENE` answers
-this for any scene. This page shows the charts of some scenes, each with its machine and its date; all of them, and the
-page itself, are written by
+this for any scene. This page shows the charts of some scenes, each with its machine and its date. This command writes
+the charts and the page:
 
 ```sh
 COMMAND
@@ -159,8 +159,8 @@ so do errors that differ by less than a half.
 - **The image, by method**: one ray through each pixel, and the difference of its colours from those of `strict`.
 - **Samples per pixel**: the error of the image against 1024 other samples. `sobol` samples are evenly spread, `random`
   ones are those of the notes.
-- **Reflections and transmissions**: one ray through each pixel, in scenes with mirrors or glass, where paths end after
-  so many of them; the errors are those against all that can be seen.
+- **Reflections and transmissions**: one ray through each pixel, in scenes with mirrors or glass. Each choice ends paths
+  after a number of reflections and transmissions; its error is the difference from the image with all visible ones.
 - **The whole image**: accuracy and samples together, as `tabray choose` measures them: pixels spread over the image
   against more samples, with all sources of error.
 
@@ -183,7 +183,7 @@ time, but cores that share a cache or an arithmetic unit slow each other down, f
 
 ## The methods
 
-Those without a link are `tabray`'s own: `classic` is the method of the notes' program, and `draft`, `exact` and
+The methods without a link are `tabray`'s own: `classic` is the method of the notes' program, and `draft`, `exact` and
 `strict` are those that a scene chooses with `accuracy`; see [how exact the methods are](accuracy.md).
 
 | point | method | where it fails |

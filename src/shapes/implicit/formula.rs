@@ -18,7 +18,7 @@ pub trait Implicit: Send + Sync {
         self.value(at)
     }
 
-    /// Whether more than the box cuts the surface: without, [`kept`](Self::kept) is not asked.
+    /// Whether more than the box cuts the surface. If not, [`kept`](Self::kept) is not called.
     const IS_CUT: bool = false;
 
     /// Returns a number that is not below 0 where the surface is kept, and below 0 where it is cut off.
@@ -26,7 +26,7 @@ pub trait Implicit: Send + Sync {
         N::constant(1.0)
     }
 
-    /// Says why the surface is not that of a solid; `None` for a closed surface that lies within its box.
+    /// Says why the surface is not closed; `None` for a closed surface that lies within its box.
     fn openness(&self) -> Option<&'static str> {
         Some("it has no inside")
     }
@@ -42,13 +42,13 @@ pub trait Implicit: Send + Sync {
         None
     }
 
-    /// Encloses the coordinates u and v, as mathematics has them, of the points of the surface in a box; `None` where they
+    /// Encloses the coordinates u and v, before any rounding, of the points of the surface in a box; `None` where they
     /// are not known, which is always correct. Proofs of colours ask for them.
     fn uv_bounds(&self, _at: [Interval; 3]) -> Option<[Interval; 2]> {
         None
     }
 
-    /// Returns the low and the high corner of a box around the shape. What lies outside of the box is cut off, and a
+    /// Returns the low and the high corner of a box around the shape. The box cuts off the surface outside of it, and a
     /// shape that is cut shows its inside.
     fn bounds(&self) -> [DVec3; 2];
 }

@@ -1,8 +1,8 @@
-//! Copies of objects in other places, which share its shape.
+//! Copies of objects in other places, which share the object's shape.
 //!
-//! A ray is taken to the object's own coordinates, and its hit back to the world. The rounding of that is bounded by a
-//! `Drift`, and the shape tells what all rays within the drift hit. Where that is in doubt, the ray as the scene gives
-//! it decides, for which the angles' sines and cosines are enclosed in intervals.
+//! A ray is taken to the object's own coordinates, and its hit back to the world. A `Drift` bounds the rounding of
+//! both, and the shape returns a bracket of the hits of all rays within the drift. Where the bracket leaves a hit in
+//! doubt, the ray as the scene gives it decides, with the sines and cosines of the angles enclosed in intervals.
 
 mod body;
 mod onward;

@@ -1,5 +1,5 @@
-//! Packets of rays that meet a copy: taken to the object's own coordinates together, so that the shape is tested against
-//! packets there, too.
+//! Packets of rays that may hit a copy: they are taken to the object's own coordinates together, so that the shape is
+//! tested against packets there, too.
 
 use super::own::{Own, take_out, to_world};
 use super::shape::{ByPlacement, CAMERA, Placed, entered};

@@ -40,8 +40,8 @@ const TURN: f64 = 256.0 * f64::EPSILON;
 /// The drift of a camera ray in the world: a component of its direction is off by 3 units of 2^-53 at most.
 pub(super) const CAMERA: Drift = Drift { origin: 0.0, dir: 3.0 * f64::EPSILON };
 
-/// The largest drift of a direction for which brackets are asked for. Lengths are off by as much, and what is known of
-/// them must be known far better than to what coincides.
+/// The largest drift of a direction for which brackets are computed. Lengths are off by as much, and must be known far
+/// better than the distance at which two hits count as coincident.
 const MOST_DRIFT: f64 = CLOSE / 16.0;
 
 impl Placed {
@@ -85,7 +85,8 @@ impl Placed {
         (dir < MOST_DRIFT && own.origin < MISS).then_some(own)
     }
 
-    /// Returns a range in the object's own coordinates, for a ray along which a world unit has this length there.
+    /// Returns a range in the object's own coordinates, for a ray along which a world unit has the length `length`
+    /// there.
     #[inline(always)]
     fn own_range(&self, ray: &Ray, range: &RayRange, length: f64) -> RayRange {
         let RayRange { near, far, origin_side, origin_error } = *range;

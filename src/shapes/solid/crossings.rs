@@ -25,7 +25,7 @@ pub struct Crossings<'l, F> {
     gone: Interval<F>,
     leaves: Option<usize>,
     known: Vec<Crossing<F>>,
-    /// Nothing is known from here on; infinite where all crossings are known.
+    /// The t from which on nothing is known; infinite if all crossings are known.
     end: Option<F>,
 }
 
@@ -39,7 +39,7 @@ impl<'l, F: Precise> Crossings<'l, F> {
     /// Returns the crossing of an index, counted from the start of the line.
     ///
     /// # Errors
-    /// From where on nothing is known; infinity where there are no more crossings.
+    /// The t from which on nothing is known; infinity if there are no more crossings.
     pub fn get(&mut self, index: usize) -> Result<Crossing<F>, F> {
         while self.known.len() <= index {
             if let Some(end) = self.end {

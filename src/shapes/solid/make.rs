@@ -26,7 +26,7 @@ pub type Objects = List<NamedBody, 2, 256>;
 /// Makes the solid of an entity that names its objects.
 ///
 /// # Errors
-/// Why they make none.
+/// The reason why the objects make no solid.
 pub fn combined(args: &Args, objects: &Pparm<Objects>, operation: Operation) -> Result<Body, Refusal> {
     let List(objects) = args.get(objects);
     let objects: Vec<_> = objects.iter().filter_map(|object| object.get().cloned()).collect();
@@ -107,7 +107,7 @@ impl Body {
     /// Makes a solid of named objects, with this material or that of each.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason why the objects make no solid.
     fn combined(
         operation: Operation,
         objects: &[Arc<Self>],

@@ -16,7 +16,7 @@ impl Trimmed {
     /// Returns the first hit that is seen, and its part.
     ///
     /// # Errors
-    /// From where on nothing is known; infinity where there is no hit.
+    /// The t from which on nothing is known; infinity if there is no hit.
     fn proven_hit<F: Precise>(
         &self,
         line: &Line<Interval<F>>,

@@ -1,4 +1,4 @@
-//! Packets of rays that meet a part of a solid.
+//! Packets of rays that may hit a part of a solid.
 
 use super::trimmed::{ByParts, Trimmed};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};

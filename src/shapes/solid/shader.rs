@@ -1,4 +1,4 @@
-//! The look of a part of a solid.
+//! The reflectivities of a part of a solid.
 
 use crate::numeric::interval::{Fine, Fraction};
 use crate::world::body::Body;
