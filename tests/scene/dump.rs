@@ -104,7 +104,7 @@ fn of_a_constructor(fault: &Fault) -> bool {
         "without an area",
         "has no area",
         "has a formula",
-        "is too small for where it is",
+        "is too small at its position",
         "has its `target` at its `position`",
         "looks along its `up`",
         "has texels as large as pixels",

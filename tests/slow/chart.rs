@@ -290,7 +290,7 @@ fn a_chart_ends_near_its_time_limit_and_shows_what_it_has() {
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     if output.status.success() {
         assert!(text.contains("camera rays"), "{text}");
-        assert!(said.contains("the time did not suffice for all of the chart"), "{said}");
+        assert!(said.contains("there was not enough time for all of the chart"), "{said}");
     } else {
         // On a machine with much other work.
         assert!(said.contains("nothing is measured yet"), "{said}");

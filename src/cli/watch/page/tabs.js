@@ -76,7 +76,7 @@ const measure = async () => {
   image.alt = 'the chart; the text below says what it shows'
   image.hidden = false
   $('#chart pre').textContent = words
-  sayChart(isWhole ? 'measured' : 'the time did not suffice for all of it')
+  sayChart(isWhole ? 'measured' : 'there was not enough time for all of it')
   root.dataset.charted = of
 }
 
