@@ -1,4 +1,4 @@
-//! `tabray chart`: what each choice costs in a scene, and how wrong it is.
+//! `tabray chart`: the cost and the error of each choice in a scene.
 
 use super::measuring::{Time, Work, wait};
 use crate::cli::files::input::{self, Source};

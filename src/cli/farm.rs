@@ -1,4 +1,4 @@
-//! `tabray farm`: writes scripts with which an engine that is there already renders the parts of an image.
+//! `tabray farm`: writes scripts with which a job scheduler renders the parts of an image.
 
 use crate::cli::files::output;
 use crate::cli::options::number::whole;

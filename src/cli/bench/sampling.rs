@@ -1,4 +1,4 @@
-//! `bench --sampling`: what numbers of samples per pixel cost, and how wrong they leave an image.
+//! `bench --sampling`: the cost and the error of numbers of samples per pixel.
 
 use crate::cli::files::output;
 use crate::cli::process::failure::{Failure, print};

@@ -1,5 +1,5 @@
-//! What an image was made of and with, for a PNG to carry: the same for images that must be the same. So a frame that is
-//! there already is known by it.
+//! The texts that a PNG records about how its image was made: the same for images that must be the same. By these
+//! texts, an existing frame is recognized.
 
 use crate::cli::files::input::Source;
 use crate::cli::options::set;

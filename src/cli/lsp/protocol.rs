@@ -1,4 +1,4 @@
-//! The Language Server Protocol, as far as it is used here: what an editor asks, and what it is told.
+//! The Language Server Protocol, as far as it is used here: the requests of an editor, and the answers to it.
 
 use crate::editor::{self, Fold, Hint, Position, Symbol, Text};
 use crate::scene::kind::Kind;

@@ -1,4 +1,4 @@
-//! Parses the command line, and says what was probably meant where that fails.
+//! Parses the command line; if that fails, says what the user probably meant.
 
 use crate::cli::process::failure::Failure;
 use crate::cli::process::{color, program};

@@ -1,4 +1,4 @@
-//! Parts of images that are there already, whole or in part, when a part is to be rendered with `--resume`.
+//! Existing parts of images, complete or not, when a part is to be rendered with `--resume`.
 
 use crate::cli::process::failure::Failure;
 use crate::cli::process::messages;
