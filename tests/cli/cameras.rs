@@ -73,7 +73,10 @@ fn colours_of_pixels_are_certain_where_the_camera_says_what_they_see() {
             );
         } else {
             assert_eq!(status, 2, "{camera}: {err}");
-            assert!(err.contains("the scene's camera does not say where they lie"), "{camera}: {err}");
+            assert!(
+                err.contains("needs a camera that says where all rays through a pixel lie"),
+                "{camera}: {err}"
+            );
         }
     }
 }

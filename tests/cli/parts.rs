@@ -335,7 +335,7 @@ fn frames_have_values_that_change_and_names_by_their_numbers() {
     for (options, says) in [
         (&["--frames", "9..2"][..], "give the first and the last frame as `1..240`"),
         (&["--frames", "1..9", "--frame", "10"], "there is no frame 10"),
-        (&["--frames", "1..9", "-o", "-"], "written to files"),
+        (&["--frames", "1..9", "-o", "-"], "and writes files"),
         (&["--sweep", "a.b=1"], "--frames"),
     ] {
         let (status, said) = run(&folder, &[&["render", "a.ray"], options].concat());

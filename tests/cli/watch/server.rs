@@ -338,7 +338,7 @@ fn what_cannot_be_watched_is_refused() {
         (2, "-", "standard input cannot be watched"),
         (1, "no-such-scene.ray", "cannot read `no-such-scene.ray`"),
         (1, "no/such/folder.ray", "cannot read `no/such/folder.ray`"),
-        (1, path, "cannot read"),
+        (1, path, "there is no scene in the folder"),
     ] {
         let output = cargo_bin_cmd!("tabray")
             .current_dir(folder.path())
