@@ -5,68 +5,22 @@
 //! a node each. The result depends on the boxes and their order alone, not on the number of threads: minima, maxima and
 //! counts have no order, and each part is sorted by one thread.
 
-use crate::geometry::aabb::{Aabb, smaller};
-use crate::geometry::bvh::node::{Node, WIDTH, finite};
+use crate::geometry::aabb::Aabb;
+use crate::geometry::bvh::bins::{BINS, Bin, Grid, Item, Limits, NOTHING, best_cut, binned, half_area, join};
+use crate::geometry::bvh::node::{Node, WIDTH};
 use crate::numeric::scalar::per_axis;
 use crate::parallel;
+use crate::simd::cpu::Cpu;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::array;
-
-/// The number of bins along an axis; a set of objects is split between two bins.
-const BINS: usize = 16;
+use std::mem::take;
 
 /// The number of objects from which on a part is built by a thread of its own.
 const LARGE: usize = 4096;
 
 /// The number of levels from which on parts are halved by number, so that no scene makes the tree too deep.
 const DEEP: usize = 40;
-
-/// The low corner of a box, and the high corner's negative, so that one minimum joins two boxes.
-type Limits = [f64; 6];
-
-/// The limits of nothing.
-const NOTHING: Limits = [f64::INFINITY; 6];
-
-/// Returns the limits of two boxes together.
-#[inline(always)]
-fn join(one: &Limits, other: &Limits) -> Limits {
-    array::from_fn(|side| smaller(one[side], other[side]))
-}
-
-/// Returns half the surface area of a box, in square world units; infinite where it is not a finite number.
-#[inline(always)]
-fn half_area([a, b, c, d, e, f]: Limits) -> f64 {
-    let (x, y, z) = (-d - a, -e - b, -f - c);
-    let area = x * y + y * z + z * x;
-    if area.is_nan() { f64::INFINITY } else { area }
-}
-
-/// An object: the limits of its box, and its index.
-struct Item {
-    limits: Limits,
-    index: u32,
-}
-
-impl Item {
-    fn new(index: usize, bounds: &Aabb) -> Self {
-        let Aabb { low, high } = finite(bounds);
-        Self { limits: [low.x, low.y, low.z, -high.x, -high.y, -high.z], index: index as u32 }
-    }
-
-    /// Returns twice the center of the box along an axis.
-    #[inline(always)]
-    fn center(&self, axis: usize) -> f64 {
-        self.limits[axis] - self.limits[axis + 3]
-    }
-
-    /// Returns twice the center of the box as limits.
-    #[inline(always)]
-    fn centers(&self) -> Limits {
-        let [x, y, z] = per_axis(|axis| self.center(axis));
-        [x, y, z, -x, -y, -z]
-    }
-}
 
 /// Nodes and objects, each node's children in a row. Node 0 is the root.
 #[derive(Default)]
@@ -92,6 +46,7 @@ pub fn build(count: usize, bounds: impl Fn(usize) -> Aabb + Sync) -> Parts {
 }
 
 /// Some items, their limits, and those of twice their centers.
+#[derive(Default)]
 struct Part<'i> {
     items: &'i mut [Item],
     limits: Limits,
@@ -187,8 +142,9 @@ fn divide(whole: Part, depth: usize) -> Vec<Part> {
             _ => half_area(part.limits),
         };
         let Some(largest) = largest(&parts, size) else { break };
-        let [one, other] = split(parts.remove(largest), depth);
-        parts.splice(largest..largest, [one, other]);
+        let [one, other] = split(take(&mut parts[largest]), depth);
+        parts[largest] = one;
+        parts.insert(largest + 1, other);
     }
     // Where there is room for all items of a part, each is a child.
     loop {
@@ -216,29 +172,10 @@ fn largest(parts: &[Part], size: impl Fn(&Part) -> f64) -> Option<usize> {
     largest.map(|(index, _)| index)
 }
 
-/// The items whose centers lie in a bin: their number and limits.
-type Bin = (u32, Limits);
-
 /// Returns what some work returns for each chunk of many items.
 fn chunks<T: Send>(items: &[Item], work: impl Fn(&[Item]) -> T + Sync) -> Vec<T> {
     let chunks: Vec<_> = items.chunks(LARGE).collect();
     parallel::map(chunks.len(), |chunk| work(chunks[chunk]))
-}
-
-/// Returns the limits of twice the centers of some items.
-fn centers(items: &[Item]) -> Limits {
-    let fold = |items: &[Item]| items.iter().fold(NOTHING, |all, item| join(&all, &item.centers()));
-    if items.len() < LARGE {
-        fold(items)
-    } else {
-        chunks(items, fold).iter().fold(NOTHING, |one, other| join(&one, other))
-    }
-}
-
-/// Returns the items of two bins.
-#[inline(always)]
-fn both(one: &Bin, other: &Bin) -> Bin {
-    (one.0 + other.0, join(&one.1, &other.1))
 }
 
 /// Splits the items of a part in two.
@@ -251,50 +188,17 @@ fn split(part: Part, depth: usize) -> [Part; 2] {
         // No split is known to be better than another.
         return part.halves();
     }
-    let bin = |item: &Item| (((item.center(axis) - low) * scale) as usize).min(BINS - 1);
-    let none = || [(0, NOTHING); BINS];
-    let count = |items: &[Item]| {
-        let mut bins = none();
-        for item in items {
-            let bin = &mut bins[bin(item)];
-            *bin = (bin.0 + 1, join(&bin.1, &item.limits));
-        }
-        bins
-    };
-    let bins: [Bin; BINS] = if part.items.len() < LARGE {
-        count(part.items)
+    let grid = Grid { axis, low, scale };
+    let bins = if part.items.len() < LARGE {
+        binned(Cpu::best(), part.items, grid)
     } else {
-        let add = |one: [Bin; BINS], other: [Bin; BINS]| array::from_fn(|bin| both(&one[bin], &other[bin]));
-        chunks(part.items, count).into_iter().fold(none(), add)
+        let add = |one: [Bin; BINS], other: [Bin; BINS]| array::from_fn(|bin| one[bin].and(&other[bin]));
+        chunks(part.items, |items| binned(Cpu::best(), items, grid)).into_iter().fold([Bin::EMPTY; BINS], add)
     };
-    // What lies above each cut, from the last cut to the first.
-    let mut above = bins;
-    for cut in (1..BINS - 1).rev() {
-        above[cut] = both(&bins[cut], &above[cut + 1]);
-    }
-    // The probability that a ray enters a box is proportional to its surface area.
-    let cost = |bin: &Bin| f64::from(bin.0) * half_area(bin.1);
-    let (mut below, mut best) = ((0, NOTHING), (f64::INFINITY, 0, NOTHING));
-    for cut in 1..BINS {
-        below = both(&below, &bins[cut - 1]);
-        if below.0 > 0 && above[cut].0 > 0 {
-            let cost = cost(&below) + cost(&above[cut]);
-            if cost < best.0 {
-                best = (cost, cut, below.1);
-            }
-        }
-    }
-    let (least, cut, below) = best;
-    if least == f64::INFINITY {
-        return part.halves();
-    }
-    let middle = partition(part.items, |item| bin(item) < cut);
-    let (near, far) = part.items.split_at_mut(middle);
-    [(near, below), (far, above[cut].1)].map(|(items, limits)| Part {
-        centers: centers(items),
-        items,
-        limits,
-    })
+    let Some((cut, [near, far])) = best_cut(Cpu::best(), &bins) else { return part.halves() };
+    let middle = partition(part.items, |item| grid.place(item) < cut as f64);
+    let (before, after) = part.items.split_at_mut(middle);
+    [(before, near), (after, far)].map(|(items, Bin { limits, centers, .. })| Part { items, limits, centers })
 }
 
 /// The number of items of a block of [`partition`].

@@ -9,6 +9,7 @@
 //! nothing to tell boxes apart by.
 
 mod beam;
+mod bins;
 mod build;
 mod nearby;
 mod node;
