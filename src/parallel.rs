@@ -78,6 +78,21 @@ pub fn first(count: usize, is: impl Fn(usize) -> bool + Sync) -> Option<usize> {
     ranges(count, 2, &|mut range| range.find(|index| is(*index)).into_iter().collect()).first().copied()
 }
 
+/// Returns what some work returns for each index below a number, in their order and in one piece of memory; on this thread
+/// alone where the indices are fewer than `many`.
+pub fn filled<T: Clone + Default + Send>(
+    count: usize,
+    many: usize,
+    work: impl Fn(usize) -> T + Sync,
+) -> Vec<T> {
+    if count < many {
+        return (0..count).map(work).collect();
+    }
+    let mut all = vec![T::default(); count];
+    fill(&mut all, work);
+    all
+}
+
 /// Fills a slice with what some work returns for each index.
 pub fn fill<T: Send>(all: &mut [T], work: impl Fn(usize) -> T + Sync) {
     let _ = chunks(all, FILLED, |index, chunk| {

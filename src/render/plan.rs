@@ -83,31 +83,23 @@ impl<'m> Plan<'m> {
 
     fn with(model: &'m Model, needs: impl FnOnce(&[Option<Aabb>], Option<&Depth>) -> Needs) -> Self {
         let objects = &model.objects;
-        let (mut unbounded, mut bounded) = (Vec::new(), Vec::new());
-        let bounds = parallel::ranges(objects.len(), MANY, &|range| {
-            objects[range].iter().map(culling::bounds).collect()
-        });
+        let bounds = parallel::filled(objects.len(), MANY, |index| culling::bounds(&objects[index]));
         let depth = Depth::new(model);
         let needs = needs(&bounds, depth.as_ref());
         let mut unmet = needs.unmet.iter().peekable();
-        for (index, bounds) in bounds.into_iter().enumerate() {
-            if unmet.next_if_eq(&&index).is_some() {
-                continue;
-            }
-            match bounds {
-                Some(bounds) => bounded.push((index, bounds)),
-                None => unbounded.push(index),
-            }
-        }
+        let met = (0..objects.len()).filter(|index| unmet.next_if_eq(&index).is_none());
+        let (boxed, unbounded): (Vec<_>, Vec<_>) = met.partition(|index| bounds[*index].is_some());
+        let box_of = |index: usize| bounds[index].unwrap_or(Aabb::EMPTY);
+        let tree = (boxed.len() >= TREE).then(|| {
+            let mut tree = Bvh::of(boxed.len(), |place| box_of(boxed[place]));
+            tree.rename(|place| boxed[place as usize] as u32);
+            tree
+        });
+        let bounded = if tree.is_some() { &[] } else { &boxed[..] };
+        let bounded = bounded.iter().map(|index| (*index, box_of(*index))).collect();
         let camera = model.camera.value.clone();
         let features = camera.adaptive.map(|_| Features::new(&camera, objects));
         let prover = camera.certain.then(|| Prover::new(model));
-        let tree = (bounded.len() >= TREE).then(|| {
-            let (objects, boxes): (Vec<_>, Vec<_>) = bounded.drain(..).unzip();
-            let mut tree = Bvh::new(&boxes);
-            tree.rename(|object| objects[object as usize] as u32);
-            tree
-        });
         let mut unmet = needs.unmet.iter().peekable();
         let mut met = objects.iter().enumerate().filter(|(index, _)| unmet.next_if_eq(&index).is_none());
         let has_glass = met.any(|(_, object)| object.material.transparency != 0.0);

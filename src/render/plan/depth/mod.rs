@@ -62,7 +62,7 @@ pub(crate) use surface::clearance;
 
 use crate::parallel;
 use crate::render::limits::MAX_DIST;
-use crate::scene::model::Model;
+use crate::scene::model::{Model, Object};
 use crate::world::accuracy::Accuracy;
 use crate::world::material::{Look, Rgb};
 use solve::Scene;
@@ -79,14 +79,14 @@ pub(crate) struct Depth {
 impl Depth {
     /// Computes the bounds of a scene; `None` where no object reflects or transmits rays.
     pub fn new(model: &Model) -> Option<Self> {
-        let looks = looks(model);
-        let shiny = model.objects.iter().zip(&looks).any(|(object, look)| {
+        let is_shiny = |object: &Object| {
+            let look = object.shader.brightest(&object.material);
             object.material.transparency != 0.0 || look.is_none_or(|look| look.specular != Rgb::ZERO)
-        });
-        if !shiny {
+        };
+        if !model.objects.iter().any(is_shiny) {
             return None;
         }
-        let surfaces = Surface::all(model, &looks, None);
+        let surfaces = Surface::all(model, &looks(model), None);
         let cuts = model.camera.value.accuracy != Accuracy::Classic;
         let (most, objects) = Scene::new(model, surfaces, background(model)).bounds(cuts);
         Some(Self { most, objects })

@@ -113,10 +113,13 @@ impl Scene<'_> {
         let views = self.views(view);
         let everything = |index: usize| Seen::of(self.bounds[index].as_ref());
         // For each view, the objects that it may show. Where anything may be seen, it is seen from anywhere.
-        let all: Vec<usize> = (0..self.model.objects.len()).collect();
+        let all: Vec<usize>;
         let shown: Vec<(Option<&View>, &[usize])> = match &views {
             Some(views) => views.iter().map(|(view, shown)| (Some(view), &shown[..])).collect(),
-            None => vec![(None, &all)],
+            None => {
+                all = (0..self.model.objects.len()).collect();
+                vec![(None, &all)]
+            }
         };
         let mut needs =
             Needs { lights: Vec::new(), dark: Vec::new(), unmet: Vec::new(), clearance: f64::INFINITY };
