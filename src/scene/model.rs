@@ -54,6 +54,14 @@ impl Model {
         }
     }
 
+    /// Returns the objects that read files, in the order of the scene.
+    pub fn from_files(&self) -> Vec<&Record> {
+        if !self.camera.args.types().iter().any(|entity| entity.reads_files()) {
+            return Vec::new();
+        }
+        self.entities(Kind::Object).into_iter().filter(|record| record.entity().reads_files()).collect()
+    }
+
     /// Tells whether the fractions of light that objects let pass are all known to be from 0 to 1.
     pub fn tints_are_fractions(&self) -> bool {
         let is_fraction = |object: &Object| match object.shader.uniform(&object.material) {

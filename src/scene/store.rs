@@ -341,6 +341,11 @@ impl Record {
         self.store.entity(self.order()).expect("a model has only entities of known types")
     }
 
+    /// Returns the types of the scene's entities, each once.
+    pub(crate) fn types(&self) -> &[&'static Entity] {
+        &self.store.types
+    }
+
     /// Returns the entity's name.
     pub fn name(&self) -> &str {
         self.store.name(self.order())

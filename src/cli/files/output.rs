@@ -5,7 +5,6 @@ use crate::cli::process::failure::Failure;
 use crate::cli::process::messages;
 use crate::cli::process::temporary::Temporary;
 use crate::output::picture::Format;
-use crate::scene::kind::Kind;
 use crate::scene::model::{Item, Model};
 use crate::scene::store::Record;
 use crate::text;
@@ -134,11 +133,9 @@ pub fn source(path: &Path, scene: &Path, model: &Model) -> Option<String> {
         }
     };
     let is_source = |texture: &Item<Arc<Texture>>| is_same_file(texture.value.path(), path).unwrap_or(false);
-    let is_read = |record: &&&Record| {
-        let args = record.entity().reads_files().then(|| record.args());
-        args.is_some_and(|args| {
-            args.files().any(|file| is_same_file(args.setting.folder.join(file), path).unwrap_or(false))
-        })
+    let is_read = |record: &&Record| {
+        let args = record.args();
+        args.files().any(|file| is_same_file(args.setting.folder.join(file), path).unwrap_or(false))
     };
     if is_scene() {
         return Some("the scene".to_owned());
@@ -146,8 +143,7 @@ pub fn source(path: &Path, scene: &Path, model: &Model) -> Option<String> {
     if let Some(texture) = model.textures.iter().find(|texture| is_source(texture)) {
         return Some(format!("the image of texture `{}`", texture.args.name()));
     }
-    let objects = model.entities(Kind::Object);
-    let record = objects.iter().find(is_read)?;
+    let record = model.from_files().into_iter().find(is_read)?;
     Some(format!("the file of {} `{}`", record.entity().name, record.name()))
 }
 

@@ -56,11 +56,15 @@ impl Check<'_, '_> {
             for (order, made) in made.into_iter().flatten() {
                 let record = Record::new(&store, order);
                 match made {
-                    Ok(Made::Object(body)) => {
+                    Ok(Made::Seen(shape, shader)) => {
+                        let object = |material| Object { args: record.clone(), material, shape, shader };
+                        self.objects.extend(record.material().map(object));
+                    }
+                    Ok(Made::Body(body)) => {
                         if !body.warnings.is_empty() {
                             self.warn(&record.args(), &body.warnings, source);
                         }
-                        self.objects.extend(objects(record, body));
+                        self.objects.extend(objects(record, *body));
                     }
                     Ok(Made::ByFile) => {
                         let body = self.body(record.args(), source);
