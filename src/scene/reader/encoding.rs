@@ -22,16 +22,18 @@ pub fn decode<'b>(name: &str, bytes: &'b [u8]) -> Result<&'b str, Report<'static
         return Err(report);
     }
     let nul = if bytes.contains(&0) { bytes.iter().position(|byte| *byte == 0) } else { None };
-    let not_utf8 = std::str::from_utf8(bytes).err().map(|error| error.valid_up_to());
-    let (place, message) = match (nul, not_utf8) {
-        (Some(nul), bad) if bad.is_none_or(|bad| nul < bad) => (nul..nul + 1, "unexpected NUL byte"),
-        (_, Some(bad)) => match windows_1252(bytes, bad) {
+    let bad = match (std::str::from_utf8(bytes), nul) {
+        (Ok(text), None) => return Ok(text.strip_prefix('\u{feff}').unwrap_or(text)),
+        (text, _) => text.err().map(|error| error.valid_up_to()),
+    };
+    let (place, message) = match bad {
+        Some(bad) if nul.is_none_or(|nul| bad < nul) => match windows_1252(bytes, bad) {
             Some((encoding, text)) => return Err(in_one_byte(name, bad, encoding, text)),
             None => (bad..bad + char::REPLACEMENT_CHARACTER.len_utf8(), "invalid UTF-8"),
         },
         _ => {
-            let text = std::str::from_utf8(bytes).unwrap_or_default();
-            return Ok(text.strip_prefix('\u{feff}').unwrap_or(text));
+            let nul = nul.unwrap_or_default();
+            (nul..nul + 1, "unexpected NUL byte")
         }
     };
     // Up to the fault, the lossy text has the same bytes.
