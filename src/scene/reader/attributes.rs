@@ -86,7 +86,7 @@ impl Against<'_, '_> {
                 Fault::error(parsed.name.place.clone(), fault)
                     .help(format!("add `{}`", wanted.join("` and `"))),
             );
-        } else if parsed.is_empty() && one_of_each && !attributes.is_empty() && !parsed.is_damaged {
+        } else if parsed.count() == 0 && one_of_each && !attributes.is_empty() && !parsed.is_damaged {
             sound = false;
             let names = list(attributes.iter().map(|attribute| attribute.name()));
             self.report.add(

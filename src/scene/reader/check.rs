@@ -196,8 +196,8 @@ impl Check<'_, '_> {
         for (parsed, packed) in parsed.iter().zip(quick.packed()) {
             match packed {
                 None => self.entity(parsed),
-                Some((entity, packed)) => {
-                    if self.names.claim(&self.store, entity, &parsed.name, self.report) {
+                Some((entity, hash, packed)) => {
+                    if self.names.claim(&self.store, entity, (&parsed.name, hash), self.report) {
                         self.store.add_packed(packed);
                     } else {
                         self.store.add(entity, &parsed.name.text, None);
@@ -219,7 +219,8 @@ impl Check<'_, '_> {
             return;
         };
         let Word { text, place, .. } = &parsed.name;
-        let counts = self.names.claim(&self.store, entity, &parsed.name, self.report);
+        let hash = self.names.hash(entity.kind(), text);
+        let counts = self.names.claim(&self.store, entity, (&parsed.name, hash), self.report);
         if entity.kind() == Kind::Camera
             && let Some(first) = self.first_camera.replace(place.clone())
         {

@@ -3,6 +3,7 @@
 use crate::scene::attribute::Attribute;
 use crate::scene::counts::OneOf;
 use crate::scene::entity::Entity;
+use crate::scene::registry::Registry;
 use crate::scene::value::Type;
 use crate::text::{self, nearest};
 use std::collections::HashMap;
@@ -17,7 +18,7 @@ pub fn find_attribute(entity: &'static Entity, name: &str) -> Option<&'static dy
 
 /// The attributes of an entity type, so that they are found quickly.
 pub struct Table {
-    entity: &'static Entity,
+    pub entity: &'static Entity,
     attributes: Vec<Known>,
     groups: Vec<&'static OneOf>,
 }
@@ -50,6 +51,12 @@ impl Table {
         &self.groups
     }
 
+    /// Finds the index of the attribute of this name or alias, which is likely to be the one of index `next`.
+    pub fn find_next(&self, name: &str, next: usize) -> Option<usize> {
+        let is_next = self.attributes.get(next).is_some_and(|known| known.name == name);
+        if is_next { Some(next) } else { self.find(name) }
+    }
+
     /// Finds the index of the attribute of this name or alias.
     pub fn find(&self, name: &str) -> Option<usize> {
         let known = self.attributes.iter().position(|known| known.name == name);
@@ -73,15 +80,28 @@ impl Deref for Table {
 
 /// The tables of the entity types that have been met.
 #[derive(Default)]
-pub struct Tables(Vec<Table>);
+pub struct Tables {
+    all: Vec<Table>,
+    /// The index of the table that was found last by a name.
+    last: usize,
+}
 
 impl Tables {
+    /// Returns the index of the table of the entity type of this name or alias. Most entities are of the type of the one
+    /// before.
+    pub fn named(&mut self, registry: &Registry, name: &str) -> Option<usize> {
+        if self.all.get(self.last).is_none_or(|table| table.entity.name != name) {
+            self.last = self.of(registry.find(name)?);
+        }
+        Some(self.last)
+    }
+
     /// Returns the index of the table of an entity type.
-    pub fn of(&mut self, entity: &'static Entity) -> usize {
-        let known = self.0.iter().position(|table| ptr::eq(table.entity, entity));
+    fn of(&mut self, entity: &'static Entity) -> usize {
+        let known = self.all.iter().position(|table| ptr::eq(table.entity, entity));
         known.unwrap_or_else(|| {
-            self.0.push(Table::new(entity));
-            self.0.len() - 1
+            self.all.push(Table::new(entity));
+            self.all.len() - 1
         })
     }
 }
@@ -90,7 +110,7 @@ impl Index<usize> for Tables {
     type Output = Table;
 
     fn index(&self, table: usize) -> &Table {
-        &self.0[table]
+        &self.all[table]
     }
 }
 

@@ -103,9 +103,8 @@ impl<'a> Lister<'a, '_, '_> {
     fn entity(&mut self, mut entity: Parsed<'a>) {
         let is_used = self.rounds.is_used();
         entity.name = self.rounds.renamed(entity.name);
-        if let Some(known) = self.registry.find(&entity.kind.text) {
-            let (table, rounds, report) = (self.tables.of(known), &mut self.rounds, &mut *self.report);
-            let table = &self.tables[table];
+        if let Some(table) = self.tables.named(self.registry, &entity.kind.text) {
+            let (table, rounds, report) = (&self.tables[table], &mut self.rounds, &mut *self.report);
             entity.change(|attribute, word| {
                 if word.form != Form::Text && !is_used {
                     return word;

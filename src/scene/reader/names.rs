@@ -67,13 +67,13 @@ impl Names {
         self.doubtful.insert(hash);
     }
 
-    /// Gives an entity its name, and reports an invalid name. Returns whether the entity counts: of several materials,
-    /// textures or objects of one type with the same name, only the first does.
+    /// Gives an entity its name, of which [`hash`](Self::hash) is the hash, and reports an invalid name. Returns whether the
+    /// entity counts: of several materials, textures or objects of one type with the same name, only the first does.
     pub fn claim(
         &mut self,
         store: &Store,
         entity: &'static Entity,
-        word: &Word<'_>,
+        (word, hash): (&Word<'_>, u32),
         report: &mut Report<'_>,
     ) -> bool {
         let Word { text, form, place } = word;
@@ -90,7 +90,7 @@ impl Names {
                     .help("a name must not contain newlines or other control characters"),
             );
         }
-        let (order, hash) = (store.len(), self.hash(kind, text));
+        let order = store.len();
         let is_same = |first: &(u32, u32)| is_of(store, *first, hash, kind, text);
         let first = match self.firsts.entry(spread(hash), is_same, |(hash, _)| spread(*hash)) {
             Entry::Occupied(first) => first.get().1 as usize,
@@ -126,7 +126,8 @@ impl Names {
         first.map(|(_, order)| *order as usize)
     }
 
-    fn hash(&self, kind: Kind, name: &str) -> u32 {
+    /// Returns half a hash of the name of an entity of a kind.
+    pub fn hash(&self, kind: Kind, name: &str) -> u32 {
         (self.hasher.hash_one((kind, name)) >> 32) as u32
     }
 

@@ -225,7 +225,7 @@ impl<'a, 'r> Parser<'a, 'r> {
                     .help(format!("attributes go in braces: `{} {} {{ ... }}`", kind.text, name.text)),
             );
         }
-        let known = self.registry.find(&kind.text).map(|entity| self.tables.of(entity));
+        let known = self.tables.named(self.registry, &kind.text);
         let entity = match memory {
             Some(entity) => {
                 entity.begin_again(kind, name);
@@ -284,7 +284,8 @@ impl<'a, 'r> Parser<'a, 'r> {
         let Some(name) = self.step().map(|name| self.tokens.word(name)) else { return };
         let known = table.and_then(|table| {
             let table = &self.tables[table];
-            table.find(&name.text).or_else(|| table.near(&name.text, self.report.guesses()))
+            let found = table.find_next(&name.text, entity.count());
+            found.or_else(|| table.near(&name.text, self.report.guesses()))
         });
         let mut count = 0;
         while let Some(token) = self.token()
@@ -342,7 +343,9 @@ fn is_value(
 
 /// Tells whether a word begins as a number does.
 pub fn looks_like_number(word: &str) -> bool {
-    let unsigned = word.trim_start_matches(['+', '-']);
-    unsigned.starts_with(|c: char| c.is_ascii_digit() || c == '.')
-        || ["nan", "inf", "infinity"].iter().any(|number| unsigned.eq_ignore_ascii_case(number))
+    let is_digit = |word: &str| word.starts_with(|c: char| c.is_ascii_digit() || c == '.');
+    let unsigned = || word.trim_start_matches(['+', '-']);
+    is_digit(word)
+        || is_digit(unsigned())
+        || ["nan", "inf", "infinity"].iter().any(|number| unsigned().eq_ignore_ascii_case(number))
 }

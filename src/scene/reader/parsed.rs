@@ -161,9 +161,9 @@ impl<'a> Parsed<'a> {
         &self.values[start..self.attributes[index].1]
     }
 
-    /// Tells whether the entity has no attributes.
-    pub(super) fn is_empty(&self) -> bool {
-        self.attributes.is_empty()
+    /// Returns the number of attributes.
+    pub(super) fn count(&self) -> usize {
+        self.attributes.len()
     }
 }
 

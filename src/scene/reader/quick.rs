@@ -17,11 +17,10 @@ use std::ops::Range;
 pub struct Quick<'r> {
     registry: &'r Registry,
     tables: Tables,
-    /// The type that was looked up last.
-    last: Option<&'static Entity>,
     bytes: Vec<u8>,
-    /// The type of each entity and its range of the bytes, or `None` where something is out of the ordinary.
-    entities: Vec<Option<(&'static Entity, Range<usize>)>>,
+    /// The type of each entity, the hash of its name and its range of the bytes, or `None` where something is out of the
+    /// ordinary.
+    entities: Vec<Option<(&'static Entity, u32, Range<usize>)>>,
     /// The values of an attribute.
     numbers: Datum,
     whole: Datum,
@@ -35,7 +34,6 @@ impl<'r> Quick<'r> {
         Self {
             registry,
             tables: Tables::default(),
-            last: None,
             bytes: Vec::new(),
             entities: Vec::new(),
             numbers: Datum::Numbers(Vec::new()),
@@ -46,21 +44,15 @@ impl<'r> Quick<'r> {
 
     /// Tells whether nothing can refer to an entity, so that entities after it can be checked before it.
     pub fn waits(&mut self, parsed: &Parsed<'_>) -> bool {
-        let entity = self.find(&parsed.kind.text);
-        entity.is_none_or(|entity| matches!(entity.kind(), Kind::Object | Kind::Light))
+        let table = self.tables.named(self.registry, &parsed.kind.text);
+        table.is_none_or(|table| matches!(self.tables[table].entity.kind(), Kind::Object | Kind::Light))
     }
 
-    fn find(&mut self, kind: &str) -> Option<&'static Entity> {
-        self.last = self.last.filter(|last| last.name == kind).or_else(|| self.registry.find(kind));
-        self.last
-    }
-
-    /// Returns the type and the bytes of each of the entities that were checked, or `None` where something is out of
-    /// the ordinary.
-    pub fn packed(&self) -> impl Iterator<Item = Option<(&'static Entity, &[u8])>> {
-        self.entities
-            .iter()
-            .map(|entity| entity.as_ref().map(|(entity, range)| (*entity, &self.bytes[range.clone()])))
+    /// Returns the type, the hash of the name and the bytes of each of the entities that were checked, or `None` where
+    /// something is out of the ordinary.
+    pub fn packed(&self) -> impl Iterator<Item = Option<(&'static Entity, u32, &[u8])>> {
+        let packed = self.entities.iter().map(Option::as_ref);
+        packed.map(|of| of.map(|(entity, hash, range)| (*entity, *hash, &self.bytes[range.clone()])))
     }
 
     /// Checks objects and lights in place of others. What they refer to must be defined.
@@ -69,33 +61,27 @@ impl<'r> Quick<'r> {
         self.entities.clear();
         for parsed in parsed {
             let start = self.bytes.len();
-            let entity = self.find(&parsed.kind.text);
-            let number = entity.and_then(|entity| Some((entity, store.number(entity)?)));
-            let packed = number.and_then(|number| self.pack(names, store, number, parsed));
+            let packed = self.pack(names, store, parsed);
             if packed.is_none() {
                 self.bytes.truncate(start);
             }
-            self.entities.push(packed.and(entity).map(|entity| (entity, start..self.bytes.len())));
+            let hash = |entity: &Entity| names.hash(entity.kind(), &parsed.name.text);
+            self.entities.push(packed.map(|entity| (entity, hash(entity), start..self.bytes.len())));
         }
     }
 
-    /// Packs an entity; `None` where something is out of the ordinary.
-    fn pack(
-        &mut self,
-        names: &Names,
-        store: &Store,
-        (entity, number): (&'static Entity, usize),
-        parsed: &Parsed<'_>,
-    ) -> Option<()> {
-        if parsed.is_damaged || parsed.is_empty() {
+    /// Packs an entity, and returns its type; `None` where something is out of the ordinary.
+    fn pack(&mut self, names: &Names, store: &Store, parsed: &Parsed<'_>) -> Option<&'static Entity> {
+        if parsed.is_damaged || parsed.count() == 0 {
             return None;
         }
-        let table = self.tables.of(entity);
+        let table = self.tables.named(self.registry, &parsed.kind.text)?;
         let table = &self.tables[table];
+        let number = store.number(table.entity)?;
         self.given.clear();
         self.given.resize(table.len(), None);
         for (index, (name, _)) in parsed.attributes().enumerate() {
-            if self.given[table.find(&name.text)?].replace(index).is_some() {
+            if self.given[table.find_next(&name.text, index)?].replace(index).is_some() {
                 return None;
             }
         }
@@ -149,7 +135,7 @@ impl<'r> Quick<'r> {
                 _ => return None,
             }
         }
-        Some(())
+        Some(table.entity)
     }
 }
 
