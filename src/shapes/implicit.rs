@@ -35,7 +35,7 @@ const RAYS_PER_SEARCH: u32 = 32;
 
 /// The number of pieces that are judged of a ray that is rounded by more than the size of the shape: `f64` can hardly tell
 /// where it is hit, however many pieces there are.
-const FEW_PIECES: usize = 256;
+const FEW_PIECES: usize = 32;
 
 /// The number of pieces that are judged of a ray that stands for others, as a copy's does. A ray that takes more is
 /// proven.
@@ -124,7 +124,7 @@ impl<T: Implicit> Bracketed for ImplicitShape<T> {
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
         let touches = || self.touches(ray.origin, range.origin_error);
         by_distance(range, touches, |range| {
-            let line = FormulaOnRay::new(self, ray);
+            let line = FormulaOnRay { by_proof: true, ..FormulaOnRay::new(self, ray) };
             let Found { root, is_certain } = line.first_hit(range);
             is_certain.then(|| line.distance(root, range))
         })
@@ -205,8 +205,8 @@ struct FormulaOnRay<'s, T> {
     blur: f64,
     /// A bound of the error of each component of the direction.
     turn: f64,
-    /// Whether the ray stands for others that are off by more than its rounding.
-    drifts: bool,
+    /// Whether a root counts only where bounds in `f64` prove it.
+    by_proof: bool,
     /// The ray in the world, and the distance of that point along it, in world units.
     ray: &'s Ray,
     closest: f64,
@@ -217,13 +217,13 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         let closest = (shape.frame.origin - ray.origin).dot(ray.dir);
         let base = shape.frame.direction(shape.frame.from_origin(ray, closest));
         let dir = shape.frame.direction(ray.dir);
-        Self { shape, base, dir, blur: frame::blur(base, closest), turn: BLUR, drifts: false, ray, closest }
+        Self { shape, base, dir, blur: frame::blur(base, closest), turn: BLUR, by_proof: false, ray, closest }
     }
 
     /// Stands for all rays within a drift.
     fn within(self, drift: Drift) -> Self {
         let blur = self.blur + drift.origin + self.closest.abs() * drift.dir;
-        Self { blur, turn: self.turn + drift.dir, drifts: true, ..self }
+        Self { blur, turn: self.turn + drift.dir, by_proof: true, ..self }
     }
 
     /// Returns a bracket of the first hits of all rays that this one stands for.
@@ -282,10 +282,14 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         taylor::first_root_within(self, stretch, self.closest, range, shortest, &mut pieces)
     }
 
+    /// Whether the ray is rounded by more than the size of the shape, where rounding is this fraction of that in `f64`.
+    fn is_lost(&self, rounding: f64) -> bool {
+        rounding * self.blur > (self.shape.high - self.shape.low).max_element()
+    }
+
     fn first_hit(&self, range: &RayRange) -> Found {
         let stretch = self.stretch();
-        let is_lost = self.blur > (self.shape.high - self.shape.low).max_element();
-        let pieces = if is_lost { FEW_PIECES } else { taylor::MAX_PIECES };
+        let pieces = if self.is_lost(1.0) { FEW_PIECES } else { taylor::MAX_PIECES };
         if !T::IS_CUT {
             return self.first_root(&stretch, range, pieces);
         }
@@ -349,10 +353,14 @@ impl<T: Implicit> taylor::FunctionOnLine for FormulaOnRay<'_, T> {
         if self.shape.is_polynomial { form() } else { None }
     }
 
+    fn wants_proof(&self) -> bool {
+        self.by_proof
+    }
+
     /// Decides a piece in double-double arithmetic from the ray in the world, which tells nearly all touches from
     /// misses.
     fn undecided(&self, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
-        if self.drifts {
+        if self.is_lost(twice::STILL_HIDDEN) {
             return None;
         }
         let hidden = self.at(Interval::constant(piece.middle())).width();

@@ -7,6 +7,8 @@ use glam::DVec3;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use tabray::geometry::{Frame, MISS, Ray, RayRange, Side};
 use tabray::numeric::Scalar;
 use tabray::scene::Model;
@@ -489,6 +491,33 @@ fn formulas_without_bounds_end() {
         let ray = Ray { origin: DVec3::splat(far), dir: DVec3::NEG_X };
         assert_eq!(wild.distance(&ray, &RayRange::ALL), MISS);
     }
+}
+
+/// The formula of a heart, which counts how often it is evaluated.
+struct Counted(Arc<AtomicUsize>);
+
+impl Formula for Counted {
+    fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
+        self.0.fetch_add(1, Ordering::Relaxed);
+        let n = N::constant;
+        let ellipsoid = x.powi(2) + y.powi(2) + n(2.25) * z.powi(2) - n(1.0);
+        ellipsoid - (x.powi(2) + n(0.1125) * z.powi(2)).pow(n(1.0) / n(3.0)) * y
+    }
+}
+
+/// Such a ray is rounded by more than the size of the shape, from 1e150 on in twice the precision, too.
+#[test]
+fn a_shape_seen_from_much_too_far_away_takes_few_evaluations() {
+    let (count, mut dice) = (Arc::new(AtomicUsize::new(0)), Dice::new());
+    let heart = shape(Counted(Arc::clone(&count)), DVec3::splat(-1.5), DVec3::splat(1.5));
+    let evaluations = [1e20, 1e24, 1e150].map(|far| {
+        for _ in 0..20 {
+            let origin = dice.direction() * far;
+            heart.distance(&Ray { origin, dir: -origin.normalize() }, &RayRange::ALL);
+        }
+        count.swap(0, Ordering::Relaxed) / 20
+    });
+    assert!(evaluations.iter().all(|count| *count < 150), "{evaluations:?}");
 }
 
 #[test]

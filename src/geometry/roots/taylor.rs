@@ -28,6 +28,11 @@ pub trait FunctionOnLine {
     /// is worth it where the line is mostly far from its roots.
     const VALUES_FIRST: bool = false;
 
+    /// Whether only a root that bounds in `f64` prove is wanted: then a search need not go on where they do not decide.
+    fn wants_proof(&self) -> bool {
+        false
+    }
+
     /// Returns bounds of the second derivative on a piece; `None` where the value is seen to have no root there.
     fn curvature(&self, piece: Interval) -> Option<Interval> {
         let Jet { value, second, .. } = self.at(Jet::variable(piece));
@@ -346,6 +351,11 @@ impl<L: FunctionOnLine> Search<'_, L> {
             return Judgement::Free;
         }
         self.is_certain = false;
+        if self.line.wants_proof() {
+            // What is left is not cut any more.
+            *self.pieces = 0;
+            return Judgement::Free;
+        }
         self.undecided += 1;
         if self.undecided > MAX_UNDECIDED {
             return Judgement::Free;

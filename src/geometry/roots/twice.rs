@@ -13,7 +13,7 @@ use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 
 /// The rounding error of double-double arithmetic as a fraction of that of `f64`: 2^-53, with five bits to spare.
-const STILL_HIDDEN: f64 = 1.0 / 281_474_976_710_656.0;
+pub const STILL_HIDDEN: f64 = 1.0 / 281_474_976_710_656.0;
 
 /// If the slope at a turning point is still larger than this fraction of the slope where the piece begins, it is taken to
 /// jump there and not to pass through 0. A slope that does pass through 0 is then sought once more, for nothing.
