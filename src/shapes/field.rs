@@ -5,6 +5,7 @@ use crate::numeric::dual::Dual;
 use crate::numeric::formula::field::Field;
 use crate::numeric::interval::Interval;
 use glam::DVec3;
+use std::collections::VecDeque;
 
 /// The number of formula operations that a check may take, a function counted as eight: some tenths of a second.
 const OPERATIONS: u64 = 40_000_000;
@@ -12,8 +13,8 @@ const OPERATIONS: u64 = 40_000_000;
 /// The number of times that the box is halved before a part counts as a point: 18 times along each axis.
 const HALVINGS: u32 = 54;
 
-/// The number of parts in which a change of sign is looked for.
-const PARTS: usize = 1 << 14;
+/// The largest number of parts in which a change of sign is looked for.
+const PARTS: u64 = 1 << 14;
 
 /// The reason why a formula makes no surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,6 +94,11 @@ pub fn check(field: &Field, corners: [DVec3; 2]) -> Result<(), NoField> {
     if is_nowhere(field, smooth) { Err(NoField::Nowhere) } else { Ok(()) }
 }
 
+/// Returns the number of parts in which a change of sign is looked for: fewer for a formula of thousands of operations.
+fn parts_of(field: &Field) -> u64 {
+    PARTS.min(OPERATIONS / (field.formula().cost().max(1) * 2))
+}
+
 /// Tells whether a formula is certainly above 0 on all sides of a box.
 pub fn is_outside(field: &Field, [low, high]: [DVec3; 2]) -> bool {
     let side = |index: usize| {
@@ -105,7 +111,7 @@ pub fn is_outside(field: &Field, [low, high]: [DVec3; 2]) -> bool {
         ([from, to], 0)
     };
     let mut waiting: Vec<Part> = (0..6).map(side).collect();
-    let mut left = PARTS;
+    let mut left = parts_of(field);
     while let Some(part) = waiting.pop() {
         let ([low, high], _) = part;
         let value = field.at([0, 1, 2].map(|axis| Interval { low: low[axis], high: high[axis] }));
@@ -123,15 +129,15 @@ pub fn is_outside(field: &Field, [low, high]: [DVec3; 2]) -> bool {
 
 /// Tells whether a formula is certainly nowhere 0 in these parts.
 fn is_nowhere(field: &Field, parts: Vec<Part>) -> bool {
-    let (mut signs, mut parts, mut judged) = ([false; 2], std::collections::VecDeque::from(parts), 0);
+    let (mut signs, mut parts, mut left) = ([false; 2], VecDeque::from(parts), parts_of(field));
     while let Some(part) = parts.pop_front() {
         let ([low, high], _) = part;
-        judged += 1;
         let at = [0, 1, 2].map(|axis| Interval { low: low[axis], high: high[axis] });
         signs[usize::from(field.at((0.5 * (low + high)).to_array()) < 0.0)] = true;
-        if signs == [true; 2] || judged > PARTS {
+        if signs == [true; 2] || left == 0 {
             return false;
         }
+        left -= 1;
         if field.at(at).has_zero() {
             parts.extend(halves(part));
         }
