@@ -6,11 +6,11 @@ use crate::cli::options::number::whole;
 use crate::cli::process::failure::Failure;
 use crate::cli::process::progress::Progress;
 use crate::cli::process::{memory, messages};
+use crate::files::are_same;
 use crate::output::deflate::Compression;
 use crate::output::picture::Format;
 use crate::text;
 use image::imageops;
-use same_file::is_same_file;
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -49,7 +49,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let frames = frames(&args.frames)?;
     let outputs: Vec<_> = [&args.sheet, &args.animation].into_iter().flatten().collect();
     for path in &outputs {
-        if let Some(frame) = frames.iter().find(|frame| is_same_file(frame, path).unwrap_or(false)) {
+        if let Some(frame) = frames.iter().find(|frame| are_same(frame, path)) {
             return Err(Failure::Usage(
                 format!("`{}` is a frame, which would be replaced", frame.display()),
                 Some("name another file".to_owned()),

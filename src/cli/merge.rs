@@ -7,6 +7,7 @@ use crate::cli::process::progress::Progress;
 use crate::cli::process::{memory, messages};
 use crate::cli::rendering::part_files::{Parts, open, refuse};
 use crate::cli::rendering::{aov, full_range};
+use crate::files::are_same;
 use crate::output::aov::Aov;
 use crate::output::aov_values::Values;
 use crate::output::full_range::FullRange;
@@ -123,7 +124,7 @@ impl Parts {
 
     /// Opens a file to write, which must not be a part.
     fn open(&self, path: &Path) -> Result<Output, Failure> {
-        if self.paths.iter().any(|part| same_file::is_same_file(part, path).unwrap_or(false)) {
+        if self.paths.iter().any(|part| are_same(part, path)) {
             return Err(refuse(
                 format!("`{}` is a part, which the image would replace", path.display()),
                 "name another file for the image",

@@ -3,9 +3,9 @@
 
 use crate::common::program::{folder, names_in, outcome, scene, tabray};
 use std::fs;
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
@@ -190,6 +190,55 @@ fn a_scene_comes_through_a_pipe_if_somebody_writes() {
         (1, "error: cannot read `pipe`: no program writes to this pipe (waited 5 s)\n")
     );
     assert!(start.elapsed() < Duration::from_secs(30), "it ends");
+}
+
+/// Comparing the pipe with the scene must not open it: that would wait for a writer.
+#[test]
+fn an_image_goes_through_a_pipe_if_somebody_reads() {
+    let folder = folder();
+    let path = folder.path().join("pipe");
+    pipe(&path);
+    fs::copy(scene("sphere/in-front.ray"), folder.path().join("ball.ray")).expect("a copy");
+    let mut render = tabray(&folder);
+    render.args(["render", "ball.ray", "-q", "--format", "ppm", "-o"]).timeout(Duration::from_secs(60));
+    let (status, bytes, said) = outcome(render.arg("-"));
+    assert_eq!((status, said.as_str()), (0, ""));
+
+    let mut render = tabray(&folder);
+    render
+        .args(["render", "ball.ray", "-q", "--format", "ppm", "-o", "pipe"])
+        .timeout(Duration::from_secs(60));
+    let mut reader = Command::new("cat").arg(&path).stdout(Stdio::piped()).spawn().expect("a reader");
+    let (status, _, said) = outcome(&mut render);
+    let mut read = Vec::new();
+    if status != 0 {
+        reader.kill().expect("a reader");
+    }
+    reader.stdout.take().expect("a pipe").read_to_end(&mut read).expect("what was written");
+    reader.wait().expect("a reader");
+    assert_eq!((status, said.as_str()), (0, ""));
+    assert!(read == bytes);
+
+    let (status, _, said) = outcome(&mut render);
+    assert_eq!(
+        (status, said.as_str()),
+        (1, "error: cannot write `pipe`: no program reads this pipe (waited 5 s)\n")
+    );
+}
+
+/// A formula whose check takes as many evaluations as that of a short one takes minutes.
+#[test]
+fn a_formula_of_a_hundred_thousand_factors_is_read() {
+    let scene = format!(
+        "camera eye {{ pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 }} material m {{ ambient 1 1 1 }}
+        implicit wall {{ material m box -1 -1 -1 1 1 1 formula \"{}x - 0.5\" }}",
+        "x*".repeat(100_000)
+    );
+    let folder = folder();
+    let mut check = tabray(&folder);
+    let (status, _, said) =
+        outcome(check.args(["check", "-"]).write_stdin(scene).timeout(Duration::from_secs(60)));
+    assert_eq!((status, said.as_str()), (0, "-: no errors\n"));
 }
 
 #[test]

@@ -4,14 +4,15 @@ use crate::cli::files::input;
 use crate::cli::process::failure::Failure;
 use crate::cli::process::messages;
 use crate::cli::process::temporary::Temporary;
+use crate::files::{self, are_same};
 use crate::output::picture::Format;
 use crate::scene::model::{Item, Model};
 use crate::scene::store::Record;
 use crate::text;
 use crate::world::texture::Texture;
-use same_file::{Handle, is_same_file};
+use same_file::Handle;
 use std::ffi::OsStr;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File};
 use std::io::{self, BufWriter, IsTerminal, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -127,15 +128,16 @@ pub fn is_no_source(path: &Path, scene: &Path, model: &Model) -> Result<(), Fail
 pub fn source(path: &Path, scene: &Path, model: &Model) -> Option<String> {
     let is_scene = || {
         if input::is_standard(scene) {
-            Handle::from_path(path).and_then(|target| Ok(Handle::stdin()? == target)).unwrap_or(false)
+            let is_stdin = || Ok::<_, io::Error>(Handle::from_path(path)? == Handle::stdin()?);
+            path.is_file() && is_stdin().unwrap_or(false)
         } else {
-            is_same_file(scene, path).unwrap_or(false)
+            are_same(scene, path)
         }
     };
-    let is_source = |texture: &Item<Arc<Texture>>| is_same_file(texture.value.path(), path).unwrap_or(false);
+    let is_source = |texture: &Item<Arc<Texture>>| are_same(texture.value.path(), path);
     let is_read = |record: &&Record| {
         let args = record.args();
-        args.files().any(|file| is_same_file(args.setting.folder.join(file), path).unwrap_or(false))
+        args.files().any(|file| are_same(&args.setting.folder.join(file), path))
     };
     if is_scene() {
         return Some("the scene".to_owned());
@@ -168,10 +170,7 @@ impl Output {
         };
         match fs::metadata(&target) {
             Ok(meta) if meta.is_dir() => Err(cannot(io::ErrorKind::IsADirectory.into())),
-            Ok(meta) if !meta.is_file() => {
-                let file = OpenOptions::new().write(true).open(&target).map_err(cannot)?;
-                Ok(Self::Special(file))
-            }
+            Ok(meta) if !meta.is_file() => Ok(Self::Special(files::open_sink(&target).map_err(cannot)?)),
             Ok(meta) if meta.permissions().readonly() => Err(cannot(io::ErrorKind::PermissionDenied.into())),
             Ok(meta) => {
                 let file = Temporary::new(folder).map_err(cannot)?;
