@@ -6,6 +6,7 @@ use serde::Serialize;
 use std::borrow::Cow;
 use std::ffi::OsStr;
 use std::io;
+use std::ops::RangeInclusive;
 use std::panic::Location;
 use std::path::Path;
 
@@ -78,6 +79,28 @@ fn cut(text: &str, (max_len, [first, last]): (usize, [usize; 2])) -> Cow<'_, str
     }
     let [first, last] = [first, text.len() - last].map(|at| boundary(text, at));
     Cow::Owned(format!("{}…{}", &text[..first], &text[last..]))
+}
+
+/// Characters that have no width, or that turn the direction of those around them.
+const UNSEEN: [RangeInclusive<char>; 5] = [
+    '\u{ad}'..='\u{ad}',
+    '\u{200b}'..='\u{200f}',
+    '\u{202a}'..='\u{202e}',
+    '\u{2060}'..='\u{2069}',
+    '\u{feff}'..='\u{feff}',
+];
+
+/// Writes characters that are not seen as `\u{200b}`: a word with one of them looks like another word.
+pub fn visible(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for letter in text.chars() {
+        if UNSEEN.iter().any(|range| range.contains(&letter)) {
+            shown.extend(letter.escape_unicode());
+        } else {
+            shown.push(letter);
+        }
+    }
+    shown
 }
 
 /// Returns the last boundary between two characters of a text that is not after byte `at`.

@@ -105,7 +105,10 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         output::put(&path, output, |out| format.write(out, size, iter::once(Ok(bytes))))?;
     }
     if contradicted > 0 {
-        return Err(Failure::Failed(format!("the tracer finds another object at {contradicted} pixels")));
+        return Err(Failure::Failed(format!(
+            "the tracer finds another object at {}",
+            text::count(contradicted, "pixel")
+        )));
     }
     Ok(())
 }

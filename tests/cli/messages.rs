@@ -139,3 +139,44 @@ fn a_message_is_one_write() {
     let [message] = messages.as_slice() else { panic!("{messages:#?}") };
     assert!(message.starts_with("error: ") && message.contains("must be positive"), "{message}");
 }
+
+#[test]
+fn two_signs_are_no_whole_number() {
+    let (status, err) = told(
+        "short",
+        "camera eye { pixeldim --8 +-6 worlddim 8 6 viewpoint 4 3 6 samples 99999999999999999999 }",
+    );
+    assert_eq!(status, 2);
+    let expected = "<stdin>:1:23: error: `--8` and `+-6` are not whole numbers";
+    assert!(err.starts_with(expected) && err.contains("error: `99999999999999999999` is too large"), "{err}");
+}
+
+/// A word with a letter that is not seen would look like the word that is meant.
+#[test]
+fn letters_that_are_not_seen_are_named() {
+    for (letter, shown) in [('\u{feff}', "\\u{feff}"), ('\u{200b}', "\\u{200b}"), ('\u{202e}', "\\u{202e}")] {
+        let (status, err) = told(
+            "short",
+            &format!("camera eye {{ pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 samples{letter} 1 }}"),
+        );
+        assert_eq!(status, 2);
+        let expected =
+            format!("error: camera `eye` has no attribute `samples{shown}`: did you mean `samples`?");
+        assert!(err.contains(&expected), "{err}");
+    }
+}
+
+#[test]
+fn a_value_below_0_is_told_what_would_be_right() {
+    for (option, value, help) in [
+        ("--samples", "-1", "give a whole number from 1 to 65536, or two as `4..64`"),
+        ("--part", "-1/4", "give a part as `3/16`: its number, from 1, and of how many parts, up to 100000"),
+        ("--time-limit", "-1s", "give a time as `90s`, `5m` or `1.5h`"),
+        ("--size", "-5", "give a width as `800`, or both as `800x600`, each from 1 to 100000"),
+    ] {
+        let (status, _, err) = outcome(tabray(&folder()).args(["render", "ball.ray", option, value]));
+        assert_eq!(status, 2, "{err}");
+        let expected = format!("error: invalid value '{value}' for '{option} <");
+        assert!(err.starts_with(&expected) && err.contains(&format!(">': {help}\n")), "{err}");
+    }
+}

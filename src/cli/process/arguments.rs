@@ -15,7 +15,7 @@ use std::process;
 /// Parses the program's arguments. What is wrong with them is printed, and ends the program; so do `--help` and
 /// `--version`.
 pub fn matches(mut command: Command) -> Result<ArgMatches, Failure> {
-    let words: Vec<OsString> = env::args_os().collect();
+    let words = joined(&command, env::args_os().collect());
     color::choose_early(&words);
     let mut error = match command.try_get_matches_from_mut(&words) {
         Ok(matches) => return Ok(matches),
@@ -64,6 +64,32 @@ pub fn matches(mut command: Command) -> Result<ArgMatches, Failure> {
         }
     }
     error.exit()
+}
+
+/// Joins an option and a value that begins with a minus and a digit, as in `--samples -1`, to one word: otherwise clap
+/// takes the value for an option, and does not say what would be right.
+fn joined(command: &Command, words: Vec<OsString>) -> Vec<OsString> {
+    let chosen = chosen(command, &words);
+    let takes_value = |word: &OsString| {
+        let name = word.to_str().and_then(|word| word.strip_prefix("--"));
+        let mut known = chosen.get_arguments().filter(|arg| arg.get_action().takes_values());
+        name.is_some_and(|name| known.any(|arg| arg.get_long() == Some(name)))
+    };
+    let is_negative = |word: &OsString| {
+        let bytes = word.as_encoded_bytes();
+        bytes.first() == Some(&b'-') && bytes.get(1).is_some_and(u8::is_ascii_digit)
+    };
+    let mut joined: Vec<OsString> = Vec::new();
+    for word in words {
+        match joined.last_mut() {
+            Some(option) if takes_value(option) && is_negative(&word) => {
+                option.push("=");
+                option.push(word);
+            }
+            _ => joined.push(word),
+        }
+    }
+    joined
 }
 
 /// Tells whether a word in the place of a command names a scene.

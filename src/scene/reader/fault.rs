@@ -131,8 +131,8 @@ impl Fault {
         self.severity == other.severity && self.message == other.message
     }
 
-    /// Shortens texts that are too long to be read, and replaces control characters in the message: a name with a line
-    /// end could look like a message of its own. Afterwards the fault's places lie within `text`, and none begins after
+    /// Shortens texts that are too long to be read, and replaces control characters in the message, where a name with a
+    /// line end could look like a message of its own, and characters that are not seen. Afterwards the fault's places lie within `text`, and none begins after
     /// it ends.
     pub(super) fn tidy(&mut self, text: &str) {
         let also = self.also.iter_mut().map(|(place, label)| (place, label));
@@ -148,6 +148,6 @@ impl Fault {
         }
         self.alike.1.iter_mut().for_each(whole);
         self.help = self.help.as_deref().map(|help| text::abridged(help).into_owned());
-        self.message = text::abridged(&self.message).replace(char::is_control, "\u{fffd}");
+        self.message = text::visible(&text::abridged(&self.message).replace(char::is_control, "\u{fffd}"));
     }
 }

@@ -126,7 +126,7 @@ fn one_for_all(mut faults: Vec<Fault>) -> Vec<Fault> {
 /// Reads a whole number.
 pub fn whole(word: &str) -> Result<i64, Complaint> {
     word.parse().map_err(|_| {
-        let digits = word.trim_start_matches(['+', '-']);
+        let digits = word.strip_prefix(['+', '-']).unwrap_or(word);
         let too_large = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
         (if too_large { "too large" } else { "not a whole number" }, None)
     })
