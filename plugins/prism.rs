@@ -28,7 +28,7 @@ inventory::submit! {
         let body = solid.and_then(|solid| outline::body(solid, args.accuracy()).ok());
         body.ok_or(Refusal {
             attribute: Some("points"),
-            message: "is too small for where it is: some of its edges meet, or are too far away".to_owned(),
+            message: "is too small at its position: some of its edges meet, or are too far away".to_owned(),
             help: "an edge must be longer than the rounding of its coordinates, about 1e-16 of their size",
         })
     })
