@@ -17,4 +17,4 @@ mod packet;
 mod tree;
 
 pub use packet::{PacketVisitor, visit};
-pub use tree::{Bvh, Stack};
+pub use tree::{Bvh, Order, Stack};

@@ -7,7 +7,7 @@
 use crate::geometry::aabb::{Aabb, SLACK, larger, smaller};
 use crate::geometry::bvh::beam::{Beam, Eight};
 use crate::geometry::bvh::node::WIDTH;
-use crate::geometry::bvh::tree::{Ahead, Bvh, OBJECT, Stack, descend, push};
+use crate::geometry::bvh::tree::{Ahead, Bvh, OBJECT, Order, Stack, descend, push};
 use crate::geometry::ray::Drift;
 use crate::geometry::ray_packet::{RayPacket, split};
 use crate::simd::cpu::kernels;
@@ -40,10 +40,15 @@ pub trait PacketVisitor {
     fn few(&self) -> u32 {
         0
     }
+
+    /// Returns the order in which objects are visited.
+    fn order(&self) -> Order {
+        Order::Nearest
+    }
 }
 
 kernels! {
-    /// Visits the objects whose boxes the rays of a packet enter before their ends, roughly from near to far. A ray that
+    /// Visits the objects whose boxes the rays of a packet enter before their ends, roughly in the visitor's order. A ray that
     /// ends at 0 or less is not searched for. With a drift, so do the objects that rays within it may hit.
     pub fn visit(
         tree: &Bvh, stack: &mut Stack, rays: RayPacket, drift: Drift, t_max: &mut [f64], visitor: &mut dyn PacketVisitor
@@ -51,9 +56,10 @@ kernels! {
         if tree.nodes.is_empty() {
             return;
         }
+        let order = visitor.order();
         for part in split(rays.len(), PART) {
             let Stack { ahead, eights, beams } = stack;
-            Search { tree, stack: ahead, rays, drift, t_max, visitor, eights, beams, start: part.start, count: part.len(), is_set: 0 }.part(part.len());
+            Search { tree, stack: ahead, rays, drift, order, t_max, visitor, eights, beams, start: part.start, count: part.len(), is_set: 0 }.part(part.len());
         }
     }
 }
@@ -65,6 +71,7 @@ struct Search<'s, 'v> {
     /// The rays of the packet.
     rays: RayPacket<'s>,
     drift: Drift,
+    order: Order,
     /// The distances at which they end, in world units.
     t_max: &'s mut [f64],
     visitor: &'s mut (dyn PacketVisitor + 'v),
@@ -124,7 +131,7 @@ impl Search<'_, '_> {
                 }
                 t_max = self.most(lanes.clone());
             } else {
-                push(self.stack, node, child, node.entered(&beam, t_max));
+                push(self.stack, node, child, self.order, node.entered(&beam, t_max));
             }
         }
     }
@@ -150,7 +157,7 @@ impl Search<'_, '_> {
             return;
         }
         let (start, mut t_max) = (self.stack.len(), self.most(lanes.clone()));
-        push(self.stack, node, root, node.entered(&beam, t_max));
+        push(self.stack, node, root, self.order, node.entered(&beam, t_max));
         while self.stack.len() > start {
             let Some(Ahead { enters, child, place }) = self.stack.pop() else { return };
             if enters > t_max * (1.0 + SLACK) {
@@ -175,7 +182,7 @@ impl Search<'_, '_> {
                     continue;
                 }
             }
-            push(self.stack, node, child, node.entered(&beam, t_max));
+            push(self.stack, node, child, self.order, node.entered(&beam, t_max));
         }
     }
 
@@ -203,7 +210,7 @@ impl Search<'_, '_> {
         let Some(beam) = &self.beams[place] else { return };
         let (visitor, t_max) = (&mut *self.visitor, &mut *self.t_max);
         if t_max[lane] > 0.0 {
-            descend(self.tree, self.stack, beam, root, t_max[lane], &mut |object, _| {
+            descend(self.tree, self.stack, beam, root, self.order, t_max[lane], &mut |object, _| {
                 visitor.test_one(object, lane, t_max);
                 t_max[lane]
             });

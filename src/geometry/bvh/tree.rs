@@ -10,7 +10,7 @@ use std::mem::take;
 
 /// A hierarchy of bounding boxes, with up to eight children in each node.
 ///
-/// Searches visit each object whose box a ray enters before its end, roughly from near to far. Boxes need no slack for
+/// Searches visit each object whose box a ray enters before its end, roughly from near to far or from far to near. Boxes need no slack for
 /// rounding: it is added here, and covers the rounding of the ray as well.
 pub struct Bvh {
     pub(super) nodes: Vec<Node>,
@@ -27,6 +27,27 @@ pub(super) struct Ahead {
     pub child: u32,
     /// The index of the parent and the child's place in it, for objects: eight times the one, plus the other.
     pub place: u32,
+}
+
+/// Which children of a node are visited first: those whose boxes a ray enters first, or those whose boxes it enters last.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Order {
+    /// For the nearest hit, behind which nothing is visited.
+    Nearest,
+    /// For any hit of a ray that leaves a surface: the many boxes around its origin hold the surface that it leaves, and
+    /// seldom what it hits.
+    Farthest,
+}
+
+impl Order {
+    /// Tells whether the child that a ray enters at one distance is visited after that which it enters at another one.
+    #[inline(always)]
+    fn is_later(self, one: f64, other: f64) -> bool {
+        match self {
+            Self::Nearest => other < one,
+            Self::Farthest => one < other,
+        }
+    }
 }
 
 /// The bit that tells an object from a node.
@@ -153,7 +174,7 @@ kernels! {
         }
         let stack = &mut stack.ahead;
         let start = stack.len();
-        descend(tree, stack, &Beam::of(ray, drift), 0, t_max, visit);
+        descend(tree, stack, &Beam::of(ray, drift), 0, Order::Nearest, t_max, visit);
         stack.truncate(start);
     }
 }
@@ -165,13 +186,14 @@ pub(super) fn descend(
     stack: &mut Vec<Ahead>,
     beam: &Beam,
     root: u32,
+    order: Order,
     mut t_max: f64,
     visit: &mut impl FnMut(usize, f64) -> f64,
 ) -> f64 {
     let start = stack.len();
     let mut node = &tree.nodes[root as usize];
     loop {
-        push(stack, node, 0, node.entered(beam, t_max));
+        push(stack, node, 0, order, node.entered(beam, t_max));
         node = loop {
             if stack.len() == start {
                 return t_max;
@@ -188,9 +210,15 @@ pub(super) fn descend(
     }
 }
 
-/// Pushes the children that are entered of a node of this index, the nearest one last.
+/// Pushes the children that are entered of a node of this index, the first one to be visited last.
 #[inline(always)]
-pub(super) fn push(stack: &mut Vec<Ahead>, node: &Node, index: u32, (enters, mut bits): Entered) {
+pub(super) fn push(
+    stack: &mut Vec<Ahead>,
+    node: &Node,
+    index: u32,
+    order: Order,
+    (enters, mut bits): Entered,
+) {
     let start = stack.len();
     while bits != 0 {
         let child = bits.trailing_zeros() / u8::BITS;
@@ -204,7 +232,7 @@ pub(super) fn push(stack: &mut Vec<Ahead>, node: &Node, index: u32, (enters, mut
         // Few children are entered, and sorting them by insertion is quickest.
         let mut place = stack.len();
         stack.push(next);
-        while place > start && stack[place - 1].enters < next.enters {
+        while place > start && order.is_later(next.enters, stack[place - 1].enters) {
             stack[place] = stack[place - 1];
             place -= 1;
         }

@@ -5,7 +5,7 @@ use super::context::Tracer;
 use super::one_ray::{Start, exact};
 use super::surface::Surface;
 use crate::geometry::aabb::Aabb;
-use crate::geometry::bvh::{self, PacketVisitor, Stack};
+use crate::geometry::bvh::{self, Order, PacketVisitor, Stack};
 use crate::geometry::ray::{Drift, Side};
 use crate::geometry::ray_packet::RayPacket;
 use crate::render::culling;
@@ -158,5 +158,9 @@ impl<W: TraceObserver> PacketVisitor for Occlusion<'_, '_, '_, W> {
         // Eight rays take no longer than one, and none is blocked by what it is tested against twice.
         let first = lane / LANES * LANES;
         self.test(index, first..first + LANES, t_max);
+    }
+
+    fn order(&self) -> Order {
+        Order::Farthest
     }
 }

@@ -3,7 +3,7 @@
 use super::face::{Flat, Leaving, UNDERFLOW, largest, side_error, t_bounds};
 use super::known::{Eight, Nearest};
 use super::surface::Surface;
-use crate::geometry::bvh::{self, PacketVisitor, Stack};
+use crate::geometry::bvh::{self, Order, PacketVisitor, Stack};
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray};
 use crate::geometry::ray_packet::RayPacket;
 use crate::simd::cpu::{Cpu, kernels};
@@ -90,6 +90,10 @@ impl PacketVisitor for Search<'_> {
 
     fn few(&self) -> u32 {
         2
+    }
+
+    fn order(&self) -> Order {
+        if self.aims.is_any { Order::Farthest } else { Order::Nearest }
     }
 
     fn test_one(&mut self, face: usize, lane: usize, t_max: &mut [f64]) {
