@@ -2,6 +2,7 @@
 
 use crate::geometry::aabb::larger;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
+use crate::geometry::ray_packet::RayPacket;
 use crate::numeric::double_double::vectors::{self, plain_cross, quick_unit, rounded_unit, triple_product};
 use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two, two_sum};
 use crate::numeric::scalar::{Scalar, constants, cross, dot, per_axis};
@@ -178,6 +179,37 @@ fn scale_to_one(x: f64, y: f64, z: f64) -> (f64, bool) {
     let exponent = larger(larger(x.abs(), y.abs()), z.abs()).to_bits() >> 52;
     // From 2^-400 to 2^400. The others' is not used.
     (f64::from_bits(2045_u64.wrapping_sub(exponent) << 52), exponent.wrapping_sub(623) <= 800)
+}
+
+/// Computes the distances at which eight rays cross the plane of a triangle each; NaN where that takes more than plain or
+/// compensated arithmetic.
+///
+/// They are those of [`plane_for_distances`], to the bit.
+#[inline(always)]
+pub fn crossings<A: Bounded>(corners: &[Vectors<LANES>; 3], rays: RayPacket, distances: &mut [f64; LANES]) {
+    let corners_of = |lane: usize| [corners[0].get(lane), corners[1].get(lane), corners[2].get(lane)];
+    let (mut high, mut low, mut is_known) = (Vectors::<LANES>::ZERO, Vectors::<LANES>::ZERO, [0; LANES]);
+    for lane in 0..LANES {
+        let ([x, y, z], is_its) = quick_normal(corners_of(lane));
+        high.set(lane, DVec3::new(x.high, y.high, z.high));
+        low.set(lane, DVec3::new(x.low, y.low, z.low));
+        is_known[lane] = u64::from(is_its);
+    }
+    for lane in (0..LANES).filter(|lane| is_known[*lane] == 0) {
+        let [x, y, z] = slow_normal(corners_of(lane));
+        high.set(lane, DVec3::new(x.high, y.high, z.high));
+        low.set(lane, DVec3::new(x.low, y.low, z.low));
+    }
+    let plane = |lane: usize| {
+        let part = |high: f64, low: f64| DoubleDouble { high, low };
+        let upright = [
+            part(high.x[lane], low.x[lane]),
+            part(high.y[lane], low.y[lane]),
+            part(high.z[lane], low.z[lane]),
+        ];
+        Plane::<A>::new(DVec3::ZERO, upright, corners[0].get(lane))
+    };
+    Plane::quick_crossings(plane, rays.first(LANES), distances);
 }
 
 /// The unit normals of eight triangles.

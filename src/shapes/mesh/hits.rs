@@ -17,26 +17,6 @@ use crate::world::coincidence::CLOSE;
 use f256::f256;
 use glam::DVec3;
 
-/// What was computed from the face that the last ray hit: neighbouring rays often hit the same, and its normal takes
-/// many digits.
-pub(super) struct Last<T>(Option<(usize, T)>);
-
-impl<T> Last<T> {
-    pub(super) fn none() -> Self {
-        Self(None)
-    }
-
-    /// Returns what `compute` returns for a face.
-    #[inline(always)]
-    pub(super) fn of(&mut self, face: usize, compute: impl FnOnce(usize) -> T) -> &T {
-        if self.0.as_ref().is_none_or(|(last, _)| *last != face) {
-            self.0 = None;
-        }
-        let (_, last) = self.0.get_or_insert_with(|| (face, compute(face)));
-        last
-    }
-}
-
 impl Surface {
     /// Finds a bracket of a ray's first hit in a range. If `is_any`, any certain hit in the range will do.
     #[inline(always)]
@@ -63,8 +43,7 @@ impl Surface {
         nearest.known(ray, range.far, leaving, is_any)
     }
 
-    /// Returns the bracket of a ray's first hit in a range: of width 0, where plain arithmetic finds the distance. If
-    /// the face is known, too, that [`face_along`](Self::face_along) returns for that distance, it is returned.
+    /// Returns the bracket of a ray's first hit in a range: of width 0, where plain arithmetic finds the distance.
     #[inline(always)]
     pub(super) fn bracket<A: Bounded>(
         &self,
@@ -72,27 +51,25 @@ impl Surface {
         ray: &Ray,
         range: &RayRange,
         leaving: Leaving,
-        last: &mut Last<Plane<A>>,
     ) -> (Bracket, Option<usize>) {
         let known = self.first(cpu, ray, range, leaving, Drift::NONE, false);
-        self.bracketed(known, ray, range, leaving, last)
+        self.bracketed::<A>(known, self.crossing::<A>(known, ray), ray, range, leaving)
     }
 
-    /// Returns what [`bracket`](Self::bracket) does, given what is known of the hit.
+    /// Returns what [`bracket`](Self::bracket) does, given what is known of the hit and, where that is a face, the distance
+    /// of its plane. If the face is known, too, that [`face_along`](Self::face_along) returns for the bracket's distance,
+    /// it is returned.
     #[inline(always)]
     pub(super) fn bracketed<A: Bounded>(
         &self,
         known: Known,
+        crossing: f64,
         ray: &Ray,
         range: &RayRange,
         leaving: Leaving,
-        last: &mut Last<Plane<A>>,
     ) -> (Bracket, Option<usize>) {
         let (distance, bracket, only) = match known {
-            Known::Face { face, bracket, is_alone } => {
-                let distance = last.of(face, |face| self.plane(face)).quick_crossing(ray);
-                (distance, bracket, is_alone.then_some(face))
-            }
+            Known::Face { face, bracket, is_alone } => (crossing, bracket, is_alone.then_some(face)),
             Known::Bracket(bracket) if bracket.far < MISS => {
                 (self.refined::<A>(ray, range, leaving, bracket), bracket, None)
             }
@@ -118,30 +95,16 @@ impl Surface {
         ray: &Ray,
         range: &RayRange,
         drift: Drift,
-        last: &mut Last<Plane<A>>,
     ) -> Bracket {
         let known = self.first(cpu, ray, range, NOTHING, drift, false);
-        self.bracketed_within(known, ray, last)
+        known.within(self.crossing::<A>(known, ray))
     }
 
-    /// Returns what [`bracket_within`](Self::bracket_within) does, given what is known of the hit.
+    /// Returns the distance of the plane of the face that a ray hits, if that is known; NaN where it takes more than plain
+    /// arithmetic.
     #[inline(always)]
-    pub(super) fn bracketed_within<A: Bounded>(
-        &self,
-        known: Known,
-        ray: &Ray,
-        last: &mut Last<Plane<A>>,
-    ) -> Bracket {
-        match known {
-            Known::Face { face, bracket, .. } => {
-                let distance = last.of(face, |face| self.plane(face)).quick_crossing(ray);
-                // A bracket that is far narrower than what coincides is taken for the distance.
-                let is_narrow = bracket.far - bracket.near <= 0.125 * CLOSE * bracket.near;
-                let is_known = is_narrow & (bracket.near <= distance) & (distance <= bracket.far);
-                if is_known { Bracket::exactly(distance) } else { bracket }
-            }
-            Known::Bracket(bracket) => bracket,
-        }
+    fn crossing<A: Bounded>(&self, known: Known, ray: &Ray) -> f64 {
+        known.face().map_or(f64::NAN, |face| self.plane::<A>(face).quick_crossing(ray))
     }
 
     /// Returns the distance of a certain hit with a bracket, or NaN where it takes more than plain arithmetic.

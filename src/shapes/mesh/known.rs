@@ -21,6 +21,7 @@ pub(super) struct Nearest {
 }
 
 /// What is known of a ray's first hit.
+#[derive(Clone, Copy)]
 pub(super) enum Known {
     /// A bracket of the distance.
     Bracket(Bracket),
@@ -28,6 +29,32 @@ pub(super) enum Known {
     ///
     /// [`Surface::face_along`]: super::Surface::face_along
     Face { face: usize, bracket: Bracket, is_alone: bool },
+}
+
+impl Known {
+    /// Returns the face that the ray certainly hits first.
+    #[inline(always)]
+    pub(super) fn face(self) -> Option<usize> {
+        match self {
+            Self::Face { face, .. } => Some(face),
+            Self::Bracket(_) => None,
+        }
+    }
+
+    /// Returns a bracket of the first hits of all rays within a drift, given the distance of the plane of the face that is
+    /// hit.
+    #[inline(always)]
+    pub(super) fn within(self, crossing: f64) -> Bracket {
+        match self {
+            Self::Face { bracket, .. } => {
+                // A bracket that is far narrower than what coincides is taken for the distance.
+                let is_narrow = bracket.far - bracket.near <= 0.125 * CLOSE * bracket.near;
+                let is_known = is_narrow & (bracket.near <= crossing) & (crossing <= bracket.far);
+                if is_known { Bracket::exactly(crossing) } else { bracket }
+            }
+            Self::Bracket(bracket) => bracket,
+        }
+    }
 }
 
 impl Nearest {

@@ -5,21 +5,28 @@
 //! on what was traced before.
 
 use crate::geometry::ray::Ray;
+use crate::simd::soa::LANES;
 use std::cell::Cell;
 
-/// The number of faces: a few for each ray of a packet, so that few take the places of others.
+/// The number of hits that are kept, the last ones: those of a packet's rays with several meshes.
 const SIZE: usize = 1024;
 
-/// Faces by the rays that hit them.
+/// Faces by the rays that hit them, in the order in which they were noted.
 pub(super) struct Memo {
+    /// The distances, as bits.
+    distances: Box<[u64; SIZE]>,
     entries: Box<[Entry]>,
+    /// The place of the next hit to be noted.
+    next: usize,
+    /// The place after the last hit that was asked for: hits are shaded in the order in which they were noted.
+    after_last: usize,
 }
 
 /// A ray's first hit.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Entry {
-    /// The mesh, the ray and the distance, as bits.
-    key: [u64; 8],
+    /// The mesh and the ray, as bits. No mesh has the number 0.
+    key: [u64; 7],
     face: usize,
 }
 
@@ -30,8 +37,12 @@ thread_local! {
 impl Memo {
     /// Calls a function with this thread's memo.
     pub fn with<R>(call: impl FnOnce(&mut Self) -> R) -> R {
-        // No mesh has the number 0.
-        let new = || Self { entries: vec![Entry { key: [0; 8], face: 0 }; SIZE].into_boxed_slice() };
+        let new = || Self {
+            distances: Box::new([0; SIZE]),
+            entries: vec![Entry::default(); SIZE].into_boxed_slice(),
+            next: 0,
+            after_last: 0,
+        };
         let mut memo = MEMO.take().unwrap_or_else(new);
         let result = call(&mut memo);
         MEMO.set(Some(memo));
@@ -41,29 +52,29 @@ impl Memo {
     /// Notes the face that a ray hits first, at a distance in world units.
     #[inline(always)]
     pub fn note(&mut self, mesh: u64, ray: &Ray, distance: f64, face: usize) {
-        let key = key(mesh, ray, distance);
-        self.entries[place(&key)] = Entry { key, face };
+        self.distances[self.next] = distance.to_bits();
+        self.entries[self.next] = Entry { key: key(mesh, ray), face };
+        self.next = (self.next + 1) % SIZE;
     }
 
     /// Returns the face that a ray hits at a distance in world units, if it was noted.
     #[inline(always)]
-    pub fn face(&self, mesh: u64, ray: &Ray, distance: f64) -> Option<usize> {
-        let key = key(mesh, ray, distance);
-        let entry = &self.entries[place(&key)];
-        (entry.key == key).then_some(entry.face)
+    pub fn face(&mut self, mesh: u64, ray: &Ray, distance: f64) -> Option<usize> {
+        let (key, distance) = (key(mesh, ray), distance.to_bits());
+        let is_at = |place: &usize| self.distances[*place] == distance && self.entries[*place].key == key;
+        let place = Some(self.after_last).filter(is_at).or_else(|| {
+            // Eight distances are compared at a time.
+            let eights = self.distances.chunks_exact(LANES).zip((0..).step_by(LANES));
+            let holds = |eight: &[u64]| eight.iter().fold(false, |any, other| any | (*other == distance));
+            eights.filter(|(eight, _)| holds(eight)).find_map(|(_, first)| (first..first + LANES).find(is_at))
+        })?;
+        self.after_last = (place + 1) % SIZE;
+        Some(self.entries[place].face)
     }
 }
 
 #[inline(always)]
-fn key(mesh: u64, Ray { origin, dir }: &Ray, distance: f64) -> [u64; 8] {
-    let [x, y, z, u, v, w, distance] =
-        [origin.x, origin.y, origin.z, dir.x, dir.y, dir.z, distance].map(f64::to_bits);
-    [mesh, x, y, z, u, v, w, distance]
-}
-
-/// Returns the place of a key: that of its distance, whose last digits differ from ray to ray.
-#[inline(always)]
-fn place(key: &[u64; 8]) -> usize {
-    // Fibonacci hashing (Knuth, "The Art of Computer Programming", volume 3, 6.4).
-    ((key[7] ^ key[4]).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32) as usize % SIZE
+fn key(mesh: u64, Ray { origin, dir }: &Ray) -> [u64; 7] {
+    let bits = f64::to_bits;
+    [mesh, bits(origin.x), bits(origin.y), bits(origin.z), bits(dir.x), bits(dir.y), bits(dir.z)]
 }

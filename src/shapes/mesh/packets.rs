@@ -1,14 +1,13 @@
 //! Meshes for packets of rays.
 
-use super::hits::{Last, NOTHING};
+use super::hits::NOTHING;
 use super::known::Known;
 use super::memo::Memo;
 use super::search::Aims;
 use super::shape::{ByFaces, Mesh};
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{self, Nearest, PACKET_SIZE, RayPacket};
-use crate::shapes::plane::Plane;
-use crate::shapes::triangle::unit_normals;
+use crate::shapes::triangle::{crossings, unit_normals};
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::{LANES, Vectors};
 use crate::world::accuracy::Bounded;
@@ -33,14 +32,10 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
         if side.is_none() || mesh.can_hit_itself {
             let leaving = mesh.leaving(side, rays.origin_error);
             let aims = Aims { leaving, drift: Drift::NONE, is_any: false };
-            let mut last = Last::none();
             Memo::with(|memo| {
-                mesh.surface.search(cpu, rays, ends, aims, |lane, found| {
-                    let (ray, end) = (rays.get(lane), ends[lane]);
-                    let range = RayRange { far: end, ..RayRange::ALL };
-                    let known = found.known(&ray, end, leaving, false);
-                    let (bracket, face) =
-                        mesh.surface.bracketed::<A>(known, &ray, &range, leaving, &mut last);
+                mesh.search(cpu, rays, ends, aims, |lane, known, crossing| {
+                    let (ray, range) = (rays.get(lane), RayRange { far: ends[lane], ..RayRange::ALL });
+                    let (bracket, face) = mesh.surface.bracketed::<A>(known, crossing, &ray, &range, leaving);
                     (near[lane], far[lane]) = (bracket.near, bracket.far);
                     if let Some(face) = face {
                         memo.note(mesh.surface.id, &ray, bracket.near, face);
@@ -71,10 +66,13 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
             for lane in 0..count {
                 ends[lane] = if blocked[lane] == 0 { t_max[lane] } else { 0.0 };
             }
-            mesh.surface.search(cpu, rays, &ends[..count], aims, |lane, found| {
-                let known = found.known(&rays.get(lane), t_max[lane], aims.leaving, true);
-                let (Known::Face { bracket, .. } | Known::Bracket(bracket)) = known;
-                (near[lane], far[lane]) = (bracket.near, bracket.far);
+            mesh.surface.search(cpu, rays, &ends[..count], aims, |first, found| {
+                for lane in (first..first + LANES).filter(|lane| ends[*lane] > 0.0) {
+                    let known =
+                        found.get(lane - first).known(&rays.get(lane), t_max[lane], aims.leaving, true);
+                    let (Known::Face { bracket, .. } | Known::Bracket(bracket)) = known;
+                    (near[lane], far[lane]) = (bracket.near, bracket.far);
+                }
             });
         }
         ray_packet::occluded_by_brackets(cpu, &near[..count], &far[..count], t_max, blocked, doubt)
@@ -111,11 +109,11 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
     }
 
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
-        self.shape.bracket(Cpu::best(), ray, range, &mut Last::none()).0
+        self.shape.bracket(Cpu::best(), ray, range).0
     }
 
     fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
-        self.shape.surface.bracket_within::<A>(Cpu::best(), ray, range, drift, &mut Last::none())
+        self.shape.surface.bracket_within::<A>(Cpu::best(), ray, range, drift)
     }
 
     fn brackets_within(
@@ -127,14 +125,11 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
         near: &mut [f64],
         far: &mut [f64],
     ) {
-        let (surface, mut last) = (&self.shape.surface, Last::<Plane<A>>::none());
         near.fill(MISS);
         far.fill(MISS);
         let aims = Aims { leaving: NOTHING, drift, is_any: false };
-        surface.search(cpu, rays, ends, aims, |lane, found| {
-            let ray = rays.get(lane);
-            let known = found.known(&ray, ends[lane], NOTHING, false);
-            Bracket { near: near[lane], far: far[lane] } = surface.bracketed_within(known, &ray, &mut last);
+        self.shape.search(cpu, rays, ends, aims, |lane, known, crossing| {
+            Bracket { near: near[lane], far: far[lane] } = known.within(crossing);
         });
     }
 
@@ -148,6 +143,41 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
     }
 }
 
+impl<A: Bounded> Mesh<A> {
+    /// Searches for the first hits of a packet's rays before their ends, and calls a function for each ray that ends
+    /// beyond 0, with its lane, what is known of its hit and, where that is a face, the distance of its plane.
+    #[inline(always)]
+    fn search(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        ends: &[f64],
+        aims: Aims,
+        mut each: impl FnMut(usize, Known, f64),
+    ) {
+        self.surface.search(cpu, rays, ends, aims, |first, found| {
+            let eight = first..first + LANES;
+            let (mut known, mut some) = ([Known::Bracket(Bracket::MISS); LANES], None);
+            for lane in 0..LANES {
+                let (ray, end) = (rays.get(first + lane), ends[first + lane]);
+                known[lane] = found.get(lane).known(&ray, end, aims.leaving, false);
+                some = some.or(known[lane].face());
+            }
+            let mut distances = [f64::NAN; LANES];
+            if let Some(some) = some {
+                let mut faces = [some; LANES];
+                for lane in 0..LANES {
+                    faces[lane] = known[lane].face().unwrap_or(some);
+                }
+                cross(cpu, self, &faces, rays.part(eight.clone()), &mut distances);
+            }
+            for lane in eight.filter(|lane| ends[*lane] > 0.0) {
+                each(lane, known[lane - first], distances[lane - first]);
+            }
+        });
+    }
+}
+
 /// Tells whether a ray of a packet is the one before it: arrays are padded with copies of the last ray.
 #[inline(always)]
 fn is_copy(rays: &RayPacket, lane: usize) -> bool {
@@ -158,9 +188,15 @@ fn is_copy(rays: &RayPacket, lane: usize) -> bool {
 }
 
 kernels! {
+    /// Computes the distances of the planes of eight faces, each along a ray of its own; NaN where that takes more than
+    /// plain arithmetic.
+    fn cross[A: Bounded](mesh: &Mesh<A>, faces: &[usize; LANES], rays: RayPacket, distances: &mut [f64; LANES]) {
+        crossings::<A>(&mesh.surface.corners_of(faces), rays, distances);
+    }
+
     /// Computes the points, normals and sides that rays hit at these distances, in world units.
     fn interact[A: Bounded](
-        mesh: &Mesh<A>, rays: RayPacket, distances: &[f64], memo: &Memo, sides: &mut [Side],
+        mesh: &Mesh<A>, rays: RayPacket, distances: &[f64], memo: &mut Memo, sides: &mut [Side],
         cosines: &mut [f64], travelled: &mut [f64]
     ) => points, normals {
         let (is_two_sided, surface) = (mesh.is_two_sided(), &mesh.surface);
@@ -177,14 +213,7 @@ kernels! {
             }
             // Neighbouring rays often hit the same faces, and normals take many digits.
             if known.0 != faces {
-                let mut corners = [Vectors::ZERO, Vectors::ZERO, Vectors::ZERO];
-                for lane in 0..LANES {
-                    let [a, b, c] = surface.corners(faces[lane]);
-                    corners[0].set(lane, a);
-                    corners[1].set(lane, b);
-                    corners[2].set(lane, c);
-                }
-                known = (faces, unit_normals(&corners));
+                known = (faces, unit_normals(&surface.corners_of(&faces)));
             }
             for lane in first..first + LANES {
                 let (ray, place) = (rays.get(lane), lane - first);

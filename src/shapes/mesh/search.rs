@@ -1,7 +1,7 @@
 //! The search for the first hits of a packet's rays.
 
 use super::face::{Flat, Leaving, UNDERFLOW, largest, side_error, t_bounds};
-use super::known::{Eight, Nearest};
+use super::known::Eight;
 use super::surface::Surface;
 use crate::geometry::bvh::{self, Order, PacketVisitor, Stack};
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray};
@@ -57,8 +57,8 @@ struct Search<'s> {
 }
 
 impl Surface {
-    /// Searches for the first hits of a packet's rays before their ends, and calls a function for each ray that ends
-    /// beyond 0, with its lane and what is found.
+    /// Searches for the first hits of a packet's rays before their ends, and calls a function for each eight rays, with
+    /// the first lane and what is found.
     #[inline(always)]
     pub(super) fn search(
         &self,
@@ -66,7 +66,7 @@ impl Surface {
         rays: RayPacket,
         ends: &[f64],
         aims: Aims,
-        mut each: impl FnMut(usize, Nearest),
+        mut each: impl FnMut(usize, &Eight),
     ) {
         Scratch::with(|Scratch { stack, t_max, found }| {
             t_max.clear();
@@ -75,9 +75,7 @@ impl Surface {
             found.resize(ends.len() / LANES, Eight::NONE);
             let mut search = Search { cpu, surface: self, rays, ends, aims, found };
             bvh::visit(cpu, &self.tree, stack, rays, aims.drift, t_max, &mut search);
-            for lane in (0..ends.len()).filter(|lane| ends[*lane] > 0.0) {
-                each(lane, found[lane / LANES].get(lane % LANES));
-            }
+            found.iter().zip((0..).step_by(LANES)).for_each(|(found, first)| each(first, found));
         });
     }
 }

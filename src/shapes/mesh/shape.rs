@@ -1,7 +1,7 @@
 //! Meshes as shapes.
 
 use super::face::{Face, Leaving};
-use super::hits::{Last, NOTHING};
+use super::hits::NOTHING;
 use super::surface::Surface;
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::facet::Facet;
@@ -11,7 +11,6 @@ use crate::numeric::affine::Affine;
 use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
-use crate::shapes::plane::Plane;
 use crate::shapes::uv;
 use crate::simd::cpu::Cpu;
 use crate::text;
@@ -63,17 +62,11 @@ impl<A: Bounded> Mesh<A> {
 
     /// Returns the bracket of a ray's first hit, and the face if it is known to be that of the hit point.
     #[inline(always)]
-    pub(super) fn bracket(
-        &self,
-        cpu: Cpu,
-        ray: &Ray,
-        range: &RayRange,
-        last: &mut Last<Plane<A>>,
-    ) -> (Bracket, Option<usize>) {
+    pub(super) fn bracket(&self, cpu: Cpu, ray: &Ray, range: &RayRange) -> (Bracket, Option<usize>) {
         if range.origin_side.is_some() && !self.can_hit_itself {
             return (Bracket::MISS, None);
         }
-        self.surface.bracket(cpu, ray, range, self.leaving(range.origin_side, range.origin_error), last)
+        self.surface.bracket::<A>(cpu, ray, range, self.leaving(range.origin_side, range.origin_error))
     }
 }
 

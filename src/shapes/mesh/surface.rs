@@ -9,6 +9,7 @@ use crate::numeric::double_double::{exponent_to_one, times_power_of_two};
 use crate::parallel;
 use crate::scene::attribute::MOST_LENGTH;
 use crate::shapes::triangle::Triangle;
+use crate::simd::soa::{LANES, Vectors};
 use crate::world::accuracy::Exact;
 use glam::DVec3;
 use rayon::slice::ParallelSliceMut;
@@ -154,6 +155,19 @@ impl Surface {
     pub(super) fn corners(&self, face: usize) -> [DVec3; 3] {
         let [a, b, c] = self.faces[face];
         [self.vertices[a as usize], self.vertices[b as usize], self.vertices[c as usize]]
+    }
+
+    /// Returns the corners of eight faces in world coordinates: all first corners, all second and all third ones.
+    #[inline(always)]
+    pub(super) fn corners_of(&self, faces: &[usize; LANES]) -> [Vectors<LANES>; 3] {
+        let mut corners = [Vectors::ZERO, Vectors::ZERO, Vectors::ZERO];
+        for lane in 0..LANES {
+            let [a, b, c] = self.corners(faces[lane]);
+            corners[0].set(lane, a);
+            corners[1].set(lane, b);
+            corners[2].set(lane, c);
+        }
+        corners
     }
 }
 

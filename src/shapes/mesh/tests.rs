@@ -1,7 +1,7 @@
 //! Properties of meshes: their hits are those of their triangles, and no ray escapes from a closed one.
 
 use super::face::{Leaving, distance_to};
-use super::hits::{Last, NOTHING};
+use super::hits::NOTHING;
 use super::known::Known;
 use super::search::Aims;
 use super::{Mesh, Surface, ToWorld, read::Model};
@@ -204,7 +204,7 @@ proptest! {
             let ray = Ray { origin, dir };
             for cpu in Cpu::all() {
                 let (bracket, face) =
-                    surface.bracket::<Exact>(cpu, &ray, &RayRange::ALL, NOTHING, &mut Last::none());
+                    surface.bracket::<Exact>(cpu, &ray, &RayRange::ALL, NOTHING);
                 if let Some(face) = face {
                     prop_assert_eq!(face, surface.face_along(&ray, bracket.near));
                     known += 1;
@@ -246,18 +246,20 @@ proptest! {
         let drift = Drift { origin: drift * reach, dir: drift };
         for (cpu, is_any) in Cpu::all().flat_map(|cpu| [(cpu, false), (cpu, true)]) {
             let mut lanes = Vec::new();
-            surface.search(cpu, rays, &ends, Aims { leaving, drift, is_any }, |lane, found| {
-                lanes.push(lane);
-                let (ray, range) = (rays.get(lane), RayRange { far: ends[lane], ..RayRange::ALL });
-                let alone = surface.first(cpu, &ray, &range, leaving, drift, is_any);
-                let (Known::Face { bracket: alone, .. } | Known::Bracket(alone)) = alone;
-                let known = found.known(&ray, ends[lane], leaving, is_any);
-                let (Known::Face { bracket, .. } | Known::Bracket(bracket)) = known;
-                // A face that only its bounds cannot rule out may be visited or not.
-                let contradicts = |one: Bracket, other: Bracket| one.far < MISS && other.near == MISS;
-                assert!(!contradicts(bracket, alone) && !contradicts(alone, bracket), "{bracket:?} {alone:?}");
-                let overlap = bracket.near <= alone.far && alone.near <= bracket.far;
-                assert!(is_any || overlap, "{bracket:?} {alone:?}");
+            surface.search(cpu, rays, &ends, Aims { leaving, drift, is_any }, |first, found| {
+                for lane in (first..first + LANES).filter(|lane| ends[*lane] > 0.0) {
+                    lanes.push(lane);
+                    let (ray, range) = (rays.get(lane), RayRange { far: ends[lane], ..RayRange::ALL });
+                    let alone = surface.first(cpu, &ray, &range, leaving, drift, is_any);
+                    let (Known::Face { bracket: alone, .. } | Known::Bracket(alone)) = alone;
+                    let known = found.get(lane - first).known(&ray, ends[lane], leaving, is_any);
+                    let (Known::Face { bracket, .. } | Known::Bracket(bracket)) = known;
+                    // A face that only its bounds cannot rule out may be visited or not.
+                    let contradicts = |one: Bracket, other: Bracket| one.far < MISS && other.near == MISS;
+                    assert!(!contradicts(bracket, alone) && !contradicts(alone, bracket), "{bracket:?} {alone:?}");
+                    let overlap = bracket.near <= alone.far && alone.near <= bracket.far;
+                    assert!(is_any || overlap, "{bracket:?} {alone:?}");
+                }
             });
             prop_assert!(lanes.into_iter().eq((0..count).filter(|lane| ends[*lane] > 0.0)));
         }
@@ -271,10 +273,10 @@ fn a_face_that_only_another_ray_within_the_drift_hits_is_not_missed() {
     let surface = surface(model, &ToWorld::new(PLAIN, Rotation::NONE, DVec3::ZERO));
     let ray = Ray { origin: DVec3::new(-1e-6, 0.5, 2.0), dir: DVec3::NEG_Z };
     for cpu in Cpu::all() {
-        let (exactly, _) = surface.bracket::<Exact>(cpu, &ray, &RayRange::ALL, NOTHING, &mut Last::none());
+        let (exactly, _) = surface.bracket::<Exact>(cpu, &ray, &RayRange::ALL, NOTHING);
         assert_eq!(exactly.near, MISS);
         for drift in [Drift { origin: 2e-6, dir: 0.0 }, Drift { origin: 0.0, dir: 1e-6 }] {
-            let within = surface.bracket_within::<Exact>(cpu, &ray, &RayRange::ALL, drift, &mut Last::none());
+            let within = surface.bracket_within::<Exact>(cpu, &ray, &RayRange::ALL, drift);
             assert!(within.near <= 2.0 && within.far == MISS, "{drift:?}: {within:?}");
         }
     }
@@ -375,15 +377,17 @@ fn faces_of_which_none_lies_beside_another_are_found() {
         let rights: Vec<_> = (0..LANES).map(|lane| among(&surface, &rays.get(lane))).collect();
         for cpu in Cpu::all() {
             let aims = Aims { leaving: NOTHING, drift: Drift::NONE, is_any: false };
-            surface.search(cpu, rays, &[MISS; LANES], aims, |lane, found| {
-                let (ray, right) = (rays.get(lane), rights[lane]);
-                let alone = surface.first(cpu, &ray, &RayRange::ALL, NOTHING, Drift::NONE, false);
-                for known in [alone, found.known(&ray, MISS, NOTHING, false)] {
-                    let (Known::Face { bracket, .. } | Known::Bracket(bracket)) = known;
-                    assert!(
-                        right < MISS && bracket.near <= right && right <= bracket.far,
-                        "{name}: {right} {bracket:?}"
-                    );
+            surface.search(cpu, rays, &[MISS; LANES], aims, |_, found| {
+                for lane in 0..LANES {
+                    let (ray, right) = (rays.get(lane), rights[lane]);
+                    let alone = surface.first(cpu, &ray, &RayRange::ALL, NOTHING, Drift::NONE, false);
+                    for known in [alone, found.get(lane).known(&ray, MISS, NOTHING, false)] {
+                        let (Known::Face { bracket, .. } | Known::Bracket(bracket)) = known;
+                        assert!(
+                            right < MISS && bracket.near <= right && right <= bracket.far,
+                            "{name}: {right} {bracket:?}"
+                        );
+                    }
                 }
             });
         }

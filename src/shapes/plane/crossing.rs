@@ -117,37 +117,60 @@ impl<A: Marker> Plane<A> {
         }
     }
 
-    /// Computes [`quick_crossing`](Self::quick_crossing) for each ray of a packet; a dot product that cancels for any
-    /// of eight rays is computed with compensation as well.
+    /// Computes [`quick_crossing`](Self::quick_crossing) for each ray of a packet, with compensation where sums cancel.
     #[inline(always)]
     pub(super) fn refine_compensated(&self, rays: RayPacket, out: &mut [f64]) {
         for first in (0..out.len()).step_by(LANES) {
-            let (rays, out) = (rays.part(first..first + LANES), &mut out[first..first + LANES]);
-            let (mut away, mut toward) = ([0.0; LANES], [0.0; LANES]);
-            let (mut away_size, mut toward_size) = ([0.0; LANES], [0.0; LANES]);
-            let (mut away_cancels, mut toward_cancels) = ([0; LANES], [0; LANES]);
-            for lane in 0..LANES {
-                let products = self.products(self.rounded_normal(), &rays.get(lane));
-                (away[lane], toward[lane]) = (products.away, products.toward);
-                (away_size[lane], toward_size[lane]) = (products.away_size, products.toward_size);
-                away_cancels[lane] = u64::from(products.away_cancels());
-                toward_cancels[lane] = u64::from(products.toward_cancels());
-            }
-            if away_cancels != [0; LANES] {
+            let eight = first..first + LANES;
+            Self::compensated(|_| *self, rays.part(eight.clone()), &mut out[eight]);
+        }
+    }
+
+    /// Computes [`quick_crossing`](Self::quick_crossing) for eight rays, each with a plane of its own.
+    #[inline(always)]
+    pub fn quick_crossings(plane: impl Fn(usize) -> Self, rays: RayPacket, out: &mut [f64; LANES]) {
+        match A::ACCURACY {
+            Accuracy::Draft => {
                 for lane in 0..LANES {
-                    let fine = self.compensated_away(&rays.get(lane));
-                    away[lane] = if away_cancels[lane] != 0 { fine } else { away[lane] };
+                    let plane = plane(lane);
+                    out[lane] = plane.products(plane.rounded_normal(), &rays.get(lane)).draft_distance();
                 }
             }
-            if toward_cancels != [0; LANES] {
-                for lane in 0..LANES {
-                    let fine = self.compensated_toward(&rays.get(lane));
-                    toward[lane] = if toward_cancels[lane] != 0 { fine } else { toward[lane] };
-                }
-            }
+            Accuracy::Exact => Self::compensated(plane, rays, out),
+            _ => out.fill(f64::NAN),
+        }
+    }
+
+    /// Computes the distances of eight rays from a plane each; a dot product that cancels for any of them is computed with
+    /// compensation as well.
+    #[inline(always)]
+    fn compensated(plane: impl Fn(usize) -> Self, rays: RayPacket, out: &mut [f64]) {
+        let (rays, out) = (rays.first(LANES), &mut out[..LANES]);
+        let (mut away, mut toward) = ([0.0; LANES], [0.0; LANES]);
+        let (mut away_size, mut toward_size) = ([0.0; LANES], [0.0; LANES]);
+        let (mut away_cancels, mut toward_cancels) = ([0; LANES], [0; LANES]);
+        for lane in 0..LANES {
+            let plane = plane(lane);
+            let products = plane.products(plane.rounded_normal(), &rays.get(lane));
+            (away[lane], toward[lane]) = (products.away, products.toward);
+            (away_size[lane], toward_size[lane]) = (products.away_size, products.toward_size);
+            away_cancels[lane] = u64::from(products.away_cancels());
+            toward_cancels[lane] = u64::from(products.toward_cancels());
+        }
+        if away_cancels != [0; LANES] {
             for lane in 0..LANES {
-                out[lane] = quotient((away[lane], away_size[lane]), (toward[lane], toward_size[lane]));
+                let fine = plane(lane).compensated_away(&rays.get(lane));
+                away[lane] = if away_cancels[lane] != 0 { fine } else { away[lane] };
             }
+        }
+        if toward_cancels != [0; LANES] {
+            for lane in 0..LANES {
+                let fine = plane(lane).compensated_toward(&rays.get(lane));
+                toward[lane] = if toward_cancels[lane] != 0 { fine } else { toward[lane] };
+            }
+        }
+        for lane in 0..LANES {
+            out[lane] = quotient((away[lane], away_size[lane]), (toward[lane], toward_size[lane]));
         }
     }
 

@@ -48,6 +48,7 @@ impl<A> Plane<A> {
 
     /// Returns the plane through a point with a rounded unit normal, and a vector along the normal as exact as it is
     /// known.
+    #[inline(always)]
     pub fn new(normal: DVec3, upright: [DoubleDouble; 3], point: DVec3) -> Self {
         let is_upright = upright.iter().filter(|part| part.high == 0.0).count() == 2;
         Self { normal, upright, point, is_upright, max_z: NO_END, accuracy: PhantomData }
