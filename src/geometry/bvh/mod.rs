@@ -4,17 +4,18 @@
 //! own in the node above it, so that few objects are tested whose boxes no ray enters. To keep that small, boxes lie on
 //! a grid of 255 steps along each axis of their node (Ylitie, Karras and Laine, "Efficient Incoherent Ray Traversal on
 //! GPUs Through Compressed Wide BVHs", 2017), rounded outward: 88 bytes for eight boxes, of which six are used on
-//! average. Distances are in double precision. In single precision, the rounding
-//! of a ray's origin alone would widen a box that is 10^-6 of its distance by a tenth, and scenes at 10^6 would have
-//! nothing to tell boxes apart by.
+//! average. Distances are in double precision. In single precision, the rounding of a ray's origin alone would widen a
+//! box that is 10^-6 of its distance by a tenth, and scenes at 10^6 would have nothing to tell boxes apart by.
 
 mod beam;
 mod bins;
 mod build;
 mod nearby;
 mod node;
+mod order;
 mod packet;
 mod tree;
 
+pub use order::Order;
 pub use packet::{PacketVisitor, visit};
-pub use tree::{Bvh, Order, Stack};
+pub use tree::{Bvh, Stack};

@@ -7,7 +7,8 @@
 use crate::geometry::aabb::{Aabb, SLACK, larger, smaller};
 use crate::geometry::bvh::beam::{Beam, Eight};
 use crate::geometry::bvh::node::WIDTH;
-use crate::geometry::bvh::tree::{Ahead, Bvh, OBJECT, Order, Stack, descend, push};
+use crate::geometry::bvh::order::Order;
+use crate::geometry::bvh::tree::{Ahead, Bvh, OBJECT, Stack, descend, push};
 use crate::geometry::ray::Drift;
 use crate::geometry::ray_packet::{RayPacket, split};
 use crate::simd::cpu::kernels;

@@ -4,13 +4,14 @@ use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::bvh::beam::{Beam, Eight};
 use crate::geometry::bvh::build;
 use crate::geometry::bvh::node::{Entered, Node, WIDTH};
+use crate::geometry::bvh::order::Order;
 use crate::geometry::ray::{Drift, Ray};
 use crate::simd::cpu::{Cpu, kernels};
 use std::mem::take;
 
 /// A hierarchy of bounding boxes, with up to eight children in each node.
 ///
-/// Searches visit each object whose box a ray enters before its end, roughly from near to far or from far to near. Boxes need no slack for
+/// Searches visit each object whose box a ray enters before its end, roughly in an [`Order`]. Boxes need no slack for
 /// rounding: it is added here, and covers the rounding of the ray as well.
 pub struct Bvh {
     pub(super) nodes: Vec<Node>,
@@ -27,27 +28,6 @@ pub(super) struct Ahead {
     pub child: u32,
     /// The index of the parent and the child's place in it, for objects: eight times the one, plus the other.
     pub place: u32,
-}
-
-/// Which children of a node are visited first: those whose boxes a ray enters first, or those whose boxes it enters last.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Order {
-    /// For the nearest hit, behind which nothing is visited.
-    Nearest,
-    /// For any hit of a ray that leaves a surface: the many boxes around its origin hold the surface that it leaves, and
-    /// seldom what it hits.
-    Farthest,
-}
-
-impl Order {
-    /// Tells whether the child that a ray enters at one distance is visited after that which it enters at another one.
-    #[inline(always)]
-    fn is_later(self, one: f64, other: f64) -> bool {
-        match self {
-            Self::Nearest => other < one,
-            Self::Farthest => one < other,
-        }
-    }
 }
 
 /// The bit that tells an object from a node.
