@@ -220,8 +220,9 @@ fn what_is_chosen_is_a_command_line_that_renders() {
     let never = choose(&["--max-error", "1e-12"]);
     assert_eq!(never.status.code(), Some(1));
     assert!(
-        String::from_utf8_lossy(&never.stderr)
-            .starts_with("error: no choice has an error of at most 1e-12 for certain; the least bound is "),
+        String::from_utf8_lossy(&never.stderr).starts_with(
+            "error: no choice is certain to have an error of at most 1e-12; the least bound is "
+        ),
     );
     let text = String::from_utf8(choose(&["--max-time", "1000"]).stdout).expect("UTF-8");
     assert!(text.contains("\nThe marked choice is the one with the least error within 1000 s on "), "{text}");
