@@ -11,7 +11,7 @@ use std::mem::take;
 
 /// A hierarchy of bounding boxes, with up to eight children in each node.
 ///
-/// Searches visit each object whose box a ray enters before its end, roughly in an [`Order`]. Boxes need no slack for
+/// Searches visit each object whose box a ray enters before its end, roughly in an `Order`. Boxes need no slack for
 /// rounding: it is added here, and covers the rounding of the ray as well.
 pub struct Bvh {
     pub(super) nodes: Vec<Node>,
