@@ -7,8 +7,8 @@
 //! no root is stepped over: D. P. Mitchell, "Robust ray intersection with interval arithmetic" (1990), whose bounds are
 //! of the first order and shrink more slowly where a ray grazes.
 //!
-//! Of a polynomial, the [`bernstein`](super::bernstein) coefficients are judged first. They tell most pieces' roots with a
-//! few sums; what they leave is judged as above.
+//! If the function is a polynomial, the signs of its [`bernstein`](super::bernstein) coefficients are judged first; pieces
+//! whose roots these do not tell are judged as above.
 
 use crate::geometry::ray::{RayRange, Side};
 use crate::geometry::roots::bernstein::{Bernstein, Roots};
