@@ -182,32 +182,66 @@ impl<F: Float> Mul for Interval<F> {
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
         apart_if!(F::IS_LONG, {
-            // The product of 0 with anything is 0, even if that is unbounded.
-            if self.is_zero() || other.is_zero() {
-                return Self::constant(0.0);
-            }
             // The common case: finite endpoints, none of them 0.
-            if let Some((low, high)) = F::product_ends([self.low, self.high], [other.low, other.high]) {
-                return Self::outward(low, high);
+            match F::product_ends([self.low, self.high], [other.low, other.high]) {
+                Some((low, high)) => {
+                    let (low, high) = F::outward(low, high);
+                    Self { low, high }
+                }
+                None => self.unusual_product(other),
             }
-            let (low, high) = Self::extremes(
-                self.low * other.low,
-                self.low * other.high,
-                self.high * other.low,
-                self.high * other.high,
-            );
-            // `min` and `max` above ignored 0 times infinity, where an endpoint at 0 meets an infinite one.
-            let touches = |a: Self, b: Self| a.has_zero() && !b.is_bounded();
-            if touches(self, other) || touches(other, self) {
-                return Self::outward(low.min(F::of(0.0)), high.max(F::of(0.0)));
-            }
-            // Products of numbers that are not negative are not negative: so a root can be taken of them.
-            let zero = F::of(0.0);
-            if self.low >= zero && other.low >= zero && low == zero {
-                return Self { low, ..Self::outward(low, high) };
-            }
-            Self::outward(low, high)
         })
+    }
+}
+
+impl<F: Float> Interval<F> {
+    /// Returns the product where an endpoint may be 0 or infinite. It is compiled once, and not into every formula.
+    #[cold]
+    #[inline(never)]
+    fn unusual_product(self, other: Self) -> Self {
+        // The product of 0 with anything is 0, even if that is unbounded.
+        if self.is_zero() || other.is_zero() {
+            return Self::constant(0.0);
+        }
+        let (low, high) = Self::extremes(
+            self.low * other.low,
+            self.low * other.high,
+            self.high * other.low,
+            self.high * other.high,
+        );
+        // `min` and `max` above ignored 0 times infinity, where an endpoint at 0 meets an infinite one.
+        let touches = |a: Self, b: Self| a.has_zero() && !b.is_bounded();
+        if touches(self, other) || touches(other, self) {
+            return Self::outward(low.min(F::of(0.0)), high.max(F::of(0.0)));
+        }
+        // Products of numbers that are not negative are not negative: so a root can be taken of them.
+        let zero = F::of(0.0);
+        if self.low >= zero && other.low >= zero && low == zero {
+            return Self { low, ..Self::outward(low, high) };
+        }
+        Self::outward(low, high)
+    }
+
+    /// Returns the quotient where the divisor may be 0 or infinite.
+    #[cold]
+    #[inline(never)]
+    fn unusual_quotient(self, other: Self) -> Self {
+        let (zero, one) = (F::of(0.0), F::of(1.0));
+        // The reciprocal has one finite endpoint if the divisor is on one side of 0, and none if it is on both.
+        let inverse = if other.low >= zero && other.high > zero {
+            let high = if other.low > zero { one / other.low } else { F::INFINITY };
+            Self { low: one / other.high, high }
+        } else if other.high <= zero && other.low < zero {
+            let low = if other.high < zero { one / other.high } else { -F::INFINITY };
+            Self { low, high: one / other.low }
+        } else {
+            return Self::whole();
+        };
+        let Self { low, high } = Self::outward(inverse.low, inverse.high);
+        // Infinite endpoints stay infinite.
+        let low = if inverse.low == -F::INFINITY { -F::INFINITY } else { low };
+        let high = if inverse.high == F::INFINITY { F::INFINITY } else { high };
+        self * Self { low, high }
     }
 }
 
@@ -220,23 +254,8 @@ impl<F: Float> Div for Interval<F> {
             if self.is_zero() && !other.is_zero() {
                 return Self::constant(0.0);
             }
-            let (zero, one) = (F::of(0.0), F::of(1.0));
             if other.has_zero() || !other.is_bounded() {
-                // The reciprocal has one finite endpoint if the divisor is on one side of 0, and none if it is on both.
-                let inverse = if other.low >= zero && other.high > zero {
-                    let high = if other.low > zero { one / other.low } else { F::INFINITY };
-                    Self { low: one / other.high, high }
-                } else if other.high <= zero && other.low < zero {
-                    let low = if other.high < zero { one / other.high } else { -F::INFINITY };
-                    Self { low, high: one / other.low }
-                } else {
-                    return Self::whole();
-                };
-                let Self { low, high } = Self::outward(inverse.low, inverse.high);
-                // Infinite endpoints stay infinite.
-                let low = if inverse.low == -F::INFINITY { -F::INFINITY } else { low };
-                let high = if inverse.high == F::INFINITY { F::INFINITY } else { high };
-                return self * Self { low, high };
+                return self.unusual_quotient(other);
             }
             let (low, high) = Self::extremes(
                 self.low / other.low,
