@@ -6,8 +6,9 @@ use glam::DVec3;
 
 impl Bvh {
     /// Visits the objects whose boxes are within a distance of a point, in world units, roughly the nearer ones first.
-    /// `visit` returns the distance beyond which no more need be visited; a negative number ends the search.
-    pub fn around(&self, at: DVec3, distance: f64, mut visit: impl FnMut(usize) -> f64) {
+    /// `visit` returns the distance beyond which no more need be visited; a negative number ends the search. It is behind
+    /// `dyn`, so that the search and its sorting are compiled once.
+    pub fn around(&self, at: DVec3, distance: f64, visit: &mut dyn FnMut(usize) -> f64) {
         let (mut limit, mut ahead) = (distance, Vec::new());
         if !self.nodes.is_empty() {
             ahead.push((0.0, true, 0));
@@ -76,7 +77,7 @@ mod tests {
         {
             let away = |bounds: &Aabb| (bounds.low - at).max(at - bounds.high).max(DVec3::ZERO).length();
             let (mut visited, mut within) = (Vec::new(), Vec::new());
-            tree.around(at, distance, |object| {
+            tree.around(at, distance, &mut |object| {
                 visited.push(object);
                 distance
             });
@@ -91,7 +92,7 @@ mod tests {
                 "{at}"
             );
             let mut count = 0;
-            tree.around(at, distance, |_| {
+            tree.around(at, distance, &mut |_| {
                 count += 1;
                 -1.0
             });

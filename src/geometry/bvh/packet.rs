@@ -88,18 +88,18 @@ struct Search<'s, 'v> {
 }
 
 impl Search<'_, '_> {
-    /// Searches for a part of this many rays.
+    /// Searches for a part of this many rays. The search is inlined into the kernel, and each of its functions is called
+    /// in one place, so that there is one copy of it.
     #[inline(always)]
     fn part(mut self, count: usize) {
         let lanes = self.start..self.start + count;
         self.eights.resize(PART / LANES, Eight::ZERO);
         self.beams.clear();
         self.beams.resize(count / LANES, None);
-        if count == LANES {
-            self.eight(self.start, 0, ALL);
-            return;
-        }
         let Some(beam) = self.beam(lanes.clone()) else { return };
+        if count == LANES {
+            self.beams[0] = Some(beam);
+        }
         let (start, mut t_max) = (self.stack.len(), self.most(lanes.clone()));
         self.stack.push(Ahead { enters: 0.0, child: 0, place: 0 });
         while self.stack.len() > start {
@@ -109,19 +109,19 @@ impl Search<'_, '_> {
             }
             if child & OBJECT != 0 {
                 let bounds = self.bounds(place, &beam);
-                let mut first = lanes.start;
-                for eight in split(count, LANES).map(|eight| lanes.start + eight.start) {
-                    if self.entering(eight, &bounds) == 0 {
+                let (mut first, mut eight) = (lanes.start, lanes.start);
+                while eight <= lanes.end {
+                    if eight == lanes.end || self.entering(eight, &bounds) == 0 {
                         self.test(child, first..eight);
                         first = eight + LANES;
                     }
+                    eight += LANES;
                 }
-                self.test(child, first..lanes.end);
                 t_max = self.most(lanes.clone());
                 continue;
             }
             let node = &self.tree.nodes[child as usize];
-            if beam.width(enters) > WIDE * node.size() {
+            if count == LANES || beam.width(enters) > WIDE * node.size() {
                 let bounds = self.bounds(place, &beam);
                 for first in lanes.clone().step_by(LANES) {
                     // The root's box is in no node.
@@ -141,49 +141,45 @@ impl Search<'_, '_> {
     #[inline(always)]
     fn eight(&mut self, first: usize, root: u32, entering: u64) {
         let few = self.visitor.few();
-        if entering.count_ones() <= few {
-            self.each(first, root, entering);
-            return;
-        }
         let lanes = first..first + LANES;
         let eight = (first - self.start) / LANES;
-        if self.beams[eight].is_none() {
+        // Few rays are searched for one by one, and need no bounds.
+        if entering.count_ones() > few && self.beams[eight].is_none() {
             self.beams[eight] = self.beam(lanes.clone());
         }
         // Rays of it may have ended since, which leaves it a bound of the others.
-        let Some(beam) = self.beams[eight] else { return };
-        let node = &self.tree.nodes[root as usize];
-        if beam.width(0.0) > WIDE * node.size() {
-            self.each(first, root, entering);
-            return;
-        }
+        let beam = self.beams[eight];
         let (start, mut t_max) = (self.stack.len(), self.most(lanes.clone()));
-        push(self.stack, node, root, self.order, node.entered(&beam, t_max));
+        let mut known = Some(entering);
+        self.stack.push(Ahead { enters: 0.0, child: root, place: 0 });
         while self.stack.len() > start {
             let Some(Ahead { enters, child, place }) = self.stack.pop() else { return };
             if enters > t_max * (1.0 + SLACK) {
                 continue;
             }
-            if child & OBJECT != 0 {
-                let bounds = self.bounds(place, &beam);
-                if self.entering(first, &bounds) != 0 {
+            let is_object = child & OBJECT != 0;
+            let is_wide = !is_object
+                && beam.is_none_or(|beam| beam.width(enters) > WIDE * self.tree.nodes[child as usize].size());
+            let entering = match (known.take(), &beam) {
+                // Of the root it is known which rays enter.
+                (Some(entering), _) => entering,
+                (None, Some(beam)) if is_object || is_wide || few > 0 => {
+                    self.entering(first, &self.bounds(place, beam))
+                }
+                _ => ALL,
+            };
+            if is_object {
+                if entering != 0 {
                     self.test(child, lanes.clone());
                     t_max = self.most(lanes.clone());
                 }
-                continue;
+            } else if let (Some(beam), false) = (&beam, is_wide || entering.count_ones() <= few) {
+                let node = &self.tree.nodes[child as usize];
+                push(self.stack, node, child, self.order, node.entered(beam, t_max));
+            } else {
+                self.each(first, child, entering);
+                t_max = self.most(lanes.clone());
             }
-            let node = &self.tree.nodes[child as usize];
-            let is_wide = beam.width(enters) > WIDE * node.size();
-            if is_wide || few > 0 {
-                let bounds = self.bounds(place, &beam);
-                let entering = self.entering(first, &bounds);
-                if is_wide || entering.count_ones() <= few {
-                    self.each(first, child, entering);
-                    t_max = self.most(lanes.clone());
-                    continue;
-                }
-            }
-            push(self.stack, node, child, self.order, node.entered(&beam, t_max));
         }
     }
 

@@ -146,8 +146,8 @@ impl Bvh {
 
 kernels! {
     /// Visits objects along a ray, as [`Bvh::closest_within`] does.
-    fn search[V: FnMut(usize, f64) -> f64](
-        tree: &Bvh, stack: &mut Stack, ray: &Ray, drift: Drift, t_max: f64, visit: &mut V
+    fn search(
+        tree: &Bvh, stack: &mut Stack, ray: &Ray, drift: Drift, t_max: f64, visit: &mut dyn FnMut(usize, f64) -> f64
     ) {
         if tree.nodes.is_empty() {
             return;
@@ -168,7 +168,7 @@ pub(super) fn descend(
     root: u32,
     order: Order,
     mut t_max: f64,
-    visit: &mut impl FnMut(usize, f64) -> f64,
+    visit: &mut (impl FnMut(usize, f64) -> f64 + ?Sized),
 ) -> f64 {
     let start = stack.len();
     let mut node = &tree.nodes[root as usize];

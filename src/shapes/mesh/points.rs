@@ -68,14 +68,14 @@ impl Surface {
     /// Calls a function with each face that may be within a distance of a point, and with its distance, in world units.
     /// The function returns the distance beyond which no more faces matter.
     fn near(&self, at: DVec3, within: f64, mut call: impl FnMut(usize, f64) -> f64) {
-        self.tree.around(at, within, |face| call(face, distance_to(self.corners(face), at)));
+        self.tree.around(at, within, &mut |face| call(face, distance_to(self.corners(face), at)));
     }
 
     /// Tells whether a point is on a face, up to an error in world units and to rounding.
     pub(super) fn touches<A: Bounded>(&self, at: DVec3, error: f64) -> bool {
         let error_there = error + 8.0 * f64::EPSILON * at.abs().max_element();
         let mut any = false;
-        self.tree.around(at, error_there, |face| {
+        self.tree.around(at, error_there, &mut |face| {
             any |= Triangle::<A>::new(self.corners(face)).is_some_and(|face| touches(&face, at, error));
             if any { -1.0 } else { error_there }
         });
