@@ -2,7 +2,7 @@
 
 use crate::parallel;
 use crate::render::bytes::shown;
-use crate::render::observer::{Count, TraceObserver};
+use crate::render::observer::{Count, DynObserver, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::ray_stats::Cuts;
 use crate::render::renderer::Renderer;
@@ -146,7 +146,8 @@ fn render(renderer: &Renderer, model: &Model) -> (Vec<Rgb>, Vec<PixelBound>, f64
             pixels.clear();
             tiles::list(left..width.min(left + TILE * TOGETHER), low..height.min(low + TILE), &mut pixels);
             bounds.0.clear();
-            let mut tracer = Tracer::new(&plan, Cpu::best(), &mut scratch, &mut bounds);
+            let mut observer = DynObserver::<false>(&mut bounds);
+            let mut tracer = Tracer::new(&plan, Cpu::best(), &mut scratch, &mut observer);
             let seen = tracer.pixels(&pixels);
             let at = |[x, y]: [usize; 2]| (height - 1 - y) * width + x;
             (0..pixels.len()).for_each(|lane| colours[at(pixels[lane])] = seen.get(lane));

@@ -5,7 +5,7 @@ use super::places::Pixels;
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::parallel;
 use crate::render::bytes::shown;
-use crate::render::observer::{Count, RayKind, TraceObserver};
+use crate::render::observer::{Count, DynObserver, RayKind, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::render::tiles::{self, TILE, TOGETHER};
@@ -87,7 +87,8 @@ fn colours(threads: &Renderer, plan: &Plan, pixels: &Pixels) -> (Vec<Rgb>, f64) 
         let mut scratch = Scratch::default();
         let one = |pixel: &[usize; 2]| {
             let mut samples = Samples::default();
-            let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut samples);
+            let mut observer = DynObserver::<false>(&mut samples);
+            let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut observer);
             let colour = shown(tracer.pixels(&[*pixel]).get(0));
             (colour, samples.samples)
         };
@@ -117,7 +118,8 @@ fn of_sample(plan: &Plan, tiles: &[Pixels]) -> f64 {
         let mut samples = Samples::default();
         let start = clock::now();
         for tile in tiles {
-            black_box(Tracer::new(plan, Cpu::best(), &mut scratch, &mut samples).pixels(tile));
+            let mut observer = DynObserver::<false>(&mut samples);
+            black_box(Tracer::new(plan, Cpu::best(), &mut scratch, &mut observer).pixels(tile));
         }
         (clock::now() - start).as_secs_f64() / samples.samples as f64
     };
@@ -129,7 +131,8 @@ fn of_sample(plan: &Plan, tiles: &[Pixels]) -> f64 {
 fn probes(plan: &Plan, tiles: &[Pixels]) -> f64 {
     let (mut scratch, mut samples) = (Scratch::default(), Samples::default());
     for tile in tiles {
-        Tracer::new(plan, Cpu::best(), &mut scratch, &mut samples).pixels(tile);
+        let mut observer = DynObserver::<false>(&mut samples);
+        Tracer::new(plan, Cpu::best(), &mut scratch, &mut observer).pixels(tile);
     }
     let pixels: usize = tiles.iter().map(Vec::len).sum();
     samples.primary.saturating_sub(samples.samples) as f64 / pixels as f64
