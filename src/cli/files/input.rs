@@ -115,13 +115,14 @@ pub fn read(path: &Path) -> Result<(String, Vec<u8>), Failure> {
     }
 }
 
-/// Reads a stream to its end, or to the end of a block with a NUL byte: scenes have none, and devices may have no end.
+/// Reads a stream to its end, or to the end of a block with a NUL byte: scenes have none, and devices may have no end. Each
+/// block is as long as all before it, so that large scenes are read in few pieces.
 fn to_first_nul(source: impl Read) -> io::Result<Vec<u8>> {
     let mut source = source.take(LARGEST + 1);
     let mut bytes = Vec::new();
     loop {
         let start = bytes.len();
-        let read = source.by_ref().take(1 << 16).read_to_end(&mut bytes)?;
+        let read = source.by_ref().take(start.max(1 << 16) as u64).read_to_end(&mut bytes)?;
         if read == 0 || bytes[start..].contains(&0) {
             return Ok(bytes);
         }
