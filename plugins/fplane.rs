@@ -39,8 +39,9 @@ inventory::submit! {
 pub fn shape(args: &Args) -> Result<AnyShape, Refusal> {
     Ok(match args.accuracy() {
         Accuracy::Classic => Shape::new(finite_plane::<Classic>(args)?).classic().into(),
-        Accuracy::Draft => Shape::new(finite_plane::<Draft>(args)?).flat().certified().into(),
-        Accuracy::Exact => Shape::new(finite_plane::<Exact>(args)?).flat().certified().into(),
+        Accuracy::Draft | Accuracy::Exact => {
+            Shape::new(finite_plane::<Exact>(args)?).flat().certified().into()
+        }
         Accuracy::Strict => Shape::new(finite_plane::<Strict>(args)?).flat().certified().into(),
     })
 }

@@ -30,7 +30,6 @@ inventory::submit! {
     Entity::shape("mesh", "a surface of triangles from a file", &[TABLE], |args| {
         let surface = Arc::new(surface(args)?);
         let shape: AnyShape = match args.accuracy() {
-            Accuracy::Draft => Mesh::<Draft>::shape(surface.clone(), args.accuracy()).into(),
             Accuracy::Strict => Mesh::<Strict>::shape(surface.clone(), args.accuracy()).into(),
             _ => Mesh::<Exact>::shape(surface.clone(), args.accuracy()).into(),
         };

@@ -26,8 +26,7 @@ pub fn body(args: &Args, shape: AnyShape) -> Body {
 pub fn shape(args: &Args) -> AnyShape {
     match args.accuracy() {
         Accuracy::Classic => Shape::new(plane::<Classic>(args)).classic().into(),
-        Accuracy::Draft => exact(plane::<Draft>(args)),
-        Accuracy::Exact => exact(plane::<Exact>(args)),
+        Accuracy::Draft | Accuracy::Exact => exact(plane::<Exact>(args)),
         Accuracy::Strict => exact(plane::<Strict>(args)),
     }
 }

@@ -18,8 +18,7 @@ inventory::submit! {
         &[light::TABLE, TABLE, plane::TABLE, fplane::TABLE, fplane::ROTATION, texplane::TABLE],
         |args| Ok(match args.accuracy() {
             Accuracy::Classic => Box::new(Projector::new(args, finite_plane::<Classic>(args)?)?),
-            Accuracy::Draft => Box::new(Projector::new(args, finite_plane::<Draft>(args)?)?),
-            Accuracy::Exact => Box::new(Projector::new(args, finite_plane::<Exact>(args)?)?),
+            Accuracy::Draft | Accuracy::Exact => Box::new(Projector::new(args, finite_plane::<Exact>(args)?)?),
             Accuracy::Strict => Box::new(Projector::new(args, finite_plane::<Strict>(args)?)?),
         }),
     )

@@ -43,8 +43,7 @@ fn shape(args: &Args, corners: [DVec3; 2]) -> AnyShape {
         Accuracy::Classic => {
             Shape::new(Quadric::<Classic>::new(coefficients, center, corners)).classic().into()
         }
-        Accuracy::Draft => exact(Quadric::<Draft>::new(coefficients, center, corners)),
-        Accuracy::Exact => exact(Quadric::<Exact>::new(coefficients, center, corners)),
+        Accuracy::Draft | Accuracy::Exact => exact(Quadric::<Exact>::new(coefficients, center, corners)),
         Accuracy::Strict => exact(Quadric::<Strict>::new(coefficients, center, corners)),
     }
 }

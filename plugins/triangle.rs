@@ -35,10 +35,7 @@ fn shape(args: &Args) -> Option<AnyShape> {
         Accuracy::Classic => {
             Shape::new(Triangle::classic(corners)?.up_to(args.planes_end_at())).classic().into()
         }
-        Accuracy::Draft => {
-            Shape::new(Triangle::<Draft>::new(corners)?.up_to(args.planes_end_at())).flat().certified().into()
-        }
-        Accuracy::Exact => {
+        Accuracy::Draft | Accuracy::Exact => {
             Shape::new(Triangle::<Exact>::new(corners)?.up_to(args.planes_end_at())).flat().certified().into()
         }
         Accuracy::Strict => Shape::new(Triangle::<Strict>::new(corners)?.up_to(args.planes_end_at()))

@@ -4,7 +4,7 @@ use crate::geometry::placement::Rotation;
 use crate::numeric::double_double::DoubleDouble;
 use crate::shapes::mesh::read::Model;
 use crate::shapes::mesh::{Mesh, Surface, ToWorld, Unfit};
-use crate::world::accuracy::{Accuracy, Draft, Exact, Strict};
+use crate::world::accuracy::{Accuracy, Exact, Strict};
 use crate::world::body::Body;
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
@@ -125,7 +125,6 @@ pub fn body(model: Model, accuracy: Accuracy) -> Result<Body, Unfit> {
     let surface =
         Arc::new(Surface::new(model, &ToWorld::new(DVec3::ONE, Rotation::NONE, DVec3::ZERO), false)?);
     Ok(match accuracy {
-        Accuracy::Draft => Body::plain(Mesh::<Draft>::shape(surface, accuracy)),
         Accuracy::Strict => Body::plain(Mesh::<Strict>::shape(surface, accuracy)),
         _ => Body::plain(Mesh::<Exact>::shape(surface, accuracy)),
     })

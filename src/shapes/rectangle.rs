@@ -5,8 +5,8 @@ use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
 use crate::numeric::double_double::vectors::{cross, product, unit};
 use crate::numeric::double_double::{DoubleDouble, scaled};
 use crate::numeric::scalar::{self, Scalar, constants, dot, per_axis};
-use crate::shapes::plane::{DRAFT_ERROR, Plane};
-use crate::world::accuracy::{Accuracy, Marker};
+use crate::shapes::plane::Plane;
+use crate::world::accuracy::Marker;
 use glam::{DMat3, DVec2, DVec3};
 
 /// The place and the size of a rectangle.
@@ -144,10 +144,7 @@ impl<A: Marker> FinitePlane<A> {
     /// Computes [`has_crossing`](Self::has_crossing), or `None` where the point is on a side to within rounding.
     #[inline(always)]
     pub fn quickly_has_crossing(&self, ray: &Ray, distance: f64) -> Option<bool> {
-        let slack = match A::ACCURACY {
-            Accuracy::Draft => self.slack(ray, distance) + DRAFT_ERROR * distance,
-            _ => self.slack(ray, distance),
-        };
+        let slack = self.slack(ray, distance);
         let inside = self.inside(ray, distance);
         let is_doubtful = (inside.abs() <= slack) & (slack > 0.0) & (distance < MISS);
         if is_doubtful { None } else { Some(inside >= 0.0) }

@@ -1,6 +1,6 @@
 //! The distance of a ray's intersection with a plane, by the methods of each accuracy.
 
-use super::products::{DRAFT_ERROR, quotient};
+use super::products::quotient;
 use super::surface::Plane;
 use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::geometry::ray_packet::RayPacket;
@@ -96,8 +96,7 @@ impl<A: Marker> Plane<A> {
     #[inline(always)]
     pub fn quick_crossing(&self, ray: &Ray) -> f64 {
         match A::ACCURACY {
-            Accuracy::Draft => self.products(self.rounded_normal(), ray).draft_distance(),
-            Accuracy::Exact => {
+            Accuracy::Draft | Accuracy::Exact => {
                 let products = self.products(self.rounded_normal(), ray);
                 let away = if products.away_cancels() { self.compensated_away(ray) } else { products.away };
                 let toward =
@@ -113,7 +112,7 @@ impl<A: Marker> Plane<A> {
     pub(super) fn refine_plain(&self, rays: RayPacket, out: &mut [f64]) {
         let rays = rays.first(out.len());
         for lane in 0..out.len() {
-            out[lane] = self.products(self.rounded_normal(), &rays.get(lane)).draft_distance();
+            out[lane] = self.products(self.rounded_normal(), &rays.get(lane)).plain_quotient();
         }
     }
 
@@ -130,13 +129,7 @@ impl<A: Marker> Plane<A> {
     #[inline(always)]
     pub fn quick_crossings(plane: impl Fn(usize) -> Self, rays: RayPacket, out: &mut [f64; LANES]) {
         match A::ACCURACY {
-            Accuracy::Draft => {
-                for lane in 0..LANES {
-                    let plane = plane(lane);
-                    out[lane] = plane.products(plane.rounded_normal(), &rays.get(lane)).draft_distance();
-                }
-            }
-            Accuracy::Exact => Self::compensated(plane, rays, out),
+            Accuracy::Draft | Accuracy::Exact => Self::compensated(plane, rays, out),
             _ => out.fill(f64::NAN),
         }
     }
@@ -178,8 +171,9 @@ impl<A: Marker> Plane<A> {
     pub fn method(&self) -> &'static str {
         match A::ACCURACY {
             Accuracy::Classic => "the notes' formula",
-            Accuracy::Draft => "plain arithmetic",
-            Accuracy::Exact => "plain arithmetic, compensated for rounding where sums cancel",
+            Accuracy::Draft | Accuracy::Exact => {
+                "plain arithmetic, compensated for rounding where sums cancel"
+            }
             Accuracy::Strict => "twice the precision",
         }
     }
@@ -209,10 +203,7 @@ impl<A: Marker> Plane<A> {
         let z = ray.at(distance).z;
         // Units of 2^-53: a plain dot product is off by 5 of terms that add up to at most 1.3 times it, so that the
         // distance is off by 14; the product and the sum here are off by 1 each.
-        let error = match A::ACCURACY {
-            Accuracy::Draft => DRAFT_ERROR * (distance * ray.dir.z).abs() + f64::EPSILON * self.max_z,
-            _ => 8.0 * f64::EPSILON * ((distance * ray.dir.z).abs() + self.max_z),
-        };
+        let error = 8.0 * f64::EPSILON * ((distance * ray.dir.z).abs() + self.max_z);
         let origin_side = range.origin_side.is_some();
         let kept = if (z > self.max_z) | origin_side { MISS } else { range.keep(distance) };
         let is_doubtful = ((z - self.max_z).abs() <= error) & (distance < MISS);

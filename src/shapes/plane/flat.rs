@@ -51,8 +51,8 @@ impl<T: Flat, P> OneRay for Shape<T, ByPlane, P> {
         let plane = *self.shape.flat();
         match T::Accuracy::ACCURACY {
             // With a normal along an axis, dot products have one term, and nothing cancels.
-            Accuracy::Exact if !plane.is_upright => plane.refine_compensated(rays, out),
-            Accuracy::Exact | Accuracy::Draft => plane.refine_plain(rays, out),
+            Accuracy::Draft | Accuracy::Exact if plane.is_upright => plane.refine_plain(rays, out),
+            Accuracy::Draft | Accuracy::Exact => plane.refine_compensated(rays, out),
             _ => out.fill(f64::NAN),
         }
     }

@@ -12,5 +12,4 @@ mod products;
 mod surface;
 
 pub use flat::{ByPlane, Flat};
-pub use products::DRAFT_ERROR;
 pub use surface::{Plane, Rough};

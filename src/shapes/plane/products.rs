@@ -31,10 +31,9 @@ impl Products {
         quotient((away, self.away_size), (toward, self.toward_size))
     }
 
-    /// Returns the quotient of the plain dot products, off by at most [`DRAFT_ERROR`]; NaN where one is less than 1/64
-    /// of its terms.
+    /// Returns the quotient of the dot products in plain arithmetic; NaN where one is less than 1/64 of its terms.
     #[inline(always)]
-    pub fn draft_distance(&self) -> f64 {
+    pub fn plain_quotient(&self) -> f64 {
         const MAX_RATIO: f64 = 64.0;
         let is_doubtful = (self.away_size > MAX_RATIO * self.away.abs())
             | (self.toward_size > MAX_RATIO * self.toward.abs());
@@ -54,10 +53,6 @@ impl Products {
         self.toward_size > 1.3 * self.toward.abs()
     }
 }
-
-/// A bound of the relative error of the quotient of plain dot products: each is off by 5 units of 2^-53 of terms that
-/// add up to at most 64 times it, which makes 320 EPSILON for both.
-pub const DRAFT_ERROR: f64 = 512.0 * f64::EPSILON;
 
 /// The `toward` below which a ray is parallel to the plane to within rounding: 34 units of 2^-53, more than three times
 /// the error of 9 that [`rough`](super::Plane::rough) derives.
