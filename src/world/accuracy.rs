@@ -7,7 +7,8 @@ use std::fmt;
 pub enum Accuracy {
     /// The course notes' methods, with the hits that they lose and the artefacts that they make.
     Classic,
-    /// Like `Exact`, but with hit points only within about 1/1000 of a world unit of the surface where that saves time.
+    /// Like `Exact`, but with hit points only within about 1/1000 of a world unit of the surface where that saves time: on
+    /// surfaces of revolution, spheres and ellipsoids.
     Draft,
     /// First hits found with error bounds, and hit points on the surface up to rounding.
     #[default]

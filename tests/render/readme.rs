@@ -34,7 +34,7 @@ fn the_pictures_of_the_docs_are_fresh() {
         let stem = scene.file_stem().expect("a name");
         let picture = root().join("docs").join(stem).with_extension("png");
         let shown = image::open(&picture).expect("a picture for each scene").into_rgb8();
-        // All of the rings takes a minute of CPU time.
+        // All of the rings takes many seconds of CPU time.
         let is_fresh = if stem == "rings" {
             part_of(&scene, "0,180,600,30") == imageops::crop_imm(&shown, 0, 190, 600, 30).to_image()
         } else {

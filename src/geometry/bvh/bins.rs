@@ -32,13 +32,16 @@ pub fn half_area([a, b, c, d, e, f]: Limits) -> f64 {
     if area.is_nan() { f64::INFINITY } else { area }
 }
 
-/// An object: the limits of its box, and its index.
+/// An object to be put into a tree.
 pub struct Item {
+    /// The limits of its box, in world units.
     pub limits: Limits,
+    /// Its index among the objects.
     pub index: u32,
 }
 
 impl Item {
+    /// Makes the item of the object of this index, with the limits of its box made finite.
     pub fn new(index: usize, bounds: &Aabb) -> Self {
         let Aabb { low, high } = finite(bounds);
         Self { limits: [low.x, low.y, low.z, -high.x, -high.y, -high.z], index: index as u32 }
@@ -58,15 +61,19 @@ impl Item {
     }
 }
 
-/// The items whose centers lie in a bin: their number, their limits, and those of twice their centers.
+/// The items whose centers lie in a bin.
 #[derive(Clone, Copy)]
 pub struct Bin {
+    /// The number of items.
     pub count: u32,
+    /// The limits of their boxes together, in world units.
     pub limits: Limits,
+    /// The limits of twice their centers, in world units.
     pub centers: Limits,
 }
 
 impl Bin {
+    /// A bin without items.
     pub const EMPTY: Self = Self { count: 0, limits: NOTHING, centers: NOTHING };
 
     /// Returns the items of two bins.
@@ -83,6 +90,7 @@ impl Bin {
 /// The bins along an axis.
 #[derive(Clone, Copy)]
 pub struct Grid {
+    /// The axis: 0, 1 or 2.
     pub axis: usize,
     /// Where the first one begins, in twice the coordinates.
     pub low: f64,
@@ -116,6 +124,7 @@ kernels! {
         }
         bins
     }
+
     /// Returns the cut between two bins whose sides cost least, and what lies on each side; `None` where no cost is finite.
     pub fn best_cut(bins: &[Bin; BINS]) -> Option<(usize, [Bin; 2])> {
         // The probability that a ray enters a box is proportional to its surface area.
