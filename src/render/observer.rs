@@ -24,7 +24,8 @@ impl TraceObserver for () {
     const SEES: bool = false;
 }
 
-/// An observer behind `dyn`: the tracer is compiled once for all that see events, and once for all that do not.
+/// An observer behind `dyn`. Such observers share two compiled tracers: one for those that see events, and one for those that
+/// do not.
 pub(crate) struct DynObserver<'o, const SEES: bool>(pub &'o mut dyn Receiver);
 
 /// The interface of a [`TraceObserver`] behind `dyn`.
