@@ -108,15 +108,3 @@ impl<A: Bounded> Certified for Plane<A> {
         Some(self.exact_crossing(ray))
     }
 }
-
-impl<A> Equation for Plane<A> {
-    const IS_QUADRATIC: bool = true;
-
-    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
-        dot(self.given_normal(), per_axis(|axis| at[axis] - N::constant(self.point[axis])))
-    }
-
-    fn kept<N: Scalar>(&self, [_, _, z]: [N; 3]) -> N {
-        N::constant(self.max_z) - z
-    }
-}

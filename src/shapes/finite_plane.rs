@@ -15,7 +15,7 @@ use glam::{DVec2, DVec3};
 impl<A: Marker> Hittable for FinitePlane<A> {
     #[inline(always)]
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
-        let distance = self.plane.distance(ray, range);
+        let distance = self.plane.keep(self.plane.crossing(ray), ray, range);
         if self.has_crossing(ray, distance) { distance } else { MISS }
     }
 

@@ -4,7 +4,8 @@ use super::products::{MIN_TOWARD, Products, RECIPROCAL_ERROR, reciprocal};
 use crate::geometry::aabb::{Aabb, SLACK, larger};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
 use crate::numeric::double_double::{DoubleDouble, scaled};
-use crate::numeric::scalar::{Scalar, per_axis};
+use crate::numeric::scalar::{Scalar, dot, per_axis};
+use crate::world::certify::Equation;
 use glam::DVec3;
 use std::marker::PhantomData;
 
@@ -163,5 +164,17 @@ impl<A> Plane<A> {
             }
         }
         nearest > SLACK * near_size || farthest < -SLACK * far_size
+    }
+}
+
+impl<A> Equation for Plane<A> {
+    const IS_QUADRATIC: bool = true;
+
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
+        dot(self.given_normal(), per_axis(|axis| at[axis] - N::constant(self.point[axis])))
+    }
+
+    fn kept<N: Scalar>(&self, [_, _, z]: [N; 3]) -> N {
+        N::constant(self.max_z) - z
     }
 }
