@@ -1,6 +1,6 @@
 //! `render --max-error --certain`: pixels whose colours are proven.
 
-use crate::common::program::{folder, outcome, scene, tabray};
+use crate::common::program::{folder, outcome, tabray};
 use std::fs;
 use tempfile::TempDir;
 
@@ -18,19 +18,6 @@ fn render(folder: &TempDir, scene: &str, options: &[&str]) -> (Vec<u8>, String) 
     let (status, _, err) = outcome(&mut command);
     assert_eq!(status, 0, "{options:?}: {err}");
     (fs::read(folder.path().join("out.ppm")).expect("an image"), err)
-}
-
-#[test]
-fn certain_pixels_depend_on_neither_threads_nor_instructions() {
-    let folder = folder();
-    let marbles = scene("gallery/marbles.ray");
-    let with = |others: &[&str]| {
-        let options = ["--size", "24", "--max-error", "4"];
-        render(&folder, &marbles.to_string_lossy(), &[&options[..], others].concat()).0
-    };
-    let one = with(&["--threads", "1"]);
-    assert!(with(&["--threads", "4"]) == one);
-    assert!(with(&["--threads", "3", "--cpu", "baseline"]) == one);
 }
 
 #[test]

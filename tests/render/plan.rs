@@ -9,7 +9,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::Mutex;
 use tabray::render::RayKind::{Primary, Reflected, Shadow, Transmitted};
-use tabray::render::{Plan, RayStats, Renderer, TestCounts, TraceObserver, decisions, trace};
+use tabray::render::{Plan, RayStats, Renderer, TestCounts, decisions, trace};
 use tabray::scene::{self, Model};
 use tabray::simd::Cpu;
 use tabray::world::Accuracy;
@@ -396,35 +396,4 @@ fn instructions_are_chosen_among_those_that_are_there() {
         }
     }
     assert_eq!(render("mmx").0, 2);
-}
-
-#[test]
-fn whoever_looks_on_sees_the_colours_of_the_picture() {
-    struct Onlooker;
-    impl TraceObserver for Onlooker {
-        const SEES: bool = true;
-    }
-    let thread = Renderer::new(1).expect("a thread with room for deep reflections");
-    let check = |name: &str, model: &Model| {
-        let plan = Plan::new(model);
-        let [width, height] = plan.camera.pixels;
-        for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
-            let [seen, alone] =
-                thread.run(|| [trace::observe_pixel(&plan, x, y, &mut Onlooker), trace::pixel(&plan, x, y)]);
-            assert_eq!(seen, alone, "{name}, pixel {x} {y}");
-        }
-    };
-    for path in scenes() {
-        let mut model = small(&path, Some(Accuracy::Exact));
-        model.camera.value.pixels = model.camera.value.pixels.map(|side| side.min(18));
-        check(&path.display().to_string(), &model);
-    }
-    // Mirrors that scatter no light cost as many rays as allowed, whether or not shadow rays are traced.
-    let runaway = model(&format!(
-        "camera eye {{ pixeldim 4 3 worlddim 8 6 viewpoint 4 3 7 }}
-         material mirror {{ ambient 1 1 1 specular 0.999 }} material pane {{ specular 1 transparency 0.5 diffuse 1 1 1 }}
-         plane one {{ material mirror normal 0 0 1 point 0 0 -1 }}
-         fplane other {{ material pane normal 0 0 1 xdir 1 0 0 point -9 -9 -0.999 dimensions 30 30 }} {LAMP}"
-    ));
-    check("runaway", &runaway);
 }
