@@ -259,14 +259,19 @@ mod tests {
     use proptest::prelude::*;
 
     /// Generates coordinates of all sizes, some with few digits.
-    fn coordinate() -> BoxedStrategy<f64> {
-        prop_oneof![
-            4 => -10.0..10.0,
-            4 => (-10.0..10.0).prop_map(|number: f64| f64::from(number as f32)),
-            2 => Just(0.0), 1 => Just(1.0), 1 => -1e-3..1e-3, 1 => Just(5e-324), 1 => Just(1e-150), 1 => Just(1e150),
-            1 => (-490..490_i32, 0.5..1.0).prop_map(|(exponent, number)| number * 2_f64.powi(exponent)),
-        ]
-        .boxed()
+    fn coordinate() -> impl Strategy<Value = f64> {
+        // A tenth of the time of `prop_oneof`, which seeds a generator of random numbers for each alternative.
+        (0..16, -1.0..1.0, -490..490).prop_map(|(kind, part, exponent)| match kind {
+            0..4 => 10.0 * part,
+            4..8 => f64::from((10.0 * part) as f32),
+            8..10 => 0.0,
+            10 => 1.0,
+            11 => 1e-3 * part,
+            12 => 5e-324,
+            13 => 1e-150,
+            14 => 1e150,
+            _ => part * 2_f64.powi(exponent),
+        })
     }
 
     fn corner() -> impl Strategy<Value = DVec3> {

@@ -230,9 +230,15 @@ mod tests {
     use proptest::prelude::*;
     use std::ops::Range;
 
-    /// Generates coordinates like those of scenes, 0 among them.
+    /// Generates coordinates like those of scenes, 0 among them. This takes a tenth of the time of `prop_oneof`, which
+    /// seeds a generator of random numbers for each alternative.
     fn number() -> impl Strategy<Value = f64> {
-        prop_oneof![4 => Just(0.0), 1 => Just(-0.0), 8 => -10.0..10.0, 4 => -1e6..1e6]
+        (0..17, -1.0..1.0).prop_map(|(kind, part)| match kind {
+            0..4 => 0.0,
+            4 => -0.0,
+            5..13 => 10.0 * part,
+            _ => 1e6 * part,
+        })
     }
 
     fn point() -> impl Strategy<Value = DVec3> {
@@ -241,13 +247,15 @@ mod tests {
 
     /// Generates a range of coordinates, some of them without ends.
     fn extent() -> impl Strategy<Value = (f64, f64)> {
-        let size = prop_oneof![Just(0.0), 0.0..1.0, 0.0..1e3];
-        let some = (number(), size).prop_map(|(low, size)| (low, low + size));
-        let endless = || number().prop_map(|low| (low, f64::INFINITY));
-        prop_oneof![
-            20 => some, 1 => endless(), 1 => endless().prop_map(|(low, high)| (-high, low)),
-            1 => Just((f64::NEG_INFINITY, f64::INFINITY)), 1 => Just((-1e300, 1e200)),
-        ]
+        (0..24, number(), 0.0..1.0).prop_map(|(kind, at, part)| match kind {
+            0 => (at, f64::INFINITY),
+            1 => (f64::NEG_INFINITY, at),
+            2 => (f64::NEG_INFINITY, f64::INFINITY),
+            3 => (-1e300, 1e200),
+            4..10 => (at, at),
+            10..17 => (at, at + part),
+            _ => (at, at + 1e3 * part),
+        })
     }
 
     fn bounds() -> impl Strategy<Value = Aabb> {
