@@ -382,7 +382,7 @@ fn a_plan_says_how_deep_rays_are_followed() {
 fn instructions_are_chosen_among_those_that_are_there() {
     let scene = file("gallery/stained-glass.ray");
     let render = |cpu: &str| {
-        let args = ["render", &scene, "-o", "a.png", "--cpu", cpu, "--stats", "json"];
+        let args = ["render", &scene, "--size", "32", "-o", "a.png", "--cpu", cpu, "--stats", "json"];
         let (status, _, err) = outcome(&args);
         (status, err)
     };
