@@ -85,6 +85,11 @@ pub fn breaches(registry: &Registry) -> Vec<Breach> {
     found
 }
 
+/// Returns the gravest breach of one entity type of a registry.
+pub fn breach_of(registry: &Registry, entity: &'static Entity) -> Option<Breach> {
+    of_entity(registry, entity, &SceneFolder::new())
+}
+
 /// Returns the gravest breach of each object and light of a scene, and of its camera.
 pub fn breaches_in(model: &Model) -> Vec<Breach> {
     let mut draw = Draw::new("scene");
