@@ -40,11 +40,11 @@ pub fn formatted(view: &View) -> Option<String> {
 /// A line of the result.
 struct Line {
     indent: usize,
-    what: What,
+    content: LineContent,
     comment: String,
 }
 
-enum What {
+enum LineContent {
     Blank,
     /// A comment alone.
     Comment,
@@ -62,7 +62,7 @@ fn in_notes(view: &View) -> String {
     let mut writer = Writer { view, at: 0, lines: Vec::new() };
     writer.items(&view.items, 0);
     writer.gap(view.text.as_str().len(), 0);
-    while matches!(writer.lines.last(), Some(Line { what: What::Blank, .. })) {
+    while matches!(writer.lines.last(), Some(Line { content: LineContent::Blank, .. })) {
         writer.lines.pop();
     }
     written(&writer.lines)
@@ -76,8 +76,8 @@ struct Writer<'v> {
 }
 
 impl Writer<'_> {
-    fn push(&mut self, indent: usize, what: What) {
-        self.lines.push(Line { indent, what, comment: String::new() });
+    fn push(&mut self, indent: usize, content: LineContent) {
+        self.lines.push(Line { indent, content, comment: String::new() });
     }
 
     fn raw(&self, word: Word) -> String {
@@ -108,22 +108,24 @@ impl Writer<'_> {
         if let Some(last) = self.lines.last_mut()
             && newlines == 0
             && last.comment.is_empty()
-            && !matches!(last.what, What::Blank)
+            && !matches!(last.content, LineContent::Blank)
         {
             last.comment = text.to_owned();
             return;
         }
         self.blank(newlines);
-        self.lines.push(Line { indent, what: What::Comment, comment: text.to_owned() });
+        self.lines.push(Line { indent, content: LineContent::Comment, comment: text.to_owned() });
     }
 
     /// Keeps one of several blank lines, but none after a brace.
     fn blank(&mut self, newlines: usize) {
-        let is_open = |line: &Line| matches!(&line.what, What::Plain(text) if text.ends_with('{'));
-        let follows =
-            self.lines.last().is_some_and(|line| !is_open(line) && !matches!(line.what, What::Blank));
+        let is_open = |line: &Line| matches!(&line.content, LineContent::Plain(text) if text.ends_with('{'));
+        let follows = self
+            .lines
+            .last()
+            .is_some_and(|line| !is_open(line) && !matches!(line.content, LineContent::Blank));
         if newlines > 1 && follows {
-            self.push(0, What::Blank);
+            self.push(0, LineContent::Blank);
         }
     }
 
@@ -137,13 +139,13 @@ impl Writer<'_> {
                 Item::Entity(entity) => self.entity(entity, indent),
                 Item::Let(number) => {
                     let words = [number.name, number.value].map(|word| word.map(|word| self.raw(word)));
-                    self.push(indent, What::Let(words.map(Option::unwrap_or_default)));
+                    self.push(indent, LineContent::Let(words.map(Option::unwrap_or_default)));
                     self.words([number.name, number.value].into_iter().flatten(), indent);
                 }
                 Item::Include(include) => {
                     let files: String =
                         include.files.iter().map(|file| format!(" {}", self.raw(*file))).collect();
-                    self.push(indent, What::Plain(format!("include{files}")));
+                    self.push(indent, LineContent::Plain(format!("include{files}")));
                     self.words(include.files.iter().copied(), indent);
                 }
                 Item::Repeat(repeat) => self.repeat(repeat, indent),
@@ -161,7 +163,7 @@ impl Writer<'_> {
             self.gap(word.start, indent);
             self.at = word.end;
         }
-        while matches!(self.lines.last(), Some(Line { what: What::Blank, .. })) {
+        while matches!(self.lines.last(), Some(Line { content: LineContent::Blank, .. })) {
             self.lines.pop();
         }
     }
@@ -180,36 +182,37 @@ impl Writer<'_> {
             [self.raw(attribute.name), values]
         });
         let attributes = attributes.collect();
-        self.push(indent, What::Entity(title, attributes));
+        self.push(indent, LineContent::Entity(title, attributes));
     }
 
     /// Writes an entity on several lines.
     fn entity(&mut self, entity: &Entity, indent: usize) {
         let title =
             [Some(entity.kind), entity.name].map(|word| word.map(|word| self.raw(word)).unwrap_or_default());
-        self.push(indent, What::Plain(title.join(" ").trim_end().to_owned()));
+        self.push(indent, LineContent::Plain(title.join(" ").trim_end().to_owned()));
         self.at = entity.kind.end;
         self.words(entity.name.into_iter(), indent);
         self.gap(entity.body.start.saturating_sub(1), indent);
         self.no_blank();
-        self.push(indent, What::Plain("{".to_owned()));
+        self.push(indent, LineContent::Plain("{".to_owned()));
         self.at = entity.body.start;
         for attribute in &entity.attributes {
             self.gap(attribute.name.start, indent + 1);
-            self.push(indent + 1, What::Attribute([self.raw(attribute.name), String::new()]));
+            self.push(indent + 1, LineContent::Attribute([self.raw(attribute.name), String::new()]));
             self.at = attribute.name.end;
             for word in &attribute.values {
                 let is_below = self.view.slice(self.at..word.start).contains('\n');
                 let gap = self.at..word.start;
                 self.gap(word.start, indent + 1);
                 self.no_blank();
-                let goes_on = matches!(self.lines.last(), Some(Line { what: What::Attribute([_, values]), comment, .. })
+                let goes_on = matches!(self.lines.last(), Some(Line { content: LineContent::Attribute([_, values]), comment, .. })
                     if comment.is_empty() && (values.is_empty() || !is_below));
                 if !goes_on {
-                    self.push(indent + 1, What::Attribute([String::new(), String::new()]));
+                    self.push(indent + 1, LineContent::Attribute([String::new(), String::new()]));
                 }
                 let raw = self.between(attribute, gap).to_owned() + &self.raw(*word);
-                if let Some(Line { what: What::Attribute([_, values]), .. }) = self.lines.last_mut() {
+                if let Some(Line { content: LineContent::Attribute([_, values]), .. }) = self.lines.last_mut()
+                {
                     *values += if values.is_empty() { raw.trim_start() } else { &raw };
                 }
                 self.at = word.end;
@@ -217,21 +220,21 @@ impl Writer<'_> {
         }
         self.gap(entity.body.end, indent + 1);
         self.no_blank();
-        self.push(indent, What::Plain("}".to_owned()));
+        self.push(indent, LineContent::Plain("}".to_owned()));
         self.at = entity.place.end;
     }
 
     fn repeat(&mut self, repeat: &Repeat, indent: usize) {
         let words = [repeat.name, repeat.count].into_iter().flatten();
         let title: String = words.clone().map(|word| format!(" {}", self.raw(word))).collect();
-        self.push(indent, What::Plain(format!("repeat{title} {{")));
+        self.push(indent, LineContent::Plain(format!("repeat{title} {{")));
         self.words(words, indent);
         self.gap(repeat.body.start.saturating_sub(1), indent + 1);
         self.at = repeat.body.start;
         self.items(&repeat.items, indent + 1);
         self.gap(repeat.body.end, indent + 1);
         self.no_blank();
-        self.push(indent, What::Plain("}".to_owned()));
+        self.push(indent, LineContent::Plain("}".to_owned()));
         self.at = repeat.place.end;
     }
 
@@ -242,7 +245,7 @@ impl Writer<'_> {
     }
 
     fn no_blank(&mut self) {
-        while matches!(self.lines.last(), Some(Line { what: What::Blank, .. })) {
+        while matches!(self.lines.last(), Some(Line { content: LineContent::Blank, .. })) {
             self.lines.pop();
         }
     }
@@ -260,12 +263,12 @@ fn written(lines: &[Line]) -> String {
     while let Some(first) = lines.get(at) {
         let count = lines[at..].iter().take_while(|line| goes_with(first, line)).count().max(1);
         let run = &lines[at..at + count];
-        let bodies = match &first.what {
-            What::Entity(..) => entities(run),
-            What::Let(_) => lets(run),
-            What::Attribute(_) => attributes(run),
-            What::Plain(plain) => vec![plain.clone()],
-            What::Blank | What::Comment => vec![String::new()],
+        let bodies = match &first.content {
+            LineContent::Entity(..) => entities(run),
+            LineContent::Let(_) => lets(run),
+            LineContent::Attribute(_) => attributes(run),
+            LineContent::Plain(plain) => vec![plain.clone()],
+            LineContent::Blank | LineContent::Comment => vec![String::new()],
         };
         for (line, body) in run.iter().zip(bodies) {
             let indent = "    ".repeat(line.indent);
@@ -280,18 +283,22 @@ fn written(lines: &[Line]) -> String {
 
 /// Tells whether lines have common columns.
 fn goes_with(first: &Line, line: &Line) -> bool {
-    match (&first.what, &line.what) {
-        (What::Entity(..), What::Entity(..)) | (What::Let(_), What::Let(_)) => first.indent == line.indent,
+    match (&first.content, &line.content) {
+        (LineContent::Entity(..), LineContent::Entity(..)) | (LineContent::Let(_), LineContent::Let(_)) => {
+            first.indent == line.indent
+        }
         // Comments and blank lines between attributes do not end the columns.
-        (What::Attribute(_), What::Attribute(_) | What::Comment) => first.indent == line.indent,
-        (What::Attribute(_), What::Blank) => true,
+        (LineContent::Attribute(_), LineContent::Attribute(_) | LineContent::Comment) => {
+            first.indent == line.indent
+        }
+        (LineContent::Attribute(_), LineContent::Blank) => true,
         _ => false,
     }
 }
 
 fn lets(run: &[Line]) -> Vec<String> {
-    let words = |line: &Line| match &line.what {
-        What::Let(words) => words.clone(),
+    let words = |line: &Line| match &line.content {
+        LineContent::Let(words) => words.clone(),
         _ => Default::default(),
     };
     let all: Vec<_> = run.iter().map(words).collect();
@@ -300,13 +307,13 @@ fn lets(run: &[Line]) -> Vec<String> {
 }
 
 fn attributes(run: &[Line]) -> Vec<String> {
-    let width = run.iter().filter_map(|line| match &line.what {
-        What::Attribute([name, _]) => Some(name),
+    let width = run.iter().filter_map(|line| match &line.content {
+        LineContent::Attribute([name, _]) => Some(name),
         _ => None,
     });
     let width = self::width(width, WIDEST);
-    let body = |line: &Line| match &line.what {
-        What::Attribute([name, values]) => format!("{name:width$} {values}"),
+    let body = |line: &Line| match &line.content {
+        LineContent::Attribute([name, values]) => format!("{name:width$} {values}"),
         _ => String::new(),
     };
     run.iter().map(body).collect()
@@ -316,8 +323,8 @@ fn attributes(run: &[Line]) -> Vec<String> {
 fn entities(run: &[Line]) -> Vec<String> {
     let parts: Vec<_> = run
         .iter()
-        .filter_map(|line| match &line.what {
-            What::Entity(title, attributes) => Some((title, attributes)),
+        .filter_map(|line| match &line.content {
+            LineContent::Entity(title, attributes) => Some((title, attributes)),
             _ => None,
         })
         .collect();

@@ -1,8 +1,8 @@
 //! What a word means, in Markdown.
 
-use super::names::told;
+use super::names::describe;
 use super::project::{Group, definitions};
-use super::types::{Wanted, value_name, wanted};
+use super::types::{ExpectedValue, expected_value, value_name};
 use super::view::{Attribute, Entity, Item, View, Word};
 use crate::scene::attribute;
 use crate::scene::entity;
@@ -65,8 +65,8 @@ fn value(
     word: Word,
 ) -> Option<Hover> {
     let said = view.word(word);
-    let text = match wanted(entity, known) {
-        Wanted::Choice(choices) => {
+    let text = match expected_value(entity, known) {
+        ExpectedValue::Choice(choices) => {
             let chosen = said.parse().ok().and_then(|number| choices.numbered(number));
             let chosen = chosen.or_else(|| choices.named(&said))?;
             let number = chosen.number.map(|number| format!(" ({number})")).unwrap_or_default();
@@ -77,7 +77,7 @@ fn value(
                 chosen.meaning
             )
         }
-        Wanted::Numbers if word.form == super::view::Form::Bare => {
+        ExpectedValue::Numbers if word.form == super::view::Form::Bare => {
             let index = attribute.values.iter().position(|value| *value == word)?;
             let name = value_name(known, index);
             let name = if name.is_empty() || known.arity().most() == 1 {
@@ -109,7 +109,7 @@ fn name(group: &Group, view: &View, at: usize) -> Option<Hover> {
     let file = if *path == group[0].0 { String::new() } else { format!(" of `{}`", path.display()) };
     let text = format!(
         "{} `{}`{file}\n\n```{language}\n{}\n```",
-        told(name.sort),
+        describe(name.namespace),
         definition.name.text,
         lines.join("\n")
     );

@@ -5,34 +5,34 @@ use crate::scene::kind::Kind;
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// The kinds of things that have names.
+/// The namespaces: names in different ones do not clash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Sort {
-    /// An entity of a kind.
+pub enum Namespace {
+    /// Of the entities of a kind.
     Entity(Kind),
-    /// A number, of a `let` or of a `repeat`.
+    /// Of numbers, of a `let` or of a `repeat`.
     Number,
 }
 
-/// The forms in which a name occurs in a text.
+/// The contexts in which a name occurs in a text.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Stands {
+pub enum NameContext {
     /// A word that is a key, or a word of the notes' syntax.
     Key(Word),
     /// A value.
     Value(Word),
     /// A word of a formula.
-    InFormula,
+    Formula,
 }
 
 /// A name in a text.
 #[derive(Clone, Debug)]
 pub struct Name {
-    pub sort: Sort,
+    pub namespace: Namespace,
     pub text: String,
     /// Its range, without quotes.
     pub place: Range<usize>,
-    pub stands: Stands,
+    pub context: NameContext,
 }
 
 /// The definition of a name.
@@ -54,13 +54,13 @@ pub struct Definition {
 pub struct Names {
     pub definitions: Vec<Definition>,
     pub uses: Vec<Name>,
-    pub(super) by_name: HashMap<(Sort, String), Vec<usize>>,
+    pub(super) by_name: HashMap<(Namespace, String), Vec<usize>>,
 }
 
 impl Names {
     /// Returns the indices of the definitions of exactly this name.
-    pub fn named(&self, sort: Sort, text: &str) -> &[usize] {
-        self.by_name.get(&(sort, text.to_owned())).map_or(&[], Vec::as_slice)
+    pub fn named(&self, namespace: Namespace, text: &str) -> &[usize] {
+        self.by_name.get(&(namespace, text.to_owned())).map_or(&[], Vec::as_slice)
     }
 
     /// Returns the name at a position, and the index of its definition if it is given there.

@@ -1,6 +1,6 @@
 //! The files of a scene: where the names in them are given, and where they are used.
 
-use super::names::{Definition, Name, Names, Sort, Stands, check_name, written};
+use super::names::{Definition, Name, NameContext, Names, Namespace, check_name, written};
 use super::view::{Item, View};
 use crate::files::plain;
 use std::ops::Range;
@@ -18,7 +18,7 @@ pub trait Files {
 
 /// A place in a file.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Found {
+pub struct Location {
     /// The file.
     pub path: PathBuf,
     /// The range of its text, in bytes.
@@ -78,7 +78,7 @@ fn resolved(names: &[&Names], file: usize, name: &Name) -> Option<(Id, usize)> {
             Some(_) => definition.depth >= rounds,
         };
         let candidates = (0..names.len()).flat_map(|of| {
-            let visible = names[of].named(name.sort, text).iter().map(move |index| (of, *index));
+            let visible = names[of].named(name.namespace, text).iter().map(move |index| (of, *index));
             visible.filter(|(of, index)| is_visible(*of, &names[*of].definitions[*index]))
         });
         // The innermost one is meant, and of several the last one before the use.
@@ -90,7 +90,7 @@ fn resolved(names: &[&Names], file: usize, name: &Name) -> Option<(Id, usize)> {
         if let Some(id) = candidates.max_by_key(nearness) {
             return Some((id, name.text.len() - text.len()));
         }
-        if !matches!(name.sort, Sort::Entity(_)) {
+        if !matches!(name.namespace, Namespace::Entity(_)) {
             return None;
         }
         let (before, round) = text.rsplit_once('_')?;
@@ -112,9 +112,9 @@ fn all_names(group: &Group) -> Vec<&Names> {
 }
 
 /// Returns where the name at a position of the group's first file is given.
-pub fn definitions(group: &Group, at: usize) -> Vec<Found> {
+pub fn definitions(group: &Group, at: usize) -> Vec<Location> {
     let names = all_names(group);
-    let found = definition(&names, at).map(|(file, index)| Found {
+    let found = definition(&names, at).map(|(file, index)| Location {
         path: group[file].0.clone(),
         place: names[file].definitions[index].name.place.clone(),
     });
@@ -122,12 +122,12 @@ pub fn definitions(group: &Group, at: usize) -> Vec<Found> {
 }
 
 /// Returns the file whose name in an `include` is at a position.
-fn included(group: &Group, at: usize) -> Option<Found> {
+fn included(group: &Group, at: usize) -> Option<Location> {
     let (path, view) = group.first()?;
     let Some(Item::Include(include)) = view.at(at) else { return None };
     let word = include.files.iter().find(|word| word.has(at))?;
     let file = plain(&path.with_file_name(view.word(*word).as_ref()));
-    group.iter().any(|(known, _)| *known == file).then_some(Found { path: file, place: 0..0 })
+    group.iter().any(|(known, _)| *known == file).then_some(Location { path: file, place: 0..0 })
 }
 
 /// A use of a name: the file, the name, the letters at its end that are the numbers of rounds.
@@ -140,7 +140,9 @@ fn uses<'n>(names: &[&'n Names], id: Id, with_definition: bool) -> Vec<Use<'n>> 
         found.extend(std::iter::once(&defined.name).chain(&defined.again).map(|name| (id.0, name, 0)));
     }
     for (file, all) in names.iter().enumerate() {
-        let like = |name: &&Name| name.sort == defined.name.sort && name.text.starts_with(&defined.name.text);
+        let like = |name: &&Name| {
+            name.namespace == defined.name.namespace && name.text.starts_with(&defined.name.text)
+        };
         for name in all.uses.iter().filter(like) {
             if let Some((meant, rounds)) = resolved(names, file, name)
                 && meant == id
@@ -154,10 +156,11 @@ fn uses<'n>(names: &[&'n Names], id: Id, with_definition: bool) -> Vec<Use<'n>> 
 }
 
 /// Returns where the name at a position of the group's first file is used.
-pub fn usages(group: &Group, at: usize, with_definition: bool) -> Vec<Found> {
+pub fn usages(group: &Group, at: usize, with_definition: bool) -> Vec<Location> {
     let names = all_names(group);
     let Some(id) = definition(&names, at) else { return Vec::new() };
-    let found = |(file, name, _): Use<'_>| Found { path: group[file].0.clone(), place: name.place.clone() };
+    let found =
+        |(file, name, _): Use<'_>| Location { path: group[file].0.clone(), place: name.place.clone() };
     uses(&names, id, with_definition).into_iter().map(found).collect()
 }
 
@@ -165,32 +168,32 @@ pub fn usages(group: &Group, at: usize, with_definition: bool) -> Vec<Found> {
 ///
 /// # Errors
 /// Why it cannot.
-pub fn renamed(group: &Group, at: usize, new: &str) -> Result<Vec<(Found, String)>, String> {
+pub fn renamed(group: &Group, at: usize, new: &str) -> Result<Vec<(Location, String)>, String> {
     let names = all_names(group);
     let id = definition(&names, at).ok_or("there is no name of the scene here")?;
     let defined = &names[id.0].definitions[id.1];
-    check_name(defined.name.sort, new)?;
+    check_name(defined.name.namespace, new)?;
     if new == defined.name.text {
         return Ok(Vec::new());
     }
     let is_taken = |(file, all): (usize, &&Names)| {
-        all.named(defined.name.sort, new).iter().any(|index| {
+        all.named(defined.name.namespace, new).iter().any(|index| {
             let other = &all.definitions[*index];
             let may_meet = |scope: &Range<usize>| file == id.0 && scope.contains(&defined.name.place.start);
             other.scope.as_ref().is_none_or(may_meet)
         })
     };
     if names.iter().enumerate().any(is_taken) {
-        return Err(format!("there is a {} `{new}` already", super::names::told(defined.name.sort)));
+        return Err(format!("there is a {} `{new}` already", super::names::describe(defined.name.namespace)));
     }
     let change = |(file, name, rounds): Use<'_>| {
         let (path, view) = &group[file];
         let text = format!("{new}{}", &name.text[name.text.len() - rounds..]);
-        let place = match name.stands {
-            Stands::Key(word) | Stands::Value(word) => word.place(),
-            Stands::InFormula => name.place.clone(),
+        let place = match name.context {
+            NameContext::Key(word) | NameContext::Value(word) => word.place(),
+            NameContext::Formula => name.place.clone(),
         };
-        (Found { path: path.clone(), place }, written(view.syntax, name.stands, &text))
+        (Location { path: path.clone(), place }, written(view.syntax, name.context, &text))
     };
     Ok(uses(&names, id, true).into_iter().map(change).collect())
 }

@@ -1,6 +1,6 @@
 //! Texts with places to fill in, as editors write them: `radius ${1:N}`.
 
-use super::types::{Wanted, value_name, wanted};
+use super::types::{ExpectedValue, expected_value, value_name};
 use super::view::{Entity, View};
 use crate::scene::attribute::Attribute;
 use crate::scene::entity;
@@ -50,8 +50,8 @@ impl<'v> Snippet<'v> {
     /// Adds the values of an attribute.
     pub fn values(&mut self, entity: &Entity, attribute: &dyn Attribute) {
         let syntax = self.view.syntax;
-        match wanted(entity, attribute) {
-            Wanted::Numbers => {
+        match expected_value(entity, attribute) {
+            ExpectedValue::Numbers => {
                 let count = attribute.arity().examples().first().copied().unwrap_or(1);
                 let is_array = syntax == Syntax::Toml && count > 1;
                 self.text += if is_array { "[" } else { "" };
@@ -64,20 +64,20 @@ impl<'v> Snippet<'v> {
                 }
                 self.text += if is_array { "]" } else { "" };
             }
-            Wanted::Name(kind) => {
+            ExpectedValue::Name(kind) => {
                 let all = (self.names)(kind);
                 // The last one is the one that was defined for this.
                 let all: Vec<_> = all.into_iter().rev().collect();
                 self.quoted(|snippet| snippet.one_of(&all, &kind.to_string()));
             }
-            Wanted::Choice(choices) => {
+            ExpectedValue::Choice(choices) => {
                 let all: Vec<_> = choices.all().iter().map(|choice| choice.name.to_owned()).collect();
                 self.quoted(|snippet| snippet.one_of(&all, choices.what));
             }
-            Wanted::Truth => self.one_of(&super::types::truths(self.view).map(str::to_owned), ""),
-            Wanted::File => self.quoted(|snippet| snippet.place("FILE")),
-            Wanted::Word => self.quoted(|snippet| snippet.place("WORD")),
-            Wanted::Formula(_) => {
+            ExpectedValue::Truth => self.one_of(&super::types::truths(self.view).map(str::to_owned), ""),
+            ExpectedValue::File => self.quoted(|snippet| snippet.place("FILE")),
+            ExpectedValue::Word => self.quoted(|snippet| snippet.place("WORD")),
+            ExpectedValue::Formula(_) => {
                 let usage = syntax.usage(attribute);
                 let formula = usage.split('"').nth(1).unwrap_or("0").to_owned();
                 self.text.push('"');

@@ -153,7 +153,7 @@ fn open(files: &[(&Path, &str)]) -> Open {
 }
 
 /// Applies changes of one file to its text.
-fn changed(text: &str, path: &Path, mut changes: Vec<(Found, String)>) -> String {
+fn changed(text: &str, path: &Path, mut changes: Vec<(Location, String)>) -> String {
     let mut text = text.to_owned();
     changes.sort_by_key(|(found, _)| std::cmp::Reverse(found.place.start));
     for (found, with) in changes {
@@ -175,7 +175,7 @@ fn a_name_that_is_changed_there_and_back_leaves_the_text_as_it_was() {
         for definition in all.definitions.iter().take(20) {
             // Lights may share a name, and quotes that a name does not need are not written again.
             let at = definition.name.place.start;
-            let is_shared = all.named(definition.name.sort, &definition.name.text).len() > 1;
+            let is_shared = all.named(definition.name.namespace, &definition.name.text).len() > 1;
             if is_shared || text[..at].ends_with(['"', '\'']) {
                 continue;
             }
@@ -213,7 +213,7 @@ fn ask(path: &Path, text: &Text, at: usize) {
     for (found, _) in renamed(&group, at, "other").into_iter().flatten() {
         check(&found.place);
     }
-    meant(&view, at).iter().for_each(|meant| check(&meant.place));
+    name_at_cursor(&view, at).iter().for_each(|meant| check(&meant.place));
     hints(&view, &(0..length)).iter().for_each(|hint| check(&(hint.at..hint.at)));
     for swatch in colours(&view) {
         check(&swatch.place);

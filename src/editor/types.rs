@@ -6,9 +6,9 @@ use crate::scene::choice::Choices;
 use crate::scene::kind::Kind;
 use crate::scene::value::Type;
 
-/// The values that an attribute takes.
+/// The values that an attribute expects.
 #[derive(Clone, Copy)]
-pub enum Wanted {
+pub enum ExpectedValue {
     /// Numbers, or formulas of named numbers in quotes.
     Numbers,
     /// A formula in these variables.
@@ -26,17 +26,17 @@ pub enum Wanted {
 }
 
 /// Returns the values that an attribute takes.
-pub fn wanted(entity: &Entity, attribute: &dyn Attribute) -> Wanted {
+pub fn expected_value(entity: &Entity, attribute: &dyn Attribute) -> ExpectedValue {
     match attribute.value_type() {
-        Type::Whole | Type::Number | Type::Rotation => Wanted::Numbers,
-        Type::Formula(variables) => Wanted::Formula(variables),
-        Type::File => Wanted::File,
+        Type::Whole | Type::Number | Type::Rotation => ExpectedValue::Numbers,
+        Type::Formula(variables) => ExpectedValue::Formula(variables),
+        Type::File => ExpectedValue::File,
         // What a texture is read from is a file, whatever the type of its name.
-        Type::Word if entity.known.is_some_and(|known| known.kind() == Kind::Texture) => Wanted::File,
-        Type::Word => Wanted::Word,
-        Type::Name(kind) => Wanted::Name(kind),
-        Type::Choice(choices) => Wanted::Choice(choices),
-        Type::Truth => Wanted::Truth,
+        Type::Word if entity.known.is_some_and(|known| known.kind() == Kind::Texture) => ExpectedValue::File,
+        Type::Word => ExpectedValue::Word,
+        Type::Name(kind) => ExpectedValue::Name(kind),
+        Type::Choice(choices) => ExpectedValue::Choice(choices),
+        Type::Truth => ExpectedValue::Truth,
     }
 }
 

@@ -3,9 +3,10 @@
 use super::documents::{Document, Documents};
 use super::faults::{Faults, diagnostic};
 use super::protocol::{
-    Entry, FoldedLines, HintedValue, Question, Span, Swatch, markdown, path, range, span, text_of,
+    ColorInformation, DocumentSymbol, FoldingRange, InlayHint, RequestParams, Span, markdown, path, range,
+    span, text_of,
 };
-use crate::editor::{self, Files, Found, Group, Position, View, What};
+use crate::editor::{self, CompletionKind, Files, Group, Location, Position, View};
 use crate::scene::syntax::Syntax;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -21,19 +22,19 @@ pub struct Server<'r> {
     has_snippets: bool,
 }
 
-/// A question about a text: where it is, and what it says.
-struct Asked {
+/// A request about a text: its parameters, and the text.
+struct TextRequest {
     path: PathBuf,
     view: Arc<View>,
     /// The position, in bytes.
     at: usize,
-    question: Question,
+    params: RequestParams,
 }
 
-impl Asked {
-    /// Returns the range that the question is about, in bytes.
+impl TextRequest {
+    /// Returns the range that the request is about, in bytes.
     fn range(&self) -> Range<usize> {
-        let Span { start, end } = self.question.range;
+        let Span { start, end } = self.params.range;
         let [start, end] = [start, end].map(|position: Position| self.view.text.offset(position));
         start..end.max(start)
     }
@@ -49,8 +50,8 @@ impl<'r> Server<'r> {
 
     /// Takes note of what happens in the editor.
     pub fn note(&mut self, method: &str, parameters: Value) {
-        let Ok(question) = serde_json::from_value::<Question>(parameters) else { return };
-        let Question { text_document: document, content_changes, .. } = question;
+        let Ok(params) = serde_json::from_value::<RequestParams>(parameters) else { return };
+        let RequestParams { text_document: document, content_changes, .. } = params;
         let path = path(&document.uri);
         match method {
             "textDocument/didOpen" => {
@@ -89,13 +90,13 @@ impl<'r> Server<'r> {
         }
     }
 
-    /// Answers a question in JSON; `None` where it is not known.
+    /// Answers a request in JSON; `None` where its method is not known.
     ///
     /// # Errors
     /// Why there is no answer.
     pub fn answer(&mut self, method: &str, parameters: Value) -> Result<Option<String>, String> {
         // A large scene has thousands of these, so they are written without a tree of values in between.
-        let large: Option<fn(&Asked) -> String> = match method {
+        let large: Option<fn(&TextRequest) -> String> = match method {
             "textDocument/documentSymbol" => Some(Self::symbols),
             "textDocument/foldingRange" => Some(Self::folds),
             "textDocument/documentColor" => Some(Self::colours),
@@ -104,9 +105,9 @@ impl<'r> Server<'r> {
         };
         if let Some(answer) = large {
             return Ok(Some(
-                self.asked(parameters)?
-                    .filter(|asked| asked.view.is_scene())
-                    .map_or_else(|| text_of(&Value::Null), |asked| answer(&asked)),
+                self.request(parameters)?
+                    .filter(|request| request.view.is_scene())
+                    .map_or_else(|| text_of(&Value::Null), |request| answer(&request)),
             ));
         }
         let answer = match method {
@@ -123,37 +124,38 @@ impl<'r> Server<'r> {
             "textDocument/codeAction" => Self::actions,
             _ => return Ok(None),
         };
-        let asked = self.asked(parameters)?;
-        let asked = asked.filter(|asked| asked.view.is_scene() || method == "textDocument/completion");
-        asked.map_or(Ok(Value::Null), |asked| answer(self, &asked)).map(|answer| Some(text_of(&answer)))
+        let request = self.request(parameters)?;
+        let request =
+            request.filter(|request| request.view.is_scene() || method == "textDocument/completion");
+        request.map_or(Ok(Value::Null), |request| answer(self, &request)).map(|answer| Some(text_of(&answer)))
     }
 
-    /// Reads a question; `None` where its text is not known.
-    fn asked(&self, parameters: Value) -> Result<Option<Asked>, String> {
-        let question: Question = serde_json::from_value(parameters).map_err(|error| error.to_string())?;
-        let path = path(&question.text_document.uri);
+    /// Reads a request; `None` where its text is not known.
+    fn request(&self, parameters: Value) -> Result<Option<TextRequest>, String> {
+        let params: RequestParams = serde_json::from_value(parameters).map_err(|error| error.to_string())?;
+        let path = path(&params.text_document.uri);
         let Some(view) = self.documents.view(&path) else { return Ok(None) };
-        let at = view.text.offset(question.position);
-        Ok(Some(Asked { path, view, at, question }))
+        let at = view.text.offset(params.position);
+        Ok(Some(TextRequest { path, view, at, params }))
     }
 
-    fn group(&self, asked: &Asked) -> Group {
-        editor::group(&self.documents, &asked.path, &self.documents.paths())
+    fn group(&self, request: &TextRequest) -> Group {
+        editor::group(&self.documents, &request.path, &self.documents.paths())
     }
 
-    fn completion(&self, asked: &Asked) -> Result<Value, String> {
-        let proposals = editor::completions(self.documents.registry(), &self.group(asked), asked.at);
+    fn completion(&self, request: &TextRequest) -> Result<Value, String> {
+        let proposals = editor::completions(self.documents.registry(), &self.group(request), request.at);
         let item = |(index, proposal): (usize, editor::Completion)| {
-            let kind = match proposal.what {
-                What::Type => 7,
-                What::Attribute => 10,
-                What::Choice => 20,
-                What::Name => 18,
-                What::File => 17,
-                What::Folder => 19,
-                What::Number => 21,
-                What::Function => 3,
-                What::Keyword => 14,
+            let kind = match proposal.kind {
+                CompletionKind::Type => 7,
+                CompletionKind::Attribute => 10,
+                CompletionKind::Choice => 20,
+                CompletionKind::Name => 18,
+                CompletionKind::File => 17,
+                CompletionKind::Folder => 19,
+                CompletionKind::Number => 21,
+                CompletionKind::Function => 3,
+                CompletionKind::Keyword => 14,
             };
             let text = match proposal.has_places && !self.has_snippets {
                 true => &proposal.label,
@@ -164,7 +166,7 @@ impl<'r> Server<'r> {
                 "kind": kind,
                 "sortText": format!("{index:05}"),
                 "insertTextFormat": if proposal.has_places && self.has_snippets { 2 } else { 1 },
-                "textEdit": { "range": range(&asked.view.text, &proposal.place), "newText": text },
+                "textEdit": { "range": range(&request.view.text, &proposal.place), "newText": text },
             });
             if !proposal.detail.is_empty() {
                 item["detail"] = proposal.detail.into();
@@ -177,15 +179,15 @@ impl<'r> Server<'r> {
         Ok(proposals.into_iter().enumerate().map(item).collect::<Vec<_>>().into())
     }
 
-    fn hover(&self, asked: &Asked) -> Result<Value, String> {
-        let hover = editor::hover(&self.group(asked), asked.at);
+    fn hover(&self, request: &TextRequest) -> Result<Value, String> {
+        let hover = editor::hover(&self.group(request), request.at);
         Ok(hover.map_or(Value::Null, |hover| {
-            json!({ "contents": markdown(&hover.text), "range": range(&asked.view.text, &hover.place) })
+            json!({ "contents": markdown(&hover.text), "range": range(&request.view.text, &hover.place) })
         }))
     }
 
-    fn signature(&self, asked: &Asked) -> Result<Value, String> {
-        let Some(signature) = editor::signature(&asked.view, asked.at) else { return Ok(Value::Null) };
+    fn signature(&self, request: &TextRequest) -> Result<Value, String> {
+        let Some(signature) = editor::signature(&request.view, request.at) else { return Ok(Value::Null) };
         let values: Vec<_> =
             signature.values.iter().map(|value| json!({ "label": [value.start, value.end] })).collect();
         Ok(json!({
@@ -199,42 +201,43 @@ impl<'r> Server<'r> {
         }))
     }
 
-    fn located(&self, group: &Group, found: &Found) -> Value {
+    fn located(&self, group: &Group, found: &Location) -> Value {
         let view = group.iter().find(|(path, _)| *path == found.path).map(|(_, view)| view);
         let range = view.map_or(Value::Null, |view| range(&view.text, &found.place));
         json!({ "uri": self.documents.uri(&found.path), "range": range })
     }
 
-    fn definition(&self, asked: &Asked) -> Result<Value, String> {
-        let group = self.group(asked);
-        Ok(editor::definitions(&group, asked.at).iter().map(|found| self.located(&group, found)).collect())
+    fn definition(&self, request: &TextRequest) -> Result<Value, String> {
+        let group = self.group(request);
+        Ok(editor::definitions(&group, request.at).iter().map(|found| self.located(&group, found)).collect())
     }
 
-    fn references(&self, asked: &Asked) -> Result<Value, String> {
-        let group = self.group(asked);
-        let with_definition = asked.question.context.include_declaration;
-        let found = editor::usages(&group, asked.at, with_definition);
+    fn references(&self, request: &TextRequest) -> Result<Value, String> {
+        let group = self.group(request);
+        let with_definition = request.params.context.include_declaration;
+        let found = editor::usages(&group, request.at, with_definition);
         Ok(found.iter().map(|found| self.located(&group, found)).collect())
     }
 
-    fn highlights(&self, asked: &Asked) -> Result<Value, String> {
-        let found = editor::usages(&self.group(asked), asked.at, true);
-        let here = found.iter().filter(|found| found.path == asked.path);
-        Ok(here.map(|found| json!({ "range": range(&asked.view.text, &found.place) })).collect())
+    fn highlights(&self, request: &TextRequest) -> Result<Value, String> {
+        let found = editor::usages(&self.group(request), request.at, true);
+        let here = found.iter().filter(|found| found.path == request.path);
+        Ok(here.map(|found| json!({ "range": range(&request.view.text, &found.place) })).collect())
     }
 
-    fn prepare_rename(&self, asked: &Asked) -> Result<Value, String> {
-        let meant = editor::meant(&asked.view, asked.at).ok_or("there is no name of the scene here")?;
-        if editor::definitions(&self.group(asked), asked.at).is_empty() {
-            return Err(format!("the {} `{}` is not defined", meant.what, meant.text));
+    fn prepare_rename(&self, request: &TextRequest) -> Result<Value, String> {
+        let meant =
+            editor::name_at_cursor(&request.view, request.at).ok_or("there is no name of the scene here")?;
+        if editor::definitions(&self.group(request), request.at).is_empty() {
+            return Err(format!("the {} `{}` is not defined", meant.kind, meant.text));
         }
-        Ok(json!({ "range": range(&asked.view.text, &meant.place), "placeholder": meant.text }))
+        Ok(json!({ "range": range(&request.view.text, &meant.place), "placeholder": meant.text }))
     }
 
-    fn rename(&self, asked: &Asked) -> Result<Value, String> {
-        let group = self.group(asked);
+    fn rename(&self, request: &TextRequest) -> Result<Value, String> {
+        let group = self.group(request);
         let mut changes: BTreeMap<String, Vec<Value>> = BTreeMap::new();
-        for (found, text) in editor::renamed(&group, asked.at, &asked.question.new_name)? {
+        for (found, text) in editor::renamed(&group, request.at, &request.params.new_name)? {
             let mut edit = self.located(&group, &found);
             let uri = edit["uri"].as_str().unwrap_or_default().to_owned();
             changes.entry(uri).or_default().push(json!({ "range": edit["range"].take(), "newText": text }));
@@ -242,22 +245,24 @@ impl<'r> Server<'r> {
         Ok(json!({ "changes": changes }))
     }
 
-    fn symbols(asked: &Asked) -> String {
-        let outline = editor::outline(&asked.view);
-        text_of(&outline.iter().map(|entry| Entry::of(&asked.view.text, entry)).collect::<Vec<_>>())
+    fn symbols(request: &TextRequest) -> String {
+        let outline = editor::outline(&request.view);
+        text_of(
+            &outline.iter().map(|entry| DocumentSymbol::of(&request.view.text, entry)).collect::<Vec<_>>(),
+        )
     }
 
-    fn folds(asked: &Asked) -> String {
-        text_of(&editor::folds(&asked.view).iter().map(FoldedLines::of).collect::<Vec<_>>())
+    fn folds(request: &TextRequest) -> String {
+        text_of(&editor::folds(&request.view).iter().map(FoldingRange::of).collect::<Vec<_>>())
     }
 
-    fn format(&self, asked: &Asked) -> Result<Value, String> {
-        let Some(new) = editor::formatted(&asked.view) else {
-            let what = editor::problem(&asked.view).map_or_else(String::new, |(_, message)| message);
+    fn format(&self, request: &TextRequest) -> Result<Value, String> {
+        let Some(new) = editor::formatted(&request.view) else {
+            let what = editor::problem(&request.view).map_or_else(String::new, |(_, message)| message);
             return Err(format!("a scene with syntax errors cannot be formatted: {what}"));
         };
         // What is the same at the beginning and at the end stays, and the cursor with it.
-        let old = asked.view.text.as_str();
+        let old = request.view.text.as_str();
         let same = |one: &mut dyn Iterator<Item = &str>, other: &mut dyn Iterator<Item = &str>| -> usize {
             one.zip(other).take_while(|(one, other)| one == other).map(|(one, _)| one.len()).sum()
         };
@@ -268,46 +273,53 @@ impl<'r> Server<'r> {
             return Ok(json!([]));
         }
         let place = start..old.len() - end;
-        Ok(json!([{ "range": range(&asked.view.text, &place), "newText": new_rest[..new_rest.len() - end] }]))
+        Ok(
+            json!([{ "range": range(&request.view.text, &place), "newText": new_rest[..new_rest.len() - end] }]),
+        )
     }
 
-    fn colours(asked: &Asked) -> String {
-        let colours = editor::colours(&asked.view);
-        text_of(&colours.iter().map(|swatch| Swatch::of(&asked.view.text, swatch)).collect::<Vec<_>>())
+    fn colours(request: &TextRequest) -> String {
+        let colours = editor::colours(&request.view);
+        text_of(
+            &colours
+                .iter()
+                .map(|swatch| ColorInformation::of(&request.view.text, swatch))
+                .collect::<Vec<_>>(),
+        )
     }
 
-    fn presentations(&self, asked: &Asked) -> Result<Value, String> {
-        let place = asked.range();
-        let colour = asked.question.color;
-        let text = editor::presented(&asked.view, &place, [colour.red, colour.green, colour.blue]);
+    fn presentations(&self, request: &TextRequest) -> Result<Value, String> {
+        let place = request.range();
+        let colour = request.params.color;
+        let text = editor::presented(&request.view, &place, [colour.red, colour.green, colour.blue]);
         let edit =
-            json!({ "range": span([asked.question.range.start, asked.question.range.end]), "newText": text });
+            json!({ "range": span([request.params.range.start, request.params.range.end]), "newText": text });
         Ok(json!([{ "label": text, "textEdit": edit }]))
     }
 
-    fn hints(asked: &Asked) -> String {
-        let hints = editor::hints(&asked.view, &asked.range());
-        text_of(&hints.iter().map(|hint| HintedValue::of(&asked.view.text, hint)).collect::<Vec<_>>())
+    fn hints(request: &TextRequest) -> String {
+        let hints = editor::hints(&request.view, &request.range());
+        text_of(&hints.iter().map(|hint| InlayHint::of(&request.view.text, hint)).collect::<Vec<_>>())
     }
 
     /// Returns the corrections of the errors in a range.
-    fn actions(&self, asked: &Asked) -> Result<Value, String> {
-        let wanted = asked.range();
+    fn actions(&self, request: &TextRequest) -> Result<Value, String> {
+        let wanted = request.range();
         let mut actions = Vec::new();
-        for fault in self.faults.in_file(&asked.path) {
-            let place = asked.view.text.offset(fault.range[0])..asked.view.text.offset(fault.range[1]);
+        for fault in self.faults.in_file(&request.path) {
+            let place = request.view.text.offset(fault.range[0])..request.view.text.offset(fault.range[1]);
             // The text may have changed since it was read.
-            let is_there = asked.view.slice(place.clone()) == fault.marked;
+            let is_there = request.view.slice(place.clone()) == fault.marked;
             let Some(meant) = fault.meant.as_ref().filter(|_| is_there) else { continue };
             if place.end < wanted.start || place.start > wanted.end {
                 continue;
             }
             let text = match fault.marked.chars().next().filter(|first| "\"'".contains(*first)) {
                 Some(quote) => format!("{quote}{meant}{quote}"),
-                None => Syntax::key(asked.view.syntax, meant),
+                None => Syntax::key(request.view.syntax, meant),
             };
-            let edit = json!({ "range": range(&asked.view.text, &place), "newText": text });
-            let uri = self.documents.uri(&asked.path);
+            let edit = json!({ "range": range(&request.view.text, &place), "newText": text });
+            let uri = self.documents.uri(&request.path);
             actions.push(json!({
                 "title": format!("change to `{meant}`"),
                 "kind": "quickfix",

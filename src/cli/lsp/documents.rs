@@ -1,6 +1,6 @@
 //! The texts that are open in the editor, and the files beside them.
 
-use super::protocol::{Change, path};
+use super::protocol::{ContentChange, path};
 use crate::editor::{self, Files, Text, View};
 use crate::files;
 use crate::scene::registry::Registry;
@@ -77,9 +77,9 @@ impl<'r> Documents<'r> {
     }
 
     /// Changes a text.
-    pub fn change(&mut self, path: &Path, version: i64, changes: &[Change]) {
+    pub fn change(&mut self, path: &Path, version: i64, changes: &[ContentChange]) {
         let Some(document) = self.open.get_mut(path) else { return };
-        for Change { range, text } in changes {
+        for ContentChange { range, text } in changes {
             document.text = match range {
                 None => Text::new(text.as_str()),
                 Some(range) => {

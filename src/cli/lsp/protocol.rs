@@ -11,19 +11,19 @@ use std::path::{Path, PathBuf};
 /// The parameters of a request of any kind; those that a request does not have get a default.
 #[derive(Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
-pub struct Question {
-    pub text_document: Document,
+pub struct RequestParams {
+    pub text_document: TextDocument,
     pub position: Position,
     pub range: Span,
     pub new_name: String,
     pub color: Colour,
-    pub context: Context,
-    pub content_changes: Vec<Change>,
+    pub context: ReferenceContext,
+    pub content_changes: Vec<ContentChange>,
 }
 
 #[derive(Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
-pub struct Document {
+pub struct TextDocument {
     pub uri: String,
     pub version: i64,
     pub text: String,
@@ -46,13 +46,13 @@ pub struct Colour {
 
 #[derive(Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
-pub struct Context {
+pub struct ReferenceContext {
     pub include_declaration: bool,
 }
 
 #[derive(Default, Deserialize)]
 #[serde(default)]
-pub struct Change {
+pub struct ContentChange {
     pub range: Option<Span>,
     pub text: String,
 }
@@ -80,16 +80,16 @@ pub fn capabilities() -> Value {
 /// An entry of the outline.
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
-pub struct Entry<'s> {
+pub struct DocumentSymbol<'s> {
     name: &'s str,
     detail: &'s str,
     kind: u8,
     range: Span,
     selection_range: Span,
-    children: Vec<Entry<'s>>,
+    children: Vec<DocumentSymbol<'s>>,
 }
 
-impl<'s> Entry<'s> {
+impl<'s> DocumentSymbol<'s> {
     pub fn of(text: &Text, symbol: &'s Symbol) -> Self {
         let kind = match symbol.kind {
             Some(Kind::Camera) => 8,
@@ -115,14 +115,14 @@ impl<'s> Entry<'s> {
 /// Lines that can be folded.
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
-pub struct FoldedLines {
+pub struct FoldingRange {
     start_line: usize,
     end_line: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     kind: Option<&'static str>,
 }
 
-impl FoldedLines {
+impl FoldingRange {
     pub fn of(fold: &Fold) -> Self {
         let [start_line, end_line] = fold.lines;
         Self { start_line, end_line, kind: fold.is_comment.then_some("comment") }
@@ -131,7 +131,7 @@ impl FoldedLines {
 
 /// A colour in a text.
 #[derive(Serialize)]
-pub struct Swatch {
+pub struct ColorInformation {
     range: Span,
     color: Rgba,
 }
@@ -144,7 +144,7 @@ struct Rgba {
     alpha: f64,
 }
 
-impl Swatch {
+impl ColorInformation {
     pub fn of(text: &Text, swatch: &editor::Swatch) -> Self {
         let [red, green, blue] = swatch.colour;
         Self { range: Span::of(text, &swatch.place), color: Rgba { red, green, blue, alpha: 1.0 } }
@@ -154,14 +154,14 @@ impl Swatch {
 /// The name of a value, shown before it.
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
-pub struct HintedValue {
+pub struct InlayHint {
     position: Position,
     label: String,
     kind: u8,
     padding_right: bool,
 }
 
-impl HintedValue {
+impl InlayHint {
     pub fn of(text: &Text, hint: &Hint) -> Self {
         let label = format!("{}:", hint.name);
         Self { position: text.position(hint.at), label, kind: 2, padding_right: true }

@@ -1,12 +1,12 @@
 //! The files and folders that a scene can name.
 
-use super::proposal::{At, Completion, What, plain};
+use super::proposal::{Completion, CompletionContext, CompletionKind, plain};
 use std::path::Path;
 
 /// The most files of a folder that are proposed.
 const MOST_FILES: usize = 1000;
 
-impl At<'_> {
+impl CompletionContext<'_> {
     /// Returns the files and folders in the folder that is being named.
     pub(super) fn files(&self) -> Vec<Completion> {
         let text = self.view.text.as_str();
@@ -26,7 +26,7 @@ impl At<'_> {
         names.sort_unstable();
         let proposal = |(name, is_folder): (String, bool)| {
             let label = if is_folder { format!("{name}/") } else { name };
-            plain(&label, if is_folder { What::Folder } else { What::File }, &place)
+            plain(&label, if is_folder { CompletionKind::Folder } else { CompletionKind::File }, &place)
         };
         names.into_iter().map(proposal).collect()
     }

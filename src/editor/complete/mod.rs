@@ -11,14 +11,14 @@ use super::project::Group;
 use super::view::View;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
-use proposal::At;
-pub use proposal::{Completion, What};
+use proposal::CompletionContext;
+pub use proposal::{Completion, CompletionKind};
 
 /// Returns the completions at a position of the group's first file.
 pub fn completions(registry: &Registry, group: &Group, at: usize) -> Vec<Completion> {
     let Some((path, view)) = group.first() else { return Vec::new() };
     let at = crate::text::boundary(view.text.as_str(), at);
-    let here = At { registry, view, group, folder: path.parent().unwrap_or(path), at };
+    let here = CompletionContext { registry, view, group, folder: path.parent().unwrap_or(path), at };
     if in_comment(view, at) {
         return Vec::new();
     }

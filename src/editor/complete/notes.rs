@@ -1,11 +1,11 @@
 //! What can be written at a position of a text in the notes' syntax.
 
-use super::proposal::{At, Completion};
-use crate::editor::types::{Wanted, wanted};
+use super::proposal::{Completion, CompletionContext};
+use crate::editor::types::{ExpectedValue, expected_value};
 use crate::editor::view::{Entity, Form, Item};
 use crate::scene::reader::keyword::Keyword;
 
-impl At<'_> {
+impl CompletionContext<'_> {
     pub(super) fn in_notes(&self) -> Vec<Completion> {
         match self.view.at(self.at) {
             Some(Item::Entity(entity)) if self.is_in(&entity.body) => self.in_entity(entity),
@@ -51,8 +51,8 @@ impl At<'_> {
         let before = last.values.iter().filter(|word| word.end < self.at).count();
         let at_value = last.values.iter().find(|word| word.has(self.at));
         let is_full = before >= known.arity().most();
-        match wanted(entity, known) {
-            Wanted::Numbers | Wanted::Formula(_) => match at_value {
+        match expected_value(entity, known) {
+            ExpectedValue::Numbers | ExpectedValue::Formula(_) => match at_value {
                 Some(word) if word.form != Form::Bare => self.value(entity),
                 _ if known.arity().allow(before) => self.attributes(entity),
                 _ => Vec::new(),

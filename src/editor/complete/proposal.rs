@@ -1,6 +1,6 @@
 //! Proposals, and the position at which they are made.
 
-use crate::editor::names::Sort;
+use crate::editor::names::Namespace;
 use crate::editor::project::Group;
 use crate::editor::view::View;
 use crate::scene::kind::Kind;
@@ -9,9 +9,9 @@ use crate::scene::syntax::Syntax;
 use std::ops::Range;
 use std::path::Path;
 
-/// The kind of a proposal.
+/// The kind of a completion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum What {
+pub enum CompletionKind {
     Type,
     Attribute,
     Choice,
@@ -28,7 +28,7 @@ pub enum What {
 pub struct Completion {
     /// The text that is shown, and compared with what was typed.
     pub label: String,
-    pub what: What,
+    pub kind: CompletionKind,
     /// A few words beside the label.
     pub detail: String,
     /// More about it, in Markdown.
@@ -41,8 +41,8 @@ pub struct Completion {
     pub place: Range<usize>,
 }
 
-/// A position at which something is to be proposed.
-pub(super) struct At<'v> {
+/// A position at which something is to be completed, and what surrounds it.
+pub(super) struct CompletionContext<'v> {
     pub(super) registry: &'v Registry,
     pub(super) view: &'v View,
     pub(super) group: &'v Group,
@@ -51,10 +51,10 @@ pub(super) struct At<'v> {
 }
 
 /// Returns a proposal that is written as it is shown.
-pub(super) fn plain(label: &str, what: What, place: &Range<usize>) -> Completion {
+pub(super) fn plain(label: &str, kind: CompletionKind, place: &Range<usize>) -> Completion {
     Completion {
         label: label.to_owned(),
-        what,
+        kind,
         detail: String::new(),
         about: String::new(),
         snippet: label.to_owned(),
@@ -63,7 +63,7 @@ pub(super) fn plain(label: &str, what: What, place: &Range<usize>) -> Completion
     }
 }
 
-impl At<'_> {
+impl CompletionContext<'_> {
     /// Returns the range of the word that is being written.
     pub(super) fn prefix(&self) -> Range<usize> {
         let is_end = |c: char| {
@@ -95,7 +95,7 @@ impl At<'_> {
                 let is_visible =
                     definition.scope.as_ref().is_none_or(|scope| index == 0 && scope.contains(&self.at));
                 let is_before = index > 0 || definition.whole.end <= self.at;
-                definition.name.sort == Sort::Entity(kind) && is_before && is_visible
+                definition.name.namespace == Namespace::Entity(kind) && is_before && is_visible
             });
             names.extend(usable.map(|definition| definition.name.text.clone()));
         }

@@ -1,10 +1,10 @@
 //! What can be written at a position of a text in TOML.
 
-use super::proposal::{At, Completion};
+use super::proposal::{Completion, CompletionContext};
 use crate::editor::view::{Attribute, Entity, Item};
 use crate::scene::reader::keyword::Keyword;
 
-impl At<'_> {
+impl CompletionContext<'_> {
     pub(super) fn in_toml(&self) -> Vec<Completion> {
         let text = self.view.text.as_str();
         let line = text[..self.at].rfind('\n').map_or(0, |end| end + 1);

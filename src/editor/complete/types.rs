@@ -1,11 +1,11 @@
 //! The types of entities, and the words that begin something else.
 
-use super::proposal::{At, Completion, What, plain};
+use super::proposal::{Completion, CompletionContext, CompletionKind, plain};
 use crate::editor::snippet::Snippet;
 use crate::scene::reader::keyword::Keyword;
 use crate::scene::syntax::Syntax;
 
-impl At<'_> {
+impl CompletionContext<'_> {
     /// Returns the types of entities, and the words that begin something else.
     pub(super) fn types(&self, is_outside: bool) -> Vec<Completion> {
         let place = self.prefix();
@@ -26,7 +26,7 @@ impl At<'_> {
                     about: known.meaning.to_owned(),
                     snippet: text,
                     has_places: !is_closed,
-                    ..plain(known.name, What::Type, &place)
+                    ..plain(known.name, CompletionKind::Type, &place)
                 }
             })
             .collect();
@@ -58,7 +58,7 @@ impl At<'_> {
                         Syntax::Toml => keyword.usage_in_toml(),
                     })
                     .to_owned(),
-                ..plain(word, What::Keyword, &place)
+                ..plain(word, CompletionKind::Keyword, &place)
             }
         }));
         all

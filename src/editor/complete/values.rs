@@ -1,14 +1,14 @@
 //! The attributes of an entity that are not given yet, and the values of one that is.
 
-use super::proposal::{At, Completion, What, plain};
+use super::proposal::{Completion, CompletionContext, CompletionKind, plain};
 use crate::editor::hover::about;
-use crate::editor::names::Sort;
+use crate::editor::names::Namespace;
 use crate::editor::snippet::Snippet;
-use crate::editor::types::{Wanted, truths, wanted};
+use crate::editor::types::{ExpectedValue, expected_value, truths};
 use crate::editor::view::{Attribute, Entity, Form};
 use crate::numeric::formula::functions;
 
-impl At<'_> {
+impl CompletionContext<'_> {
     /// Returns the attributes that are not given yet.
     pub(super) fn attributes(&self, entity: &Entity) -> Vec<Completion> {
         let Some(known) = entity.known else { return Vec::new() };
@@ -34,7 +34,7 @@ impl At<'_> {
                 about: about(self.view.syntax, attribute),
                 snippet: snippet.text,
                 has_places: true,
-                ..plain(attribute.name(), What::Attribute, &place)
+                ..plain(attribute.name(), CompletionKind::Attribute, &place)
             }
         })
         .collect()
@@ -60,32 +60,32 @@ impl At<'_> {
             _ if is_quoted => name.to_owned(),
             syntax => syntax.values(&crate::scene::value::Datum::Word(name.to_owned())).concat(),
         };
-        match wanted(entity, known) {
-            Wanted::Name(kind) => {
+        match expected_value(entity, known) {
+            ExpectedValue::Name(kind) => {
                 let proposal = |name: String| Completion {
                     detail: kind.to_string(),
                     snippet: written(&name),
-                    ..plain(&name, What::Name, &place)
+                    ..plain(&name, CompletionKind::Name, &place)
                 };
                 self.names(kind).into_iter().rev().map(proposal).collect()
             }
-            Wanted::Choice(choices) => {
+            ExpectedValue::Choice(choices) => {
                 let all = choices.all().into_iter();
                 all.map(|choice| Completion {
                     detail: choice.number.map(|number| number.to_string()).unwrap_or_default(),
                     about: choice.meaning.to_owned(),
                     snippet: written(choice.name),
-                    ..plain(choice.name, What::Choice, &place)
+                    ..plain(choice.name, CompletionKind::Choice, &place)
                 })
                 .collect()
             }
-            Wanted::Truth => {
-                truths(self.view).iter().map(|truth| plain(truth, What::Choice, &place)).collect()
+            ExpectedValue::Truth => {
+                truths(self.view).iter().map(|truth| plain(truth, CompletionKind::Choice, &place)).collect()
             }
-            Wanted::File => self.files(),
-            Wanted::Numbers if is_quoted => self.in_formula(&[]),
-            Wanted::Formula(variables) if is_quoted => self.in_formula(variables),
-            Wanted::Numbers | Wanted::Formula(_) | Wanted::Word => Vec::new(),
+            ExpectedValue::File => self.files(),
+            ExpectedValue::Numbers if is_quoted => self.in_formula(&[]),
+            ExpectedValue::Formula(variables) if is_quoted => self.in_formula(variables),
+            ExpectedValue::Numbers | ExpectedValue::Formula(_) | ExpectedValue::Word => Vec::new(),
         }
     }
 
@@ -96,17 +96,17 @@ impl At<'_> {
         let start = start.map_or(0, |end| end + before[end..].chars().next().map_or(1, char::len_utf8));
         let place = start..self.at;
         let mut all: Vec<_> =
-            variables.iter().chain(&["pi"]).map(|name| plain(name, What::Number, &place)).collect();
+            variables.iter().chain(&["pi"]).map(|name| plain(name, CompletionKind::Number, &place)).collect();
         for (index, (_, view)) in self.group.iter().enumerate() {
             let names = view.names();
             let usable = names.definitions.iter().filter(|definition| {
                 let is_visible =
                     definition.scope.as_ref().is_none_or(|scope| index == 0 && scope.contains(&self.at));
-                definition.name.sort == Sort::Number && is_visible
+                definition.name.namespace == Namespace::Number && is_visible
             });
             all.extend(usable.map(|definition| Completion {
                 detail: view.slice(definition.whole.clone()).trim().to_owned(),
-                ..plain(&definition.name.text, What::Number, &place)
+                ..plain(&definition.name.text, CompletionKind::Number, &place)
             }));
         }
         all.extend(functions().map(|(name, count)| Completion {
@@ -116,7 +116,7 @@ impl At<'_> {
                 format!("{name}(${{1:x}}, ${{2:y}})")
             },
             has_places: true,
-            ..plain(name, What::Function, &place)
+            ..plain(name, CompletionKind::Function, &place)
         }));
         all
     }
