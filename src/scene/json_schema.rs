@@ -14,7 +14,7 @@ pub struct Schema {
     pub language: Option<&'static str>,
     /// The schema of fields that are not in `properties`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub additional_properties: Option<Others>,
+    pub additional_properties: Option<AdditionalProperties>,
     /// The path of a schema that stands for this one.
     #[serde(rename = "$ref", skip_serializing_if = "Option::is_none")]
     pub reference: Option<String>,
@@ -79,27 +79,27 @@ pub struct Schema {
     /// The types that the value may have: `object`, `array`, `string`, `number`, `integer` or `boolean`. The other
     /// keywords hold for values of the types that they are about.
     #[serde(rename = "type", skip_serializing_if = "Option::is_none")]
-    pub sort: Option<Sort>,
+    pub types: Option<TypeKeyword>,
 }
 
-/// The types of a value.
+/// The value of the keyword `type`: the types that a value may have.
 #[derive(Clone, Serialize)]
 #[serde(untagged)]
-pub enum Sort {
+pub enum TypeKeyword {
     /// One type.
     One(&'static str),
     /// One of several.
     Any(Vec<&'static str>),
 }
 
-/// The values of fields that a schema does not name.
+/// The value of the keyword `additionalProperties`: what fields that a schema does not name may hold.
 #[derive(Clone, Serialize)]
 #[serde(untagged)]
-pub enum Others {
-    /// Anything (true), or no such fields are allowed (false).
-    Any(bool),
+pub enum AdditionalProperties {
+    /// Whether there may be such fields, with any values.
+    Allowed(bool),
     /// Values that match this schema.
-    Each(Box<Schema>),
+    Matching(Box<Schema>),
 }
 
 /// The default values of an attribute, or one of its allowed values.

@@ -9,7 +9,7 @@ use crate::scene::value::{Datum, Type};
 use std::collections::BTreeMap;
 use std::iter;
 
-pub use crate::scene::json_schema::{Constant, Others, Schema, Sort};
+pub use crate::scene::json_schema::{AdditionalProperties, Constant, Schema, TypeKeyword};
 
 /// Returns the schema of scenes. Rules that the language states in words appear only in the descriptions.
 pub fn of(registry: &Registry) -> Schema {
@@ -22,7 +22,7 @@ pub fn of(registry: &Registry) -> Schema {
     Schema {
         language: Some("https://json-schema.org/draft/2020-12/schema"),
         title: Some("a tabray scene"),
-        additional_properties: Some(Others::Any(false)),
+        additional_properties: Some(AdditionalProperties::Allowed(false)),
         // The camera may be in a file that is included.
         all_of: vec![Schema {
             condition: Some(Box::new(requiring("include"))),
@@ -30,17 +30,17 @@ pub fn of(registry: &Registry) -> Schema {
             ..Schema::default()
         }],
         properties: Some(properties),
-        ..Schema::sort("object")
+        ..Schema::of_type("object")
     }
 }
 
 /// Returns the schemas of named numbers, of included files and of what is repeated: entities of these types, and
 /// numbers.
 fn computed(mut kinds: Vec<&'static str>) -> [(&'static str, Schema); 3] {
-    let each = |schema| Some(Others::Each(Box::new(schema)));
+    let each = |schema| Some(AdditionalProperties::Matching(Box::new(schema)));
     let described = |text: &str, schema| Schema { description: Some(text.to_owned()), ..schema };
-    let numbers = Schema { additional_properties: each(number("number")), ..Schema::sort("object") };
-    let files = Schema::sort("string").or_several();
+    let numbers = Schema { additional_properties: each(number("number")), ..Schema::of_type("object") };
+    let files = Schema::of_type("string").or_several();
     kinds.extend(["let", "repeat"]);
     let elsewhere = |name| {
         let reference = Some(format!("#/properties/{name}"));
@@ -48,12 +48,12 @@ fn computed(mut kinds: Vec<&'static str>) -> [(&'static str, Schema); 3] {
     };
     let body = kinds.into_iter().map(elsewhere).chain([("count", number("number"))]);
     let round = Schema {
-        additional_properties: Some(Others::Any(false)),
+        additional_properties: Some(AdditionalProperties::Allowed(false)),
         properties: Some(body.collect()),
         required: Some(vec!["count"]),
-        ..Schema::sort("object")
+        ..Schema::of_type("object")
     };
-    let repeats = Schema { additional_properties: each(round.or_several()), ..Schema::sort("object") };
+    let repeats = Schema { additional_properties: each(round.or_several()), ..Schema::of_type("object") };
     [
         ("let", described("named numbers, which formulas can use", numbers)),
         ("include", described("files that are read as if they stood here", files)),
@@ -62,29 +62,32 @@ fn computed(mut kinds: Vec<&'static str>) -> [(&'static str, Schema); 3] {
 }
 
 /// Returns the schema of a number of this type, or a formula in place of it.
-fn number(sort: &'static str) -> Schema {
-    Schema { sort: Some(Sort::Any(vec![sort, "string"])), ..Schema::default() }
+fn number(type_name: &'static str) -> Schema {
+    Schema { types: Some(TypeKeyword::Any(vec![type_name, "string"])), ..Schema::default() }
 }
 
 impl Schema {
-    fn sort(name: &'static str) -> Self {
-        Self { sort: Some(Sort::One(name)), ..Self::default() }
+    /// Returns the schema of any value of this type.
+    fn of_type(name: &'static str) -> Self {
+        Self { types: Some(TypeKeyword::One(name)), ..Self::default() }
     }
 
     /// Returns the schema of a value that matches this schema, or of an array of such values.
     fn or_several(self) -> Self {
-        let sort = match &self.sort {
-            Some(Sort::One(sort)) => Some(Sort::Any(vec![sort, "array"])),
-            Some(Sort::Any(sorts)) => Some(Sort::Any(sorts.iter().copied().chain(["array"]).collect())),
+        let types = match &self.types {
+            Some(TypeKeyword::One(type_name)) => Some(TypeKeyword::Any(vec![type_name, "array"])),
+            Some(TypeKeyword::Any(sorts)) => {
+                Some(TypeKeyword::Any(sorts.iter().copied().chain(["array"]).collect()))
+            }
             None => None,
         };
-        Self { items: Some(Box::new(self.clone())), min_items: Some(1), sort, ..self }
+        Self { items: Some(Box::new(self.clone())), min_items: Some(1), types, ..self }
     }
 
     /// Returns the schema of an array of values that match this schema, with `min` to `max` values.
     fn array(self, min: usize, max: Option<usize>) -> Self {
         let items = Some(Box::new(self));
-        Self { items, min_items: Some(min), max_items: max, ..Self::sort("array") }
+        Self { items, min_items: Some(min), max_items: max, ..Self::of_type("array") }
     }
 }
 
@@ -135,8 +138,8 @@ fn kind(entity: &'static Entity) -> Schema {
         description: Some(format!("{}: {}", entity.kind(), entity.meaning)),
         min_properties: Some(1),
         max_properties: matches!(entity.kind(), Kind::Camera | Kind::Background).then_some(1),
-        additional_properties: Some(Others::Each(Box::new(named))),
-        ..Schema::sort("object")
+        additional_properties: Some(AdditionalProperties::Matching(Box::new(named))),
+        ..Schema::of_type("object")
     }
 }
 
@@ -162,12 +165,12 @@ fn body(entity: &'static Entity) -> Schema {
         all_of.push(one_of(&all));
     }
     Schema {
-        additional_properties: Some(Others::Any(false)),
+        additional_properties: Some(AdditionalProperties::Allowed(false)),
         min_properties: Some(usize::from(!properties.is_empty())),
         properties: Some(properties),
         required: Some(required),
         all_of,
-        ..Schema::sort("object")
+        ..Schema::of_type("object")
     }
 }
 
@@ -175,7 +178,7 @@ fn body(entity: &'static Entity) -> Schema {
 fn value(attribute: &'static dyn Attribute) -> Schema {
     let choices = |sorts: [&'static str; 2], choices| Schema {
         choices: Some(choices),
-        sort: Some(Sort::Any(sorts.to_vec())),
+        types: Some(TypeKeyword::Any(sorts.to_vec())),
         ..Schema::default()
     };
     let one = match attribute.value_type() {
@@ -190,7 +193,7 @@ fn value(attribute: &'static dyn Attribute) -> Schema {
         }
         // Of several formulas, some are mere numbers.
         Type::Formula(_) if attribute.arity().most() > 1 => number("number"),
-        Type::Word | Type::File | Type::Name(_) | Type::Formula(_) => Schema::sort("string"),
+        Type::Word | Type::File | Type::Name(_) | Type::Formula(_) => Schema::of_type("string"),
         Type::Choice(known) => {
             let all = known.all();
             let names = all.iter().map(|choice| Constant::Text(choice.name.to_owned()));
@@ -199,9 +202,9 @@ fn value(attribute: &'static dyn Attribute) -> Schema {
             match known.kind {
                 // Any name of an entity, or a number of the list.
                 Some(_) => Schema {
-                    condition: Some(Box::new(Schema::sort("integer"))),
+                    condition: Some(Box::new(Schema::of_type("integer"))),
                     then: Some(Box::new(Schema { choices: Some(numbers.collect()), ..Schema::default() })),
-                    sort: Some(Sort::Any(sorts.to_vec())),
+                    types: Some(TypeKeyword::Any(sorts.to_vec())),
                     ..Schema::default()
                 },
                 None => choices(sorts, names.chain(numbers).collect()),
@@ -226,7 +229,7 @@ fn value(attribute: &'static dyn Attribute) -> Schema {
     };
     // An array may not have more values than one allowed number and fewer than the next.
     let gaps = counts.windows(2).filter(|pair| pair[1] > pair[0] + 1).map(|pair| Schema {
-        condition: Some(Box::new(Schema { min_items: Some(pair[0] + 1), ..Schema::sort("array") })),
+        condition: Some(Box::new(Schema { min_items: Some(pair[0] + 1), ..Schema::of_type("array") })),
         then: Some(Box::new(Schema { min_items: Some(pair[1]), ..Schema::default() })),
         ..Schema::default()
     });
