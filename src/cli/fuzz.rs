@@ -9,8 +9,8 @@ use super::serve::Work;
 use super::serve::access::Access;
 use super::serve::connections::{Answer, Connections, Limits};
 use super::watch::answer::{self, JOBS};
-use super::watch::desk::Desk;
 use super::watch::frame::Frame;
+use super::watch::session::Session;
 use crate::cli::options::size::Part;
 use crate::cli::rendering::resume::{self, Begun};
 use crate::output::checkpoint::{self, Identity};
@@ -134,10 +134,10 @@ impl Server {
         });
         let work = Work::new(JOBS);
         Self::new(async move |request: Request<Bytes>| {
-            // Events end with their board.
-            let desk = Desk::new(registry, PathBuf::from("there/is/no/scene.ray"), Arc::new(|| {}));
-            desk.board.show(&frame);
-            ControlFlow::Continue(answer::answer(&request, &desk, &work).await)
+            // Events end with their feed.
+            let session = Session::new(registry, PathBuf::from("there/is/no/scene.ray"), Arc::new(|| {}));
+            session.feed.show(&frame);
+            ControlFlow::Continue(answer::answer(&request, &session, &work).await)
         })
     }
 

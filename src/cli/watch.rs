@@ -1,17 +1,17 @@
 //! `tabray watch`: a page that shows the image while its scene is edited.
 
+mod alternative;
 pub(super) mod answer;
-pub(super) mod board;
 mod browser;
 mod camera;
 mod chart;
-pub(super) mod desk;
 mod events;
+pub(super) mod feed;
 mod fields;
 mod files;
 pub(super) mod frame;
-mod other;
 mod scenes;
+pub(super) mod session;
 pub(super) mod tries;
 mod watched;
 
@@ -69,7 +69,7 @@ Examples:
   tabray watch scenes/light";
 
 /// The events that the command waits for.
-enum News {
+enum Event {
     Changed,
     Interrupted,
     ServerFailed(String),
@@ -83,13 +83,13 @@ pub fn run(registry: &'static Registry, args: Args) -> Result<(), Failure> {
         ));
     }
     let accuracy = args.method.accuracy()?;
-    let (sender, news) = mpsc::channel();
-    let mut files = Files::new(teller(&sender, || News::Changed))?;
+    let (sender, events) = mpsc::channel();
+    let mut files = Files::new(notifier(&sender, || Event::Changed))?;
     let scenes =
-        Scenes::new(registry, &args.scenes, Arc::new(teller(&sender, || News::Changed)), &mut files)?;
+        Scenes::new(registry, &args.scenes, Arc::new(notifier(&sender, || Event::Changed)), &mut files)?;
     let server = Server::open(args.port)?;
     let url = server.url();
-    interrupt::catch_and(teller(&sender, || News::Interrupted))?;
+    interrupt::catch_and(notifier(&sender, || Event::Interrupted))?;
 
     let scenes = Arc::new(scenes);
     thread::spawn({
@@ -101,7 +101,7 @@ pub fn run(registry: &'static Registry, args: Args) -> Result<(), Failure> {
             });
             if let Err(error) = run {
                 let reason = text::reason(&error);
-                let _ = sender.send(News::ServerFailed(format!("the server stopped: {reason}")));
+                let _ = sender.send(Event::ServerFailed(format!("the server stopped: {reason}")));
             }
         }
     });
@@ -115,34 +115,37 @@ pub fn run(registry: &'static Registry, args: Args) -> Result<(), Failure> {
     let mut watched = Vec::new();
     loop {
         scenes.find();
-        for desk in scenes.from(watched.len()) {
-            watched.push(Watched::new(desk, watched.len(), args.set.values.clone(), accuracy));
+        for session in scenes.from(watched.len()) {
+            watched.push(Watched::new(session, watched.len(), args.set.values.clone(), accuracy));
         }
         for (number, scene) in watched.iter_mut().enumerate() {
             scene.follow(scenes.is_wanted(number), &mut files)?;
         }
-        match next(&news) {
-            News::Changed => {}
-            News::Interrupted => return Ok(()),
-            News::ServerFailed(message) => return Err(Failure::Failed(message)),
+        match next(&events) {
+            Event::Changed => {}
+            Event::Interrupted => return Ok(()),
+            Event::ServerFailed(message) => return Err(Failure::Failed(message)),
         }
     }
 }
 
-/// Returns a function that sends news, from any thread.
-fn teller(sender: &Sender<News>, news: impl Fn() -> News + Send + 'static) -> impl Fn() + Send + 'static {
+/// Returns a function that sends an event, from any thread.
+fn notifier(
+    sender: &Sender<Event>,
+    event: impl Fn() -> Event + Send + 'static,
+) -> impl Fn() + Send + 'static {
     let sender = sender.clone();
     move || {
-        // If no one receives the news, the program is about to end.
-        let _ = sender.send(news());
+        // If no one receives the event, the program is about to end.
+        let _ = sender.send(event());
     }
 }
 
-/// Waits for news. Changes that follow one another count as one.
-fn next(news: &Receiver<News>) -> News {
-    let mut last = news.recv().unwrap_or(News::Interrupted);
-    while let News::Changed = last {
-        match news.recv_timeout(SETTLED) {
+/// Waits for an event. Changes that follow one another count as one.
+fn next(events: &Receiver<Event>) -> Event {
+    let mut last = events.recv().unwrap_or(Event::Interrupted);
+    while let Event::Changed = last {
+        match events.recv_timeout(SETTLED) {
             Ok(more) => last = more,
             Err(_) => break,
         }

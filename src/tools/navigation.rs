@@ -27,7 +27,7 @@ pub struct Movement {
 }
 
 /// The pose of a camera: the values of those attributes that a movement changes, by their names.
-pub type Stand = BTreeMap<String, Vec<f64>>;
+pub type CameraPose = BTreeMap<String, Vec<f64>>;
 
 /// Lists the attributes of a camera that a movement may change, with what they say. Other things have none.
 pub fn attributes(camera: &Args) -> impl Iterator<Item = (&'static dyn Attribute, Pose)> {
@@ -35,8 +35,8 @@ pub fn attributes(camera: &Args) -> impl Iterator<Item = (&'static dyn Attribute
     poses.filter(|(_, pose)| *pose != Pose::Up)
 }
 
-/// Returns where a camera stands.
-pub fn stand(camera: &Args) -> Stand {
+/// Returns the pose of a camera.
+pub fn camera_pose(camera: &Args) -> CameraPose {
     let values = |(attribute, _): (&'static dyn Attribute, Pose)| match camera.find(attribute.name()) {
         Some(Datum::Numbers(numbers)) => Some((attribute.name().to_owned(), numbers.clone())),
         _ => None,
@@ -50,18 +50,18 @@ pub fn stand(camera: &Args) -> Stand {
 /// A viewer goes around the point at the same distance, and stays upright. What is seen moves with the hand: a camera
 /// with a target goes the other way. A viewer before an image plane that stays goes with the hand, as that moves what is
 /// behind the image plane.
-pub fn moved(camera: &Args, from: &Stand, movement: &Movement, around: DVec3) -> Option<Stand> {
+pub fn moved(camera: &Args, from: &CameraPose, movement: &Movement, pivot: DVec3) -> Option<CameraPose> {
     let mut camera = camera.clone();
     let film = placed(&mut camera, from)?;
-    let after = Rig::of(&camera, &film, around)?.moved(movement);
+    let after = OrbitCamera::of(&camera, &film, pivot)?.moved(movement);
     placed(&mut camera, &after)?;
     Some(after)
 }
 
 /// Returns the film of a camera that is put where it stands then.
-fn placed(camera: &mut Args, stand: &Stand) -> Option<Film> {
+fn placed(camera: &mut Args, pose: &CameraPose) -> Option<Film> {
     for (attribute, datum, is_given) in camera.values_mut() {
-        let Some(values) = stand.get(attribute.name()) else { continue };
+        let Some(values) = pose.get(attribute.name()) else { continue };
         let new = Datum::Numbers(values.clone());
         if !values.iter().all(|value| value.is_finite())
             || !attribute.allows(&new)
@@ -75,10 +75,10 @@ fn placed(camera: &mut Args, stand: &Stand) -> Option<Film> {
     Some(camera.film(construct(camera).ok()?))
 }
 
-/// A camera and the point around which it moves.
-struct Rig<'c> {
+/// A camera and the point around which it moves, its pivot.
+struct OrbitCamera<'c> {
     camera: &'c Args,
-    around: DVec3,
+    pivot: DVec3,
     position: DVec3,
     target: Option<DVec3>,
     is_parallel: bool,
@@ -90,21 +90,21 @@ struct Rig<'c> {
     pixel: [DVec3; 2],
 }
 
-impl<'c> Rig<'c> {
-    fn of(camera: &'c Args, film: &Film, around: DVec3) -> Option<Self> {
+impl<'c> OrbitCamera<'c> {
+    fn of(camera: &'c Args, film: &Film, pivot: DVec3) -> Option<Self> {
         let (position, target) = (point(camera, Pose::Position)?, point(camera, Pose::Target));
-        let forward = (target.unwrap_or(around) - position).try_normalize()?;
-        let depth = (around - position).dot(forward).abs();
+        let forward = (target.unwrap_or(pivot) - position).try_normalize()?;
+        let depth = (pivot - position).dot(forward).abs();
         let [x, y] = film.pixels.map(|side| 0.5 * (side as f64 - 1.0));
         let seen = |right: f64, up: f64| film.ray(x + right, y + up).at(depth);
         let pixel = [seen(0.5, 0.0) - seen(-0.5, 0.0), seen(0.0, 0.5) - seen(0.0, -0.5)];
         let up = point(camera, Pose::Up).unwrap_or(pixel[1]).try_normalize()?;
         let is_parallel = attributes(camera).any(|(_, pose)| pose == Pose::Extent);
-        Some(Self { camera, around, position, target, is_parallel, forward, up, pixel })
+        Some(Self { camera, pivot, position, target, is_parallel, forward, up, pixel })
     }
 
     /// Returns where the camera stands after a movement.
-    fn moved(&self, movement: &Movement) -> Stand {
+    fn moved(&self, movement: &Movement) -> CameraPose {
         let hand = if self.target.is_some() { -1.0 } else { 1.0 };
         let [turn, rise] = movement.orbit.map(|degrees| hand * degrees);
         let elevation = self.forward.dot(self.up).clamp(-1.0, 1.0).asin().to_degrees();
@@ -116,17 +116,17 @@ impl<'c> Rig<'c> {
         let pan = hand * (movement.pan[0] * self.pixel[0] + movement.pan[1] * self.pixel[1]);
         let nearer = |point: DVec3| {
             if !self.is_parallel {
-                return self.around + (point - self.around) / movement.dolly;
+                return self.pivot + (point - self.pivot) / movement.dolly;
             }
             // Parallel rays show things as large from anywhere, but what is behind their start is not seen.
-            let aside = (self.around - self.position).reject_from_normalized(self.forward);
+            let aside = (self.pivot - self.position).reject_from_normalized(self.forward);
             point + aside * (1.0 - 1.0 / movement.dolly)
         };
-        let place = |point: DVec3| self.around + turn * (nearer(point) - self.around) + pan;
+        let place = |point: DVec3| self.pivot + turn * (nearer(point) - self.pivot) + pan;
 
-        let distance = place(self.position).distance(self.around);
+        let distance = place(self.position).distance(self.pivot);
         let size = |value: f64| value / movement.dolly;
-        let before = stand(self.camera);
+        let before = camera_pose(self.camera);
         let after = attributes(self.camera).filter_map(|(attribute, pose)| {
             let before = before.get(attribute.name())?;
             let after = match pose {
@@ -207,14 +207,14 @@ mod tests {
 
     /// A point that the camera sees, behind its image plane if it has one.
     fn seen(camera: &Args) -> DVec3 {
-        let film = placed(&mut camera.clone(), &stand(camera)).expect("as it was");
+        let film = placed(&mut camera.clone(), &camera_pose(camera)).expect("as it was");
         let [x, y] = film.pixels.map(|side| 0.45 * side as f64);
         film.ray(x, y).at(if is_window(camera) { 2.0 } else { 0.7 } * reach(camera))
     }
 
     /// Where the camera that stands there shows a point; `None` where it does not say.
-    fn place(camera: &Args, stand: &Stand, point: DVec3) -> Option<[f64; 2]> {
-        match placed(&mut camera.clone(), stand).expect("it may stand there").project(point) {
+    fn place(camera: &Args, pose: &CameraPose, point: DVec3) -> Option<[f64; 2]> {
+        match placed(&mut camera.clone(), pose).expect("it may stand there").project(point) {
             Projected::At(place) => Some(place.into()),
             Projected::Nowhere => panic!("the point is lost"),
             Projected::Unknown => None,
@@ -228,10 +228,10 @@ mod tests {
     #[test]
     fn every_camera_moves_and_a_movement_by_nothing_changes_nothing() {
         for camera in cameras() {
-            let before = stand(&camera);
-            let around = seen(&camera);
+            let before = camera_pose(&camera);
+            let pivot = seen(&camera);
             assert_eq!(
-                moved(&camera, &before, &STILL, around),
+                moved(&camera, &before, &STILL, pivot),
                 Some(before.clone()),
                 "{}",
                 camera.entity.name
@@ -241,7 +241,7 @@ mod tests {
                 Movement { pan: [3.0, 2.0], ..STILL },
                 Movement { dolly: 1.1, ..STILL },
             ] {
-                let after = moved(&camera, &before, &movement, around);
+                let after = moved(&camera, &before, &movement, pivot);
                 assert!(after.is_some_and(|after| after != before), "{} {movement:?}", camera.entity.name);
             }
         }
@@ -250,11 +250,11 @@ mod tests {
     #[test]
     fn the_point_stays_where_it_is_seen_and_a_pan_takes_it_along() {
         for camera in cameras() {
-            let (before, around) = (stand(&camera), seen(&camera));
-            let Some(at) = place(&camera, &before, around) else { continue };
+            let (before, pivot) = (camera_pose(&camera), seen(&camera));
+            let Some(at) = place(&camera, &before, pivot) else { continue };
             let after = |movement| {
-                let stand = moved(&camera, &before, &movement, around).expect("it may go there");
-                place(&camera, &stand, around).expect("it says where")
+                let pose = moved(&camera, &before, &movement, pivot).expect("it may go there");
+                place(&camera, &pose, pivot).expect("it says where")
             };
             let nearer = after(Movement { dolly: 1.5, ..STILL });
             assert!(near(nearer, at, 0.1), "{}: {at:?} {nearer:?}", camera.entity.name);
@@ -277,9 +277,9 @@ mod tests {
     #[test]
     fn nobody_goes_over_the_top_or_behind_the_image_plane() {
         for camera in cameras() {
-            let (before, around) = (stand(&camera), seen(&camera));
-            let over = moved(&camera, &before, &Movement { orbit: [0.0, -400.0], ..STILL }, around);
-            let behind = moved(&camera, &before, &Movement { orbit: [170.0, 0.0], ..STILL }, around);
+            let (before, pivot) = (camera_pose(&camera), seen(&camera));
+            let over = moved(&camera, &before, &Movement { orbit: [0.0, -400.0], ..STILL }, pivot);
+            let behind = moved(&camera, &before, &Movement { orbit: [170.0, 0.0], ..STILL }, pivot);
             if is_window(&camera) {
                 assert_eq!(behind, None);
             } else {

@@ -1,4 +1,4 @@
-//! The image of a scene by other means than its own, to compare the two.
+//! The image of a scene with a setting other than its own, to compare the two.
 
 use super::events;
 use super::frame::Frame;
@@ -14,15 +14,15 @@ use std::io;
 use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
-/// The setting that differs from that of the scene.
+/// A setting that replaces that of the scene.
 #[derive(Clone, Copy)]
-pub enum How {
+pub enum Override {
     Accuracy(Accuracy),
     /// The number of samples in each pixel.
     Samples(u32),
 }
 
-impl How {
+impl Override {
     /// Finds an accuracy by its name, or a number of samples.
     pub fn named(name: &str) -> Option<Self> {
         let accuracy = Accuracy::all().into_iter().find(|accuracy| accuracy.option().name == name);
@@ -31,7 +31,7 @@ impl How {
     }
 }
 
-/// Renders a scene in another way: red, green and blue of each pixel, in rows from the top, as the parts of an image have
+/// Renders a scene with another setting: red, green and blue of each pixel, in rows from the top, as the parts of an image have
 /// them.
 ///
 /// # Errors
@@ -39,16 +39,16 @@ impl How {
 pub fn image(
     registry: &Registry,
     frame: &Frame,
-    how: How,
+    setting: Override,
     check: impl Fn() -> ControlFlow<()> + Sync,
 ) -> io::Result<Vec<u8>> {
-    let accuracy = match how {
-        How::Accuracy(accuracy) => Some(accuracy),
-        How::Samples(_) => None,
+    let accuracy = match setting {
+        Override::Accuracy(accuracy) => Some(accuracy),
+        Override::Samples(_) => None,
     };
     let mut model = frame.load(registry, accuracy)?;
     let camera = &mut model.camera.value;
-    if let How::Samples(samples) = how {
+    if let Override::Samples(samples) = setting {
         camera.samples = samples;
         camera.adaptive = None;
     }

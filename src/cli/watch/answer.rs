@@ -1,12 +1,12 @@
 //! Answers the requests of the page: for itself, for its events, and for details of the image that it shows.
 
-use super::board::Board;
+use super::alternative::{self, Override};
 use super::camera;
 use super::chart;
-use super::desk::Desk;
+use super::feed::EventFeed;
 use super::fields;
 use super::frame::Frame;
-use super::other::{self, How};
+use super::session::Session;
 use crate::cli::plan;
 use crate::cli::process::crash;
 use crate::cli::process::failure::tell;
@@ -73,15 +73,15 @@ pub fn split(path: &str) -> Option<(usize, Vec<&str>)> {
 }
 
 /// Answers a request about a scene.
-pub async fn answer(request: &Request<Bytes>, desk: &Desk, work: &Work) -> Response<Body> {
+pub async fn answer(request: &Request<Bytes>, session: &Session, work: &Work) -> Response<Body> {
     let (_, path) = split(request.uri().path()).unwrap_or_default();
-    let board = &desk.board;
+    let feed = &session.feed;
     if request.method() == Method::POST {
         return match path[..] {
-            ["try"] => desk.try_out(request.body()),
-            ["move"] => camera::go(desk, request.body()),
-            ["discard"] => desk.discard(),
-            ["write"] => desk.write(),
+            ["try"] => session.try_out(request.body()),
+            ["move"] => camera::move_by(session, request.body()),
+            ["discard"] => session.discard(),
+            ["write"] => session.write(),
             _ => serve::text(StatusCode::NOT_FOUND, "there is no such page\n"),
         };
     }
@@ -90,45 +90,45 @@ pub async fn answer(request: &Request<Bytes>, desk: &Desk, work: &Work) -> Respo
     }
     match path[..] {
         [""] => serve::content(StatusCode::OK, "text/html; charset=utf-8", PAGE),
-        ["events"] => serve::stream("text/event-stream", events(desk)),
-        ["probe", version, x, y] => about(board, work, version, |frame| pixel(frame, x, y)).await,
+        ["events"] => serve::stream("text/event-stream", events(session)),
+        ["probe", version, x, y] => about(feed, work, version, |frame| pixel(frame, x, y)).await,
         ["object", version, x, y] => {
-            about(board, work, version, |frame| object(desk.registry, frame, x, y)).await
+            about(feed, work, version, |frame| object(session.registry, frame, x, y)).await
         }
-        ["camera"] => camera::hold(desk),
-        ["point", version, x, y] => about(board, work, version, |frame| point(frame, x, y)).await,
+        ["camera"] => camera::state(session),
+        ["point", version, x, y] => about(feed, work, version, |frame| point(frame, x, y)).await,
         ["entities", version] => {
             let all = |frame: Arc<Frame>| -> Option<Job> {
                 Some(Box::new(move |_| {
                     Ok(("application/json", text::json(&fields::all(&frame)).into_bytes()))
                 }))
             };
-            about(board, work, version, all).await
+            about(feed, work, version, all).await
         }
         ["entity", version, order] => {
-            about(board, work, version, |frame| entity(desk.registry, frame, order)).await
+            about(feed, work, version, |frame| entity(session.registry, frame, order)).await
         }
-        ["plan", version] => about(board, work, version, plan).await,
+        ["plan", version] => about(feed, work, version, plan).await,
         ["chart", version, seconds] => {
-            about(board, work, version, |frame| charted(desk.registry, frame, seconds)).await
+            about(feed, work, version, |frame| charted(session.registry, frame, seconds)).await
         }
-        ["charting", version] => match version.parse().ok().and_then(|version| board.frame(version)) {
+        ["charting", version] => match version.parse().ok().and_then(|version| feed.frame(version)) {
             Some(frame) => {
                 serve::content(StatusCode::OK, "application/json", text::json(&frame.charting.units()))
             }
             None => serve::text(StatusCode::GONE, "this image no longer exists\n"),
         },
         ["other", version, how] => {
-            about(board, work, version, |frame| other_image(desk.registry, frame, how)).await
+            about(feed, work, version, |frame| other_image(session.registry, frame, how)).await
         }
-        ["layer", version, name] => about(board, work, version, |frame| layer(frame, name)).await,
+        ["layer", version, name] => about(feed, work, version, |frame| layer(frame, name)).await,
         _ => serve::text(StatusCode::NOT_FOUND, "there is no such page\n"),
     }
 }
 
-fn events(desk: &Desk) -> Body {
+fn events(session: &Session) -> Body {
     let (mut sender, body) = Channel::new(1);
-    let (mut reader, look) = (desk.board.reader(), desk.look());
+    let (mut subscriber, look) = (session.feed.subscribe(), session.look());
     tokio::spawn(async move {
         // When the program ends, the page should soon look for the next one.
         let mut event = Some(Bytes::from("retry: 500\n\n"));
@@ -137,7 +137,7 @@ fn events(desk: &Desk) -> Body {
                 return;
             }
             let quiet = Some(Bytes::from_static(b":\n\n"));
-            event = timeout(QUIET, reader.next()).await.unwrap_or(quiet);
+            event = timeout(QUIET, subscriber.next()).await.unwrap_or(quiet);
         }
     });
     // The closure owns `look`, so that the page counts as looking until the body is dropped, which is when it has gone.
@@ -150,12 +150,12 @@ fn events(desk: &Desk) -> Body {
 
 /// Answers a request about the current image, which may take a while; fails if the image has been replaced.
 async fn about(
-    board: &Board,
+    feed: &EventFeed,
     work: &Work,
     version: &str,
     job: impl FnOnce(Arc<Frame>) -> Option<Job>,
 ) -> Response<Body> {
-    let Some(frame) = version.parse().ok().and_then(|version| board.frame(version)) else {
+    let Some(frame) = version.parse().ok().and_then(|version| feed.frame(version)) else {
         return serve::text(StatusCode::GONE, "this image no longer exists\n");
     };
     let Some(job) = job(frame) else {
@@ -301,9 +301,9 @@ fn charted(registry: &'static Registry, frame: Arc<Frame>, seconds: &str) -> Opt
 
 /// Renders the image with another accuracy or number of samples.
 fn other_image(registry: &'static Registry, frame: Arc<Frame>, how: &str) -> Option<Job> {
-    let how = How::named(how)?;
+    let how = Override::named(how)?;
     Some(Box::new(move |client| {
-        let image = other::image(registry, &frame, how, || check(&frame, client))?;
+        let image = alternative::image(registry, &frame, how, || check(&frame, client))?;
         Ok(("application/octet-stream", image))
     }))
 }

@@ -1,8 +1,8 @@
 //! The camera, as a page moves it.
 
-use super::desk::Desk;
 use super::fields;
 use super::frame::Frame;
+use super::session::Session;
 use crate::cli::serve::{self, Body};
 use crate::editor::{self, Text};
 use crate::render::plan::Plan;
@@ -10,27 +10,27 @@ use crate::render::trace;
 use crate::scene::registry::Registry;
 use crate::scene::store::Record;
 use crate::text;
-use crate::tools::navigation::{self, Movement, Stand};
+use crate::tools::navigation::{self, CameraPose, Movement};
 use glam::DVec3;
 use hyper::{Response, StatusCode};
 use serde::{Deserialize, Serialize};
 
-/// A camera that is about to be moved.
+/// The state of a camera that is about to be moved.
 #[derive(Serialize)]
-struct Held<'c> {
+struct CameraState<'c> {
     /// The camera's name.
     name: &'c str,
     /// The pose of the camera, with the values that are tried out.
-    stand: Stand,
+    stand: CameraPose,
     /// Whether its image plane stays in its place when the viewer moves.
     is_window: bool,
 }
 
 /// A movement of the camera, as a page sends it.
 #[derive(Deserialize)]
-struct Move {
+struct MoveRequest {
     /// The pose of the camera before the movement.
-    stand: Stand,
+    stand: CameraPose,
     /// The point around which it goes, in world coordinates.
     around: [f64; 3],
     /// The angles of the orbit, as in [`Movement`].
@@ -49,22 +49,22 @@ pub fn point(frame: &Frame, [x, y]: [usize; 2]) -> [f64; 3] {
 }
 
 /// Tells where the camera stands, or why it cannot be moved.
-pub fn hold(desk: &Desk) -> Response<Body> {
-    let Some(frame) = desk.board.last() else {
+pub fn state(session: &Session) -> Response<Body> {
+    let Some(frame) = session.feed.last() else {
         return serve::text(StatusCode::CONFLICT, "there is no camera yet\n");
     };
     let record = &frame.model.camera.args;
-    if let Some(reason) = fixed(desk.registry, &frame, record) {
+    if let Some(reason) = fixed(session.registry, &frame, record) {
         return serve::text(StatusCode::CONFLICT, &format!("{reason}\n"));
     }
     let (name, camera) = (record.name(), record.args());
-    let mut stand = navigation::stand(&camera);
+    let mut stand = navigation::camera_pose(&camera);
     for (attribute, values) in &mut stand {
-        let tried = desk.tries.get(name, attribute);
+        let tried = session.tries.get(name, attribute);
         *values = tried.filter(|tried| tried.len() == values.len()).unwrap_or_else(|| values.clone());
     }
-    let held = Held { name, stand, is_window: navigation::is_window(&camera) };
-    serve::content(StatusCode::OK, "application/json", text::json(&held))
+    let state = CameraState { name, stand, is_window: navigation::is_window(&camera) };
+    serve::content(StatusCode::OK, "application/json", text::json(&state))
 }
 
 /// Returns why a camera cannot be moved; `None` where it can be.
@@ -88,11 +88,11 @@ fn fixed(registry: &Registry, frame: &Frame, camera: &Record) -> Option<String> 
 }
 
 /// Moves the camera: its new values are tried out.
-pub fn go(desk: &Desk, body: &[u8]) -> Response<Body> {
-    let (Ok(wanted), Some(frame)) = (serde_json::from_slice::<Move>(body), desk.board.last()) else {
+pub fn move_by(session: &Session, body: &[u8]) -> Response<Body> {
+    let (Ok(wanted), Some(frame)) = (serde_json::from_slice::<MoveRequest>(body), session.feed.last()) else {
         return serve::text(StatusCode::BAD_REQUEST, "this is not a movement of the camera\n");
     };
-    let Move { stand, around, orbit, pan, dolly } = wanted;
+    let MoveRequest { stand, around, orbit, pan, dolly } = wanted;
     let (record, around) = (&frame.model.camera.args, DVec3::from(around));
     let movement = Movement { orbit, pan, dolly };
     let after = (dolly > 0.0).then(|| navigation::moved(&record.args(), &stand, &movement, around)).flatten();
@@ -100,9 +100,9 @@ pub fn go(desk: &Desk, body: &[u8]) -> Response<Body> {
         return serve::text(StatusCode::CONFLICT, "the camera cannot go there\n");
     };
     for (attribute, values) in &after {
-        if stand.get(attribute) != Some(values) || desk.tries.get(record.name(), attribute).is_some() {
-            desk.tries.put(record.name(), attribute, values);
+        if stand.get(attribute) != Some(values) || session.tries.get(record.name(), attribute).is_some() {
+            session.tries.put(record.name(), attribute, values);
         }
     }
-    desk.done("moved\n")
+    session.done("moved\n")
 }

@@ -7,8 +7,8 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use tokio::sync::watch::{self, Receiver, Sender};
 
-/// The state that every page is told, however late it connects.
-pub struct Board {
+/// The events that every page receives, however late it connects.
+pub struct EventFeed {
     state: Sender<State>,
 }
 
@@ -34,8 +34,8 @@ impl State {
     }
 }
 
-impl Board {
-    /// Makes an empty board.
+impl EventFeed {
+    /// Makes a feed without events.
     pub fn new() -> Self {
         Self { state: watch::channel(State::default()).0 }
     }
@@ -104,16 +104,16 @@ impl Board {
         self.state.borrow().frame.as_ref().map(|frame| frame.text.clone())
     }
 
-    /// Makes a reader that has received no event yet.
-    pub fn reader(&self) -> Reader {
-        Reader { state: self.state.subscribe(), version: 0, events: 0, faults: 0, lists: 0 }
+    /// Makes a subscriber that has received no event yet.
+    pub fn subscribe(&self) -> Subscriber {
+        Subscriber { state: self.state.subscribe(), version: 0, events: 0, faults: 0, lists: 0 }
     }
 }
 
 /// A page that receives one event after another.
-pub struct Reader {
+pub struct Subscriber {
     state: Receiver<State>,
-    /// The version of the scene that the reader knows, and the number of its events that were received.
+    /// The version of the scene that the subscriber knows, and the number of its events that were received.
     version: u64,
     events: usize,
     /// The number of errors when the last one was received.
@@ -122,7 +122,7 @@ pub struct Reader {
     lists: u64,
 }
 
-impl Reader {
+impl Subscriber {
     /// Returns the next event when there is one, or `None` when there will be no more.
     pub async fn next(&mut self) -> Option<Bytes> {
         loop {

@@ -13,7 +13,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 /// Watches files by their folders, because many editors replace a file by a new one.
 pub struct Files {
     watcher: RecommendedWatcher,
-    wanted: Arc<Mutex<Wanted>>,
+    filter: Arc<Mutex<WatchFilter>>,
     /// The files of each scene, by its number.
     of: BTreeMap<usize, BTreeSet<PathBuf>>,
     folders: BTreeSet<PathBuf>,
@@ -21,13 +21,13 @@ pub struct Files {
 
 /// The files whose changes are of interest.
 #[derive(Default)]
-struct Wanted {
+struct WatchFilter {
     files: BTreeSet<PathBuf>,
     /// The folders in which all scenes are of interest.
     folders: BTreeSet<PathBuf>,
 }
 
-impl Wanted {
+impl WatchFilter {
     fn has(&self, path: &Path) -> bool {
         let is_in_folder = || path.parent().is_some_and(|folder| self.folders.contains(folder));
         self.files.contains(path) || (is_scene(path) && is_in_folder())
@@ -47,8 +47,8 @@ impl Files {
     /// # Errors
     /// If the system cannot watch files.
     pub fn new(changed: impl Fn() + Send + 'static) -> Result<Self, Failure> {
-        let wanted = Arc::<Mutex<Wanted>>::default();
-        let known = wanted.clone();
+        let filter = Arc::<Mutex<WatchFilter>>::default();
+        let known = filter.clone();
         let see = move |event: notify::Result<Event>| {
             let concerns = |event: &Event| {
                 let known = known.lock().unwrap_or_else(PoisonError::into_inner);
@@ -61,7 +61,7 @@ impl Files {
         };
         let watcher = notify::recommended_watcher(see)
             .map_err(|error| Failure::Failed(format!("cannot watch files: {}", reason(&error))))?;
-        Ok(Self { watcher, wanted, of: BTreeMap::new(), folders: BTreeSet::new() })
+        Ok(Self { watcher, filter, of: BTreeMap::new(), folders: BTreeSet::new() })
     }
 
     /// Watches these files of a scene, whether they exist or not, and no others of it.
@@ -78,7 +78,7 @@ impl Files {
             return Ok(());
         }
         self.of.insert(scene, files);
-        self.wanted().files = self.of.values().flatten().cloned().collect();
+        self.filter().files = self.of.values().flatten().cloned().collect();
         self.apply()
     }
 
@@ -87,19 +87,19 @@ impl Files {
     /// # Errors
     /// If the system cannot watch one of the folders.
     pub fn watch_folders(&mut self, folders: &[PathBuf]) -> Result<(), Failure> {
-        self.wanted().folders = folders.iter().filter_map(|folder| folder.canonicalize().ok()).collect();
+        self.filter().folders = folders.iter().filter_map(|folder| folder.canonicalize().ok()).collect();
         self.apply()
     }
 
-    fn wanted(&self) -> MutexGuard<'_, Wanted> {
-        self.wanted.lock().unwrap_or_else(PoisonError::into_inner)
+    fn filter(&self) -> MutexGuard<'_, WatchFilter> {
+        self.filter.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn apply(&mut self) -> Result<(), Failure> {
         let folders: BTreeSet<_> = {
-            let wanted = self.wanted();
-            let around = wanted.files.iter().filter_map(|file| file.parent()).map(Path::to_owned);
-            around.chain(wanted.folders.iter().cloned()).collect()
+            let filter = self.filter();
+            let around = filter.files.iter().filter_map(|file| file.parent()).map(Path::to_owned);
+            around.chain(filter.folders.iter().cloned()).collect()
         };
         for folder in folders.difference(&self.folders) {
             self.watcher.watch(folder, RecursiveMode::NonRecursive).map_err(|error| {

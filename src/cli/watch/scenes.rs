@@ -1,9 +1,9 @@
 //! All scenes that are watched: those that were named, and those in folders.
 
 use super::answer;
-use super::desk::{Changed, Desk};
 use super::events::{self, Listed};
 use super::files::{Files, is_scene};
+use super::session::{Changed, Session};
 use crate::cli::files::input;
 use crate::cli::process::failure::Failure;
 use crate::cli::serve::{self, Body, Work};
@@ -30,7 +30,7 @@ pub struct Scenes {
 #[derive(Default)]
 struct Known {
     /// All scenes that there have been, by their numbers: a number never comes to mean another scene.
-    desks: Vec<Arc<Desk>>,
+    sessions: Vec<Arc<Session>>,
     numbers: BTreeMap<PathBuf, usize>,
     /// The numbers of the scenes that there are, in the order of the list.
     list: Vec<usize>,
@@ -62,11 +62,11 @@ impl Scenes {
         files.watch_folders(&folders)?;
         let scenes = Self { registry, named, changed, known: Mutex::default() };
         scenes.find();
-        for (number, desk) in scenes.from(0).iter().enumerate() {
-            if alone.contains(&desk.path) {
-                files.watch(number, [&desk.path])?;
+        for (number, session) in scenes.from(0).iter().enumerate() {
+            if alone.contains(&session.path) {
+                files.watch(number, [&session.path])?;
                 // A scene with faults has a page; a path that cannot be read has none.
-                input::read(&desk.path)?;
+                input::read(&session.path)?;
             }
         }
         Ok(scenes)
@@ -98,10 +98,10 @@ impl Scenes {
         for (named, is_folder) in &self.named {
             let paths = if *is_folder { found(named).unwrap_or_default() } else { vec![named.clone()] };
             for path in paths {
-                let next = known.desks.len();
+                let next = known.sessions.len();
                 let number = *known.numbers.entry(path.clone()).or_insert(next);
                 if number == next {
-                    known.desks.push(Arc::new(Desk::new(self.registry, path, self.changed.clone())));
+                    known.sessions.push(Arc::new(Session::new(self.registry, path, self.changed.clone())));
                 }
                 list.push(number);
             }
@@ -116,31 +116,31 @@ impl Scenes {
             return;
         }
         let name = |number: &usize| {
-            let name = known.desks[*number].path.display().to_string();
+            let name = known.sessions[*number].path.display().to_string();
             Listed { number: *number, name }
         };
         let event = events::scenes(&known.list.iter().map(name).collect::<Vec<_>>());
-        for desk in &known.desks {
-            desk.board.list(event.clone());
+        for session in &known.sessions {
+            session.feed.list(event.clone());
         }
     }
 
     /// Returns the scenes from a number on.
-    pub fn from(&self, number: usize) -> Vec<Arc<Desk>> {
-        self.known().desks[number..].to_vec()
+    pub fn from(&self, number: usize) -> Vec<Arc<Session>> {
+        self.known().sessions[number..].to_vec()
     }
 
     /// Tells whether a scene is to be read and rendered: a page looks at it, or it is the only one.
     pub fn is_wanted(&self, number: usize) -> bool {
-        self.only().is_some() || self.known().desks[number].is_looked_at()
+        self.only().is_some() || self.known().sessions[number].is_looked_at()
     }
 
     /// Answers a request.
     pub async fn answer(&self, request: &Request<Bytes>, work: &Work) -> Response<Body> {
-        let desk = answer::split(request.uri().path())
-            .and_then(|(number, _)| self.known().desks.get(number).cloned());
-        match desk {
-            Some(desk) => answer::answer(request, &desk, work).await,
+        let session = answer::split(request.uri().path())
+            .and_then(|(number, _)| self.known().sessions.get(number).cloned());
+        match session {
+            Some(session) => answer::answer(request, &session, work).await,
             None => serve::text(StatusCode::NOT_FOUND, "there is no such scene\n"),
         }
     }

@@ -1,6 +1,6 @@
 //! What the page of a scene shows, and what it may change: the values that it tries out, and the scene's text.
 
-use super::board::Board;
+use super::feed::EventFeed;
 use super::tries::Tries;
 use crate::cli::files::output;
 use crate::cli::process::failure::Failure;
@@ -12,10 +12,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The state that the program and its pages share.
-pub struct Desk {
-    /// The board with the state that the pages show.
-    pub board: Board,
+/// The state of a watched scene that the program and its pages share.
+pub struct Session {
+    /// The events that the pages show.
+    pub feed: EventFeed,
     /// The values that a page tries out.
     pub tries: Tries,
     /// The entity types.
@@ -44,11 +44,11 @@ impl Drop for Look {
     }
 }
 
-impl Desk {
-    /// Makes the desk of a scene that has not been read yet.
+impl Session {
+    /// Makes the session of a scene that has not been read yet.
     pub fn new(registry: &'static Registry, path: PathBuf, changed: Changed) -> Self {
-        let (board, tries) = (Board::new(), Tries::default());
-        Self { board, tries, registry, path, changed, looks: Arc::default() }
+        let (feed, tries) = (EventFeed::new(), Tries::default());
+        Self { feed, tries, registry, path, changed, looks: Arc::default() }
     }
 
     /// Begins to look at the scene.
@@ -87,7 +87,7 @@ impl Desk {
                 return refuse(format!("the scene cannot be read: {}\n", crate::text::reason(&error)));
             }
         };
-        let shown = self.board.text();
+        let shown = self.feed.text();
         if shown.as_deref() != Some(text.strip_prefix('\u{feff}').unwrap_or(&text)) {
             return refuse("the scene has changed meanwhile: try again\n".to_owned());
         }

@@ -78,7 +78,7 @@ impl Tries {
 /// Writes the values of one attribute.
 fn write(view: &View, name: &str, attribute: &str, values: &[String]) -> Option<Text> {
     let entity = view.entity(name)?;
-    let is_meant = |given: &&editor::Given| given.known.is_some_and(|known| known.name() == attribute);
+    let is_meant = |given: &&editor::Attribute| given.known.is_some_and(|known| known.name() == attribute);
     let Some(given) = entity.attributes.iter().find(is_meant) else {
         let usage = match (view.syntax, values) {
             (Syntax::Notes, values) => format!("{attribute} {}", values.join(" ")),

@@ -1,10 +1,10 @@
 //! A scene that is read again whenever it changes, while pages look at it.
 
-use super::board::Board;
-use super::desk::Desk;
 use super::events::{self, Fault};
+use super::feed::EventFeed;
 use super::files::Files;
 use super::frame::{Charting, Frame, lines};
+use super::session::Session;
 use crate::cli::files::input;
 use crate::cli::process::crash;
 use crate::cli::process::failure::{Failure, tell};
@@ -27,21 +27,21 @@ use std::time::{Instant, SystemTime};
 const MAX_PIXELS: usize = 1 << 24;
 
 /// Starts the thread that renders the images of a scene, one after another.
-fn painter(desk: Arc<Desk>) -> Result<Sender<Arc<Frame>>, Failure> {
+fn painter(session: Arc<Session>) -> Result<Sender<Arc<Frame>>, Failure> {
     let renderer = Renderer::new(0)?;
     let (sender, frames) = mpsc::channel::<Arc<Frame>>();
     thread::spawn(move || {
-        let board = &desk.board;
+        let feed = &session.feed;
         for frame in frames {
             let start = Instant::now();
-            let part = |area, colours: Vec<_>| board.add(&frame, events::part(&frame, &area, &colours));
+            let part = |area, colours: Vec<_>| feed.add(&frame, events::part(&frame, &area, &colours));
             let painted = crash::catch(|| {
                 progressive::render(&renderer, &mut Plan::for_picture(&frame.model), part, || frame.check())
             });
             match painted {
-                Ok(ControlFlow::Continue(())) => board.add(&frame, events::done(&frame, start.elapsed())),
+                Ok(ControlFlow::Continue(())) => feed.add(&frame, events::done(&frame, start.elapsed())),
                 Ok(ControlFlow::Break(())) => {}
-                Err(failure) => crashed(board, &frame.name, &frame.text, &failure),
+                Err(failure) => crashed(feed, &frame.name, &frame.text, &failure),
             }
         }
     });
@@ -69,7 +69,7 @@ struct Read {
 
 /// The file of a scene, which is read again and again.
 pub struct Watched {
-    desk: Arc<Desk>,
+    session: Arc<Session>,
     /// The number of the scene.
     number: usize,
     /// The values that are set beside its text.
@@ -87,8 +87,8 @@ pub struct Watched {
 
 impl Watched {
     /// Makes a scene that has not been read yet.
-    pub fn new(desk: Arc<Desk>, number: usize, sets: Vec<String>, accuracy: Option<Accuracy>) -> Self {
-        Self { desk, number, sets, accuracy, named: Vec::new(), last: None, version: 0, painter: None }
+    pub fn new(session: Arc<Session>, number: usize, sets: Vec<String>, accuracy: Option<Accuracy>) -> Self {
+        Self { session, number, sets, accuracy, named: Vec::new(), last: None, version: 0, painter: None }
     }
 
     /// Shows the current scene if it is wanted; otherwise forgets it, and ends its render.
@@ -96,16 +96,16 @@ impl Watched {
         if !is_wanted {
             if self.painter.take().is_some() {
                 (self.named, self.last) = (Vec::new(), None);
-                self.desk.board.clear();
-                files.watch(self.number, [&self.desk.path])?;
+                self.session.feed.clear();
+                files.watch(self.number, [&self.session.path])?;
             }
             return Ok(());
         }
         let frames = match &self.painter {
             Some(frames) => frames.clone(),
             None => {
-                files.watch(self.number, [&self.desk.path])?;
-                self.painter.insert(painter(self.desk.clone())?).clone()
+                files.watch(self.number, [&self.session.path])?;
+                self.painter.insert(painter(self.session.clone())?).clone()
             }
         };
         self.read(&frames, files)
@@ -113,14 +113,14 @@ impl Watched {
 
     /// Reads the current scene, shows it or its faults, and watches all files that it names.
     fn read(&mut self, frames: &Sender<Arc<Frame>>, files: &mut Files) -> Result<(), Failure> {
-        let desk = self.desk.clone();
-        let board = &desk.board;
-        let (name, bytes) = match input::read(&desk.path) {
+        let session = self.session.clone();
+        let feed = &session.feed;
+        let (name, bytes) = match input::read(&session.path) {
             Ok(read) => read,
             Err(Failure::Usage(message, _) | Failure::Unread(message, _)) => {
-                let name = desk.path.display().to_string();
+                let name = session.path.display().to_string();
                 let report = &format!("error: {message}");
-                board.fault(events::fault(&Fault { lines: &[], name: &name, report, text: None }));
+                feed.fault(events::fault(&Fault { lines: &[], name: &name, report, text: None }));
                 self.last = None;
                 return Ok(());
             }
@@ -128,7 +128,7 @@ impl Watched {
         };
         // One save may cause several events. The stamps of the files are taken before the files are read, so that a
         // change in the meantime is noticed.
-        let sets = [&self.sets[..], &desk.tries.sets()].concat();
+        let sets = [&self.sets[..], &session.tries.sets()].concat();
         let now = Read { bytes, sets, stamps: self.named.iter().map(|file| stamp(file)).collect() };
         if self.last.as_ref() == Some(&now) {
             return Ok(());
@@ -136,18 +136,18 @@ impl Watched {
         let Read { bytes, sets, .. } = self.last.insert(now);
         let text = String::from_utf8_lossy(bytes);
         let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
-        let folder = desk.path.parent().unwrap_or(&desk.path);
+        let folder = session.path.parent().unwrap_or(&session.path);
         let chosen = Chosen { above_all: self.accuracy, sets, ..Chosen::default() };
-        let read = match crash::catch(|| reader::read_by(desk.registry, &name, folder, bytes, chosen)) {
+        let read = match crash::catch(|| reader::read_by(session.registry, &name, folder, bytes, chosen)) {
             Ok(read) => read,
             Err(failure) => {
-                crashed(board, &name, text, &failure);
+                crashed(feed, &name, text, &failure);
                 return Ok(());
             }
         };
         let report = read.as_ref().map_or_else(|report| report, |loaded| &loaded.warnings);
         self.named = report.files().to_vec();
-        files.watch(self.number, self.named.iter().chain([&desk.path]))?;
+        files.watch(self.number, self.named.iter().chain([&session.path]))?;
         match read {
             Ok(Loaded { model, .. }) if !fits(&model) => {
                 let [width, height] = model.camera.value.pixels;
@@ -155,7 +155,7 @@ impl Watched {
                     "error: an image of {width} x {height} pixels is too large for a page\n\
                      help: the maximum is {MAX_PIXELS} pixels, such as 4096 x 4096"
                 );
-                board.fault(events::fault(&Fault { lines: &[], name: &name, report, text: Some(text) }));
+                feed.fault(events::fault(&Fault { lines: &[], name: &name, report, text: Some(text) }));
             }
             Ok(Loaded { model, warnings, places, .. }) => {
                 self.version += 1;
@@ -172,7 +172,7 @@ impl Watched {
                     charting: Charting::default(),
                     stale: AtomicBool::new(false),
                 });
-                board.show(&frame);
+                feed.show(&frame);
                 // Sending fails only when the program ends, and the thread that renders with it.
                 let _ = frames.send(frame);
             }
@@ -181,7 +181,7 @@ impl Watched {
                 let lines = places.filter_map(|place| lines(text, place)).map(|[first, _]| first);
                 let lines = &lines.collect::<Vec<_>>();
                 let report = &report.to_string();
-                board.fault(events::fault(&Fault { lines, name: &name, report, text: Some(text) }));
+                feed.fault(events::fault(&Fault { lines, name: &name, report, text: Some(text) }));
             }
         }
         Ok(())
@@ -189,11 +189,11 @@ impl Watched {
 }
 
 /// Reports that the program failed on a scene. It continues with the next one.
-fn crashed(board: &Board, name: &str, text: &str, failure: &Failure) {
+fn crashed(feed: &EventFeed, name: &str, text: &str, failure: &Failure) {
     tell(failure);
     let Failure::Failed(message) = failure else { return };
     let report = &format!("error: {message}");
-    board.fault(events::fault(&Fault { lines: &[], name, report, text: Some(text) }));
+    feed.fault(events::fault(&Fault { lines: &[], name, report, text: Some(text) }));
 }
 
 fn fits(model: &Model) -> bool {
