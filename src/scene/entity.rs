@@ -6,7 +6,7 @@ use crate::scene::common::{
 };
 use crate::scene::counts::OneOf;
 use crate::scene::kind::Kind;
-use crate::scene::pparm::{Attributes, Given, Row, Table};
+use crate::scene::pparm::{AttributeValue, Attributes, Row, Table};
 use crate::scene::value::{Datum, Type};
 use crate::text;
 use crate::world::accuracy::Accuracy;
@@ -286,7 +286,7 @@ impl Args {
         entity: &'static Entity,
         name: String,
         order: usize,
-        values: Vec<Given>,
+        values: Vec<AttributeValue>,
         setting: Arc<Setting>,
     ) -> Self {
         let attributes = Attributes::new((entity.name, entity.place), entity.attributes(), values);

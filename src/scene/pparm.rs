@@ -255,7 +255,7 @@ impl Row for OneOf {
 }
 
 /// The values of an attribute, and whether the scene gives them; if not, they are the default.
-pub(crate) type Given = (Datum, bool);
+pub(crate) type AttributeValue = (Datum, bool);
 
 /// The attributes of an entity of a scene, each with its checked value.
 #[derive(Clone)]
@@ -263,7 +263,7 @@ pub struct Attributes {
     /// The name of the entity's type, and the source position that registers it.
     plugin: (&'static str, &'static Location<'static>),
     /// All attributes of the type, in the order of its table.
-    values: Vec<(&'static dyn Attribute, Given)>,
+    values: Vec<(&'static dyn Attribute, AttributeValue)>,
 }
 
 impl Attributes {
@@ -271,7 +271,7 @@ impl Attributes {
     pub(crate) fn new(
         plugin: (&'static str, &'static Location<'static>),
         attributes: impl Iterator<Item = &'static dyn Attribute>,
-        values: Vec<Given>,
+        values: Vec<AttributeValue>,
     ) -> Self {
         let count = values.len();
         let values: Vec<_> = attributes.zip(values).collect();

@@ -2,7 +2,7 @@
 //! them is their names.
 
 use crate::scene::entity::{Args, Entity, Setting};
-use crate::scene::pparm::Given;
+use crate::scene::pparm::AttributeValue;
 use crate::scene::value::Datum;
 use crate::world::material::Material;
 use std::mem::take;
@@ -50,7 +50,7 @@ impl Store {
     }
 
     /// Adds an entity with its values, or without them if they are faulty.
-    pub fn add(&mut self, entity: &'static Entity, name: &str, values: Option<&[Given]>) {
+    pub fn add(&mut self, entity: &'static Entity, name: &str, values: Option<&[AttributeValue]>) {
         let start = self.bytes.len();
         let number = self.number(entity).unwrap_or_else(|| {
             self.types.push(entity);

@@ -10,13 +10,13 @@ use crate::scene::attribute::{Attribute, LEAST_LENGTH, MOST_LENGTH};
 use crate::scene::choice::Choices;
 use crate::scene::entity::Entity;
 use crate::scene::kind::Kind;
-use crate::scene::pparm::Given;
+use crate::scene::pparm::AttributeValue;
 use crate::scene::store::Store;
 use crate::scene::value::{Datum, Type};
 use crate::text::{self, list};
 
 /// Checks an entity against the table of its type and reports its faults.
-pub struct Against<'c, 't> {
+pub struct AttributeChecker<'c, 't> {
     /// The entity's type.
     pub entity: &'static Entity,
     /// The names that the entity's attributes may refer to.
@@ -27,9 +27,9 @@ pub struct Against<'c, 't> {
     pub report: &'c mut Report<'t>,
 }
 
-impl Against<'_, '_> {
+impl AttributeChecker<'_, '_> {
     /// Returns a datum for each attribute of the type, or `None` if a fault was reported.
-    pub fn values(&mut self, parsed: &Parsed<'_>) -> Option<Vec<Given>> {
+    pub fn values(&mut self, parsed: &Parsed<'_>) -> Option<Vec<AttributeValue>> {
         let entity = self.entity;
         let title = match parsed.name.text.as_ref() {
             "" => format!("this {}", entity.name),

@@ -1,11 +1,11 @@
 //! Checks parsed entities, and constructs those that others can refer to.
 
-use super::attributes::{Against, whole};
+use super::attributes::{AttributeChecker, whole};
 use super::fault::{Fault, Place, Places};
 use super::guesses::find_attribute;
 use super::levels;
 use super::missing::Missing;
-use super::names::{Names, stand_in};
+use super::names::{Names, placeholder};
 use super::notes;
 use super::parsed::{Parsed, Word};
 use super::quick::Quick;
@@ -239,8 +239,9 @@ impl Check<'_, '_> {
                     .help("a scene has at most one background"),
             );
         }
-        let values = Against { entity, names: &mut self.names, store: &self.store, report: self.report }
-            .values(parsed);
+        let values =
+            AttributeChecker { entity, names: &mut self.names, store: &self.store, report: self.report }
+                .values(parsed);
         let values = values.filter(|_| counts);
         self.store.add(entity, text, values.as_deref());
         // An object to which one entity refers is often that of many.
@@ -266,7 +267,7 @@ impl Check<'_, '_> {
             && matches!(entity.kind(), Kind::Material | Kind::Texture | Kind::Shader)
             && self.names.defined(entity.kind(), text).is_none()
         {
-            self.define(entity.kind(), text, &stand_in(entity.kind()));
+            self.define(entity.kind(), text, &placeholder(entity.kind()));
         }
     }
 

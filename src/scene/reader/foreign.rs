@@ -8,9 +8,9 @@ use super::tokens::{Token, TokenForm, Tokens};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// A way of writing that scenes do not have.
+/// Syntax of other programs, which scenes do not have.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Way {
+enum ForeignSyntax {
     Colour,
     Quotes,
     Brackets,
@@ -18,16 +18,16 @@ enum Way {
     Semicolon,
 }
 
-/// Where a text has it first, what would be right there, and all its places.
-struct Found {
-    right: String,
+/// The places of such syntax in a text, and what would replace it at the first one.
+struct Finding {
+    replacement: String,
     places: Vec<Range<usize>>,
 }
 
 /// A text without what scenes do not have: each letter of it stands where it stood.
 struct Cleaned {
     bytes: Vec<u8>,
-    found: BTreeMap<Way, Found>,
+    found: BTreeMap<ForeignSyntax, Finding>,
 }
 
 /// Returns the report on a scene with errors: the same, or if the text has fewer errors without what other programs
@@ -48,14 +48,14 @@ pub fn explained(
         return report;
     }
     better.shows_in_place(text);
-    for (way, found) in cleaned.found {
-        better.add_gathered(way.fault(&found));
+    for (syntax, found) in cleaned.found {
+        better.add_gathered(syntax.fault(&found));
     }
     better
 }
 
-impl Way {
-    fn fault(self, Found { right, places }: &Found) -> Fault {
+impl ForeignSyntax {
+    fn fault(self, Finding { replacement, places }: &Finding) -> Fault {
         let (message, help) = match self {
             Self::Colour => (
                 "a `#` begins a comment, not a colour",
@@ -79,7 +79,7 @@ impl Way {
         };
         let label = match self {
             Self::Equals | Self::Semicolon => "leave it out".to_owned(),
-            Self::Colour | Self::Quotes | Self::Brackets => format!("write `{right}`"),
+            Self::Colour | Self::Quotes | Self::Brackets => format!("write `{replacement}`"),
         };
         let mut fault = Fault::error(places.first().cloned(), message).label(label).help(help);
         places.iter().skip(1).for_each(|place| fault.stand_for(Some(place.clone())));
@@ -101,10 +101,12 @@ impl Cleaned {
         }
     }
 
-    fn find(&mut self, way: Way, place: Range<usize>, right: impl FnOnce() -> String) {
-        match self.found.get_mut(&way) {
+    fn find(&mut self, syntax: ForeignSyntax, place: Range<usize>, replacement: impl FnOnce() -> String) {
+        match self.found.get_mut(&syntax) {
             Some(found) => found.places.push(place),
-            None => drop(self.found.insert(way, Found { right: right(), places: vec![place] })),
+            None => {
+                drop(self.found.insert(syntax, Finding { replacement: replacement(), places: vec![place] }))
+            }
         }
     }
 
@@ -127,19 +129,21 @@ impl Cleaned {
                 match digits.and_then(|digits| Some((digits, colour(digits)?))) {
                     Some((digits, [red, green, blue])) if is_name => {
                         let place = at..at + 1 + digits.len();
-                        let stand_in = format!("{:<1$}", "1 1 1", place.len().max(5));
+                        let placeholder = format!("{:<1$}", "1 1 1", place.len().max(5));
                         // A short colour needs the white space after it.
                         if self
                             .bytes
-                            .get(place.end..at + stand_in.len())
+                            .get(place.end..at + placeholder.len())
                             .is_some_and(|rest| rest.iter().all(u8::is_ascii_whitespace))
                         {
-                            self.bytes[at..at + stand_in.len()].copy_from_slice(stand_in.as_bytes());
+                            self.bytes[at..at + placeholder.len()].copy_from_slice(placeholder.as_bytes());
                             let shown = |level: u8| {
                                 let text = format!("{:.3}", f64::from(level) / 255.0);
                                 text.trim_end_matches('0').trim_end_matches('.').to_owned()
                             };
-                            self.find(Way::Colour, place, || [red, green, blue].map(shown).join(" "));
+                            self.find(ForeignSyntax::Colour, place, || {
+                                [red, green, blue].map(shown).join(" ")
+                            });
                         }
                     }
                     _ if word.starts_with('#') => break,
@@ -181,7 +185,9 @@ impl Cleaned {
             self.bytes[start + close..start + end].fill(b' ');
             self.bytes[start + first - 1] = b'"';
             self.bytes[start + close] = b'"';
-            self.find(Way::Quotes, start + open..start + end, || format!("\"{}\"", &line[first..close]));
+            self.find(ForeignSyntax::Quotes, start + open..start + end, || {
+                format!("\"{}\"", &line[first..close])
+            });
         }
     }
 
@@ -216,15 +222,15 @@ impl Cleaned {
         let mut values: Option<Range<usize>> = None;
         for at in marks.iter().map(|at| token.start + at) {
             self.bytes[at] = b' ';
-            let way = match text.as_bytes()[at] {
-                b'=' => Way::Equals,
-                b';' => Way::Semicolon,
+            let syntax = match text.as_bytes()[at] {
+                b'=' => ForeignSyntax::Equals,
+                b';' => ForeignSyntax::Semicolon,
                 _ => {
                     values = Some(values.map_or(at, |values| values.start)..at + 1);
                     continue;
                 }
             };
-            self.find(way, at..at + 1, String::new);
+            self.find(syntax, at..at + 1, String::new);
         }
         let word = text[token.place()].trim_end_matches(';');
         let Some(values) = values else {
@@ -251,9 +257,9 @@ impl Cleaned {
 
     fn end_of_run(&mut self, text: &str, run: &mut Option<Range<usize>>) {
         let Some(place) = run.take() else { return };
-        let right = text[place.clone()].replace(is_mark, " ");
-        let right = right.split_whitespace().collect::<Vec<_>>().join(" ");
-        self.find(Way::Brackets, place, || right);
+        let replacement = text[place.clone()].replace(is_mark, " ");
+        let replacement = replacement.split_whitespace().collect::<Vec<_>>().join(" ");
+        self.find(ForeignSyntax::Brackets, place, || replacement);
     }
 }
 

@@ -21,14 +21,14 @@ use std::sync::{Arc, LazyLock};
 
 /// The scope in which a name must be unique: the entity type for an object, and an empty string, the whole kind, for
 /// the others.
-type Title = &'static str;
+type Scope = &'static str;
 
-/// The entities that claimed a name after the first one, by their order.
+/// The claims of further entities to a name that one has already.
 #[derive(Default)]
-struct Claims {
+struct RepeatedClaims {
     /// The other scopes in which the name was claimed.
-    titles: Vec<Title>,
-    again: Vec<(Title, usize)>,
+    scopes: Vec<Scope>,
+    again: Vec<(Scope, usize)>,
 }
 
 /// The maximum number of faults of one sort that are listed separately.
@@ -41,7 +41,7 @@ pub struct Names {
     /// The first entity of each kind and name: half its hash, and its order.
     firsts: HashTable<(u32, u32)>,
     /// The entities that claimed a name again, by the order of the first one.
-    again: BTreeMap<usize, Claims>,
+    again: BTreeMap<usize, RepeatedClaims>,
     /// The hashes of the names of entities of unknown types, which a reference may mean.
     doubtful: HashSet<u64>,
     /// The materials, textures and shaders that can be referred to so far, and the objects to which an entity has
@@ -102,13 +102,13 @@ impl Names {
         if text.is_empty() || matches!(kind, Kind::Camera | Kind::Background) {
             return true;
         }
-        let (title, first_title) = (title(entity), store.entity(first).map_or("", title));
-        let Claims { titles, again } = self.again.entry(first).or_default();
-        let is_first = first_title != title && !titles.contains(&title);
+        let (scope, first_scope) = (scope(entity), store.entity(first).map_or("", scope));
+        let RepeatedClaims { scopes, again } = self.again.entry(first).or_default();
+        let is_first = first_scope != scope && !scopes.contains(&scope);
         if is_first {
-            titles.push(title);
+            scopes.push(scope);
         }
-        again.push((title, order));
+        again.push((scope, order));
         is_first || kind == Kind::Light
     }
 
@@ -135,18 +135,18 @@ impl Names {
     /// `place` returns the place of the name of the entity of an order.
     pub fn report_repeated(&self, store: &Store, place: impl Fn(usize) -> Place, report: &mut Report<'_>) {
         let (mut left_out, mut shared) = (Vec::new(), Vec::new());
-        for (first, Claims { again, .. }) in &self.again {
+        for (first, RepeatedClaims { again, .. }) in &self.again {
             let (text, Some(entity)) = (store.name(*first), store.entity(*first)) else { continue };
             let kind = entity.kind();
-            let mut titles: BTreeMap<Title, Vec<usize>> = BTreeMap::new();
+            let mut scopes: BTreeMap<Scope, Vec<usize>> = BTreeMap::new();
             let mut firsts = Vec::new();
-            for (title, order) in [(title(entity), *first)].iter().chain(again) {
-                let orders = titles.entry(*title).or_default();
+            for (scope, order) in [(scope(entity), *first)].iter().chain(again) {
+                let orders = scopes.entry(*scope).or_default();
                 orders.push(*order);
                 firsts.extend((orders.len() == 1).then_some(*order));
             }
-            for (title, orders) in titles.into_iter().filter(|(_, orders)| orders.len() > 1) {
-                let what = if title.is_empty() { kind.to_string() } else { title.to_owned() };
+            for (scope, orders) in scopes.into_iter().filter(|(_, orders)| orders.len() > 1) {
+                let what = if scope.is_empty() { kind.to_string() } else { scope.to_owned() };
                 if kind == Kind::Light { &mut shared } else { &mut left_out }.push(Repeated {
                     what,
                     text,
@@ -231,7 +231,7 @@ impl Names {
         }
         let hash = self.hash_of(&word.text);
         self.unresolved.add(kind, word, hash);
-        stand_in(kind)
+        placeholder(kind)
     }
 
     /// Reports the references to undefined names, one fault for each name. `place` returns the place of the name of the
@@ -310,7 +310,7 @@ fn table_of(kind: Kind) -> usize {
 
 /// Returns the scope in which the name of an entity must be unique. The course's own images show a sphere `left` and an
 /// fplane `left` in one scene.
-fn title(entity: &'static Entity) -> Title {
+fn scope(entity: &'static Entity) -> Scope {
     if entity.kind() == Kind::Object { entity.name } else { "" }
 }
 
@@ -351,19 +351,19 @@ fn few(mut all: Vec<Repeated<'_>>, is_placed: bool) -> Vec<(Repeated<'_>, usize,
 }
 
 /// Returns a default entity, in place of one that is faulty or missing. All of a kind are the same.
-pub fn stand_in(kind: Kind) -> Datum {
+pub fn placeholder(kind: Kind) -> Datum {
     match kind {
         Kind::Object => return Datum::Object { name: Arc::from(""), body: NamedBody::default() },
         Kind::Shader => return Paint::default().to_datum(),
         _ => {}
     }
-    static STAND_INS: LazyLock<[Datum; 2]> = LazyLock::new(|| {
+    static PLACEHOLDERS: LazyLock<[Datum; 2]> = LazyLock::new(|| {
         [
             Datum::Material { name: Arc::from(""), material: Arc::default() },
             Datum::Texture { name: Arc::from(""), texture: Arc::default() },
         ]
     });
-    STAND_INS[usize::from(kind == Kind::Texture)].clone()
+    PLACEHOLDERS[usize::from(kind == Kind::Texture)].clone()
 }
 
 /// Returns the label of a fault that may stand for several places.

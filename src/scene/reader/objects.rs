@@ -1,8 +1,8 @@
 //! Constructs the objects and the lights of a scene, which may ask for what the whole scene has.
 
 use super::check::{Check, PIECE, Source, TOGETHER, place_of};
+use super::constructed::{Constructed, constructed};
 use super::fault::Fault;
-use super::made::{Made, made};
 use crate::scene::entity::{Args, Construct, Refusal};
 use crate::scene::model::{Item, Object};
 use crate::scene::procedural;
@@ -37,10 +37,11 @@ impl Check<'_, '_> {
             let args = store.args(*order);
             if store.sound(*order).is_some()
                 && !args.refers_to_nothing()
-                && let Some(made) = self.body(args, source)
+                && let Some(constructed) = self.body(args, source)
             {
-                let material = made.material.clone().or_else(|| Record::new(&store, *order).material());
-                body.set(Body { name: Some(store.name(*order).into()), material, ..made });
+                let material =
+                    constructed.material.clone().or_else(|| Record::new(&store, *order).material());
+                body.set(Body { name: Some(store.name(*order).into()), material, ..constructed });
             }
             self.patterns.push(Item { args: Record::new(&store, *order), value: body.clone() });
         }
@@ -49,28 +50,28 @@ impl Check<'_, '_> {
         }
         for start in (0..store.len()).step_by(8 * TOGETHER) {
             let orders = start..store.len().min(start + 8 * TOGETHER);
-            let made = self.threads.map(orders.len().div_ceil(PIECE), |piece| {
+            let constructed = self.threads.map(orders.len().div_ceil(PIECE), |piece| {
                 let start = start + piece * PIECE;
-                made(&store, start..orders.end.min(start + PIECE), &patterns)
+                constructed(&store, start..orders.end.min(start + PIECE), &patterns)
             });
-            for (order, made) in made.into_iter().flatten() {
+            for (order, constructed) in constructed.into_iter().flatten() {
                 let record = Record::new(&store, order);
-                match made {
-                    Ok(Made::Seen(shape, shader)) => {
+                match constructed {
+                    Ok(Constructed::Plain(shape, shader)) => {
                         let object = |material| Object { args: record.clone(), material, shape, shader };
                         self.objects.extend(record.material().map(object));
                     }
-                    Ok(Made::Body(body)) => {
+                    Ok(Constructed::Body(body)) => {
                         if !body.warnings.is_empty() {
                             self.warn(&record.args(), &body.warnings, source);
                         }
                         self.objects.extend(objects(record, *body));
                     }
-                    Ok(Made::ByFile) => {
+                    Ok(Constructed::Deferred) => {
                         let body = self.body(record.args(), source);
                         self.objects.extend(body.into_iter().flat_map(|body| objects(record.clone(), body)));
                     }
-                    Ok(Made::Light(light)) => self.lights.push(Item { args: record, value: light }),
+                    Ok(Constructed::Light(light)) => self.lights.push(Item { args: record, value: light }),
                     Err(refusal) => self.refused(&record.args(), refusal, source),
                 }
             }

@@ -1,4 +1,4 @@
-//! Checks and packs entities in which nothing is wrong; whatever else there is, [`Against`](super::attributes::Against)
+//! Checks and packs entities in which nothing is wrong; whatever else there is, [`AttributeChecker`](super::attributes::AttributeChecker)
 //! explains.
 
 use super::guesses::Tables;
