@@ -96,7 +96,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     }
     let mut measured = Vec::new();
     for (name, model) in models {
-        let about = About::of(name, &model, cpu);
+        let about = SceneSummary::of(name, &model, cpu);
         let speed = Speed::measure(model, cpu, args.seconds)?;
         if args.json {
             measured.push(about.measured(speed));
@@ -111,7 +111,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
 }
 
 /// The measured scene and its counts, for the heading.
-struct About {
+struct SceneSummary {
     name: String,
     size: [usize; 2],
     objects: usize,
@@ -119,7 +119,7 @@ struct About {
     cpu: Cpu,
 }
 
-impl About {
+impl SceneSummary {
     fn of(name: String, model: &Model, cpu: Cpu) -> Self {
         let size = model.camera.value.pixels;
         Self { name, size, objects: model.objects.len(), lights: model.lights.len(), cpu }

@@ -5,7 +5,7 @@ use crate::cli::files::input::{self, Source};
 use crate::cli::files::output::{self, Output};
 use crate::cli::options::{set, stop};
 use crate::cli::process::failure::{self, Failure, print};
-use crate::cli::process::interrupt::{self, Manner};
+use crate::cli::process::interrupt::{self, InterruptAction};
 use crate::cli::process::{messages, progress};
 use crate::scene::choice::Choice;
 use crate::scene::model::Model;
@@ -63,10 +63,10 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     };
     let files = files(&args.output, &name, |path| output::is_no_source(path, &args.scene, &model))?;
     drop(model);
-    interrupt::catch(Manner::NotesFirst(NOTHING))?;
+    interrupt::catch(InterruptAction::SetFlagThenExit(NOTHING))?;
     let (kept, units) = (work.kept(), work.units());
     let end = |chart: Chart| {
-        interrupt::from_here(Manner::Notes);
+        interrupt::set_action(InterruptAction::SetFlag);
         end(&chart, files, start.elapsed() >= limit)
     };
     thread::scope(|scope| {

@@ -5,7 +5,7 @@ use super::measuring::{Work, wait};
 use crate::cli::files::input::{self, Source};
 use crate::cli::options::{set, stop};
 use crate::cli::process::failure::{self, Failure, print};
-use crate::cli::process::interrupt::{self, Manner};
+use crate::cli::process::interrupt::{self, InterruptAction};
 use crate::cli::process::program;
 use crate::scene::choice::Choice;
 use crate::scene::registry::Registry;
@@ -75,7 +75,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let source = Source::read(&args.scene, &args.set)?;
     input::told(source.load(registry, None))?;
     let load = all_accuracies(registry, &source)?;
-    interrupt::catch(Manner::Ends("nothing has been chosen"))?;
+    interrupt::catch(InterruptAction::Exit("nothing has been chosen"))?;
     let worst = args.worst;
     let goal = match (args.max_error, args.max_time) {
         (Some(most), _) => Goal::Error { most, worst },
@@ -106,18 +106,19 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             Err(RecvTimeoutError::Disconnected) => panic::resume_unwind(Box::new(())),
         };
         let cores = thread::available_parallelism().map_or(1, usize::from);
-        let choice = Weighed { estimates: &estimates, cores, goal };
+        let choice = Selection { estimates: &estimates, cores, goal };
         print(&choice.words(choice.chosen()?, &args.scene, &args.set))
     })
 }
 
-struct Weighed<'e> {
+/// Selects among choices by their estimates.
+struct Selection<'e> {
     estimates: &'e Estimates,
     cores: usize,
     goal: Goal,
 }
 
-impl<'e> Weighed<'e> {
+impl<'e> Selection<'e> {
     /// Returns the time of a choice on all cores, in seconds.
     fn time(&self, estimate: &Estimate) -> f64 {
         estimate.seconds / self.cores as f64

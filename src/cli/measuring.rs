@@ -1,7 +1,7 @@
 //! The progress of a measurement: a bar on a terminal, and lines elsewhere. An interruption ends it, and so does a time
 //! limit.
 
-use crate::cli::process::interrupt::{self, Manner};
+use crate::cli::process::interrupt::{self, InterruptAction};
 use crate::cli::process::messages;
 use crate::cli::process::progress::Progress;
 use crate::tools::chart::{self, Panel};
@@ -23,7 +23,7 @@ pub struct Work {
     progress: Progress,
     time: Time,
     units: Units,
-    kept: Kept,
+    kept: Panels,
 }
 
 /// The time for a measurement, which its panels share.
@@ -74,12 +74,12 @@ impl Time {
 pub struct Units(Arc<[AtomicUsize; 2]>);
 
 /// The panels of a chart so far.
-type Kept = Arc<Mutex<Vec<Panel>>>;
+type Panels = Arc<Mutex<Vec<Panel>>>;
 
 impl Work {
     /// Starts work that is to end within a time.
     pub fn within(limit: Duration) -> Self {
-        let (progress, units, kept) = (Progress::new(0), Units::default(), Kept::default());
+        let (progress, units, kept) = (Progress::new(0), Units::default(), Panels::default());
         Self { progress, time: Time::within(limit), units, kept }
     }
 
@@ -93,7 +93,7 @@ impl Work {
     }
 
     /// Returns the panels so far, for others to look at.
-    pub fn kept(&self) -> Kept {
+    pub fn kept(&self) -> Panels {
         Arc::clone(&self.kept)
     }
 }
@@ -147,7 +147,7 @@ impl chart::Progress for Work {
         panels.clone_into(&mut self.kept.lock().unwrap_or_else(PoisonError::into_inner));
         if !panels.is_empty() {
             let said = "the measurement under way takes too long, and there is no chart";
-            interrupt::from_here(Manner::NotesFirst(said));
+            interrupt::set_action(InterruptAction::SetFlagThenExit(said));
         }
     }
 }

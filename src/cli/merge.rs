@@ -11,7 +11,7 @@ use crate::files::are_same;
 use crate::output::aov::Aov;
 use crate::output::aov_values::Values;
 use crate::output::full_range::FullRange;
-use crate::output::part::{Reader, What, put_tile};
+use crate::output::part::{PixelFormat, Reader, put_tile};
 use crate::output::picture::Format;
 use crate::render::renderer::Renderer;
 use crate::render::tiles::TILE;
@@ -53,7 +53,7 @@ Examples:
 pub fn run(args: &Args) -> Result<(), Failure> {
     let is_full_range = FullRange::of(&args.image).is_some();
     let renderer = Renderer::new(args.threads.unwrap_or(0).into())?;
-    let is_main = |what: What| !matches!(what, What::Beside(..));
+    let is_main = |what: PixelFormat| !matches!(what, PixelFormat::Beside(..));
     let main = Parts::gather(&args.image, &args.parts, is_main)?;
     if !main.label.identity.is_of_this_program()? {
         messages::warning(
@@ -65,7 +65,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let mut beside = Vec::new();
     for aov in &main.label.beside {
         let path = aov::picture(&names, *aov);
-        let is_this = |what: What| matches!(what, What::Beside(other, ..) if other == *aov);
+        let is_this = |what: PixelFormat| matches!(what, PixelFormat::Beside(other, ..) if other == *aov);
         let parts = Parts::gather(&path, &args.parts, is_this)?;
         main.belongs_with(&parts)?;
         beside.push((path, parts));
@@ -91,11 +91,11 @@ impl Parts {
     fn write(&self, path: &Path, renderer: &Renderer) -> Result<(), Failure> {
         let start = Instant::now();
         match self.label.what {
-            What::Ppm => self.bytes(path, Format::Ppm, renderer)?,
-            What::Png(compression) => self.bytes(path, Format::Png(compression), renderer)?,
-            What::Exr => self.full_range(path, FullRange::Exr)?,
-            What::Pfm => self.full_range(path, FullRange::Pfm)?,
-            What::Beside(aov, compression, setting) => {
+            PixelFormat::Ppm => self.bytes(path, Format::Ppm, renderer)?,
+            PixelFormat::Png(compression) => self.bytes(path, Format::Png(compression), renderer)?,
+            PixelFormat::Exr => self.full_range(path, FullRange::Exr)?,
+            PixelFormat::Pfm => self.full_range(path, FullRange::Pfm)?,
+            PixelFormat::Beside(aov, compression, setting) => {
                 let format = compression.map_or(Format::Ppm, Format::Png);
                 let numbers = self.all(24)?;
                 let number = |bytes: &[u8; 8]| f64::from_le_bytes(*bytes);

@@ -6,7 +6,7 @@ use crate::cli::options::set;
 use crate::cli::options::size::Part;
 use crate::cli::options::stop::Stop;
 use crate::cli::process::failure::Failure;
-use crate::cli::process::interrupt::{self, Manner};
+use crate::cli::process::interrupt::{self, InterruptAction};
 use crate::cli::rendering::job::Job;
 use crate::output::picture::Format;
 use crate::render::plan::Plan;
@@ -26,7 +26,7 @@ pub fn run(registry: &Registry) -> Result<(), Failure> {
     let accuracy = Chosen { by_default: Accuracy::Classic, ..Chosen::default() };
     let model =
         input::told(Source::read(standard, &set::Args::default())?.load_by(registry, accuracy))?.model;
-    interrupt::catch(Manner::Ends("the image was not finished"))?;
+    interrupt::catch(InterruptAction::Exit("the image was not finished"))?;
     let _ = write!(std::io::stderr(), "{}", dump::notes(&model));
     let job = Job {
         plan: &Plan::new(&model),

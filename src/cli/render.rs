@@ -17,7 +17,7 @@ use crate::cli::rendering::{aov, debug, full_range, part, resume};
 use crate::output::aov::Aov;
 use crate::output::deflate::Compression;
 use crate::output::full_range::FullRange;
-use crate::output::part::What;
+use crate::output::part::PixelFormat;
 use crate::output::picture::Format;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
@@ -111,7 +111,7 @@ pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
             last.map_err(Failure::Scene)?;
         }
         for frame in frames {
-            stop.ends_from_here()?;
+            stop.exit_on_interrupt()?;
             args.set.values = [&set[..], &frame.sets].concat();
             one(registry, &args, (&scene, frame.path), &stop)?;
         }
@@ -127,7 +127,7 @@ pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
     let targets = several::targets(&args.scenes, output, extension)?;
     let stop = args.stop.watch()?;
     several::each(&args.scenes, |index| {
-        stop.ends_from_here()?;
+        stop.exit_on_interrupt()?;
         one(registry, &args, (&args.scenes[index], targets[index].clone()), &stop)
     })
 }
@@ -236,7 +236,7 @@ fn one(
         Ok(loaded) => Ok(loaded.model),
         Err(report) => Err(Failure::Scene(report)),
     };
-    stop.ends_from_here()?;
+    stop.exit_on_interrupt()?;
     aov::write(&plan, exact, threads, format, beside)
 }
 
@@ -268,7 +268,7 @@ fn share(
         region,
         renderer: &Renderer::new(args.threads.unwrap_or(0).into())?.on(args.cpu.cpu()?),
         paths: [path, &main],
-        what: full_range.map_or(What::picture(format), What::full_range),
+        what: full_range.map_or(PixelFormat::picture(format), PixelFormat::full_range),
         beside: &beside,
         format,
         at_once: args.stop.band(region.columns.len())?,

@@ -147,9 +147,9 @@ enum Sides<'d> {
     /// An image.
     Picture {
         /// The first pixel that differs, or null.
-        first: Option<Found>,
+        first: Option<DifferingPixel>,
         /// The pixel that differs most, or null.
-        worst: Option<Found>,
+        worst: Option<DifferingPixel>,
         /// The names of the old and the new image.
         names: &'d [String; 2],
         /// The new image, as a data URI.
@@ -172,7 +172,7 @@ type Line = (char, Option<usize>, Option<usize>, String);
 
 /// A pixel that differs.
 #[derive(Serialize)]
-struct Found {
+struct DifferingPixel {
     /// The pixel's colours before and after, in words.
     text: String,
     /// The column, from 0 at the left.
@@ -186,7 +186,7 @@ impl<'d> Shown<'d> {
         let sides = match &item.change {
             Change::Picture { old, new, names, comparison } => {
                 let found = |pixel: Option<Pixel>| {
-                    pixel.map(|pixel| Found { text: pixel.to_string(), x: pixel.x, y: pixel.y })
+                    pixel.map(|pixel| DifferingPixel { text: pixel.to_string(), x: pixel.x, y: pixel.y })
                 };
                 Sides::Picture {
                     first: found(comparison.as_ref().and_then(|comparison| comparison.first)),

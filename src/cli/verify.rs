@@ -7,7 +7,7 @@ use crate::cli::files::output::{self, Output, named};
 use crate::cli::options::number::whole;
 use crate::cli::options::{method, set};
 use crate::cli::process::failure::{Failure, print};
-use crate::cli::process::interrupt::{self, Manner};
+use crate::cli::process::interrupt::{self, InterruptAction};
 use crate::cli::process::progress::Progress;
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
@@ -61,7 +61,7 @@ Examples:
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let model = input::load(registry, &args.scene, &args.set, args.method.accuracy()?)?;
-    interrupt::catch(Manner::Ends("the image was not finished"))?;
+    interrupt::catch(InterruptAction::Exit("the image was not finished"))?;
     let picture = match args.output {
         Some(path) => {
             let format = named(&path, "end it in .png or .ppm")?;

@@ -89,7 +89,7 @@ pub fn run(registry: &'static Registry, args: Args) -> Result<(), Failure> {
         Scenes::new(registry, &args.scenes, Arc::new(notifier(&sender, || Event::Changed)), &mut files)?;
     let server = Server::open(args.port)?;
     let url = server.url();
-    interrupt::catch_and(notifier(&sender, || Event::Interrupted))?;
+    interrupt::catch_with(notifier(&sender, || Event::Interrupted))?;
 
     let scenes = Arc::new(scenes);
     thread::spawn({

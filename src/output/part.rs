@@ -33,7 +33,7 @@ const CHECKSUM: usize = 32;
 /// The format of the pixels of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum What {
+pub enum PixelFormat {
     /// Pixels of a PPM: three bytes each.
     Ppm,
     /// Pixels of a PNG with this compression: three bytes each.
@@ -90,7 +90,7 @@ mod by_name {
     }
 }
 
-impl What {
+impl PixelFormat {
     /// Returns the format of the parts of an image of this format.
     pub fn picture(format: Format) -> Self {
         match format {
@@ -127,7 +127,7 @@ pub struct Label {
     /// The width and height of the image in pixels.
     pub size: [usize; 2],
     /// The format of the pixels.
-    pub what: What,
+    pub what: PixelFormat,
     /// The images beside the main one, which have parts of their own.
     pub beside: Vec<Aov>,
     /// The settings and inputs on which the pixels depend.

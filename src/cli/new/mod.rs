@@ -11,7 +11,7 @@ use crate::scene::registry::Registry;
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
     #[command(subcommand)]
-    what: What,
+    subcommand: Subcommand,
 }
 
 const EXAMPLES: &str = "\
@@ -21,14 +21,14 @@ Examples:
   tabray new plugin stripes --kind shader";
 
 #[derive(clap::Subcommand)]
-enum What {
+enum Subcommand {
     Scene(scene::Args),
     Plugin(plugin::Args),
 }
 
 pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
-    match &args.what {
-        What::Scene(args) => scene::run(args),
-        What::Plugin(args) => plugin::run(registry, args),
+    match &args.subcommand {
+        Subcommand::Scene(args) => scene::run(args),
+        Subcommand::Plugin(args) => plugin::run(registry, args),
     }
 }

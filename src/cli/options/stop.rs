@@ -1,7 +1,7 @@
 //! Stops a render before its image is finished: at an interruption, or at a limit of time or memory.
 
 use crate::cli::process::failure::Failure;
-use crate::cli::process::interrupt::{self, Manner};
+use crate::cli::process::interrupt::{self, InterruptAction};
 use crate::cli::process::{memory, messages};
 use crate::render::tiles::{BAND, TILE};
 use crate::text;
@@ -105,20 +105,20 @@ impl Stop {
 
     /// Lets interruptions and limits only be noted from now on, because there is something to keep.
     pub fn begin(&self) {
-        interrupt::from_here(Manner::Notes);
+        interrupt::set_action(InterruptAction::SetFlag);
         let _ = self.begun.set(());
     }
 
     /// Lets interruptions and limits end the program with this message from now on, because no part of the image can be
     /// kept.
     pub fn begin_unkept(&self, said: &'static str) {
-        interrupt::from_here(Manner::Ends(said));
+        interrupt::set_action(InterruptAction::Exit(said));
         let _ = self.begun.set(());
     }
 
     /// Lets interruptions and limits end the program from now on; images not yet written are lost.
-    pub fn ends_from_here(&self) -> Result<(), Failure> {
-        interrupt::from_here(Manner::Ends(NOT_FINISHED));
+    pub fn exit_on_interrupt(&self) -> Result<(), Failure> {
+        interrupt::set_action(InterruptAction::Exit(NOT_FINISHED));
         match self.reached.get() {
             Some(limit) if matches!(limit, Limit::Time(_)) => {
                 limit.tell();
@@ -134,7 +134,7 @@ impl Stop {
 impl Args {
     /// Starts watching the limits, and catches interruptions. Both end the program until rendering begins.
     pub fn watch(&self) -> Result<Stop, Failure> {
-        interrupt::catch(Manner::Ends(NOT_FINISHED))?;
+        interrupt::catch(InterruptAction::Exit(NOT_FINISHED))?;
         let stop = Stop::default();
         let &Self { time_limit, max_memory, .. } = self;
         if time_limit.is_none() && max_memory.is_none() {
@@ -157,7 +157,7 @@ impl Args {
                     let _ = reached.set(limit);
                     // If nothing is rendered yet, there is nothing to keep.
                     if matches!(limit, Limit::Time(_)) {
-                        interrupt::end_if_it_would(|said| {
+                        interrupt::exit_if_interrupt_would(|said| {
                             limit.tell();
                             messages::note(if begun.get().is_some() { said } else { NOT_BEGUN });
                         });

@@ -16,46 +16,46 @@ use std::time::Duration;
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-static MANNER: Mutex<Manner> = Mutex::new(Manner::Notes);
+static ACTION: Mutex<InterruptAction> = Mutex::new(InterruptAction::SetFlag);
 
-/// The time that a command with [`Manner::NotesFirst`] has to stop by itself.
+/// The time that a command with [`InterruptAction::SetFlagThenExit`] has to stop by itself.
 const PATIENCE: Duration = Duration::from_millis(800);
 
 /// The effect of the first interruption.
 #[derive(Clone, Copy)]
-pub enum Manner {
-    /// The program ends with this message.
-    Ends(&'static str),
-    /// The interruption is noted, and [`check`] reports it.
-    Notes,
-    /// The interruption is noted, and [`check`] reports it. If this is still the manner after [`PATIENCE`], the program
-    /// ends with this message.
-    NotesFirst(&'static str),
+pub enum InterruptAction {
+    /// The program exits with this message.
+    Exit(&'static str),
+    /// A flag is set, which [`check`] reports.
+    SetFlag,
+    /// A flag is set, which [`check`] reports. If this is still the action after [`PATIENCE`], the program
+    /// exits with this message.
+    SetFlagThenExit(&'static str),
 }
 
-fn manner() -> MutexGuard<'static, Manner> {
-    MANNER.lock().unwrap_or_else(PoisonError::into_inner)
+fn action() -> MutexGuard<'static, InterruptAction> {
+    ACTION.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Sets the effect that the first interruption has from here on.
-pub fn from_here(next: Manner) {
-    *manner() = next;
+/// Sets what the first interruption does from here on.
+pub fn set_action(next: InterruptAction) {
+    *action() = next;
 }
 
 /// Catches interruptions from here on; `first` is the effect of the first one.
-pub fn catch(first: Manner) -> Result<(), Failure> {
-    from_here(first);
+pub fn catch(first: InterruptAction) -> Result<(), Failure> {
+    set_action(first);
     handle(|| {
-        // The lock is held while the program ends, so that the manner does not change meanwhile.
-        match *manner() {
-            Manner::Ends(said) => {
+        // The lock is held while the program ends, so that the action does not change meanwhile.
+        match *action() {
+            InterruptAction::Exit(said) => {
                 failure::end_even_if_blocked(&Failure::Stopped);
                 failure::end(&Failure::Interrupted(said));
             }
-            Manner::Notes => {}
-            Manner::NotesFirst(_) => drop(thread::spawn(|| {
+            InterruptAction::SetFlag => {}
+            InterruptAction::SetFlagThenExit(_) => drop(thread::spawn(|| {
                 thread::sleep(PATIENCE);
-                if let Manner::NotesFirst(said) = *manner() {
+                if let InterruptAction::SetFlagThenExit(said) = *action() {
                     failure::end(&Failure::Interrupted(said));
                 }
             })),
@@ -77,7 +77,7 @@ pub fn keep_ignoring_hangups() {
 }
 
 /// Notes interruptions from here on; the first one calls `then`, on a thread of its own.
-pub fn catch_and(then: impl FnMut() + Send + 'static) -> Result<(), Failure> {
+pub fn catch_with(then: impl FnMut() + Send + 'static) -> Result<(), Failure> {
     handle(then)
 }
 
@@ -93,8 +93,8 @@ fn handle(mut then: impl FnMut() + Send + 'static) -> Result<(), Failure> {
 }
 
 /// If an interruption would end the program, calls `tell` with what it would say and ends the program.
-pub fn end_if_it_would(tell: impl FnOnce(&'static str)) {
-    if let Manner::Ends(said) = *manner() {
+pub fn exit_if_interrupt_would(tell: impl FnOnce(&'static str)) {
+    if let InterruptAction::Exit(said) = *action() {
         failure::end_even_if_blocked(&Failure::Stopped);
         tell(said);
         failure::end(&Failure::Stopped);

@@ -12,7 +12,7 @@ use crate::cli::rendering::stats::Stats;
 use crate::cli::rendering::{aov, full_range, resume};
 use crate::output::aov::{Aov, Setting};
 use crate::output::aov_values::Values;
-use crate::output::part::{self, Label, MOST_PARTS, What, Writer};
+use crate::output::part::{self, Label, MOST_PARTS, PixelFormat, Writer};
 use crate::output::picture::Format;
 use crate::parallel;
 use crate::render::division::{self, Grid};
@@ -69,7 +69,7 @@ pub struct Share<'a> {
     pub renderer: &'a Renderer,
     /// The path of the image, and that of an image whose name those beside it have.
     pub paths: [&'a Path; 2],
-    pub what: What,
+    pub what: PixelFormat,
     pub beside: &'a [Aov],
     /// The format of the images beside the main one.
     pub format: Format,
@@ -102,7 +102,7 @@ impl Share<'_> {
             Begun::remove(&resume::beside(&main.0), &main.1)?;
         } else {
             match self.what {
-                What::Exr | What::Pfm => self.full_range(&main)?,
+                PixelFormat::Exr | PixelFormat::Pfm => self.full_range(&main)?,
                 _ => self.bytes(&main, resumes, label(self.what, true))?,
             }
             wrote(&main.0, &main.1);
@@ -110,14 +110,14 @@ impl Share<'_> {
         if self.beside.is_empty() {
             return Ok(());
         }
-        self.stop.ends_from_here()?;
+        self.stop.exit_on_interrupt()?;
         truth(&mut |truth| {
             for aov in self.beside {
                 let compression = match self.format {
                     Format::Png(compression) => Some(compression),
                     Format::Ppm => None,
                 };
-                let what = What::Beside(*aov, compression, Setting::of(&self.plan.camera));
+                let what = PixelFormat::Beside(*aov, compression, Setting::of(&self.plan.camera));
                 let file = beside_and_label(&aov::picture(beside, *aov), label(what, false));
                 if !(resumes && is_there(&file)?) {
                     self.values(&file, *aov, truth)?;

@@ -5,7 +5,7 @@ use crate::cli::process::failure::Failure;
 use crate::cli::rendering::{part, resume};
 use crate::files;
 use crate::output::checkpoint::Identity;
-use crate::output::part::{Label, Reader, What};
+use crate::output::part::{Label, PixelFormat, Reader};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io;
@@ -24,7 +24,7 @@ pub struct Parts {
 }
 
 /// The label of a part that was found, without what all parts have in common.
-struct Found {
+struct PartFile {
     path: PathBuf,
     tiles: Range<usize>,
 }
@@ -32,9 +32,13 @@ struct Found {
 impl Parts {
     /// Finds all parts among these files, or beside the image if there are none, of those that contain what `is`
     /// wanted. Refuses files that are not whole parts of one image, but does not check the pixels.
-    pub fn gather(image: &Path, files: &[PathBuf], is: impl Fn(What) -> bool) -> Result<Self, Failure> {
+    pub fn gather(
+        image: &Path,
+        files: &[PathBuf],
+        is: impl Fn(PixelFormat) -> bool,
+    ) -> Result<Self, Failure> {
         let paths = if files.is_empty() { beside(image)? } else { files.to_vec() };
-        let (mut first, mut found): (Option<(PathBuf, Label)>, BTreeMap<usize, Found>) =
+        let (mut first, mut found): (Option<(PathBuf, Label)>, BTreeMap<usize, PartFile>) =
             (None, BTreeMap::new());
         for path in paths {
             let label = open(&path)?.label;
@@ -65,7 +69,7 @@ impl Parts {
                 }
                 continue;
             }
-            found.insert(number, Found { path: path.clone(), tiles });
+            found.insert(number, PartFile { path: path.clone(), tiles });
             first.get_or_insert((path, label));
         }
         let Some((_, label)) = first else {

@@ -85,7 +85,7 @@ fn page(registry: &Registry, folder: &Path, before: Option<&Path>) -> Response<s
 
 /// The request of the page to accept or reject a snapshot.
 #[derive(Deserialize)]
-struct Seen {
+struct DecisionRequest {
     /// The path of the snapshot.
     snapshot: String,
     /// The version of the snapshot that the page showed.
@@ -99,9 +99,9 @@ fn decide(
     verdict: &str,
     act: impl Fn(&Pending) -> Result<(), Failure>,
 ) -> Result<String, (StatusCode, String)> {
-    let seen = serde_json::from_slice(body);
-    let Seen { snapshot: name, version } =
-        seen.map_err(|_| (StatusCode::BAD_REQUEST, "the request names no snapshot".to_owned()))?;
+    let request = serde_json::from_slice(body);
+    let DecisionRequest { snapshot: name, version } =
+        request.map_err(|_| (StatusCode::BAD_REQUEST, "the request names no snapshot".to_owned()))?;
     let failed = |failure: Failure| {
         tell(&failure);
         (StatusCode::INTERNAL_SERVER_ERROR, "failed: see the terminal for the reason".to_owned())
