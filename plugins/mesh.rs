@@ -1,7 +1,7 @@
 //! A mesh of triangles from a file.
 
 use crate::prelude::*;
-use crate::shapes::mesh::{Mesh, Painted, Surface, ToWorld, Unfit, read};
+use crate::shapes::mesh::{Mesh, Painted, Surface, SurfaceError, ToWorld, read};
 use crate::text;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -52,7 +52,7 @@ fn surface(args: &Args) -> Result<Surface, Refusal> {
     let file = args.get(&FILE);
     let refusal = |message, help| Refusal { attribute: Some("file"), message, help };
     let model = read::read(&args.setting.folder.join(&file), args.setting.memory).map_err(|broken| {
-        let read::Broken { at, message } = broken;
+        let read::ReadError { at, message } = broken;
         let place = at.map_or(String::new(), |at| format!(", {at}"));
         refusal(
             format!("has a file that cannot be read, `{}`{place}: {message}", file.display()),
@@ -60,13 +60,15 @@ fn surface(args: &Args) -> Result<Surface, Refusal> {
         )
     })?;
     let placement = ToWorld::new(args.get(&SCALE), args.get(&ROTATION), args.get(&TRANSLATION));
-    Surface::new(model, &placement, args.get(&SMOOTH) == 1).map_err(|unfit| match unfit {
-        Unfit::TooLarge => refusal(
+    Surface::new(model, &placement, args.get(&SMOOTH) == 1).map_err(|error| match error {
+        SurfaceError::TooLarge => refusal(
             "has coordinates so large that their squares overflow".to_owned(),
             "the coordinates in the world must not exceed 1e152",
         ),
-        Unfit::TooMany => refusal("has more than 2^28 faces".to_owned(), "split it into several meshes"),
-        Unfit::NoArea => {
+        SurfaceError::TooMany => {
+            refusal("has more than 2^28 faces".to_owned(), "split it into several meshes")
+        }
+        SurfaceError::NoArea => {
             refusal("has no face with an area".to_owned(), "the corners of a face must not lie on one line")
         }
     })

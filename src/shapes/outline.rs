@@ -3,7 +3,7 @@
 use crate::geometry::placement::Rotation;
 use crate::numeric::double_double::DoubleDouble;
 use crate::shapes::mesh::read::Model;
-use crate::shapes::mesh::{Mesh, Surface, ToWorld, Unfit};
+use crate::shapes::mesh::{Mesh, Surface, SurfaceError, ToWorld};
 use crate::world::accuracy::{Accuracy, Exact, Strict};
 use crate::world::body::Body;
 use glam::{DVec2, DVec3};
@@ -121,7 +121,7 @@ pub fn polygon(vertices: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Model {
 ///
 /// # Errors
 /// The reason why the triangles make none.
-pub fn body(model: Model, accuracy: Accuracy) -> Result<Body, Unfit> {
+pub fn body(model: Model, accuracy: Accuracy) -> Result<Body, SurfaceError> {
     let surface =
         Arc::new(Surface::new(model, &ToWorld::new(DVec3::ONE, Rotation::NONE, DVec3::ZERO), false)?);
     Ok(match accuracy {

@@ -26,5 +26,5 @@ mod to_world;
 
 pub use painted::Painted;
 pub use shape::Mesh;
-pub use surface::{Surface, Unfit};
+pub use surface::{Surface, SurfaceError};
 pub use to_world::ToWorld;

@@ -55,8 +55,8 @@ pub struct Surface {
     pub materials: Vec<String>,
 }
 
-/// Why no surface can be made.
-pub enum Unfit {
+/// The reason why no surface can be made of a file's triangles.
+pub enum SurfaceError {
     /// A coordinate is so large that its square overflows.
     TooLarge,
     /// There are more faces than the tree can hold.
@@ -70,15 +70,15 @@ impl Surface {
     ///
     /// # Errors
     /// Why there is none.
-    pub fn new(model: Model, placement: &ToWorld, is_smooth: bool) -> Result<Self, Unfit> {
+    pub fn new(model: Model, placement: &ToWorld, is_smooth: bool) -> Result<Self, SurfaceError> {
         if model.faces.len() > MAX_FACES {
-            return Err(Unfit::TooMany);
+            return Err(SurfaceError::TooMany);
         }
         let Model { vertices, mut faces, materials, slots, sides } = model;
         let vertices = merge(vertices, &mut faces, placement);
         let is_far = |at: DVec3| !at.is_finite() || at.abs().max_element() > MOST_LENGTH;
         if parallel::first(vertices.len(), |vertex| is_far(vertices[vertex])).is_some() {
-            return Err(Unfit::TooLarge);
+            return Err(SurfaceError::TooLarge);
         }
         let mut order: Vec<u32> = (0..faces.len() as u32).collect();
         let has_area =
@@ -87,7 +87,7 @@ impl Surface {
         order = parallel::ranges(total, 2, &|range| order[range].iter().copied().filter(has_area).collect());
         let degenerate = total - order.len();
         if order.is_empty() {
-            return Err(Unfit::NoArea);
+            return Err(SurfaceError::NoArea);
         }
         let kept: Vec<_> = order.iter().map(|face| faces[*face as usize]).collect();
         drop(take(&mut faces));

@@ -1,6 +1,6 @@
 //! Lines of a text, and blocks of lines that are read on all cores.
 
-use super::model::Broken;
+use super::model::ReadError;
 use crate::parallel;
 use memchr::{memchr, memchr_iter, memrchr};
 
@@ -43,8 +43,8 @@ pub(super) fn read<T: Send>(
     continues: fn(&[u8]) -> bool,
     count: impl Fn(&[u8]) -> usize + Sync,
     read: impl Fn(&[u8], usize) -> T + Sync,
-    mut take: impl FnMut(T) -> Result<(), Broken>,
-) -> Result<(), Broken> {
+    mut take: impl FnMut(T) -> Result<(), ReadError>,
+) -> Result<(), ReadError> {
     let mut blocks = Blocks { rest: text, continues };
     let mut before = 0;
     loop {

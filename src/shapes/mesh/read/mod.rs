@@ -11,8 +11,8 @@ mod stl;
 #[cfg(test)]
 mod tests;
 
-use model::Room;
-pub use model::{At, Broken, Model};
+use model::MemoryBudget;
+pub use model::{FilePosition, Model, ReadError};
 
 use crate::files;
 use crate::heap;
@@ -29,36 +29,36 @@ use std::sync::OnceLock;
 ///
 /// # Errors
 /// What is wrong, and where.
-pub fn read(path: &Path, memory: u64) -> Result<Model, Broken> {
+pub fn read(path: &Path, memory: u64) -> Result<Model, ReadError> {
     let cannot = |error: io::Error| {
         let is_missing = error.kind() == io::ErrorKind::NotFound;
         let near = if is_missing { text::nearest_file(path) } else { None };
         let reason =
             near.map_or(text::reason(&error), |near| format!("it does not exist, but `{near}` does"));
-        Broken::file(reason)
+        ReadError::file(reason)
     };
     let mut file = files::open(path).map_err(cannot)?;
     let size = file.metadata().map_err(cannot)?.len();
-    let room = Room::new(memory, size).map_err(Broken::file)?;
-    threads().map_err(Broken::file)?;
+    let budget = MemoryBudget::new(memory, size).map_err(ReadError::file)?;
+    threads().map_err(ReadError::file)?;
     let mut bytes = Vec::new();
     let is_held =
         usize::try_from(size).is_ok_and(|size| heap::may_fail(|| bytes.try_reserve_exact(size).is_ok()));
     if !is_held {
-        return Err(Broken::file(format!("there is no memory for its {}", ByteSize(size))));
+        return Err(ReadError::file(format!("there is no memory for its {}", ByteSize(size))));
     }
     file.by_ref().take(size).read_to_end(&mut bytes).map_err(cannot)?;
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
     let model = match (ending.as_str(), &bytes[..]) {
-        ("obj", bytes) => obj::read(bytes, &room),
-        ("stl", bytes) => stl::read(bytes, &room),
-        ("ply", bytes) | (_, bytes @ [b'p', b'l', b'y', b'\r' | b'\n', ..]) => ply::read(bytes, &room),
+        ("obj", bytes) => obj::read(bytes, &budget),
+        ("stl", bytes) => stl::read(bytes, &budget),
+        ("ply", bytes) | (_, bytes @ [b'p', b'l', b'y', b'\r' | b'\n', ..]) => ply::read(bytes, &budget),
         _ => {
-            return Err(Broken::file("its name does not end in `.obj`, `.ply` or `.stl`"));
+            return Err(ReadError::file("its name does not end in `.obj`, `.ply` or `.stl`"));
         }
     }?;
     if model.faces.is_empty() {
-        return Err(Broken::file("it has no faces"));
+        return Err(ReadError::file("it has no faces"));
     }
     Ok(model)
 }

@@ -25,23 +25,23 @@ pub struct Model {
 
 /// Why a file cannot be read: where, and what is wrong there.
 #[derive(Debug, PartialEq)]
-pub struct Broken {
+pub struct ReadError {
     /// The place in the file; `None` for the file as a whole.
-    pub at: Option<At>,
+    pub at: Option<FilePosition>,
     /// What is wrong, in lower case.
     pub message: String,
 }
 
 /// A place in a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum At {
+pub enum FilePosition {
     /// A line, from 1.
     Line(usize),
     /// A byte, from 0, in a file without lines.
     Byte(usize),
 }
 
-impl fmt::Display for At {
+impl fmt::Display for FilePosition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Line(line) => write!(f, "line {line}"),
@@ -50,7 +50,7 @@ impl fmt::Display for At {
     }
 }
 
-impl Broken {
+impl ReadError {
     /// Makes a fault of the file as a whole.
     pub fn file(message: impl Into<String>) -> Self {
         Self { at: None, message: message.into() }
@@ -58,12 +58,12 @@ impl Broken {
 
     /// Makes a fault of a line, from 1.
     pub fn line(line: usize, message: impl Into<String>) -> Self {
-        Self { at: Some(At::Line(line)), message: message.into() }
+        Self { at: Some(FilePosition::Line(line)), message: message.into() }
     }
 
     /// Makes a fault at a byte, from 0.
     pub fn byte(byte: usize, message: impl Into<String>) -> Self {
-        Self { at: Some(At::Byte(byte)), message: message.into() }
+        Self { at: Some(FilePosition::Byte(byte)), message: message.into() }
     }
 }
 
@@ -72,7 +72,7 @@ pub(super) const MAX_VERTICES: usize = 1 << 31;
 
 /// How much memory a mesh may take while its file is read and its tree is built.
 #[derive(Clone, Copy)]
-pub struct Room {
+pub struct MemoryBudget {
     /// In bytes; the file's are included.
     memory: u64,
     /// The length of the file in bytes.
@@ -87,7 +87,7 @@ const TAKEN: [u64; 2] = [48, 160];
 /// STL, take 160 bytes and 48 for each corner, beside the file.
 const LEAST: u64 = 3;
 
-impl Room {
+impl MemoryBudget {
     /// Refuses a file whose mesh surely takes more memory than there is, before it is read.
     pub fn new(memory: u64, file: u64) -> Result<Self, String> {
         if file.saturating_mul(LEAST) > memory {

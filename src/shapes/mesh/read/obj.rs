@@ -1,7 +1,7 @@
 //! Wavefront OBJ: vertices, faces, and the names of their materials. All else is ignored.
 
 use super::blocks::{self, words};
-use super::model::{Broken, MAX_VERTICES, Model, Room, coordinate, fan, shown};
+use super::model::{MAX_VERTICES, MemoryBudget, Model, ReadError, coordinate, fan, shown};
 use glam::DVec3;
 use memchr::memchr;
 use std::borrow::Cow;
@@ -21,15 +21,16 @@ struct Part {
 }
 
 /// Reads a file's text.
-pub fn read(bytes: &[u8], room: &Room) -> Result<Model, Broken> {
+pub fn read(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
     // A byte order mark is no part of the text.
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let mut model = Model::default();
     let mut names = HashMap::new();
     let (mut slot, mut line) = (0, 0);
     let take = |part: Part| {
-        room.holds(model.vertices.len() + part.vertices.len(), model.faces.len() + part.faces.len())
-            .map_err(Broken::file)?;
+        budget
+            .holds(model.vertices.len() + part.vertices.len(), model.faces.len() + part.faces.len())
+            .map_err(ReadError::file)?;
         let before = model.faces.len();
         model.vertices.extend(part.vertices);
         model.faces.extend(part.faces);
@@ -40,7 +41,7 @@ pub fn read(bytes: &[u8], room: &Room) -> Result<Model, Broken> {
                 Entry::Occupied(known) => *known.get(),
                 Entry::Vacant(free) => {
                     let next = u16::try_from(model.materials.len() + 1)
-                        .map_err(|_| Broken::line(line + number, "there are more than 65535 materials"))?;
+                        .map_err(|_| ReadError::line(line + number, "there are more than 65535 materials"))?;
                     model.materials.push(free.key().clone());
                     *free.insert(next)
                 }
@@ -49,11 +50,11 @@ pub fn read(bytes: &[u8], room: &Room) -> Result<Model, Broken> {
         if slot != 0 || !model.slots.is_empty() {
             model.slots.resize(model.faces.len(), slot);
         }
-        let fault = part.fault.map(|(number, message)| Broken::line(line + number, message));
+        let fault = part.fault.map(|(number, message)| ReadError::line(line + number, message));
         line += part.lines;
         fault.map_or(Ok(()), Err)
     };
-    blocks::read(bytes, continues, vertices, |block, before| Part::read(block, before, room), take)?;
+    blocks::read(bytes, continues, vertices, |block, before| Part::read(block, before, budget), take)?;
     Ok(model)
 }
 
@@ -103,11 +104,11 @@ fn vertices(block: &[u8]) -> usize {
 
 impl Part {
     /// Reads a block with so many vertices before it, up to the first fault.
-    fn read(block: &[u8], before: usize, room: &Room) -> Self {
+    fn read(block: &[u8], before: usize, budget: &MemoryBudget) -> Self {
         let mut part = Self::default();
         let mut corners = Vec::new();
         let read = each_line(block, |number, line| {
-            part.line(number, &line, before, &mut corners, room).map_err(|message| (number, message))
+            part.line(number, &line, before, &mut corners, budget).map_err(|message| (number, message))
         });
         match read {
             Ok(lines) => part.lines = lines,
@@ -122,7 +123,7 @@ impl Part {
         line: &[u8],
         before: usize,
         corners: &mut Vec<u32>,
-        room: &Room,
+        budget: &MemoryBudget,
     ) -> Result<(), String> {
         let mut words = words(line);
         match words.next() {
@@ -143,14 +144,14 @@ impl Part {
                     corners.push(corner(word, count)?);
                     // A polygon may be as long as the file.
                     if corners.len().is_multiple_of(1 << 16) {
-                        room.holds(count, self.faces.len() + corners.len())?;
+                        budget.holds(count, self.faces.len() + corners.len())?;
                     }
                 }
                 if corners.len() < 3 {
                     let count = corners.len();
                     return Err(format!("a face needs three vertices, and this one has {count}"));
                 }
-                room.holds(count, self.faces.len() + corners.len())?;
+                budget.holds(count, self.faces.len() + corners.len())?;
                 fan(corners, &mut self.faces);
             }
             Some(b"usemtl") => {

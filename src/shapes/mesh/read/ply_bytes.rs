@@ -1,6 +1,6 @@
 //! The elements of a PLY in bytes of either order.
 
-use super::model::{Broken, ENDS_EARLY, Model, Room, fan};
+use super::model::{ENDS_EARLY, MemoryBudget, Model, ReadError, fan};
 use super::ply_header::{Field, Kind, Number, Section};
 use crate::parallel;
 use glam::DVec3;
@@ -10,10 +10,10 @@ pub(super) fn read<const BIG: bool>(
     file: &[u8],
     mut rest: &[u8],
     sections: &[Section],
-    room: &Room,
-) -> Result<Model, Broken> {
+    budget: &MemoryBudget,
+) -> Result<Model, ReadError> {
     let mut model = Model::default();
-    let early = || Broken::byte(file.len(), ENDS_EARLY);
+    let early = || ReadError::byte(file.len(), ENDS_EARLY);
     for section in sections {
         let place = |rest: &[u8]| file.len() - rest.len();
         if let Some(size) = section.size() {
@@ -21,7 +21,7 @@ pub(super) fn read<const BIG: bool>(
                 size.checked_mul(section.count).filter(|length| *length <= rest.len()).ok_or_else(early)?;
             let (elements, after) = rest.split_at(length);
             if section.kind == Kind::Vertex {
-                room.holds(section.count, model.faces.len()).map_err(Broken::file)?;
+                budget.holds(section.count, model.faces.len()).map_err(ReadError::file)?;
                 model.vertices = vec![DVec3::ZERO; section.count];
                 let read = |index: usize| section.vertex::<BIG>(&elements[index * size..][..size]);
                 parallel::fill(&mut model.vertices, read);
@@ -29,7 +29,7 @@ pub(super) fn read<const BIG: bool>(
                     parallel::first(section.count, |index| !model.vertices[index].is_finite())
                 {
                     let message = format!("vertex {index} is not finite");
-                    return Err(Broken::byte(place(rest) + index * size, message));
+                    return Err(ReadError::byte(place(rest) + index * size, message));
                 }
             }
             rest = after;
@@ -38,7 +38,7 @@ pub(super) fn read<const BIG: bool>(
         let (mut given, mut corners) = (Vec::new(), Vec::new());
         for index in 0..section.count {
             let byte = place(rest);
-            let broken = |message| Broken::byte(byte, message);
+            let error = |message| ReadError::byte(byte, message);
             let mut at = [0.0; 3];
             given.clear();
             for field in &section.fields {
@@ -50,11 +50,11 @@ pub(super) fn read<const BIG: bool>(
                     Field::List(length, number) | Field::Corners(length, number) => {
                         let count = whole::<BIG>(take(&mut rest, length.size()).ok_or_else(early)?, length);
                         let count = usize::try_from(count)
-                            .map_err(|_| broken(format!("a list of {count} numbers makes no sense")))?;
+                            .map_err(|_| error(format!("a list of {count} numbers makes no sense")))?;
                         let length = count.checked_mul(number.size()).ok_or_else(early)?;
                         let list = take(&mut rest, length).ok_or_else(early)?;
                         if matches!(field, Field::Corners(..)) {
-                            room.holds(section.vertices, model.faces.len() + count).map_err(broken)?;
+                            budget.holds(section.vertices, model.faces.len() + count).map_err(error)?;
                             given.clear();
                             given.extend(
                                 list.chunks_exact(number.size()).map(|corner| whole::<BIG>(corner, number)),
@@ -67,13 +67,13 @@ pub(super) fn read<const BIG: bool>(
                 Kind::Vertex => {
                     let at = DVec3::from(at);
                     if !at.is_finite() {
-                        return Err(broken(format!("vertex {index} is not finite")));
+                        return Err(error(format!("vertex {index} is not finite")));
                     }
-                    room.holds(model.vertices.len(), model.faces.len()).map_err(broken)?;
+                    budget.holds(model.vertices.len(), model.faces.len()).map_err(error)?;
                     model.vertices.push(at);
                 }
                 Kind::Face => {
-                    section.corners(index, &given, &mut corners).map_err(broken)?;
+                    section.corners(index, &given, &mut corners).map_err(error)?;
                     fan(&corners, &mut model.faces);
                 }
                 Kind::Other => {}

@@ -1,7 +1,7 @@
 //! Headers of PLY files: the elements of a file, and what is read of each.
 
 use super::blocks::words;
-use super::model::{Broken, ENDS_EARLY, MAX_VERTICES, coordinate, shown};
+use super::model::{ENDS_EARLY, MAX_VERTICES, ReadError, coordinate, shown};
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{DefaultElement, ElementDef, Header, PropertyDef, PropertyType, ScalarType};
 use std::io::ErrorKind;
@@ -83,12 +83,12 @@ pub(super) enum Kind {
 }
 
 /// Reads the header: returns it, what comes after it, and the line where that begins.
-pub(super) fn header(bytes: &[u8]) -> Result<(Header, &[u8], usize), Broken> {
+pub(super) fn header(bytes: &[u8]) -> Result<(Header, &[u8], usize), ReadError> {
     let first = &bytes[..bytes.len().min(LONGEST_HEADER)];
     let mut reader = Reader::new(first);
     let header = Parser::<DefaultElement>::new().read_header(&mut reader).map_err(|error| {
         if error.kind() == ErrorKind::UnexpectedEof && first.len() < bytes.len() {
-            return Broken::file("its header does not end within 1 MiB");
+            return ReadError::file("its header does not end within 1 MiB");
         }
         fault(&error, first)
     })?;
@@ -97,7 +97,7 @@ pub(super) fn header(bytes: &[u8]) -> Result<(Header, &[u8], usize), Broken> {
 }
 
 impl Section {
-    pub fn new(element: &ElementDef, vertices: usize) -> Result<Self, Broken> {
+    pub fn new(element: &ElementDef, vertices: usize) -> Result<Self, ReadError> {
         let kind = match element.name.as_str() {
             "vertex" => Kind::Vertex,
             "face" => Kind::Face,
@@ -107,7 +107,7 @@ impl Section {
             let axis = ["x", "y", "z"].iter().position(|axis| axis == name).filter(|_| kind == Kind::Vertex);
             let is_corners = kind == Kind::Face && CORNERS.contains(&name.as_str());
             let wrong = |what: &str| {
-                Err(Broken::file(format!("`{name}` of its elements `{}` is not {what}", element.name)))
+                Err(ReadError::file(format!("`{name}` of its elements `{}` is not {what}", element.name)))
             };
             match &property.data_type {
                 PropertyType::Scalar(number) => match axis {
@@ -147,43 +147,43 @@ impl Section {
 }
 
 /// Refuses a header that promises more than the file can hold: each element takes at least a byte.
-pub(super) fn may_fit(header: &Header, size: usize) -> Result<(), Broken> {
+pub(super) fn may_fit(header: &Header, size: usize) -> Result<(), ReadError> {
     let mut left = size;
     for (name, element) in &header.elements {
         let has = |names: &[&str]| names.iter().any(|name| element.properties.contains_key(*name));
         if element.count > left {
             let message =
                 format!("the header promises {} of `{name}`, and the file ends before", element.count);
-            return Err(Broken::file(message));
+            return Err(ReadError::file(message));
         }
         if element.properties.is_empty() && element.count > 0 {
-            return Err(Broken::file(format!("its elements `{name}` have no properties")));
+            return Err(ReadError::file(format!("its elements `{name}` have no properties")));
         }
         left -= element.count;
         if name == "vertex" && !(has(&["x"]) && has(&["y"]) && has(&["z"])) {
-            return Err(Broken::file("its vertices do not have `x`, `y` and `z`"));
+            return Err(ReadError::file("its vertices do not have `x`, `y` and `z`"));
         }
         if name == "face" && !has(&CORNERS) {
-            return Err(Broken::file("its faces do not have `vertex_indices`"));
+            return Err(ReadError::file("its faces do not have `vertex_indices`"));
         }
         if name == "vertex" && element.count > MAX_VERTICES {
-            return Err(Broken::file("it has more than 2^31 vertices"));
+            return Err(ReadError::file("it has more than 2^31 vertices"));
         }
     }
     Ok(())
 }
 
 /// Says what the parser says of a header, in a line and without the text that it repeats.
-fn fault(error: &ParseError, bytes: &[u8]) -> Broken {
+fn fault(error: &ParseError, bytes: &[u8]) -> ReadError {
     if error.kind() == ErrorKind::UnexpectedEof {
-        return Broken::file(ENDS_EARLY);
+        return ReadError::file(ENDS_EARLY);
     }
     let line = error.line().and_then(|line| Some((line, bytes.split(|byte| *byte == b'\n').nth(line - 1)?)));
     let Some((number, line)) = line else {
         let text = error.to_string();
-        return Broken::file(text.lines().next().unwrap_or_default().trim_end_matches('.').to_lowercase());
+        return ReadError::file(text.lines().next().unwrap_or_default().trim_end_matches('.').to_lowercase());
     };
-    Broken::line(number, unexpected(line, true))
+    ReadError::line(number, unexpected(line, true))
 }
 
 /// Says that a line is not what the header makes expect.

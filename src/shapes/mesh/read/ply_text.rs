@@ -1,7 +1,7 @@
 //! The elements of a PLY in text: each has a line.
 
 use super::blocks::{self, line_ends, never, words};
-use super::model::{Broken, ENDS_EARLY, Model, Room, coordinate, fan};
+use super::model::{ENDS_EARLY, MemoryBudget, Model, ReadError, coordinate, fan};
 use super::ply_header::{Field, Kind, Number, Section, unexpected};
 use glam::DVec3;
 use memchr::memchr_iter;
@@ -22,8 +22,8 @@ pub(super) fn read(
     mut rest: &[u8],
     mut line: usize,
     sections: &[Section],
-    room: &Room,
-) -> Result<Model, Broken> {
+    budget: &MemoryBudget,
+) -> Result<Model, ReadError> {
     let mut model = Model::default();
     for section in sections {
         let end = match section.count.checked_sub(1) {
@@ -35,22 +35,23 @@ pub(super) fn read(
         let (lines, after) = rest.split_at(end.unwrap_or(rest.len()));
         if section.kind != Kind::Other {
             let take = |part: Part| {
-                room.holds(model.vertices.len() + part.vertices.len(), model.faces.len() + part.faces.len())
-                    .map_err(Broken::file)?;
+                budget
+                    .holds(model.vertices.len() + part.vertices.len(), model.faces.len() + part.faces.len())
+                    .map_err(ReadError::file)?;
                 model.vertices.extend(part.vertices);
                 model.faces.extend(part.faces);
-                part.fault.map_or(Ok(()), |(index, message)| Err(Broken::line(line + index, message)))
+                part.fault.map_or(Ok(()), |(index, message)| Err(ReadError::line(line + index, message)))
             };
             blocks::read(
                 lines,
                 never,
                 line_ends,
-                |block, first| Part::read(block, first, section, room),
+                |block, first| Part::read(block, first, section, budget),
                 take,
             )?;
         }
         if is_cut {
-            return Err(Broken::file(ENDS_EARLY));
+            return Err(ReadError::file(ENDS_EARLY));
         }
         (rest, line) = (after, line + section.count);
     }
@@ -59,10 +60,10 @@ pub(super) fn read(
 
 impl Part {
     /// Reads a block of lines up to the first fault; its first element has this index.
-    fn read(block: &[u8], first: usize, section: &Section, room: &Room) -> Self {
+    fn read(block: &[u8], first: usize, section: &Section, budget: &MemoryBudget) -> Self {
         let mut part = Self::default();
         for (index, line) in (first..).zip(blocks::lines(block)) {
-            if let Err(message) = part.element(line, index, section, room) {
+            if let Err(message) = part.element(line, index, section, budget) {
                 part.fault = Some((index, message));
                 break;
             }
@@ -70,9 +71,15 @@ impl Part {
         part
     }
 
-    fn element(&mut self, line: &[u8], index: usize, section: &Section, room: &Room) -> Result<(), String> {
+    fn element(
+        &mut self,
+        line: &[u8],
+        index: usize,
+        section: &Section,
+        budget: &MemoryBudget,
+    ) -> Result<(), String> {
         let mut at = [0.0; 3];
-        self.fields(line, section, &mut at, room).ok_or_else(|| unexpected(line, false))?;
+        self.fields(line, section, &mut at, budget).ok_or_else(|| unexpected(line, false))?;
         match section.kind {
             Kind::Vertex if DVec3::from(at).is_finite() => self.vertices.push(DVec3::from(at)),
             Kind::Vertex => {
@@ -81,7 +88,7 @@ impl Part {
             }
             Kind::Face => {
                 section.corners(index, &self.given, &mut self.corners)?;
-                room.holds(section.vertices, self.faces.len() + self.corners.len())?;
+                budget.holds(section.vertices, self.faces.len() + self.corners.len())?;
                 fan(&self.corners, &mut self.faces);
             }
             Kind::Other => {}
@@ -90,7 +97,13 @@ impl Part {
     }
 
     /// Reads the properties of an element; `None` where the line does not have them.
-    fn fields(&mut self, line: &[u8], section: &Section, at: &mut [f64; 3], room: &Room) -> Option<()> {
+    fn fields(
+        &mut self,
+        line: &[u8],
+        section: &Section,
+        at: &mut [f64; 3],
+        budget: &MemoryBudget,
+    ) -> Option<()> {
         let mut words = words(line);
         for field in &section.fields {
             let word = str::from_utf8(words.next()?).ok()?;
@@ -108,7 +121,7 @@ impl Part {
                         self.given.push(whole(str::from_utf8(words.next()?).ok()?, number)?);
                         // A polygon may be as long as the file: what does not fit is refused with its faces.
                         if self.given.len().is_multiple_of(1 << 16)
-                            && room.holds(0, self.given.len()).is_err()
+                            && budget.holds(0, self.given.len()).is_err()
                         {
                             break;
                         }

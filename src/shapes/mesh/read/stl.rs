@@ -1,7 +1,7 @@
 //! STL, in text and in bytes.
 
 use super::blocks::{self, never, words};
-use super::model::{Broken, MAX_VERTICES, Model, Room, coordinate, shown};
+use super::model::{MAX_VERTICES, MemoryBudget, Model, ReadError, coordinate, shown};
 use crate::parallel;
 use glam::DVec3;
 
@@ -12,22 +12,22 @@ const TRIANGLE: usize = 50;
 
 /// Reads a file. It is binary if its length is what its number of triangles says, as titles of binary files may begin
 /// with `solid` too.
-pub fn read(bytes: &[u8], room: &Room) -> Result<Model, Broken> {
+pub fn read(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
     let count = bytes.get(80..HEADER).map(|count| word(count) as usize);
     let is_binary = count.is_some_and(|count| bytes.len() - HEADER == TRIANGLE * count);
     let begins = bytes.trim_ascii_start();
     if !is_binary && begins.get(..5).is_some_and(|begins| begins.eq_ignore_ascii_case(b"solid")) {
-        return in_text(bytes, room);
+        return in_text(bytes, budget);
     }
     let Some(count) = count else {
-        return Err(Broken::byte(bytes.len(), "the file ends before its number of triangles"));
+        return Err(ReadError::byte(bytes.len(), "the file ends before its number of triangles"));
     };
     if (bytes.len() - HEADER) / TRIANGLE < count {
         let message =
             format!("the file ends after {} of {count} triangles", (bytes.len() - HEADER) / TRIANGLE);
-        return Err(Broken::byte(bytes.len(), message));
+        return Err(ReadError::byte(bytes.len(), message));
     }
-    room.holds(3 * count, count).map_err(Broken::file)?;
+    budget.holds(3 * count, count).map_err(ReadError::file)?;
     let byte = |corner: usize| HEADER + TRIANGLE * (corner / 3) + 12 + 12 * (corner % 3);
     let at = |corner: usize| {
         let part = |axis: usize| f64::from(f32::from_bits(word(&bytes[byte(corner) + 4 * axis..][..4])));
@@ -37,7 +37,7 @@ pub fn read(bytes: &[u8], room: &Room) -> Result<Model, Broken> {
     parallel::fill(&mut vertices, at);
     if let Some(corner) = parallel::first(vertices.len(), |corner| !vertices[corner].is_finite()) {
         let message = format!("a corner of triangle {} is not finite", corner / 3 + 1);
-        return Err(Broken::byte(byte(corner), message));
+        return Err(ReadError::byte(byte(corner), message));
     }
     finish(vertices)
 }
@@ -86,27 +86,28 @@ struct Part {
     fault: Option<(usize, String)>,
 }
 
-fn in_text(bytes: &[u8], room: &Room) -> Result<Model, Broken> {
+fn in_text(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
     let mut vertices = Vec::new();
     // The number of corners before the current facet.
     let (mut start, mut line) = (0, 0);
     let take = |part: Part| {
         if let Some((number, count)) = part.first {
-            three(vertices.len() - start + count).map_err(|message| Broken::line(line + number, message))?;
+            three(vertices.len() - start + count)
+                .map_err(|message| ReadError::line(line + number, message))?;
             start = vertices.len() + part.last;
         }
         if let Some((number, message)) = part.fault {
-            return Err(Broken::line(line + number, message));
+            return Err(ReadError::line(line + number, message));
         }
         let count = vertices.len() + part.vertices.len();
-        room.holds(count, count / 3).map_err(Broken::file)?;
+        budget.holds(count, count / 3).map_err(ReadError::file)?;
         vertices.extend(part.vertices);
         line += part.lines;
         Ok(())
     };
-    blocks::read(bytes, never, |_| 0, |block, _| Part::read(block, room), take)?;
+    blocks::read(bytes, never, |_| 0, |block, _| Part::read(block, budget), take)?;
     if vertices.len() != start {
-        return Err(Broken::line(blocks::line_ends(bytes) + 1, "the file ends within a facet"));
+        return Err(ReadError::line(blocks::line_ends(bytes) + 1, "the file ends within a facet"));
     }
     finish(vertices)
 }
@@ -119,11 +120,11 @@ fn three(count: usize) -> Result<(), String> {
 
 impl Part {
     /// Reads a block up to the first fault.
-    fn read(block: &[u8], room: &Room) -> Self {
+    fn read(block: &[u8], budget: &MemoryBudget) -> Self {
         let mut part = Self::default();
         for line in blocks::lines(block) {
             part.lines += 1;
-            if let Err(message) = part.line(line, room) {
+            if let Err(message) = part.line(line, budget) {
                 part.fault = Some((part.lines, message));
                 break;
             }
@@ -132,7 +133,7 @@ impl Part {
     }
 
     /// Reads a line, which may say several things. What follows a keyword and is of no use here is skipped.
-    fn line(&mut self, line: &[u8], room: &Room) -> Result<(), String> {
+    fn line(&mut self, line: &[u8], budget: &MemoryBudget) -> Result<(), String> {
         let mut words = words(line);
         let Some(first) = words.next() else { return Ok(()) };
         let mut keyword = Keyword::of(first);
@@ -146,7 +147,7 @@ impl Part {
                     for part in &mut at {
                         *part = coordinate(words.next().ok_or("a vertex needs three coordinates")?)?;
                     }
-                    room.holds(self.vertices.len(), self.vertices.len() / 3)?;
+                    budget.holds(self.vertices.len(), self.vertices.len() / 3)?;
                     self.vertices.push(DVec3::from(at));
                 }
                 Keyword::EndLoop => {
@@ -173,9 +174,9 @@ impl Part {
 }
 
 /// Makes a face of every three vertices.
-fn finish(vertices: Vec<DVec3>) -> Result<Model, Broken> {
+fn finish(vertices: Vec<DVec3>) -> Result<Model, ReadError> {
     if vertices.len() > MAX_VERTICES {
-        return Err(Broken::file("it has more than 2^31 corners"));
+        return Err(ReadError::file("it has more than 2^31 corners"));
     }
     let faces =
         (0..vertices.len() as u32 / 3).map(|index| [3 * index, 3 * index + 1, 3 * index + 2]).collect();

@@ -1,7 +1,7 @@
 //! What readers make of files, sound and broken.
 
-use super::model::Room;
-use super::{At, Broken, Model};
+use super::model::MemoryBudget;
+use super::{FilePosition, Model, ReadError};
 use glam::DVec3;
 use proptest::prelude::*;
 
@@ -9,10 +9,10 @@ macro_rules! readers {
     ($($format:ident)*) => {$(
         /// Reads a file of this format, with room enough.
         mod $format {
-            use super::{Broken, Model, Room};
+            use super::{ReadError, Model, MemoryBudget};
 
-            pub fn read(bytes: &[u8]) -> Result<Model, Broken> {
-                super::super::$format::read(bytes, &Room::new(1 << 30, 0).map_err(Broken::file)?)
+            pub fn read(bytes: &[u8]) -> Result<Model, ReadError> {
+                super::super::$format::read(bytes, &MemoryBudget::new(1 << 30, 0).map_err(ReadError::file)?)
             }
         }
     )*};
@@ -131,8 +131,8 @@ fn a_broken_text_is_told_with_its_line() {
         ("v 1 2 three", "`three` is not a number"),
         ("usemtl", "`usemtl` needs the name of a material"),
     ] {
-        let broken = obj::read(format!("{vertices}{line}\nf 1 2 3\n").as_bytes()).expect_err(line);
-        assert_eq!(broken, Broken { at: Some(At::Line(4)), message: message.to_owned() });
+        let error = obj::read(format!("{vertices}{line}\nf 1 2 3\n").as_bytes()).expect_err(line);
+        assert_eq!(error, ReadError { at: Some(FilePosition::Line(4)), message: message.to_owned() });
     }
     for (wrong, right, line, message) in [
         ("0.25 1 0 255", "0.25 inf 0 255", 14, "`inf` is not a finite number"),
@@ -144,8 +144,8 @@ fn a_broken_text_is_told_with_its_line() {
         ("property float y", "property flat y", 6, "`property flat y` is not what the header announces here"),
     ] {
         let text = ply_text().replace(wrong, right);
-        let broken = ply::read(text.as_bytes()).expect_err(right);
-        assert_eq!(broken, Broken { at: Some(At::Line(line)), message: message.to_owned() });
+        let error = ply::read(text.as_bytes()).expect_err(right);
+        assert_eq!(error, ReadError { at: Some(FilePosition::Line(line)), message: message.to_owned() });
     }
     for (wrong, right, line, message) in [
         ("vertex 1 0 0.5\nendloop", "endloop", 6, "a facet has three vertices, and this one has 2"),
@@ -153,8 +153,8 @@ fn a_broken_text_is_told_with_its_line() {
         ("facet normal", "facette normal", 2, "`facette` is not a word of STL"),
     ] {
         let text = stl_text().replacen(wrong, right, 1);
-        let broken = stl::read(text.as_bytes()).expect_err(right);
-        assert_eq!(broken, Broken { at: Some(At::Line(line)), message: message.to_owned() });
+        let error = stl::read(text.as_bytes()).expect_err(right);
+        assert_eq!(error, ReadError { at: Some(FilePosition::Line(line)), message: message.to_owned() });
     }
 }
 
@@ -169,10 +169,13 @@ fn a_file_that_ends_too_early_is_told() {
     let bytes = ply_bytes(false);
     let end = bytes.len() - 3;
     let message = "the file ends before all of its elements".to_owned();
-    assert_eq!(ply::read(&bytes[..end]), Err(Broken { at: Some(At::Byte(end)), message }));
+    assert_eq!(ply::read(&bytes[..end]), Err(ReadError { at: Some(FilePosition::Byte(end)), message }));
     let bytes = stl_bytes("binary");
     let message = "the file ends after 3 of 4 triangles".to_owned();
-    assert_eq!(stl::read(&bytes[..200 + 84 - 1]), Err(Broken { at: Some(At::Byte(283)), message }));
+    assert_eq!(
+        stl::read(&bytes[..200 + 84 - 1]),
+        Err(ReadError { at: Some(FilePosition::Byte(283)), message })
+    );
     assert!(stl::read(b"").is_err() && ply::read(b"").is_err() && ply::read(b"ply\n").is_err());
 }
 
@@ -209,9 +212,9 @@ fn faces_of_a_ply_may_come_before_its_vertices() {
     };
     let (points, corners) = (lines[..4].join("\n"), lines[4..].join("\n"));
     assert_eq!(ply::read(turned(&corners, &points).as_bytes()), Ok(tetrahedron()));
-    let broken = ply::read(turned(&corners.replace("3 1 2 3", "3 1 2 4"), &points).as_bytes());
+    let error = ply::read(turned(&corners.replace("3 1 2 3", "3 1 2 4"), &points).as_bytes());
     let message = "face 2 refers to vertex 4, and there are 4, from 0".to_owned();
-    assert_eq!(broken, Err(Broken { at: Some(At::Line(14)), message }));
+    assert_eq!(error, Err(ReadError { at: Some(FilePosition::Line(14)), message }));
 }
 
 #[test]
@@ -220,8 +223,8 @@ fn an_obj_of_65535_materials_may_use_one_again_and_no_other() {
     let all: String = (0..65535).map(uses).collect();
     let text = |last: usize| format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{all}{}f 1 2 3\n", uses(last));
     assert_eq!(obj::read(text(0).as_bytes()).expect("65535 materials").slots, [1]);
-    let broken = obj::read(text(65535).as_bytes()).expect_err("65536 materials");
-    assert_eq!(broken.message, "there are more than 65535 materials");
+    let error = obj::read(text(65535).as_bytes()).expect_err("65536 materials");
+    assert_eq!(error.message, "there are more than 65535 materials");
 }
 
 #[test]
@@ -235,8 +238,11 @@ fn lines_of_an_obj_may_be_continued() {
     };
     assert_eq!(obj::read(folded("\n").as_bytes()), Ok(tetrahedron()));
     assert_eq!(obj::read(folded("\r\n").as_bytes()), Ok(tetrahedron()));
-    let broken = obj::read(b"v 0 \\\n0 0\nv 0 0 \\\n\\\nx\n");
-    assert_eq!(broken, Err(Broken { at: Some(At::Line(3)), message: "`x` is not a number".to_owned() }));
+    let error = obj::read(b"v 0 \\\n0 0\nv 0 0 \\\n\\\nx\n");
+    assert_eq!(
+        error,
+        Err(ReadError { at: Some(FilePosition::Line(3)), message: "`x` is not a number".to_owned() })
+    );
     assert!(obj::read(b"v 0 0 \\").is_err());
 }
 
@@ -277,9 +283,9 @@ fn a_long_text_is_read_as_a_short_one_is() {
         let whole = line - line % 5;
         text.splice(whole..whole, ["f x"]);
         text.push("v x");
-        let broken = obj::read(text.join("\n").as_bytes());
+        let error = obj::read(text.join("\n").as_bytes());
         let message = "`x` is not a vertex's number".to_owned();
-        assert_eq!(broken, Err(Broken { at: Some(At::Line(whole + 1)), message }));
+        assert_eq!(error, Err(ReadError { at: Some(FilePosition::Line(whole + 1)), message }));
     }
     let facet =
         "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
@@ -290,8 +296,8 @@ fn a_long_text_is_read_as_a_short_one_is() {
         let mut lines: Vec<_> = long.lines().collect();
         lines.remove(1 + 7 * facet + 3);
         let message = "a facet has three vertices, and this one has 2".to_owned();
-        let broken = Err(Broken { at: Some(At::Line(1 + 7 * facet + 5)), message });
-        assert_eq!(stl::read(lines.join("\n").as_bytes()), broken);
+        let error = Err(ReadError { at: Some(FilePosition::Line(1 + 7 * facet + 5)), message });
+        assert_eq!(stl::read(lines.join("\n").as_bytes()), error);
     }
     let header = ply_header("ascii").replace("face 4", &format!("face {TIMES}"));
     let vertices = CORNERS.map(|[x, y, z]| format!("{x} {y} {z} 255\n")).concat();
@@ -299,19 +305,22 @@ fn a_long_text_is_read_as_a_short_one_is() {
     assert_eq!(ply::read(long.as_bytes()).expect("a model").faces, vec![[0, 1, 2]; TIMES]);
     let wrong = format!("{header}{vertices}{}3 0 1 9\n", "3 0 1 2\n".repeat(TIMES - 1));
     let message = format!("face {} refers to vertex 9, and there are 4, from 0", TIMES - 1);
-    assert_eq!(ply::read(wrong.as_bytes()), Err(Broken { at: Some(At::Line(15 + TIMES)), message }));
+    assert_eq!(
+        ply::read(wrong.as_bytes()),
+        Err(ReadError { at: Some(FilePosition::Line(15 + TIMES)), message })
+    );
 }
 
 #[test]
 fn a_model_takes_no_more_memory_than_there_is() {
     let fan = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf{}\n", " 1 2 3".repeat(40_000));
     let faces = 3 * 40_000 - 2;
-    let room = |memory: u64| Room::new(memory, fan.len() as u64).expect("room for the file");
+    let budget = |memory: u64| MemoryBudget::new(memory, fan.len() as u64).expect("room for the file");
     let enough = 160 * (faces + 2) + 48 * 3 + fan.len() as u64;
-    assert!(super::obj::read(fan.as_bytes(), &room(enough)).is_ok());
-    let broken = super::obj::read(fan.as_bytes(), &room(enough - 400)).expect_err("too little");
-    assert!(broken.message.starts_with("it has at least 3 vertices and 120000 faces, which may take more"));
-    assert!(Room::new(2999, 1000).is_err());
+    assert!(super::obj::read(fan.as_bytes(), &budget(enough)).is_ok());
+    let error = super::obj::read(fan.as_bytes(), &budget(enough - 400)).expect_err("too little");
+    assert!(error.message.starts_with("it has at least 3 vertices and 120000 faces, which may take more"));
+    assert!(MemoryBudget::new(2999, 1000).is_err());
 }
 
 proptest! {
