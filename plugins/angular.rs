@@ -1,6 +1,6 @@
 //! The notes' shading of a sphere: colours that change with the angle around its centre.
 
-use super::rainbow::{FREQUENCY, Hues, PHASE};
+use super::rainbow::{CosinePalette, FREQUENCY, PHASE};
 use crate::prelude::*;
 
 static BRIGHTNESS: Pparm<f64> = Pparm::or("brightness", "half of the strongest colour", 1.0)
@@ -10,7 +10,7 @@ const TABLE: Table = &[&FREQUENCY, &PHASE, &BRIGHTNESS];
 
 inventory::submit! {
     Entity::shader("angular", "hues around the centre, independent of the material", &[TABLE], |args| {
-        let hues = Hues::new(args, args.get(&BRIGHTNESS));
+        let hues = CosinePalette::new(args, args.get(&BRIGHTNESS));
         Ok(match hues.are_of_the_notes() {
             true => Paint::new(move |anchor| Angular::<true> { hues, anchor }),
             false => Paint::new(move |anchor| Angular::<false> { hues, anchor }),
@@ -20,7 +20,7 @@ inventory::submit! {
 }
 
 struct Angular<const OF_THE_NOTES: bool> {
-    hues: Hues,
+    hues: CosinePalette,
     anchor: Anchor,
 }
 

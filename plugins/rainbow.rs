@@ -14,7 +14,7 @@ const TABLE: Table = &[&FREQUENCY, &PHASE, &BRIGHTNESS, &ON];
 
 inventory::submit! {
     Entity::shader("rainbow", "hues around a point, independent of the material", &[TABLE], |args| {
-        let (hues, axes) = (Hues::new(args, args.get(&BRIGHTNESS)), args.get(&ON).axes());
+        let (hues, axes) = (CosinePalette::new(args, args.get(&BRIGHTNESS)), args.get(&ON).axes());
         Ok(if hues.are_of_the_notes() && axes == [0, 1] {
             Paint::new(move |anchor| Rainbow::<true> { hues, axes, anchor })
         } else {
@@ -26,7 +26,7 @@ inventory::submit! {
 
 /// Hues around a point: the notes', which is quicker, or any.
 struct Rainbow<const OF_THE_NOTES: bool> {
-    hues: Hues,
+    hues: CosinePalette,
     axes: [usize; 2],
     anchor: Anchor,
 }
@@ -53,7 +53,7 @@ impl<const OF_THE_NOTES: bool> Shader for Rainbow<OF_THE_NOTES> {
 /// Red, green and blue for a direction of the angle t: `1 + cos(frequency t + phase + k/3)` for channel k, with k/3 in
 /// turns, times the brightness.
 #[derive(Clone, Copy)]
-pub struct Hues {
+pub struct CosinePalette {
     frequency: i64,
     phase: f64,
     /// The cosine and the sine of the phase.
@@ -61,8 +61,8 @@ pub struct Hues {
     brightness: f64,
 }
 
-impl Hues {
-    /// Makes the hues of an entity whose table has [`FREQUENCY`] and [`PHASE`].
+impl CosinePalette {
+    /// Makes the palette of an entity whose table has [`FREQUENCY`] and [`PHASE`].
     pub fn new(args: &Args, brightness: f64) -> Self {
         let (frequency, phase) = (args.get(&FREQUENCY), args.get(&PHASE));
         Self { frequency, phase, turn: DVec2::new(libm::cos(phase), libm::sin(phase)), brightness }

@@ -1,6 +1,6 @@
 //! Continuous modulation combined with tiles, as the notes suggest for their third shader.
 
-use super::rainbow::{self, Hues};
+use super::rainbow::{self, CosinePalette};
 use super::tiles::{Grid, WIDTH};
 use crate::prelude::*;
 
@@ -11,7 +11,7 @@ const TABLE: Table = &[&WIDTH, &rainbow::FREQUENCY, &rainbow::PHASE, &BRIGHTNESS
 
 inventory::submit! {
     Entity::shader("rainbow_tiles", "tiles along x and z: the material's colour and hues around a point in turn", &[TABLE], |args| {
-        let (grid, hues) = (Grid::new(args), Hues::new(args, args.get(&BRIGHTNESS)));
+        let (grid, hues) = (Grid::new(args), CosinePalette::new(args, args.get(&BRIGHTNESS)));
         Ok(match hues.are_of_the_notes() {
             true => Paint::new(move |anchor| RainbowTiles::<true> { grid, hues, anchor }),
             false => Paint::new(move |anchor| RainbowTiles::<false> { grid, hues, anchor }),
@@ -22,7 +22,7 @@ inventory::submit! {
 
 struct RainbowTiles<const OF_THE_NOTES: bool> {
     grid: Grid,
-    hues: Hues,
+    hues: CosinePalette,
     anchor: Anchor,
 }
 

@@ -37,10 +37,10 @@ pub struct Picture {
     texel: Option<DVec2>,
     /// The numbers of the scene that these follow from: the normal and `xdir`, of any length, and the image plane's size
     /// in world units and in pixels.
-    given: Given,
+    inputs: PictureInputs,
 }
 
-struct Given {
+struct PictureInputs {
     normal: DVec3,
     xdir: DVec3,
     screen: DVec2,
@@ -70,8 +70,9 @@ impl Picture {
             None => DVec2::ONE,
         };
         let texel = is_tiled.then_some(screen / pixels);
-        let given = Given { normal: args.get(&plane::NORMAL), xdir: args.get(&fplane::XDIR), screen, pixels };
-        Ok(Self { rectangle, texture: args.get(&TEXNAME), texel, given })
+        let inputs =
+            PictureInputs { normal: args.get(&plane::NORMAL), xdir: args.get(&fplane::XDIR), screen, pixels };
+        Ok(Self { rectangle, texture: args.get(&TEXNAME), texel, inputs })
     }
 
     /// Returns the texel at a point of the rectangle, each channel from 0 to 1.
@@ -95,7 +96,7 @@ impl Picture {
 
     /// Encloses the texels at the points of a box in the rectangle's plane.
     pub fn enclose<F: Precise>(&self, at: [Interval<F>; 3]) -> [Interval<F>; 3] {
-        let Given { normal, xdir, screen, pixels } = self.given;
+        let PictureInputs { normal, xdir, screen, pixels } = self.inputs;
         let (corner, n) = (self.rectangle.corner, Interval::<F>::constant);
         let [normal, xdir] = [constants(normal), constants(xdir)];
         let across = along_sides(normal, xdir, per_axis(|axis| at[axis] - n(corner[axis])));
