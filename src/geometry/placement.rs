@@ -64,7 +64,7 @@ pub struct Placement {
 impl Placement {
     /// Returns the matrix that takes a vector from the world to the shape's own coordinates, rounded. Its transpose takes
     /// normals to the world, up to their length.
-    pub fn to_own(&self) -> DMat3 {
+    pub fn to_object_space(&self) -> DMat3 {
         let own = |vector: DVec3| DVec3::from(self.vector::<f64>(vector.to_array()));
         DMat3::from_cols(own(DVec3::X), own(DVec3::Y), own(DVec3::Z))
     }
@@ -150,7 +150,7 @@ mod tests {
                 rotation: Rotation::Angles(DVec3::new(0.0, 90.0 * f64::from(turns), 0.0)),
                 translation: DVec3::ZERO,
             };
-            let own = placement.to_own() * DVec3::X;
+            let own = placement.to_object_space() * DVec3::X;
             let expected = [DVec3::X, 0.25 * DVec3::Z, -DVec3::X, -0.25 * DVec3::Z];
             assert_eq!(own, expected[turns.rem_euclid(4) as usize], "{turns}");
         }
@@ -169,7 +169,11 @@ mod tests {
                 angles[index] = degrees * f64::signum(length);
                 let placement = around(length * axis, degrees);
                 let expected = Placement { rotation: Rotation::Angles(angles), ..placement };
-                assert_eq!(placement.to_own(), expected.to_own(), "{axis} {length} {degrees}");
+                assert_eq!(
+                    placement.to_object_space(),
+                    expected.to_object_space(),
+                    "{axis} {length} {degrees}"
+                );
             }
         }
     }
@@ -184,7 +188,7 @@ mod tests {
             let degrees = 37.0 * n as f64 - 400.0;
             let long = axis / axis.abs().max_element();
             let quaternion = DQuat::from_axis_angle(long.normalize(), degrees.to_radians());
-            let to_world = around(axis, degrees).to_own().transpose();
+            let to_world = around(axis, degrees).to_object_space().transpose();
             assert!(to_world.abs_diff_eq(DMat3::from_quat(quaternion), 4e-15), "{axis} {degrees}");
         }
     }

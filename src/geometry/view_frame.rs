@@ -9,14 +9,14 @@ use glam::DVec3;
 /// A viewer's position and the perpendicular directions to its right, up and forward.
 #[derive(Clone, Copy, Debug)]
 pub struct ViewFrame {
-    given: Given,
+    given: ViewInputs,
     /// The unit vectors to the right, up and forward.
     axes: [[DoubleDouble; 3]; 3],
 }
 
 /// The numbers of the scene that a frame follows from, all in world coordinates.
 #[derive(Clone, Copy, Debug)]
-struct Given {
+struct ViewInputs {
     position: DVec3,
     target: DVec3,
     /// A vector up, times a power of two that makes its largest component between 1/2 and 1.
@@ -35,7 +35,7 @@ impl ViewFrame {
         let forward = (target - position).try_normalize()?;
         // Scaling by a power of two loses no digit, and keeps squares from overflowing.
         let exponent = exponent_to_one((target - position).abs().max_element());
-        let given = Given { position, target, up: scaled(up), scale: times_power_of_two(1.0, exponent) };
+        let given = ViewInputs { position, target, up: scaled(up), scale: times_power_of_two(1.0, exponent) };
         let is_askew = forward.cross(given.up.try_normalize()?).length() > LEAST_SINE;
         is_askew.then(|| Self { given, axes: given.axes() })
     }
@@ -118,7 +118,7 @@ pub fn half_tangent<N: Scalar>(angle: f64) -> N {
     radians::<N>(0.5 * angle).tan()
 }
 
-impl Given {
+impl ViewInputs {
     /// Returns the unit vectors to the right, up and forward.
     fn axes<N: Scalar>(&self) -> [[N; 3]; 3] {
         let unit = |vector: [N; 3]| {

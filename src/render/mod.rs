@@ -17,7 +17,7 @@ pub(crate) mod tiles;
 pub mod trace;
 
 pub use bytes::to_byte;
-pub use observer::{Count, Event, Hit, Outcome, Purpose, RayKind, Reason, TraceObserver};
+pub use observer::{Count, DropReason, Event, Hit, LightOutcome, RayKind, RayPurpose, TraceObserver};
 pub use plan::Plan;
 pub use ray_stats::{RayStats, TestCounts};
 pub use renderer::Renderer;

@@ -115,24 +115,24 @@ impl fmt::Display for RayKind {
 
 /// An event of a ray.
 ///
-/// A ray begins (`Begin`). Its search starts (`Search`), tests objects (`Tested`) and ends (`Met`), or the ray is not
+/// A ray begins (`Begin`). Its search starts (`Search`), tests objects (`Tested`) and ends (`FirstHit`), or the ray is not
 /// followed (`Dropped`). Unless it is a shadow ray, its hit is followed by the surface (`Surface`), for each light by
 /// its shadow rays and then its outcome (`Light`), by the shaded colour (`Shaded`), and by the reflected and
 /// transmitted rays. With or without a hit, the ray's colour comes last (`Colour`).
 #[derive(Clone, Copy)]
 pub enum Event<'e> {
     /// A ray begins.
-    Begin(Purpose),
+    Begin(RayPurpose),
     /// The search for the first hit of this ray starts.
     Search(&'e Ray),
     /// The ray is not followed.
-    Dropped(Reason),
+    Dropped(DropReason),
     /// The object of this index was tested. The number is the distance of its hit in world units, or
     /// [`MISS`](crate::geometry::ray::MISS) where there is none nearer than the nearest so far; `None` where the object
     /// was skipped because the ray leaves it.
     Tested(usize, Option<f64>),
     /// A search ended with this first hit, if any.
-    Met(Option<&'e Hit<'e>>),
+    FirstHit(Option<&'e Hit<'e>>),
     /// The surface at the first hit.
     Surface {
         /// The unit normal at the hit point.
@@ -141,7 +141,7 @@ pub enum Event<'e> {
         ambient: Rgb,
     },
     /// The outcome of the light of this index.
-    Light(usize, Outcome),
+    Light(usize, LightOutcome),
     /// The surface's own colour, by ambient light and by all lights, as seen by the viewer.
     Shaded {
         /// The first hit.
@@ -157,7 +157,7 @@ pub enum Event<'e> {
 
 /// The purpose of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Purpose {
+pub enum RayPurpose {
     /// A ray from the viewer through a pixel.
     Primary,
     /// A ray that continues through a transparent surface.
@@ -181,7 +181,7 @@ pub enum Purpose {
 
 /// The reason why a ray is not followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reason {
+pub enum DropReason {
     /// The path from the viewer is too long.
     TooFar,
     /// The light that the ray can add to the pixel is too faint to be seen.
@@ -192,7 +192,7 @@ pub enum Reason {
 
 /// The effect of a light at a hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Outcome {
+pub enum LightOutcome {
     /// The light is behind the surface.
     Behind,
     /// The light does not point at the hit.

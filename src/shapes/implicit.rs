@@ -12,7 +12,7 @@ use crate::geometry::frame::{self, BLUR, Frame};
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::geometry::roots::bernstein::Bernstein;
 use crate::geometry::roots::stretch::Stretch;
-use crate::geometry::roots::taylor::{self, Found};
+use crate::geometry::roots::taylor::{self, FirstRoot};
 use crate::geometry::roots::{Method, twice};
 use crate::geometry::sight::Line;
 use crate::numeric::double_double::DoubleDouble;
@@ -125,7 +125,7 @@ impl<T: Implicit> Bracketed for ImplicitShape<T> {
         let touches = || self.touches(ray.origin, range.origin_error);
         by_distance(range, touches, |range| {
             let line = FormulaOnRay { by_proof: true, ..FormulaOnRay::new(self, ray) };
-            let Found { root, is_certain } = line.first_hit(range);
+            let FirstRoot { root, is_certain } = line.first_hit(range);
             is_certain.then(|| line.distance(root, range))
         })
     }
@@ -230,8 +230,8 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
     fn bracket(&self, range: &RayRange) -> Bracket {
         let stretch = self.stretch();
         let root = match self.first_root(&stretch, range, MOST_DRIFTING) {
-            Found { root: Some(root), is_certain: true } => root,
-            Found { root: None, is_certain: true } => return Bracket::MISS,
+            FirstRoot { root: Some(root), is_certain: true } => root,
+            FirstRoot { root: None, is_certain: true } => return Bracket::MISS,
             _ => return Bracket::UNKNOWN,
         };
         let value = |t: f64| taylor::FunctionOnLine::at(self, Interval::constant(t));
@@ -277,7 +277,7 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
     }
 
     /// Returns the first root of a stretch in a range, after judging at most this number of pieces.
-    fn first_root(&self, stretch: &Stretch, range: &RayRange, mut pieces: usize) -> Found {
+    fn first_root(&self, stretch: &Stretch, range: &RayRange, mut pieces: usize) -> FirstRoot {
         let shortest = shortest(&stretch.outer);
         taylor::first_root_within(self, stretch, self.closest, range, shortest, &mut pieces)
     }
@@ -287,7 +287,7 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         rounding * self.blur > (self.shape.high - self.shape.low).max_element()
     }
 
-    fn first_hit(&self, range: &RayRange) -> Found {
+    fn first_hit(&self, range: &RayRange) -> FirstRoot {
         let stretch = self.stretch();
         let pieces = if self.is_lost(1.0) { FEW_PIECES } else { taylor::MAX_PIECES };
         if !T::IS_CUT {
@@ -300,7 +300,7 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
             all_certain &= found.is_certain && is_certain;
             match found.root {
                 Some(root) if !is_kept => range.near = self.closest + root,
-                root => return Found { root, is_certain: all_certain },
+                root => return FirstRoot { root, is_certain: all_certain },
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::geometry::ray::{Ray, RayRange};
 use crate::render::bytes::to_byte;
-use crate::render::observer::{Event, Purpose, TraceObserver};
+use crate::render::observer::{Event, RayPurpose, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::trace;
 use crate::scene::model::Model;
@@ -89,10 +89,10 @@ impl<W: Write> TraceObserver for Printer<'_, W> {
 
     fn see(&mut self, event: Event) {
         match event {
-            Event::Begin(purpose) => self.shadow = matches!(purpose, Purpose::Shadow { .. }),
+            Event::Begin(purpose) => self.shadow = matches!(purpose, RayPurpose::Shadow { .. }),
             Event::Search(ray) => self.ray = Some(*ray),
             Event::Tested(index, Some(_)) => self.find(index),
-            Event::Met(Some(hit)) if !self.shadow => {
+            Event::FirstHit(Some(hit)) if !self.shadow => {
                 let (name, at) = (&hit.object.args.name(), hit.point);
                 let text = format_args!("{name:<12} HIT:({:5.1}, {:5.1}, {:5.1})", at.x, at.y, at.z);
                 self.print(LogLine::Hit, text);

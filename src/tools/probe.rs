@@ -3,7 +3,7 @@
 use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::render::bytes::to_byte;
 use crate::render::limits::{MAX_DIST, MAX_RAYS};
-use crate::render::observer::{Event, Hit, Outcome, Purpose, Reason, TraceObserver};
+use crate::render::observer::{DropReason, Event, Hit, LightOutcome, RayPurpose, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::trace::{self};
 use crate::scene::model::Model;
@@ -88,7 +88,7 @@ impl<W: Write> TraceObserver for Probe<'_, W> {
                     search.tests.push((index, distance));
                 }
             }
-            Event::Met(hit) => {
+            Event::FirstHit(hit) => {
                 if let Some(search) = self.search.take() {
                     self.searched(&search, hit);
                 }
@@ -118,19 +118,19 @@ impl<W: Write> TraceObserver for Probe<'_, W> {
 
 impl<W: Write> Probe<'_, W> {
     /// Writes the heading of a ray; later lines are indented below it.
-    fn begin(&mut self, purpose: Purpose) {
+    fn begin(&mut self, purpose: RayPurpose) {
         match purpose {
-            Purpose::Primary => self.heading("primary ray"),
-            Purpose::Transmitted { tint, kept } => self.heading(&format!(
+            RayPurpose::Primary => self.heading("primary ray"),
+            RayPurpose::Transmitted { tint, kept } => self.heading(&format!(
                 "transmitted ray {}, times {}, with {} of the surface",
                 self.depth,
                 triple(tint),
                 number(kept)
             )),
-            Purpose::Reflected { specular } => {
+            RayPurpose::Reflected { specular } => {
                 self.heading(&format!("reflected ray {}, times {}", self.depth, triple(specular)));
             }
-            Purpose::Shadow { distance } => {
+            RayPurpose::Shadow { distance } => {
                 self.light = Some(distance);
                 let heading = format!("shadow ray, {} to the light", number(distance));
                 self.held += &format!("{}{heading}\n", indent(self.depth));
@@ -206,13 +206,15 @@ impl<W: Write> Probe<'_, W> {
         (format!("{distance:.6}"), verdict)
     }
 
-    fn outcome_of(&self, outcome: Outcome) -> String {
+    fn outcome_of(&self, outcome: LightOutcome) -> String {
         match outcome {
-            Outcome::Behind => "is behind the surface".to_owned(),
-            Outcome::Aside => "does not shine there".to_owned(),
-            Outcome::Blocked(index) => format!("is blocked by `{}`", self.model.objects[index].args.name()),
-            Outcome::Shines { passed: DVec3::ONE, colour } => format!("adds {}", triple(colour)),
-            Outcome::Shines { passed, colour } => {
+            LightOutcome::Behind => "is behind the surface".to_owned(),
+            LightOutcome::Aside => "does not shine there".to_owned(),
+            LightOutcome::Blocked(index) => {
+                format!("is blocked by `{}`", self.model.objects[index].args.name())
+            }
+            LightOutcome::Shines { passed: DVec3::ONE, colour } => format!("adds {}", triple(colour)),
+            LightOutcome::Shines { passed, colour } => {
                 format!("arrives tinted {}, adds {}", triple(passed), triple(colour))
             }
         }
@@ -235,11 +237,13 @@ impl<W: Write> Probe<'_, W> {
     }
 }
 
-fn dropped(reason: Reason) -> String {
+fn dropped(reason: DropReason) -> String {
     match reason {
-        Reason::TooFar => format!("light that has travelled more than {MAX_DIST} is black"),
-        Reason::TooFaint => "it can add less than 1/1024 of a level to the pixel".to_owned(),
-        Reason::TooMany => format!("the ray budget of {MAX_RAYS} is used up, and no more rays are followed"),
+        DropReason::TooFar => format!("light that has travelled more than {MAX_DIST} is black"),
+        DropReason::TooFaint => "it can add less than 1/1024 of a level to the pixel".to_owned(),
+        DropReason::TooMany => {
+            format!("the ray budget of {MAX_RAYS} is used up, and no more rays are followed")
+        }
     }
 }
 

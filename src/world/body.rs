@@ -84,7 +84,7 @@ impl fmt::Debug for NamedBody {
 }
 
 /// Wraps a shader so that it sees points of a copied object in the coordinates of the original.
-pub type ToOwn = Box<dyn Fn(AnyShader) -> AnyShader + Send + Sync>;
+pub type ToObjectSpace = Box<dyn Fn(AnyShader) -> AnyShader + Send + Sync>;
 
 /// What an object's constructor returns: the object's shape and its shader.
 pub struct Body {
@@ -95,7 +95,7 @@ pub struct Body {
     /// The origin and the unit of length of patterns on it; `None` for those of its bounding box.
     pub anchor: Option<Anchor>,
     /// Wraps a shader so that it sees points in the coordinates of the original, if the object is a copy.
-    pub to_own: Option<ToOwn>,
+    pub to_object_space: Option<ToObjectSpace>,
     /// What the user should know about the object, although it can be rendered.
     pub warnings: Vec<Warning>,
     /// The memory that the object takes beside the scene, in bytes.
@@ -167,7 +167,7 @@ impl Body {
             shape: shape.into(),
             shader: Box::new(shader),
             anchor: None,
-            to_own: None,
+            to_object_space: None,
             warnings: Vec::new(),
             bytes: 0,
             depth: 0,
@@ -198,8 +198,8 @@ impl Body {
     pub fn painted(mut self, paint: &Paint) -> Self {
         self.more = self.more.into_iter().map(|one| one.painted(paint)).collect();
         let shader = paint.on(self.anchor());
-        let shader = match &self.to_own {
-            Some(to_own) => to_own(shader),
+        let shader = match &self.to_object_space {
+            Some(to_object_space) => to_object_space(shader),
             None => shader,
         };
         let mut body = Self { shader, ..self };

@@ -55,7 +55,7 @@ pub trait FunctionOnLine {
 
 /// The result of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Found {
+pub struct FirstRoot {
     /// The first root.
     pub root: Option<f64>,
     /// Whether bounds in `f64` prove that every line that this one may have been rounded from has its first root there,
@@ -99,7 +99,7 @@ pub fn first_root(
     base: f64,
     range: &RayRange,
     shortest: f64,
-) -> Found {
+) -> FirstRoot {
     first_root_within(line, stretch, base, range, shortest, &mut MAX_PIECES.clone())
 }
 
@@ -112,10 +112,10 @@ pub fn first_root_within(
     range: &RayRange,
     shortest: f64,
     pieces: &mut usize,
-) -> Found {
+) -> FirstRoot {
     let Range { start, end } = stretch.outer;
     if !(start <= end && start.is_finite() && end.is_finite()) {
-        return Found { root: None, is_certain: true };
+        return FirstRoot { root: None, is_certain: true };
     }
     let mut search = Search { line, start, base, range, shortest, pieces, undecided: 0, is_certain: true };
     // The line may have reached the ends outside of `inner`, and is certainly between them inside.
@@ -130,7 +130,7 @@ pub fn first_root_within(
     } else {
         search.at_an_end(start, end)
     };
-    Found { root, is_certain: search.is_certain }
+    FirstRoot { root, is_certain: search.is_certain }
 }
 
 struct Search<'l, L> {

@@ -6,7 +6,7 @@ use crate::geometry::sight::Line;
 use crate::numeric::affine::Affine;
 use crate::numeric::interval::Interval;
 use crate::numeric::scalar::{Scalar, cross, dot};
-use crate::world::certify::Met;
+use crate::world::certify::FootprintHit;
 use crate::world::packets::light::{EncloseLight, PacketLight};
 use crate::world::packets::shader::EncloseLook;
 use crate::world::shader::PointBounds;
@@ -132,7 +132,7 @@ fn passed(scene: &Scene, path: &Path) -> Passes {
         |object| !is_glass(object),
         |hit, _| {
             match hit {
-                Met::Hits(at) if at.range().high < 1.0 && !panes.are_at(at) => is_blocked = true,
+                FootprintHit::Hits(at) if at.range().high < 1.0 && !panes.are_at(at) => is_blocked = true,
                 hit => is_open |= hit.low() < 1.0,
             }
             !is_blocked
@@ -172,8 +172,8 @@ impl Panes {
                 |index| index == object,
                 |hit, place| {
                     let low = match hit {
-                        Met::Hits(at) | Met::Perhaps(at) => (start + at).range().low,
-                        Met::Doubtful(low) => start.range().low + low,
+                        FootprintHit::Hits(at) | FootprintHit::Perhaps(at) => (start + at).range().low,
+                        FootprintHit::Doubtful(low) => start.range().low + low,
                     };
                     if low < 1.0 {
                         all.push((hit, place));
@@ -183,7 +183,7 @@ impl Panes {
             );
             let at = match all[..] {
                 [] => return Some(()),
-                [(Met::Hits(at), _)] => start + at,
+                [(FootprintHit::Hits(at), _)] => start + at,
                 _ => return None,
             };
             // Of panes in one place, one stands for all: that is not decided here.

@@ -8,7 +8,7 @@ use crate::numeric::affine::Affine;
 use crate::numeric::interval::Interval;
 use crate::numeric::scalar::{Scalar, dot};
 use crate::render::limits::MAX_DIST;
-use crate::world::certify::Met;
+use crate::world::certify::FootprintHit;
 
 /// The number of hits in a footprint after which its branches are no longer followed, but bounded.
 const MAX_HITS: usize = 48;
@@ -73,8 +73,8 @@ impl<'s> Tracer<'s> {
         for (hit, place) in places {
             let most = self.bound(ray, hit.low());
             let seen = match hit {
-                Met::Hits(t) | Met::Perhaps(t) => self.seen(ray, t, place),
-                Met::Doubtful(_) => up_to(most),
+                FootprintHit::Hits(t) | FootprintHit::Perhaps(t) => self.seen(ray, t, place),
+                FootprintHit::Doubtful(_) => up_to(most),
             };
             let seen = seen.map(|channel| if channel.rest > most { within(most) } else { channel });
             any = Some(any.map_or(seen, |any| hull(any, seen)));

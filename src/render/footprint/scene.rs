@@ -5,7 +5,7 @@ use crate::geometry::sight::Line;
 use crate::numeric::affine::Affine;
 use crate::render::plan::depth::Depth;
 use crate::scene::model::Model;
-use crate::world::certify::{Met, coarse};
+use crate::world::certify::{FootprintHit, coarse};
 
 /// A colour over a footprint. Where nothing is known, it is unbounded.
 pub(super) type Colour = [Affine; 3];
@@ -55,7 +55,7 @@ impl Scene<'_> {
         &self,
         path: &Path,
         is_wanted: impl Fn(usize) -> bool,
-        mut met: impl FnMut(Met, Place) -> bool,
+        mut met: impl FnMut(FootprintHit, Place) -> bool,
     ) {
         let coarse = coarse(&path.line);
         for (object, bounds) in self.boxes.iter().enumerate().filter(|(object, _)| is_wanted(*object)) {
@@ -68,7 +68,7 @@ impl Scene<'_> {
                 Some(proven) => proven.hits(&path.line, leaves, &mut |hit, part| {
                     goes_on &= met(hit, Place { object, part });
                 }),
-                None => goes_on = met(Met::Doubtful(0.0), Place { object, part: 0 }),
+                None => goes_on = met(FootprintHit::Doubtful(0.0), Place { object, part: 0 }),
             }
             if !goes_on {
                 return;
@@ -77,13 +77,13 @@ impl Scene<'_> {
     }
 
     /// Returns the first hits that the lines may have, and whether each line certainly has one.
-    pub fn first(&self, path: &Path) -> (Vec<(Met, Place)>, bool) {
+    pub fn first(&self, path: &Path) -> (Vec<(FootprintHit, Place)>, bool) {
         let (mut all, mut end) = (Vec::new(), f64::INFINITY);
         self.hits(
             path,
             |_| true,
             |hit, place| {
-                if let Met::Hits(at) = hit {
+                if let FootprintHit::Hits(at) = hit {
                     end = end.min(at.range().high);
                 }
                 all.push((hit, place));

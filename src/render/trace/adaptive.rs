@@ -13,7 +13,7 @@
 
 use super::arrays::VectorList;
 use super::context::Tracer;
-use super::estimate::{AdaptiveScratch, Around, Estimate, Found, Run};
+use super::estimate::{AdaptiveScratch, Estimate, RayResults, RaySummary, Run};
 use super::ray_group::RayGroup;
 use super::sampled;
 use super::scratch::{PrimaryScratch, Scratch};
@@ -75,7 +75,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         // Tells whether a pixel goes on after a number of samples, whatever their colours are.
         let is_short = |estimate: &Estimate, pixel: &[usize; 2], count: u32| {
             let has_feature = || features.is_some_and(|all| all.any_at(*pixel, estimate.distance()));
-            count < CROSSED_SAMPLES && estimate.is_crossed() || count < FEATURE_SAMPLES && has_feature()
+            count < CROSSED_SAMPLES && estimate.has_several_paths()
+                || count < FEATURE_SAMPLES && has_feature()
         };
         self.scratch.trails.is_on = true;
         let mut rays = Rays { tracer: self, group, seen, is_unbounded, runs: take(runs) };
@@ -95,9 +96,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let (gain, doubt) = (camera.gain(), if adaptive.error.is_some() { DOUBT } else { 1.0 });
         while !active.is_empty() {
             // What a pixel's rays met matters only as long as all of them have met the same, or for small objects.
-            for is_crossed in [false, true] {
-                rays.tracer.scratch.trails.is_on = has_features || !is_crossed;
-                rays.take_samples(active, pixels, is_crossed, estimates);
+            for has_several_paths in [false, true] {
+                rays.tracer.scratch.trails.is_on = has_features || !has_several_paths;
+                rays.take_samples(active, pixels, has_several_paths, estimates);
             }
             active.retain(|of| {
                 let (estimate, pixel) = (&mut estimates[*of as usize], &pixels[*of as usize]);
@@ -140,7 +141,7 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
         &mut self,
         pixels: &[[usize; 2]],
         probes: &mut Vec<[usize; 2]>,
-        grid: &mut Vec<Around>,
+        grid: &mut Vec<RaySummary>,
         estimates: &mut Vec<Estimate>,
     ) {
         let [left, low] = [0, 1].map(|axis| pixels.iter().map(|pixel| pixel[axis]).min().unwrap_or(0));
@@ -149,7 +150,7 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
         let wide = right - left + AROUND;
         let place = |[x, y]: [usize; 2]| (y - low) * wide + x - left;
         grid.clear();
-        grid.resize(wide * (high - low + AROUND), Around::default());
+        grid.resize(wide * (high - low + AROUND), RaySummary::default());
         probes.clear();
         let mut is_wanted = vec![false; grid.len()];
         for [x, y] in pixels {
@@ -178,7 +179,7 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
     }
 
     /// Traces probes at corners, and reports the results of each.
-    fn probe(&mut self, corners: &[[usize; 2]], mut report: impl FnMut([usize; 2], Around)) {
+    fn probe(&mut self, corners: &[[usize; 2]], mut report: impl FnMut([usize; 2], RaySummary)) {
         let Self { tracer, group, seen, is_unbounded, .. } = self;
         let (len, camera) = (corners.len(), &tracer.plan.camera);
         let Scratch { places: [x, y], samples, are_probes, .. } = &mut *tracer.scratch;
@@ -195,15 +196,15 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
         tracer.colours(group, seen);
         tracer.scratch.are_probes = false;
         let found = self.found(0..len);
-        corners.iter().enumerate().for_each(|(lane, corner)| report(*corner, Around::of(&found, lane)));
+        corners.iter().enumerate().for_each(|(lane, corner)| report(*corner, RaySummary::of(&found, lane)));
     }
 
     /// Returns the results of the rays of some lanes.
     #[inline]
-    fn found(&self, lanes: Range<usize>) -> Found<'_> {
+    fn found(&self, lanes: Range<usize>) -> RayResults<'_> {
         let Trails { is_on, marks, distances, .. } = &self.tracer.scratch.trails;
         let recorded = if *is_on { lanes.clone() } else { 0..0 };
-        Found {
+        RayResults {
             colours: self.seen.view(lanes.end).part(lanes),
             marks: &marks[recorded.clone()],
             distances: &distances[recorded],
@@ -216,14 +217,14 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
         &mut self,
         active: &[u32],
         pixels: &[[usize; 2]],
-        is_crossed: bool,
+        has_several_paths: bool,
         estimates: &mut [Estimate],
     ) {
         loop {
             let mut lacks_more = false;
             for of in active {
                 let estimate = &estimates[*of as usize];
-                if estimate.count < estimate.goal && estimate.is_crossed() == is_crossed {
+                if estimate.count < estimate.goal && estimate.has_several_paths() == has_several_paths {
                     // What a sample may cost depends on those before it, if nothing bounds the light.
                     let end = if self.is_unbounded { estimate.count + 1 } else { estimate.goal };
                     let ray_budget = (estimate.missing == f64::INFINITY).then_some(sampled::REST);

@@ -11,7 +11,7 @@ use crate::geometry::ray::{Bracket, Drift, MISS, Ray, Side};
 use crate::geometry::ray_packet::{Nearest, RayPacket};
 use crate::render::culling;
 use crate::render::frusta::{self, PART};
-use crate::render::observer::{Count, Event, Hit, Reason, TraceObserver};
+use crate::render::observer::{Count, DropReason, Event, Hit, TraceObserver};
 use crate::simd::cpu::kernels;
 use crate::simd::soa::{LANES, Vectors};
 use glam::DVec2;
@@ -32,7 +32,7 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
         group.ray_budget = ray_budget;
         if W::SEES {
             if is_over {
-                self.observer.see(Event::Dropped(Reason::TooMany));
+                self.observer.see(Event::Dropped(DropReason::TooMany));
                 return;
             }
             self.closest_seen(group, hits);
@@ -71,7 +71,7 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
             distance: nearest,
             point: start.ray.at(nearest),
         });
-        self.observer.see(Event::Met(hit.as_ref()));
+        self.observer.see(Event::FirstHit(hit.as_ref()));
     }
 
     /// Returns one ray of a group, with the bounds of its errors.

@@ -8,7 +8,7 @@ use super::scratch::{LightDraws, LightScratch};
 use super::shadow_rays::LightPaths;
 use super::surface::Surface;
 use crate::geometry::aabb::{self, Aabb};
-use crate::render::observer::{Event, Outcome, TraceObserver};
+use crate::render::observer::{Event, LightOutcome, TraceObserver};
 use crate::scene::model::Object;
 use crate::world::light_samples::{LightSamples, ShadingPoints};
 use crate::world::material::Rgb;
@@ -101,8 +101,10 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
         if !faced.any_shines {
             if W::SEES {
-                self.observer
-                    .see(Event::Light(index, if faced.any_faces { Outcome::Aside } else { Outcome::Behind }));
+                self.observer.see(Event::Light(
+                    index,
+                    if faced.any_faces { LightOutcome::Aside } else { LightOutcome::Behind },
+                ));
             }
             return;
         }
@@ -116,7 +118,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             if W::SEES
                 && let Some(blocker) = blocker
             {
-                self.observer.see(Event::Light(index, Outcome::Blocked(blocker)));
+                self.observer.see(Event::Light(index, LightOutcome::Blocked(blocker)));
                 return;
             }
             tint = passed;
@@ -150,7 +152,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let mut alone = VectorList::default();
             alone.fill(count, Rgb::ZERO);
             light::shine(cpu, &lit, material.shininess, alone.resized(count));
-            self.observer.see(Event::Light(index, Outcome::Shines { passed: tint, colour: alone.get(0) }));
+            self.observer
+                .see(Event::Light(index, LightOutcome::Shines { passed: tint, colour: alone.get(0) }));
         }
     }
 

@@ -25,7 +25,7 @@ pub(super) struct AdaptiveScratch {
     /// The corners that are probed, by column and row.
     pub probes: Vec<[usize; 2]>,
     /// The results at each point of a grid of corners around the pixels.
-    pub grid: Vec<Around>,
+    pub grid: Vec<RaySummary>,
     /// The pixels' estimates.
     pub estimates: Vec<Estimate>,
     /// The indices of the pixels that take more samples.
@@ -56,7 +56,7 @@ pub(super) struct Run {
 }
 
 /// The results of rays, one after the other.
-pub(super) struct Found<'f> {
+pub(super) struct RayResults<'f> {
     pub colours: View<'f>,
     /// A mark of the path of each ray, and the distance of its first hit in world units; empty where that is not
     /// recorded.
@@ -66,49 +66,55 @@ pub(super) struct Found<'f> {
 
 /// The results of rays, combined.
 #[derive(Clone, Copy)]
-pub(super) struct Around {
+pub(super) struct RaySummary {
     /// The least and the greatest colour.
     low: Rgb,
     high: Rgb,
     /// The mark of the first ray's path, and whether another ray's path has another mark.
     mark: u64,
-    is_crossed: bool,
+    has_several_paths: bool,
     /// The distance of the farthest first hit, in world units.
     distance: f64,
 }
 
-impl Default for Around {
+impl Default for RaySummary {
     fn default() -> Self {
-        Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY, mark: 0, is_crossed: false, distance: 0.0 }
+        Self {
+            low: DVec3::INFINITY,
+            high: DVec3::NEG_INFINITY,
+            mark: 0,
+            has_several_paths: false,
+            distance: 0.0,
+        }
     }
 }
 
-impl Around {
+impl RaySummary {
     /// Returns the results of one ray.
     #[inline]
-    pub fn of(found: &Found, lane: usize) -> Self {
+    pub fn of(found: &RayResults, lane: usize) -> Self {
         let colour = found.colours.get(lane);
         let (mark, distance) = (found.marks[lane], found.distances[lane]);
-        Self { low: colour, high: colour, mark, is_crossed: false, distance }
+        Self { low: colour, high: colour, mark, has_several_paths: false, distance }
     }
 
     /// Includes the results of other rays.
     #[inline]
     pub fn include(&mut self, other: &Self) {
         (self.low, self.high) = (self.low.min(other.low), self.high.max(other.high));
-        self.is_crossed |= other.is_crossed | (other.mark != self.mark);
+        self.has_several_paths |= other.has_several_paths | (other.mark != self.mark);
         self.distance = self.distance.max(other.distance);
     }
 
     /// Includes the results of rays.
     #[inline]
-    fn include_all(&mut self, found: &Found) {
+    fn include_all(&mut self, found: &RayResults) {
         for lane in 0..found.colours.len() {
             let colour = found.colours.get(lane);
             (self.low, self.high) = (self.low.min(colour), self.high.max(colour));
         }
         for mark in found.marks {
-            self.is_crossed |= *mark != self.mark;
+            self.has_several_paths |= *mark != self.mark;
         }
         for distance in found.distances {
             self.distance = self.distance.max(*distance);
@@ -131,33 +137,33 @@ pub(super) struct Estimate {
     /// The sum of the bounds on the light that the samples lack.
     pub missing: f64,
     /// The results of its samples and of the probes around it.
-    around: Around,
+    summary: RaySummary,
 }
 
 impl Estimate {
     /// Starts with the results of the probes around the pixel, and with the number of samples that it is to have first.
     /// The estimate is too large to be copied into its place.
     #[inline]
-    pub fn begin(&mut self, around: Around, goal: u32) {
+    pub fn begin(&mut self, summary: RaySummary, goal: u32) {
         (self.count, self.goal) = (0, goal);
         (self.sum, self.blocks, self.missing) = (Rgb::ZERO, [Rgb::ZERO; BLOCKS], 0.0);
-        self.around = around;
+        self.summary = summary;
     }
 
     /// Tells whether rays here or around hit different surfaces on their paths.
-    pub fn is_crossed(&self) -> bool {
-        self.around.is_crossed
+    pub fn has_several_paths(&self) -> bool {
+        self.summary.has_several_paths
     }
 
     /// Returns the distance of the farthest first hit here or around, in world units.
     pub fn distance(&self) -> f64 {
-        self.around.distance
+        self.summary.distance
     }
 
     /// Adds the next samples, up to [`goal`](Self::goal).
     #[inline]
-    pub fn add(&mut self, found: &Found) {
-        self.around.include_all(found);
+    pub fn add(&mut self, found: &RayResults) {
+        self.summary.include_all(found);
         self.sum = found.colours.added_to(self.sum);
         // Each block has a power of two of them.
         let shift = shift(self.goal);
@@ -207,8 +213,9 @@ impl Estimate {
             1 => DVec3::ZERO,
             _ => squares.map(f64::sqrt) / ((blocks * (blocks - 1)) as f64).sqrt(),
         };
-        let unseen = if self.around.is_crossed { UNSEEN } else { UNSEEN_WITHIN };
-        let error = doubt * spread + (self.around.high - self.around.low) * (unseen / f64::from(self.count));
+        let unseen = if self.summary.has_several_paths { UNSEEN } else { UNSEEN_WITHIN };
+        let error =
+            doubt * spread + (self.summary.high - self.summary.low) * (unseen / f64::from(self.count));
         let (mean, error) = (gain * mean, gain * error);
         if mean.max_element() + FAR * error.max_element() <= 1.0 && (mean - FAR * error).min_element() >= 0.0
         {

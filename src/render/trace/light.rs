@@ -9,7 +9,7 @@ use crate::world::packets::shader::is_any;
 
 /// The light that rays on the same path, from object to object, can add to a pixel.
 #[derive(Clone, Copy)]
-pub(super) struct Worth {
+pub(super) struct PathWeight {
     /// The largest factor by which the rays' light is multiplied on the path.
     pub weight: f64,
     /// The fraction of the primary ray's allowance for cuts that each ray gets.
@@ -84,9 +84,9 @@ kernels! {
     /// Clears `goes` for the rays that can return too little to be seen. `ray_budget` has the number of rays that each
     /// ray may still cost; `None` where none has cost [`MANY`] yet.
     pub(super) fn leave_out(
-        travelled: &[f64], worth: Worth, branch: &Branch, ray_budget: Option<&[u32]>, goes: &mut [u64]
+        travelled: &[f64], worth: PathWeight, branch: &Branch, ray_budget: Option<&[u32]>, goes: &mut [u64]
     ) {
-        let (count, Worth { weight, share }) = (goes.len(), worth);
+        let (count, PathWeight { weight, share }) = (goes.len(), worth);
         let (faint, faint_alone) = (weight * branch.faint, weight * branch.faint_alone);
         let travelled = &travelled[..count];
         for lane in 0..count {

@@ -34,7 +34,7 @@ pub(crate) use scratch::Scratch;
 
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::geometry::sight::Sight;
-use crate::render::observer::{Count, DynObserver, Event, Hit, Purpose, RayKind, TraceObserver};
+use crate::render::observer::{Count, DynObserver, Event, Hit, RayKind, RayPurpose, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::ray_stats::Cuts;
 use crate::simd::cpu::Cpu;
@@ -274,7 +274,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.begin_missing(&group.ray_budget[..group.len]);
         self.scratch.trails.begin(group.len);
         if W::SEES {
-            self.observer.see(Event::Begin(Purpose::Primary));
+            self.observer.see(Event::Begin(RayPurpose::Primary));
         }
         self.trace(group, colours);
     }

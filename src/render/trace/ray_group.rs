@@ -1,7 +1,7 @@
 //! Groups of rays that are traced together.
 
 use super::arrays::{VectorList, gather, resized};
-use super::light::{self, Worth};
+use super::light::{self, PathWeight};
 use super::surface::{Errors, Onward, Surface};
 use crate::geometry::ray::Side;
 use crate::geometry::ray_packet::{PACKET_SIZE, RayPacket};
@@ -44,7 +44,7 @@ pub(super) struct RayGroup {
     /// [`Scratch::places`]: super::scratch::Scratch::places
     pub looks: bool,
     /// What the rays can add to a pixel; `None` where no ray continues, or where that has no bound.
-    pub worth: Option<Worth>,
+    pub worth: Option<PathWeight>,
     /// The lane of the primary ray that each ray descends from; empty where no ray continues and pixels have one
     /// sample.
     pub camera: Vec<u8>,
@@ -108,7 +108,7 @@ impl RayGroup {
         // Where no ray continues, a primary ray costs itself and one shadow ray for each light, so it needs no budget.
         resized(&mut self.ray_budget, count).fill(if depth.is_some() { MAX_RAYS as u32 } else { u32::MAX });
         let is_bounded = depth.is_some_and(|depth| depth.most.is_finite());
-        self.worth = is_bounded.then_some(Worth { weight: 1.0, share: 1.0 });
+        self.worth = is_bounded.then_some(PathWeight { weight: 1.0, share: 1.0 });
         if is_sampled || depth.is_some() {
             // The copies that pad the arrays are of the last ray, so they use its sample.
             let (cameras, copies) = resized(&mut self.camera, count).split_at_mut(len);
@@ -137,7 +137,7 @@ impl RayGroup {
 
     /// Updates what the rays can add to a pixel when they continue along a branch of a surface.
     pub fn branch(&mut self, branch: &Branch) {
-        if let Some(Worth { weight, share }) = &mut self.worth {
+        if let Some(PathWeight { weight, share }) = &mut self.worth {
             *weight *= branch.weight;
             *share *= branch.share;
         }

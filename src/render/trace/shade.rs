@@ -10,7 +10,7 @@ use super::scratch::{HitScratch, ShadingScratch};
 use super::surface::Errors;
 use crate::geometry::ray::Side;
 use crate::render::limits::MAX_DIST;
-use crate::render::observer::{Count, Event, Hit, Purpose, RayKind, Reason, TraceObserver};
+use crate::render::observer::{Count, DropReason, Event, Hit, RayKind, RayPurpose, TraceObserver};
 use crate::render::plan::depth::{Branch, STEPS, step};
 use crate::scene::model::Object;
 use crate::world::background::Background;
@@ -141,7 +141,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let kept = 1.0 - object.material.transparency;
         if W::SEES {
             let tint = object.tint(&object.surface_point(surface.points.get(0), surface.sides[0]));
-            self.observer.see(Event::Begin(Purpose::Transmitted { tint, kept }));
+            self.observer.see(Event::Begin(RayPurpose::Transmitted { tint, kept }));
         }
         let branch = self.plan.onward(surface.index).through;
         let (travelled, goes) = (&surface.travelled[..count], resized(&mut shading.goes, count));
@@ -181,7 +181,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 Some(look) => look.specular,
                 None => surface.specular.get(0),
             };
-            self.observer.see(Event::Begin(Purpose::Reflected { specular }));
+            self.observer.see(Event::Begin(RayPurpose::Reflected { specular }));
         }
         let (cpu, count) = (self.cpu, group.padded());
         let (normals, specular) = (surface.normals.view(count), surface.mirrors(count));
@@ -230,7 +230,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let is_through = |lane: usize| crossings[lane].onward.is_some();
         if (0..group.len).any(is_through) {
             if W::SEES {
-                self.observer.see(Event::Begin(Purpose::Transmitted { tint: tints[0], kept }));
+                self.observer.see(Event::Begin(RayPurpose::Transmitted { tint: tints[0], kept }));
             }
             let flip = |sides: &mut [Side]| sides.iter_mut().for_each(|side| *side = side.opposite());
             flip(&mut surface.sides[..count]);
@@ -254,7 +254,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             }
             if W::SEES {
                 let specular = crossings[0].reflected;
-                self.observer.see(Event::Begin(Purpose::Reflected { specular }));
+                self.observer.see(Event::Begin(RayPurpose::Reflected { specular }));
             }
             let surface = &mut shading.surface;
             let mut dir = shading.dir.resized(count);
@@ -300,7 +300,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let lanes = compact(&goes[..group.len], lanes);
         if W::SEES && lanes.is_empty() {
             let is_far = surface.travelled[0] > MAX_DIST;
-            self.observer.see(Event::Dropped(if is_far { Reason::TooFar } else { Reason::TooFaint }));
+            self.observer.see(Event::Dropped(if is_far { DropReason::TooFar } else { DropReason::TooFaint }));
             self.observer.see(Event::Colour(DVec3::ZERO));
         }
         self.observer.count(Count::Rays(kind, lanes.len()));

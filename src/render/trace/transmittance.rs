@@ -7,7 +7,7 @@ use super::scratch::Transmittance;
 use super::shadow_rays::LightPaths;
 use super::surface::Surface;
 use crate::geometry::ray::{Ray, Side};
-use crate::render::observer::{Count, Event, Purpose, RayKind, TraceObserver};
+use crate::render::observer::{Count, Event, RayKind, RayPurpose, TraceObserver};
 use crate::world::material::Rgb;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
@@ -49,7 +49,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let Transmittance { group, t_max, tint, blocker, hits, parts, .. } = transmittance;
         self.observer.count(Count::Rays(RayKind::Shadow, group.len));
         if W::SEES {
-            self.observer.see(Event::Begin(Purpose::Shadow { distance: t_max[0] }));
+            self.observer.see(Event::Begin(RayPurpose::Shadow { distance: t_max[0] }));
         }
         self.closest(group, Some(t_max), hits);
         parts.begin(&hits.met[..group.len]);

@@ -8,7 +8,7 @@ use crate::numeric::affine::Affine;
 use crate::numeric::interval::Interval;
 use crate::numeric::scalar::{Scalar, dot, per_axis};
 use crate::world::accuracy::Bounded;
-use crate::world::certify::{self, Found, Met, Onward, OverFootprint, Precise};
+use crate::world::certify::{self, FootprintHit, HitEnclosure, Onward, OverFootprint, Precise};
 
 impl Surface {
     /// Returns what is certain about a line's first hit with t > 0, and the face that is hit. `leaves` is the face on which
@@ -17,11 +17,11 @@ impl Surface {
         &self,
         line: &Line<Interval<F>>,
         leaves: Option<usize>,
-    ) -> (Found<F>, usize) {
+    ) -> (HitEnclosure<F>, usize) {
         let met = self.met::<A, F>(line, leaves);
         let first = met.iter().copied().reduce(|one, other| if other.0.0 < one.0.0 { other } else { one });
-        let Some(((low, first), face)) = first else { return (Found::Misses, 0) };
-        let Found::Hits(at) = first else { return (Found::Doubtful(low), face) };
+        let Some(((low, first), face)) = first else { return (HitEnclosure::Misses, 0) };
+        let HitEnclosure::Hits(at) = first else { return (HitEnclosure::Doubtful(low), face) };
         let rivals =
             || met.iter().filter(|((low, _), _)| *low <= at.high).map(|((_, found), face)| (*found, *face));
         if rivals().all(|(_, other)| other == face) {
@@ -41,7 +41,7 @@ impl Surface {
                 return (first, face);
             }
         }
-        (Found::Doubtful(low), face)
+        (HitEnclosure::Doubtful(low), face)
     }
 
     /// Returns the faces that a line may hit, each with what is certain about its first hit there and with the least t of
@@ -50,7 +50,7 @@ impl Surface {
         &self,
         line: &Line<Interval<F>>,
         leaves: Option<usize>,
-    ) -> Vec<((F, Found<F>), usize)> {
+    ) -> Vec<((F, HitEnclosure<F>), usize)> {
         let coarse = Line { origin: line.origin.map(Interval::coarse), dir: line.dir.map(Interval::coarse) };
         let mut met = Vec::new();
         self.tree.within(
@@ -58,9 +58,9 @@ impl Surface {
             |face| {
                 let leaves = (leaves == Some(face)).then_some(0);
                 let found = match Face(self.triangle::<A>(face)).first_hit(line, leaves).0 {
-                    Found::Misses => return,
-                    found @ (Found::Hits(at) | Found::Edge(at)) => (at.low, found),
-                    found @ Found::Doubtful(low) => (low, found),
+                    HitEnclosure::Misses => return,
+                    found @ (HitEnclosure::Hits(at) | HitEnclosure::Edge(at)) => (at.low, found),
+                    found @ HitEnclosure::Doubtful(low) => (low, found),
                 };
                 met.push((found, face));
             },
@@ -89,7 +89,7 @@ impl Surface {
         // The point on the face is at t = 1.
         let (nearly, toward) = (F::of(1.0 - 256.0 * f64::EPSILON), Line { origin: line.origin, dir: way });
         let met = self.met::<A, F>(&toward, leaves);
-        if met.iter().any(|((_, found), _)| matches!(found, Found::Hits(at) if at.high < nearly)) {
+        if met.iter().any(|((_, found), _)| matches!(found, HitEnclosure::Hits(at) if at.high < nearly)) {
             return Some(true);
         }
         met.iter().all(|((low, _), _)| *low >= nearly).then_some(false)
@@ -100,7 +100,7 @@ impl Surface {
         &self,
         line: &Line<Affine>,
         leaves: Option<usize>,
-        met: &mut dyn FnMut(Met, usize),
+        met: &mut dyn FnMut(FootprintHit, usize),
     ) {
         let coarse = certify::coarse(line);
         self.tree.within(

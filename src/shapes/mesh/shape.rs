@@ -15,7 +15,9 @@ use crate::shapes::uv;
 use crate::simd::cpu::Cpu;
 use crate::text;
 use crate::world::accuracy::{Accuracy, Bounded};
-use crate::world::certify::{Enclosure, Found, Met, Onward, OverFootprint, Precise, Precision, Proven};
+use crate::world::certify::{
+    Enclosure, FootprintHit, HitEnclosure, Onward, OverFootprint, Precise, Precision, Proven,
+};
 use crate::world::coincidence::{CLOSE, ROUNDING};
 use crate::world::hittable::Hittable;
 use crate::world::packets::shape::Proofs;
@@ -203,7 +205,7 @@ impl<A: Bounded> Proofs for Shape<Mesh<A>, ByPackets, ByFaces> {
 }
 
 impl<A: Bounded, F: Precise> Onward<F> for Mesh<A> {
-    fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (Found<F>, usize) {
+    fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (HitEnclosure<F>, usize) {
         self.surface.first_along::<A, F>(line, leaves)
     }
 
@@ -233,7 +235,7 @@ impl<A: Bounded, F: Precise> Onward<F> for Mesh<A> {
 }
 
 impl<A: Bounded> OverFootprint for Mesh<A> {
-    fn hits(&self, line: &Line<Affine>, leaves: Option<usize>, met: &mut dyn FnMut(Met, usize)) {
+    fn hits(&self, line: &Line<Affine>, leaves: Option<usize>, met: &mut dyn FnMut(FootprintHit, usize)) {
         self.surface.hits_of_footprint::<A>(line, leaves, met);
     }
 

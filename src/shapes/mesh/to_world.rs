@@ -37,7 +37,7 @@ impl ToWorld {
 fn turned(rotation: Rotation) -> DMat3 {
     let Some(angles) = rotation.angles() else {
         let placement = Placement { scale: DVec3::ONE, rotation, translation: DVec3::ZERO };
-        return placement.to_own().transpose();
+        return placement.to_object_space().transpose();
     };
     let [x, y, z] = angles.to_array().map(sin_cos);
     let around_x = DMat3::from_cols(DVec3::X, DVec3::new(0.0, x.1, x.0), DVec3::new(0.0, -x.0, x.1));

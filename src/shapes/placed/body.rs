@@ -20,10 +20,15 @@ impl Placed {
         let shaded = |shape| Body::shaded(shape, PlacedShader::new(body, placement, None));
         let copy = if is_plain { Body::plain(shape) } else { shaded(shape) };
         let original = Arc::clone(body);
-        let to_own = move |shader: AnyShader| -> AnyShader {
+        let to_object_space = move |shader: AnyShader| -> AnyShader {
             Box::new(PlacedShader::new(&original, placement, Some(shader)))
         };
-        Body { depth: body.depth + 1, anchor: Some(body.anchor()), to_own: Some(Box::new(to_own)), ..copy }
+        Body {
+            depth: body.depth + 1,
+            anchor: Some(body.anchor()),
+            to_object_space: Some(Box::new(to_object_space)),
+            ..copy
+        }
     }
 }
 
@@ -40,7 +45,7 @@ impl PlacedShader {
     fn new(body: &Arc<Body>, placement: Placement, shader: Option<AnyShader>) -> Self {
         let placed = Placed::new(body, placement);
         // The inverse of the transposed matrix, which takes them to the world.
-        let normal_to_own = placed.to_own.transpose().inverse();
+        let normal_to_own = placed.to_object_space.transpose().inverse();
         Self { placed, shader, normal_to_own }
     }
 
@@ -82,7 +87,7 @@ impl Shader for PlacedShader {
 
     fn bend(&self, at: &SurfacePoint) -> DVec3 {
         let own = self.own().bend(&self.own_point(at));
-        (self.placed.to_own.transpose() * own).try_normalize().unwrap_or(at.normal)
+        (self.placed.to_object_space.transpose() * own).try_normalize().unwrap_or(at.normal)
     }
 
     fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {

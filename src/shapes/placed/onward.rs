@@ -6,15 +6,15 @@ use crate::numeric::affine::Affine;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use crate::numeric::scalar::{Scalar, constants, dot, per_axis};
-use crate::world::certify::{Found, Met, Onward, OverFootprint, Precise};
+use crate::world::certify::{FootprintHit, HitEnclosure, Onward, OverFootprint, Precise};
 use glam::DVec3;
 
 impl<F: Precise> Onward<F> for Placed {
-    fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (Found<F>, usize) {
+    fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (HitEnclosure<F>, usize) {
         let own = Line { origin: self.placement.point(line.origin), dir: self.placement.vector(line.dir) };
         match self.body.shape.proven() {
             Some(proven) => F::proofs(proven).first_hit(&own, leaves),
-            None => (Found::Doubtful(F::of(0.0)), 0),
+            None => (HitEnclosure::Doubtful(F::of(0.0)), 0),
         }
     }
 
@@ -58,11 +58,11 @@ impl<F: Precise> Onward<F> for Placed {
 }
 
 impl OverFootprint for Placed {
-    fn hits(&self, line: &Line<Affine>, leaves: Option<usize>, met: &mut dyn FnMut(Met, usize)) {
+    fn hits(&self, line: &Line<Affine>, leaves: Option<usize>, met: &mut dyn FnMut(FootprintHit, usize)) {
         let own = Line { origin: self.placement.point(line.origin), dir: self.placement.vector(line.dir) };
         match self.body.shape.proven() {
             Some(proven) => proven.hits(&own, leaves, met),
-            None => met(Met::Doubtful(0.0), 0),
+            None => met(FootprintHit::Doubtful(0.0), 0),
         }
     }
 

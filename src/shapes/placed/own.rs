@@ -9,7 +9,7 @@ use crate::world::coincidence::CLOSE;
 use glam::DVec3;
 
 /// Rays in an object's own coordinates.
-pub struct Own<const N: usize> {
+pub struct ObjectSpaceRays<const N: usize> {
     /// The origins.
     pub origin: Vectors<N>,
     /// The directions.
@@ -22,7 +22,7 @@ pub struct Own<const N: usize> {
     pub origin_error: f64,
 }
 
-impl<const N: usize> Own<N> {
+impl<const N: usize> ObjectSpaceRays<N> {
     /// Takes at most `N` rays to a copy's coordinates, which end at these distances in world units.
     #[inline(always)]
     pub fn of(cpu: Cpu, placed: &Placed, rays: RayPacket, ends: &[f64]) -> Self {
@@ -99,7 +99,7 @@ kernels! {
         placed: &Placed, rays: RayPacket, own: RayPacket, lengths: &[f64], distances: &[f64], cosines: &mut [f64],
         travelled: &mut [f64]
     ) => points, normals {
-        let (count, to_world) = (travelled.len(), placed.to_own.transpose());
+        let (count, to_world) = (travelled.len(), placed.to_object_space.transpose());
         let least = placed.placement.scale.min_element();
         let is_two_sided = placed.body.shape.is_two_sided();
         let (rays, own, lengths) = (rays.first(count), own.first(count), &lengths[..count]);

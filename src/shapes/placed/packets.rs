@@ -1,7 +1,7 @@
 //! Packets of rays that may hit a copy: they are taken to the object's own coordinates together, so that the shape is
 //! tested against packets there, too.
 
-use super::own::{Own, take_out, to_world};
+use super::own::{ObjectSpaceRays, take_out, to_world};
 use super::shape::{ByPlacement, CAMERA, Placed, entered};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
@@ -59,7 +59,7 @@ impl Placed {
             }
             return;
         }
-        let own = Own::<N>::of(cpu, self, rays, &ends[..count]);
+        let own = ObjectSpaceRays::<N>::of(cpu, self, rays, &ends[..count]);
         let mut error = 0.0;
         if is_from_camera {
             let origins = (0..count).map(|lane| rays.origin.get(lane));
@@ -105,7 +105,7 @@ impl Placed {
         doubt: &mut [u64],
     ) -> bool {
         let (count, shape) = (t_max.len(), self.body.shape.packets());
-        let mut own = Own::<N>::of(cpu, self, rays, t_max);
+        let mut own = ObjectSpaceRays::<N>::of(cpu, self, rays, t_max);
         let mut ends_within = false;
         for lane in 0..count {
             // Where a ray ends in the copy's box, rounding may decide whether it is blocked before that.
@@ -134,7 +134,7 @@ impl Placed {
     ) {
         let SurfaceInteraction { mut points, mut normals, sides, cosines, travelled } = interaction;
         let count = travelled.len();
-        let own = Own::<N>::of(cpu, self, rays, &distances[..count]);
+        let own = ObjectSpaceRays::<N>::of(cpu, self, rays, &distances[..count]);
         let mut own_distances = [0.0; N];
         for lane in 0..count {
             own_distances[lane] = distances[lane] * own.lengths[lane];

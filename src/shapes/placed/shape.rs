@@ -19,7 +19,7 @@ use std::sync::Arc;
 pub struct Placed {
     pub(super) body: Arc<Body>,
     pub(super) placement: Placement,
-    pub(super) to_own: DMat3,
+    pub(super) to_object_space: DMat3,
     /// A bounding box in world coordinates.
     bounds: Option<Aabb>,
 }
@@ -27,7 +27,7 @@ pub struct Placed {
 /// Marks a shape whose hits are proven in the coordinates of the object that it is a copy of.
 pub struct ByPlacement;
 
-/// A bound of the error of [`Placed::to_own`] as a map of unit vectors, times the least scale, and of the rounding of a
+/// A bound of the error of [`Placed::to_object_space`] as a map of unit vectors, times the least scale, and of the rounding of a
 /// point or a direction that it maps.
 ///
 /// Units of 2^-53: an angle of up to 2 pi is off by 3 roundings, 19 units, and its sine and cosine by 20; a component of
@@ -47,20 +47,25 @@ const MOST_DRIFT: f64 = CLOSE / 16.0;
 impl Placed {
     /// Makes a copy of an object's shape.
     pub(super) fn new(body: &Arc<Body>, placement: Placement) -> Self {
-        let to_own = placement.to_own();
-        Self { body: Arc::clone(body), placement, to_own, bounds: bounds(body, placement, to_own) }
+        let to_object_space = placement.to_object_space();
+        Self {
+            body: Arc::clone(body),
+            placement,
+            to_object_space,
+            bounds: bounds(body, placement, to_object_space),
+        }
     }
 
     /// Takes a point from the world to the object's own coordinates.
     #[inline(always)]
     pub(super) fn own_point(&self, at: DVec3) -> DVec3 {
-        self.to_own * (at - self.placement.translation)
+        self.to_object_space * (at - self.placement.translation)
     }
 
     /// Takes a ray from the world to the object's own coordinates. Returns it with the length there of a world unit.
     #[inline(always)]
     pub(super) fn own_ray(&self, ray: &Ray) -> (Ray, f64) {
-        let dir = self.to_own * ray.dir;
+        let dir = self.to_object_space * ray.dir;
         let length = dir.length();
         (Ray { origin: self.own_point(ray.origin), dir: dir / length }, length)
     }
@@ -138,9 +143,9 @@ impl Placed {
 }
 
 /// Returns a bounding box of a copy in world coordinates.
-fn bounds(body: &Body, placement: Placement, to_own: DMat3) -> Option<Aabb> {
+fn bounds(body: &Body, placement: Placement, to_object_space: DMat3) -> Option<Aabb> {
     let Placement { scale, translation, .. } = placement;
-    let to_world = to_own.transpose() * DMat3::from_diagonal(scale * scale);
+    let to_world = to_object_space.transpose() * DMat3::from_diagonal(scale * scale);
     let own = body.shape.bounds()?;
     let turned = body.shape.bounds_after(&to_world).unwrap_or_else(|| {
         let middle = to_world * own.middle();
@@ -189,11 +194,11 @@ impl Hittable for Placed {
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
-        (self.to_own.transpose() * self.body.shape.normal(self.own_point(at))).normalize()
+        (self.to_object_space.transpose() * self.body.shape.normal(self.own_point(at))).normalize()
     }
 
     fn shading_normal(&self, at: DVec3, normal: DVec3) -> DVec3 {
-        let (at, to_world) = (self.own_point(at), self.to_own.transpose());
+        let (at, to_world) = (self.own_point(at), self.to_object_space.transpose());
         let own = self.body.shape.normal(at);
         let own = if (to_world * own).dot(normal) < 0.0 { -own } else { own };
         let shaded = self.body.shape.shading_normal(at, own);

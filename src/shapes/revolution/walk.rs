@@ -13,7 +13,7 @@ use crate::geometry::ray::{MISS, Ray, RayRange, Side};
 use crate::geometry::ray_packet::RayPacket;
 use crate::geometry::roots::Method;
 use crate::geometry::roots::stretch::Stretch;
-use crate::geometry::roots::taylor::{self, Found};
+use crate::geometry::roots::taylor::{self, FirstRoot};
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::View;
 use glam::DVec3;
@@ -169,9 +169,9 @@ impl Revolution {
         (from, to): (f64, f64),
         wanted: Option<Side>,
         left: &mut usize,
-    ) -> Found {
+    ) -> FirstRoot {
         if *left == 0 {
-            return Found { root: None, is_certain: false };
+            return FirstRoot { root: None, is_certain: false };
         }
         // The ends of the piece may themselves be crossings, as shells begin and end there, unless the ray begins
         // there.

@@ -4,7 +4,7 @@ use crate::geometry::sight::Line;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use crate::numeric::scalar::Scalar;
-use crate::world::certify::{Found, Precise, Proven};
+use crate::world::certify::{HitEnclosure, Precise, Proven};
 
 /// A crossing of a line and a closed shape.
 #[derive(Clone, Copy, Debug)]
@@ -56,10 +56,10 @@ impl<'l, F: Precise> Crossings<'l, F> {
     fn next(&mut self) -> Result<Crossing<F>, F> {
         let (found, part) = F::proofs(self.shape).first_hit(&self.start, self.leaves);
         let at = match found {
-            Found::Misses => return Err(F::INFINITY),
-            Found::Hits(at) => self.gone + at,
-            Found::Edge(at) => return Err((self.gone + at).low),
-            Found::Doubtful(from) => return Err((self.gone + Interval::point(from)).low),
+            HitEnclosure::Misses => return Err(F::INFINITY),
+            HitEnclosure::Hits(at) => self.gone + at,
+            HitEnclosure::Edge(at) => return Err((self.gone + at).low),
+            HitEnclosure::Doubtful(from) => return Err((self.gone + Interval::point(from)).low),
         };
         let slope = F::proofs(self.shape).slope(self.line.along(Dual::variable(at)), part).slope;
         if slope.has_zero() {

@@ -168,15 +168,15 @@ fn seen(solid: &Solid) -> Vec<Body> {
         let shader = PartShader(part.body.clone());
         let body = Body::shaded(Shape::new(shape).by::<ByPackets, ByParts>(), shader);
         let own = part.body.clone();
-        let to_own = move |shader| match &own.to_own {
-            Some(to_own) => to_own(shader),
+        let to_object_space = move |shader| match &own.to_object_space {
+            Some(to_object_space) => to_object_space(shader),
             None => shader,
         };
         Some(Body {
             depth: part.body.depth,
             material: Some(part.material.clone()),
             anchor: Some(part.body.anchor()),
-            to_own: Some(Box::new(to_own)),
+            to_object_space: Some(Box::new(to_object_space)),
             ..body
         })
     };

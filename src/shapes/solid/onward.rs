@@ -6,7 +6,7 @@ use crate::geometry::sight::Line;
 use crate::numeric::affine::Affine;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
-use crate::world::certify::{Found, Met, Onward, OverFootprint, Precise, Proven, coarse};
+use crate::world::certify::{FootprintHit, HitEnclosure, Onward, OverFootprint, Precise, Proven, coarse};
 
 impl Trimmed {
     fn proven(&self, part: usize) -> Option<&dyn Proven> {
@@ -65,16 +65,16 @@ impl Trimmed {
 }
 
 impl<F: Precise> Onward<F> for Trimmed {
-    fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (Found<F>, usize) {
+    fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (HitEnclosure<F>, usize) {
         if let Some(around) = self.around()
             && line.clip(around.low, around.high).is_none()
         {
-            return (Found::Misses, 0);
+            return (HitEnclosure::Misses, 0);
         }
         match self.proven_hit(line, leaves) {
-            Ok((at, part)) => (Found::Hits(at), part),
-            Err(end) if end == F::INFINITY => (Found::Misses, 0),
-            Err(end) => (Found::Doubtful(if end < F::of(0.0) { F::of(0.0) } else { end }), 0),
+            Ok((at, part)) => (HitEnclosure::Hits(at), part),
+            Err(end) if end == F::INFINITY => (HitEnclosure::Misses, 0),
+            Err(end) => (HitEnclosure::Doubtful(if end < F::of(0.0) { F::of(0.0) } else { end }), 0),
         }
     }
 
@@ -105,13 +105,13 @@ impl<F: Precise> Onward<F> for Trimmed {
 
 /// Where a hit of the part may be hidden, the hits behind it are not known.
 impl OverFootprint for Trimmed {
-    fn hits(&self, line: &Line<Affine>, leaves: Option<usize>, met: &mut dyn FnMut(Met, usize)) {
+    fn hits(&self, line: &Line<Affine>, leaves: Option<usize>, met: &mut dyn FnMut(FootprintHit, usize)) {
         if let Some(around) = self.around()
             && coarse(line).clip(around.low, around.high).is_none()
         {
             return;
         }
-        let Some(proven) = self.proven(self.index) else { return met(Met::Doubtful(0.0), 0) };
+        let Some(proven) = self.proven(self.index) else { return met(FootprintHit::Doubtful(0.0), 0) };
         if self.is_whole() {
             return proven.hits(line, leaves, met);
         }
@@ -120,7 +120,7 @@ impl OverFootprint for Trimmed {
             first = Some(first.map_or(one.low(), |first| first.min(one.low())))
         });
         if let Some(first) = first {
-            met(Met::Doubtful(first), 0);
+            met(FootprintHit::Doubtful(first), 0);
         }
     }
 

@@ -6,7 +6,7 @@ use crate::geometry::sight::Sight;
 use crate::numeric::double_double::DoubleDouble;
 use crate::world::any_shape::AnyShape;
 use crate::world::body::Part;
-use crate::world::certify::{Enclosure, Found, Onward, Precision, Proven};
+use crate::world::certify::{Enclosure, HitEnclosure, Onward, Precision, Proven};
 use crate::world::coincidence::{self, CLOSE, LEAST_COSINE, ROUNDING};
 use crate::world::hittable::Hittable;
 use crate::world::packets::shape::{Proofs, by_distance};
@@ -331,16 +331,16 @@ impl Proofs for Shape<Trimmed, ByPackets, ByParts> {
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
         match precision {
             Precision::Double => match Onward::<f64>::first_hit(&self.shape, &sight.line(), None).0 {
-                Found::Misses => Enclosure::Misses,
-                Found::Hits(at) => Enclosure::Hits(at.into()),
-                Found::Edge(at) => Enclosure::Edge(at.into()),
-                Found::Doubtful(from) => Enclosure::Doubtful(from.into()),
+                HitEnclosure::Misses => Enclosure::Misses,
+                HitEnclosure::Hits(at) => Enclosure::Hits(at.into()),
+                HitEnclosure::Edge(at) => Enclosure::Edge(at.into()),
+                HitEnclosure::Doubtful(from) => Enclosure::Doubtful(from.into()),
             },
             Precision::Octuple => match Onward::<f256>::first_hit(&self.shape, &sight.line(), None).0 {
-                Found::Misses => Enclosure::Misses,
-                Found::Hits(at) => Enclosure::Hits(at),
-                Found::Edge(at) => Enclosure::Edge(at),
-                Found::Doubtful(from) => Enclosure::Doubtful(from),
+                HitEnclosure::Misses => Enclosure::Misses,
+                HitEnclosure::Hits(at) => Enclosure::Hits(at),
+                HitEnclosure::Edge(at) => Enclosure::Edge(at),
+                HitEnclosure::Doubtful(from) => Enclosure::Doubtful(from),
             },
         }
     }

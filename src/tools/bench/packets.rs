@@ -18,30 +18,30 @@ const TILES: usize = 256;
 
 /// The primary rays of a tile, and the objects they are tested against.
 pub(super) struct Packet {
-    view: Bundle,
+    view: RayBundle,
     tested: Tested,
     /// The object that most of the rays hit, and their hits on it.
-    met: Option<Met>,
+    met: Option<ObjectHits>,
 }
 
 /// The hits of rays on an object, and the shadow rays from there to a light.
-struct Met {
+struct ObjectHits {
     object: usize,
     /// The rays that hit the object.
-    view: Bundle,
+    view: RayBundle,
     /// The shadow rays, the side of the object on which each starts, and the distance of the light in world units; 0
     /// where the light is behind the surface.
-    toward: Bundle,
+    toward: RayBundle,
     sides: [Side; PACKET_SIZE],
     t_max: [f64; PACKET_SIZE],
 }
 
-struct Bundle {
+struct RayBundle {
     origin: Vectors<PACKET_SIZE>,
     dir: Vectors<PACKET_SIZE>,
 }
 
-impl Bundle {
+impl RayBundle {
     fn rays(&self) -> RayPacket<'_> {
         RayPacket {
             origin: self.origin.view(PACKET_SIZE),
@@ -72,7 +72,7 @@ pub(super) fn of(plan: &Plan, cpu: Cpu) -> Vec<Packet> {
 impl Packet {
     fn new(plan: &Plan, cpu: Cpu, tile: &[[usize; 2]]) -> Self {
         let camera = &plan.camera;
-        let mut view = Bundle { origin: Vectors::ZERO, dir: Vectors::ZERO };
+        let mut view = RayBundle { origin: Vectors::ZERO, dir: Vectors::ZERO };
         let mut hits = Vec::new();
         for lane in 0..PACKET_SIZE {
             let [x, y] = tile[lane.min(tile.len() - 1)];
@@ -85,7 +85,7 @@ impl Packet {
         let most = hits.iter().map(|(_, hit)| hit.index).max_by_key(|object| (count(*object), *object));
         let met = most.map(|object| {
             hits.retain(|(_, hit)| hit.index == object);
-            let bundle = || Bundle { origin: Vectors::ZERO, dir: Vectors::ZERO };
+            let bundle = || RayBundle { origin: Vectors::ZERO, dir: Vectors::ZERO };
             let (mut view, mut toward) = (bundle(), bundle());
             let (mut sides, mut t_max) = ([Side::Outside; PACKET_SIZE], [0.0; PACKET_SIZE]);
             for (lane, (ray, hit)) in (0..PACKET_SIZE).zip(hits.iter().cycle()) {
@@ -104,7 +104,7 @@ impl Packet {
                     t_max[lane] = if between.dot(normal) > 0.0 { between.length() } else { 0.0 };
                 }
             }
-            Met { object, view, toward, sides, t_max }
+            ObjectHits { object, view, toward, sides, t_max }
         });
         Self { view, tested: Tested::of(plan, cpu, tile), met }
     }
@@ -122,7 +122,7 @@ pub(super) fn times(
     let wanted = |objects: &[usize]| objects.iter().copied().filter(|object| is_wanted(*object)).collect();
     let viewed: Vec<(&Packet, Vec<usize>)> =
         packets.iter().map(|packet| (packet, wanted(&packet.tested.primary))).collect();
-    let lit: Vec<(&Met, Vec<usize>)> = packets
+    let lit: Vec<(&ObjectHits, Vec<usize>)> = packets
         .iter()
         .filter_map(|packet| Some((packet.met.as_ref()?, wanted(&packet.tested.shadow))))
         .filter(|(met, _)| met.t_max.iter().any(|end| *end > 0.0))
@@ -132,7 +132,7 @@ pub(super) fn times(
             (met, tested)
         })
         .collect();
-    let met: Vec<&Met> =
+    let met: Vec<&ObjectHits> =
         packets.iter().filter_map(|packet| packet.met.as_ref()).filter(|met| is_wanted(met.object)).collect();
 
     let mut closest = || {

@@ -74,7 +74,7 @@ pub fn place(
     const ROUNDS: usize = 100;
     /// The maximum number of labels that are placed anew at one time.
     const MAX_MOVED: usize = 8;
-    let crowd = Crowd { points, sizes, lines, room };
+    let crowd = LabelLayout { points, sizes, lines, room };
     let mut best = vec![None; points.len()];
     let mut costs = vec![0.0; points.len()];
     crowd.place(0..points.len(), &mut best, &mut costs);
@@ -121,14 +121,14 @@ const CROSSING: f64 = 300.0;
 const MISSING: f64 = 3000.0;
 
 /// Points, the sizes of their labels, the lines that labels keep clear of, and the area within which they stay.
-struct Crowd<'c> {
+struct LabelLayout<'c> {
     points: &'c [(f64, f64)],
     sizes: &'c [(f64, f64)],
     lines: &'c [Segment],
     room: PlotArea,
 }
 
-impl Crowd<'_> {
+impl LabelLayout<'_> {
     /// Places labels beside those already placed, one after the other, and sets the cost of each.
     fn place(
         &self,

@@ -75,9 +75,11 @@ impl Study {
         if pictures::goes_on(model) {
             parts.push(Box::new(|progress| pictures::bounces(self, progress)));
         }
-        parts.push(Box::new(|progress| pictures::samples(self, pictures::Seen::Picture, progress)));
+        parts.push(Box::new(|progress| pictures::samples(self, pictures::SampledEffect::Picture, progress)));
         if pictures::has_size(model) {
-            parts.push(Box::new(|progress| pictures::samples(self, pictures::Seen::Shadows, progress)));
+            parts.push(Box::new(|progress| {
+                pictures::samples(self, pictures::SampledEffect::Shadows, progress)
+            }));
         }
         parts.push(Box::new(|progress| match estimate::panel(load, progress) {
             Ok(panel) => ControlFlow::Continue(Some(panel)),

@@ -55,7 +55,7 @@ const METHOD_TESTS: usize = 500_000;
 
 /// The parts of an image that samples smooth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Seen {
+pub(super) enum SampledEffect {
     /// Edges, and shadows where they are soft.
     Picture,
     /// Soft shadows alone: all samples of a pixel go through its centre.
@@ -156,7 +156,11 @@ pub fn bounces(study: &Study, progress: &mut dyn Progress) -> ControlFlow<(), Op
 
 /// Compares numbers of samples against so many samples that more make no difference; returns `None` where one sample is
 /// already right.
-pub fn samples(study: &Study, seen: Seen, progress: &mut dyn Progress) -> ControlFlow<(), Option<Panel>> {
+pub fn samples(
+    study: &Study,
+    seen: SampledEffect,
+    progress: &mut dyn Progress,
+) -> ControlFlow<(), Option<Panel>> {
     let Study { candidates, default, threads, thread, .. } = study;
     let model = &candidates[*default].model;
     let own = &model.camera.value;
@@ -167,7 +171,7 @@ pub fn samples(study: &Study, seen: Seen, progress: &mut dyn Progress) -> Contro
     let right = truth(&plan, threads, &pixels, seen, progress)?;
     pixels.truncate(right.len());
     let mut choices: Vec<_> = choices(own.samples, own.sampler);
-    if seen == Seen::Picture {
+    if seen == SampledEffect::Picture {
         choices.extend(
             ADAPTIVE.map(|[least, most]| (least, Sampler::Sobol, Some(Adaptive { most, error: None }))),
         );
@@ -203,9 +207,9 @@ pub fn samples(study: &Study, seen: Seen, progress: &mut dyn Progress) -> Contro
             Point { is_default, ..point(name, family, times, off, (pixels.len(), most)) }
         });
     let title = match (seen, has_size(model)) {
-        (Seen::Picture, false) => "samples per pixel: edges",
-        (Seen::Picture, true) => "samples per pixel: edges and soft shadows",
-        (Seen::Shadows, _) => "samples per pixel: soft shadows alone",
+        (SampledEffect::Picture, false) => "samples per pixel: edges",
+        (SampledEffect::Picture, true) => "samples per pixel: edges and soft shadows",
+        (SampledEffect::Shadows, _) => "samples per pixel: soft shadows alone",
     };
     ControlFlow::Continue(Some(Panel {
         title: title.to_owned(),
@@ -303,7 +307,7 @@ pub(super) fn truth(
     plan: &Plan,
     threads: &Renderer,
     pixels: &Pixels,
-    seen: Seen,
+    seen: SampledEffect,
     progress: &mut dyn Progress,
 ) -> ControlFlow<(), Vec<Rgb>> {
     let mut colours = Vec::new();
@@ -325,8 +329,8 @@ pub(super) fn truth(
 }
 
 /// Returns a pixel's colour with the camera's samples.
-fn colour(plan: &Plan, [x, y]: [usize; 2], seen: Seen) -> Rgb {
-    if seen == Seen::Picture {
+fn colour(plan: &Plan, [x, y]: [usize; 2], seen: SampledEffect) -> Rgb {
+    if seen == SampledEffect::Picture {
         return trace::pixel(plan, x, y);
     }
     let camera = &plan.camera;
@@ -340,10 +344,10 @@ fn colour(plan: &Plan, [x, y]: [usize; 2], seen: Seen) -> Rgb {
 }
 
 /// Returns the colour of one sample of a pixel.
-fn colour_of(plan: &Plan, [x, y]: [usize; 2], sample: Sample, seen: Seen) -> Rgb {
+fn colour_of(plan: &Plan, [x, y]: [usize; 2], sample: Sample, seen: SampledEffect) -> Rgb {
     let jitter = match seen {
-        Seen::Picture => sample.jitter(),
-        Seen::Shadows => DVec2::ZERO,
+        SampledEffect::Picture => sample.jitter(),
+        SampledEffect::Shadows => DVec2::ZERO,
     };
     let sight = plan.camera.sight_of(DVec2::new(x as f64, y as f64) + jitter, Some(&sample));
     trace::colour(plan, &sight, Some(sample))

@@ -5,7 +5,7 @@ use super::surface::{Surface, is_black, tint};
 use crate::geometry::sight::Line;
 use crate::numeric::interval::{Float, Interval};
 use crate::numeric::scalar::{Scalar, dot, per_axis};
-use crate::world::certify::Found;
+use crate::world::certify::HitEnclosure;
 use crate::world::packets::light::PacketLight;
 use crate::world::shader::PointBounds;
 use glam::DVec2;
@@ -124,10 +124,10 @@ fn passed<F: Number>(scene: &Scene, path: &Path<F>) -> Option<Colour<F>> {
     let mut is_open = false;
     for index in (0..scene.objects.len()).filter(|index| !is_glass(index)) {
         match scene.hit(path, &coarse, index).0 {
-            Found::Misses => {}
-            Found::Hits(at) if at.high < one && !is_at_pane(&at) => return Some(black),
-            Found::Hits(at) | Found::Edge(at) => is_open |= at.low < one,
-            Found::Doubtful(low) => is_open |= low < one,
+            HitEnclosure::Misses => {}
+            HitEnclosure::Hits(at) if at.high < one && !is_at_pane(&at) => return Some(black),
+            HitEnclosure::Hits(at) | HitEnclosure::Edge(at) => is_open |= at.low < one,
+            HitEnclosure::Doubtful(low) => is_open |= low < one,
         }
     }
     (!is_open).then_some(panes.passed)
@@ -149,9 +149,9 @@ impl<F: Number> Panes<F> {
         for _ in 0..MAX_PANES {
             let (found, part) = scene.hit(&onward, &coarse(&onward.line), object);
             let at = match found {
-                Found::Misses => return Some(()),
-                Found::Hits(at) => start + at,
-                Found::Edge(Interval { low, .. }) | Found::Doubtful(low) => {
+                HitEnclosure::Misses => return Some(()),
+                HitEnclosure::Hits(at) => start + at,
+                HitEnclosure::Edge(Interval { low, .. }) | HitEnclosure::Doubtful(low) => {
                     return ((start + Interval::point(low)).low >= one).then_some(());
                 }
             };

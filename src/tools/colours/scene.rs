@@ -5,7 +5,7 @@ use crate::geometry::sight::Line;
 use crate::numeric::interval::Interval;
 use crate::render::plan::Plan;
 use crate::scene::model::Object;
-use crate::world::certify::{Found, Precise};
+use crate::world::certify::{HitEnclosure, Precise};
 use crate::world::packets::light::{EncloseLight, PacketLight};
 use crate::world::packets::shader::{EncloseLook, PacketShader};
 use crate::world::shader::{LookBounds, PointBounds};
@@ -98,29 +98,34 @@ impl<'p, 'm> Scene<'p, 'm> {
         path: &Path<F>,
         coarse: &Line<Interval>,
         index: usize,
-    ) -> (Found<F>, usize) {
+    ) -> (HitEnclosure<F>, usize) {
         if let Some(Aabb { low, high }) = self.boxes[index]
             && coarse.clip(low, high).is_none()
         {
-            return (Found::Misses, 0);
+            return (HitEnclosure::Misses, 0);
         }
         let leaves = path.leaves.filter(|place| place.object == index).map(|place| place.part);
         match self.objects[index].shape.proven() {
             Some(proven) => F::proofs(proven).first_hit(&path.line, leaves),
-            None => (Found::Doubtful(F::of(0.0)), 0),
+            None => (HitEnclosure::Doubtful(F::of(0.0)), 0),
         }
     }
 
     /// Returns what is proven about the next hit of a line with an object, behind a hit that it may pass through.
-    fn behind<F: Precise>(&self, path: &Path<F>, start: Interval<F>, place: Place) -> (Found<F>, usize) {
+    fn behind<F: Precise>(
+        &self,
+        path: &Path<F>,
+        start: Interval<F>,
+        place: Place,
+    ) -> (HitEnclosure<F>, usize) {
         let line = Line { origin: path.line.at(start), dir: path.line.dir };
         let onward = Path { line, leaves: Some(place) };
         let (found, part) = self.hit(&onward, &coarse(&line), place.object);
         let found = match found {
-            Found::Misses => Found::Misses,
-            Found::Hits(at) => Found::Hits(start + at),
-            Found::Edge(at) => Found::Edge(start + at),
-            Found::Doubtful(low) => Found::Doubtful((start + Interval::point(low)).low),
+            HitEnclosure::Misses => HitEnclosure::Misses,
+            HitEnclosure::Hits(at) => HitEnclosure::Hits(start + at),
+            HitEnclosure::Edge(at) => HitEnclosure::Edge(start + at),
+            HitEnclosure::Doubtful(low) => HitEnclosure::Doubtful((start + Interval::point(low)).low),
         };
         (found, part)
     }
@@ -134,40 +139,40 @@ impl<'p, 'm> Scene<'p, 'm> {
             let (mut hit, mut part) = self.hit(path, &coarse, object);
             for round in 0..=MAX_EDGES {
                 let low = match hit {
-                    Found::Misses => break,
-                    Found::Hits(at) => {
+                    HitEnclosure::Misses => break,
+                    HitEnclosure::Hits(at) => {
                         end = end.min(at.high);
                         at.low
                     }
                     // Too many to follow.
-                    Found::Edge(Interval { low, .. }) if round == MAX_EDGES => {
-                        hit = Found::Doubtful(low);
+                    HitEnclosure::Edge(Interval { low, .. }) if round == MAX_EDGES => {
+                        hit = HitEnclosure::Doubtful(low);
                         low
                     }
-                    Found::Edge(at) => at.low,
-                    Found::Doubtful(low) => low,
+                    HitEnclosure::Edge(at) => at.low,
+                    HitEnclosure::Doubtful(low) => low,
                 };
                 let place = Place { object, part };
                 found.push((low, hit, place));
                 // What is cut off at its edge does not hide what lies behind.
-                let Found::Edge(start) = hit else { break };
+                let HitEnclosure::Edge(start) = hit else { break };
                 (hit, part) = self.behind(path, start, place);
             }
         }
         let mut nearest = found.iter().filter(|(low, ..)| *low <= end);
         match (nearest.next(), nearest.next()) {
             (None, _) => First::Nothing,
-            (Some((_, Found::Hits(at), place)), None) => First::Hit(*at, *place),
+            (Some((_, HitEnclosure::Hits(at), place)), None) => First::Hit(*at, *place),
             // Of several at exactly the same distance, the first in the file is seen.
-            (Some((_, first @ Found::Hits(at), place)), Some((_, second, _)))
+            (Some((_, first @ HitEnclosure::Hits(at), place)), Some((_, second, _)))
                 if at.low == at.high && first == second && nearest.all(|(_, other, _)| other == first) =>
             {
                 First::Hit(*at, *place)
             }
             _ => {
-                let at = |hit: &Found<F>| match hit {
-                    Found::Hits(at) | Found::Edge(at) => Some(*at),
-                    Found::Misses | Found::Doubtful(_) => None,
+                let at = |hit: &HitEnclosure<F>| match hit {
+                    HitEnclosure::Hits(at) | HitEnclosure::Edge(at) => Some(*at),
+                    HitEnclosure::Misses | HitEnclosure::Doubtful(_) => None,
                 };
                 let among = found.iter().filter(|(low, ..)| *low <= end);
                 let among = among.map(|(_, hit, place)| Some((at(hit)?, *place))).collect::<Option<Vec<_>>>();

@@ -13,7 +13,7 @@ use glam::DVec3;
 const STRIDE: f64 = 1e-4;
 
 /// A hit that is not blurred by rounding.
-pub struct Met {
+pub struct SurfaceHit {
     pub distance: f64,
     pub at: DVec3,
     pub normal: DVec3,
@@ -21,11 +21,11 @@ pub struct Met {
 
 impl Tried<'_> {
     /// Returns the hit at a distance, after checking that the normal is a unit vector.
-    pub fn met(&self, distance: f64) -> Result<Met, Fault> {
+    pub fn met(&self, distance: f64) -> Result<SurfaceHit, Fault> {
         let at = self.ray.at(distance);
         let normal = self.shape.normal(at);
         if (normal.length() - 1.0).abs() <= 1e-9 {
-            return Ok(Met { distance, at, normal });
+            return Ok(SurfaceHit { distance, at, normal });
         }
         let found = format!("at {at} the normal is {normal}, of length {}", normal.length());
         Err(Promise::NormalIsUnit.fault(found))
@@ -48,7 +48,7 @@ impl Tried<'_> {
     }
 
     /// Checks that rays from nearer, from behind and from other directions hit the surface at the point too.
-    pub fn is_met_from_elsewhere(&self, met: &Met, draw: &mut Draw) -> Result<(), Fault> {
+    pub fn is_met_from_elsewhere(&self, met: &SurfaceHit, draw: &mut Draw) -> Result<(), Fault> {
         let (Ray { dir, .. }, stride) = (self.ray, STRIDE * self.size(met.distance));
         let mut origins = vec![self.ray.at(0.75 * met.distance), met.at + stride * dir];
         for _ in 0..4 {
@@ -77,7 +77,7 @@ impl Tried<'_> {
 
     /// Checks, where the surface is smooth, that the normal is perpendicular to it and points to the same side as those
     /// nearby.
-    pub fn stands_upright(&self, met: &Met) -> Result<(), Fault> {
+    pub fn stands_upright(&self, met: &SurfaceHit) -> Result<(), Fault> {
         let (across, up) = self.ray.dir.any_orthonormal_pair();
         let stride = STRIDE * self.size(met.distance).min(10.0);
         for aside in [stride * across, stride * up] {
@@ -110,7 +110,7 @@ impl Tried<'_> {
     }
 
     /// Checks that a shape whose outside no ray hits again is convex: a ray that goes through it enters from outside.
-    pub fn is_convex(&self, met: &Met) -> Result<(), Fault> {
+    pub fn is_convex(&self, met: &SurfaceHit) -> Result<(), Fault> {
         let (Ray { dir, .. }, stride) = (self.ray, STRIDE * self.size(met.distance));
         let beyond = Ray { origin: met.at + stride * dir, dir };
         let through = self.in_span(&beyond, &RayRange::ALL)?;
@@ -141,7 +141,7 @@ impl Tried<'_> {
 
     /// Checks that the point of a hit touches the shape within its error, and that the bounds of a ray from there,
     /// given only that error, contain the distance of the ray that leaves the surface.
-    pub fn is_touched(&self, met: &Met, draw: &mut Draw) -> Result<(), Fault> {
+    pub fn is_touched(&self, met: &SurfaceHit, draw: &mut Draw) -> Result<(), Fault> {
         let Self { shape, ray, .. } = self;
         let origin_error = coincidence::error(ray, met.distance, met.normal, shape.reach());
         let fault = |what: String| Err(Promise::HitIsTouched.fault(what));
@@ -168,7 +168,7 @@ impl Tried<'_> {
 
     /// Checks that a ray that leaves the surface hits what it hits from a little farther, or nothing where the shape
     /// says so.
-    pub fn leaves(&self, met: &Met, draw: &mut Draw) -> Result<(), Fault> {
+    pub fn leaves(&self, met: &SurfaceHit, draw: &mut Draw) -> Result<(), Fault> {
         let stride = STRIDE * self.size(met.distance);
         for _ in 0..4 {
             let dir = draw.direction();

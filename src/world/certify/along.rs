@@ -1,6 +1,6 @@
 //! The first hit of a line, by the method that fits the equation.
 
-use super::equation::{Equation, Found, Values};
+use super::equation::{Equation, HitEnclosure, Values};
 use super::{closed, search};
 use crate::geometry::sight::Line;
 use crate::numeric::interval::{Float, Interval};
@@ -23,7 +23,7 @@ pub(super) fn first_along<F: Float>(
     line: &Line<Interval<F>>,
     leaves: bool,
     pieces: usize,
-) -> Found<F> {
+) -> HitEnclosure<F> {
     let line = shape.own(*line);
     if shape.is_quadratic() {
         closed::first_hit(shape, &line, leaves)

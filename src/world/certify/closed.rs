@@ -1,6 +1,6 @@
 //! First hits of surfaces whose equation is a quadratic along a line: planes, spheres, cones and the like.
 
-use super::equation::{Found, Values, is_kept};
+use super::equation::{HitEnclosure, Values, is_kept};
 use crate::geometry::sight::Line;
 use crate::numeric::interval::{Float, Interval};
 use crate::numeric::jet::Jet;
@@ -20,7 +20,7 @@ pub fn first_hit<F: Float>(
     shape: &dyn Values<Interval<F>>,
     line: &Line<Interval<F>>,
     leaves: bool,
-) -> Found<F> {
+) -> HitEnclosure<F> {
     let zero = F::of(0.0);
     let [a, b, c] = coefficients(shape, line);
     let c = if leaves { Interval::constant(0.0) } else { c };
@@ -34,13 +34,13 @@ pub fn first_hit<F: Float>(
         }
         match is_kept(shape, line, at) {
             Some(false) => {}
-            _ if at.low <= zero => return Found::Doubtful(zero),
-            Some(true) if is_there => return Found::Hits(at),
-            None if is_there => return Found::Edge(at),
-            _ => return Found::Doubtful(at.low),
+            _ if at.low <= zero => return HitEnclosure::Doubtful(zero),
+            Some(true) if is_there => return HitEnclosure::Hits(at),
+            None if is_there => return HitEnclosure::Edge(at),
+            _ => return HitEnclosure::Doubtful(at.low),
         }
     }
-    Found::Misses
+    HitEnclosure::Misses
 }
 
 /// Computes the coefficients of `a t^2 + 2 b t + c`, the equation's value along the line.

@@ -107,7 +107,7 @@ impl<E: Equation, N: Scalar> Values<N> for E {
 
 /// What is certain about a first hit, with numbers of one precision; see [`Enclosure`](super::Enclosure).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Found<F> {
+pub enum HitEnclosure<F> {
     /// There is no hit.
     Misses,
     /// There is a hit at a t in this interval.

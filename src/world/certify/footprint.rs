@@ -24,7 +24,7 @@ const HALVINGS: usize = 20;
 
 /// What is proven about a hit of the lines of a footprint.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Met {
+pub enum FootprintHit {
     /// Each line has a hit at this t.
     Hits(Affine),
     /// A line may have a hit, and if it has one, at this t.
@@ -33,7 +33,7 @@ pub enum Met {
     Doubtful(f64),
 }
 
-impl Met {
+impl FootprintHit {
     /// Returns a lower bound on t.
     pub fn low(&self) -> f64 {
         match self {
@@ -47,14 +47,14 @@ impl Met {
 pub trait OverFootprint {
     /// Calls `met` with the possible hits with t > 0, each with its part of the shape: of each part up to the first that
     /// every line certainly has. `leaves` is the part on which the lines' true starts lie, if they lie on the shape.
-    fn hits(&self, line: &Line<Affine>, leaves: Option<usize>, met: &mut dyn FnMut(Met, usize));
+    fn hits(&self, line: &Line<Affine>, leaves: Option<usize>, met: &mut dyn FnMut(FootprintHit, usize));
 
     /// Encloses the value of the equation of a part at points in world coordinates, and its derivative.
     fn slope(&self, at: [Dual<Affine>; 3], part: usize) -> Dual<Affine>;
 }
 
 impl<E: Equation> OverFootprint for E {
-    fn hits(&self, line: &Line<Affine>, leaves: Option<usize>, met: &mut dyn FnMut(Met, usize)) {
+    fn hits(&self, line: &Line<Affine>, leaves: Option<usize>, met: &mut dyn FnMut(FootprintHit, usize)) {
         hits_along(self, line, leaves.is_some(), &mut |one| met(one, 0));
     }
 
@@ -75,7 +75,12 @@ pub fn gradient_over(shape: &(impl OverFootprint + ?Sized), at: [Affine; 3], par
 }
 
 /// Calls `met` with the possible hits of a shape with t > 0, in order.
-fn hits_along(shape: &dyn Values<Affine>, line: &Line<Affine>, leaves: bool, met: &mut dyn FnMut(Met)) {
+fn hits_along(
+    shape: &dyn Values<Affine>,
+    line: &Line<Affine>,
+    leaves: bool,
+    met: &mut dyn FnMut(FootprintHit),
+) {
     let line = shape.own(*line);
     if shape.is_quadratic() {
         closed(shape, &line, leaves, met);
@@ -97,12 +102,12 @@ fn is_kept(shape: &dyn Values<Affine>, line: &Line<Affine>, at: Affine) -> Optio
 }
 
 /// Finds the hits of a surface whose equation is a quadratic along a line.
-fn closed(shape: &dyn Values<Affine>, line: &Line<Affine>, leaves: bool, met: &mut dyn FnMut(Met)) {
+fn closed(shape: &dyn Values<Affine>, line: &Line<Affine>, leaves: bool, met: &mut dyn FnMut(FootprintHit)) {
     for root in roots(coefficients(shape, line, leaves)).into_iter().flatten() {
         let (is_there, at) = match root {
-            Met::Hits(at) => (true, at),
-            Met::Perhaps(at) => (false, at),
-            Met::Doubtful(_) => {
+            FootprintHit::Hits(at) => (true, at),
+            FootprintHit::Perhaps(at) => (false, at),
+            FootprintHit::Doubtful(_) => {
                 met(root);
                 continue;
             }
@@ -113,9 +118,9 @@ fn closed(shape: &dyn Values<Affine>, line: &Line<Affine>, leaves: bool, met: &m
         }
         match is_kept(shape, line, at) {
             Some(false) => {}
-            _ if range.low <= 0.0 => met(Met::Doubtful(0.0)),
-            Some(true) if is_there => return met(Met::Hits(at)),
-            _ => met(Met::Perhaps(at)),
+            _ if range.low <= 0.0 => met(FootprintHit::Doubtful(0.0)),
+            Some(true) if is_there => return met(FootprintHit::Hits(at)),
+            _ => met(FootprintHit::Perhaps(at)),
         }
     }
 }
@@ -133,8 +138,8 @@ fn coefficients(shape: &dyn Values<Affine>, line: &Line<Affine>, leaves: bool) -
 }
 
 /// Returns the roots of a quadratic that may be positive, the nearer one first.
-fn roots([a, b, c]: [Affine; 3]) -> [Option<Met>; 2] {
-    let anywhere = [Some(Met::Doubtful(0.0)), None];
+fn roots([a, b, c]: [Affine; 3]) -> [Option<FootprintHit>; 2] {
+    let anywhere = [Some(FootprintHit::Doubtful(0.0)), None];
     if a.is_zero() {
         let twice = b + b;
         return if b.is_zero() {
@@ -142,14 +147,14 @@ fn roots([a, b, c]: [Affine; 3]) -> [Option<Met>; 2] {
         } else if c.is_zero() {
             [None, None]
         } else if b.has_zero() {
-            [Some(Met::Doubtful(farther_than(c, twice))), None]
+            [Some(FootprintHit::Doubtful(farther_than(c, twice))), None]
         } else {
-            [Some(Met::Hits(-c / twice)), None]
+            [Some(FootprintHit::Hits(-c / twice)), None]
         };
     }
     if c.is_zero() && !a.has_zero() {
         // The start itself is the other one.
-        return [Some(Met::Hits(-(b + b) / a)), None];
+        return [Some(FootprintHit::Hits(-(b + b) / a)), None];
     }
     let discriminant = b * b - a * c;
     let range = discriminant.range();
@@ -157,7 +162,7 @@ fn roots([a, b, c]: [Affine; 3]) -> [Option<Met>; 2] {
         return [None, None];
     }
     let is_there = range.low > 0.0;
-    let root = |at: Affine| if is_there { Met::Hits(at) } else { Met::Perhaps(at) };
+    let root = |at: Affine| if is_there { FootprintHit::Hits(at) } else { FootprintHit::Perhaps(at) };
     let (length, side) = (discriminant.sqrt(), b.range());
     // Each root has two forms; this is the one whose sum does not cancel.
     let sum = if side.low > 0.0 {
@@ -176,26 +181,26 @@ fn roots([a, b, c]: [Affine; 3]) -> [Option<Met>; 2] {
         if near.range().high >= far {
             return anywhere;
         }
-        return [Some(root(near)), Some(Met::Doubtful(far))];
+        return [Some(root(near)), Some(FootprintHit::Doubtful(far))];
     }
     in_order(root(near), root(sum / a))
 }
 
 /// Returns two roots, the nearer one first. Where their order is uncertain, neither is certain to be the first.
-fn in_order(one: Met, other: Met) -> [Option<Met>; 2] {
+fn in_order(one: FootprintHit, other: FootprintHit) -> [Option<FootprintHit>; 2] {
     let (near, far) = if lowest(&one) < lowest(&other) { (one, other) } else { (other, one) };
     match (near, far) {
-        (Met::Hits(at), Met::Hits(next)) if at.range().high >= next.range().low => {
-            [Some(Met::Perhaps(at)), Some(Met::Perhaps(next))]
+        (FootprintHit::Hits(at), FootprintHit::Hits(next)) if at.range().high >= next.range().low => {
+            [Some(FootprintHit::Perhaps(at)), Some(FootprintHit::Perhaps(next))]
         }
         _ => [Some(near), Some(far)],
     }
 }
 
-fn lowest(root: &Met) -> f64 {
+fn lowest(root: &FootprintHit) -> f64 {
     match root {
-        Met::Hits(at) | Met::Perhaps(at) => at.range().low,
-        Met::Doubtful(low) => *low,
+        FootprintHit::Hits(at) | FootprintHit::Perhaps(at) => at.range().low,
+        FootprintHit::Doubtful(low) => *low,
     }
 }
 
@@ -209,17 +214,17 @@ fn farther_than(a: Affine, b: Affine) -> f64 {
 
 /// Finds the hits of any surface, by splitting the lines until a piece of them certainly has no root, or exactly one
 /// each.
-fn search(shape: &dyn Values<Affine>, line: &Line<Affine>, leaves: bool, met: &mut dyn FnMut(Met)) {
+fn search(shape: &dyn Values<Affine>, line: &Line<Affine>, leaves: bool, met: &mut dyn FnMut(FootprintHit)) {
     let [low, high] = shape.extent();
     let coarse = coarse(line);
     let Some((mut from, to)) = coarse.clip(low, high) else { return };
     if !to.is_finite() {
-        return met(Met::Doubtful(from));
+        return met(FootprintHit::Doubtful(from));
     }
     if leaves && from == 0.0 {
         match left(shape, line, to) {
             Some(length) => from = length,
-            None => return met(Met::Doubtful(0.0)),
+            None => return met(FootprintHit::Doubtful(0.0)),
         }
     }
     let shortest = SHORTEST * (to - from);
@@ -240,12 +245,12 @@ fn search(shape: &dyn Values<Affine>, line: &Line<Affine>, leaves: bool, met: &m
             match is_kept(shape, line, root) {
                 _ if range.high <= 0.0 => {}
                 Some(false) => {}
-                _ if range.low <= 0.0 => met(Met::Doubtful(0.0)),
+                _ if range.low <= 0.0 => met(FootprintHit::Doubtful(0.0)),
                 Some(true) => {
                     perhaps(shape, line, open, met);
-                    return met(Met::Hits(root));
+                    return met(FootprintHit::Hits(root));
                 }
-                None => met(Met::Perhaps(root)),
+                None => met(FootprintHit::Perhaps(root)),
             }
             continue;
         }
@@ -259,7 +264,7 @@ fn search(shape: &dyn Values<Affine>, line: &Line<Affine>, leaves: bool, met: &m
     }
     perhaps(shape, line, open, met);
     if let Some((low, _)) = pending.last() {
-        met(Met::Doubtful(*low));
+        met(FootprintHit::Doubtful(*low));
     }
 }
 
@@ -268,14 +273,14 @@ fn perhaps(
     shape: &dyn Values<Affine>,
     line: &Line<Affine>,
     open: Option<(f64, f64)>,
-    met: &mut dyn FnMut(Met),
+    met: &mut dyn FnMut(FootprintHit),
 ) {
     let Some((low, high)) = open else { return };
     let at = piece(low, high).absorbing(ALONG);
     match is_kept(shape, line, at) {
         Some(false) => {}
-        _ if at.range().low <= 0.0 => met(Met::Doubtful(0.0)),
-        _ => met(Met::Perhaps(at)),
+        _ if at.range().low <= 0.0 => met(FootprintHit::Doubtful(0.0)),
+        _ => met(FootprintHit::Perhaps(at)),
     }
 }
 

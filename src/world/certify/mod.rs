@@ -12,8 +12,8 @@ mod footprint;
 mod onward;
 mod search;
 
-pub use equation::{Equation, Found};
-pub use footprint::{Met, OverFootprint, coarse, gradient_over};
+pub use equation::{Equation, HitEnclosure};
+pub use footprint::{FootprintHit, OverFootprint, coarse, gradient_over};
 pub use onward::{Onward, Precise, Proven, gradient, shading_normals};
 
 use crate::geometry::sight::{Line, Sight};
@@ -95,16 +95,16 @@ pub enum Precision {
 pub fn first_hit(shape: &impl Equation, sight: &Sight, precision: Precision) -> Enclosure {
     match precision {
         Precision::Double => match solve::<f64>(shape, sight, PIECES) {
-            Found::Misses => Enclosure::Misses,
-            Found::Hits(at) => Enclosure::Hits(at.into()),
-            Found::Edge(at) => Enclosure::Edge(at.into()),
-            Found::Doubtful(from) => Enclosure::Doubtful(from.into()),
+            HitEnclosure::Misses => Enclosure::Misses,
+            HitEnclosure::Hits(at) => Enclosure::Hits(at.into()),
+            HitEnclosure::Edge(at) => Enclosure::Edge(at.into()),
+            HitEnclosure::Doubtful(from) => Enclosure::Doubtful(from.into()),
         },
         Precision::Octuple => match solve::<f256>(shape, sight, most_pieces(shape)) {
-            Found::Misses => Enclosure::Misses,
-            Found::Hits(at) => Enclosure::Hits(at),
-            Found::Edge(at) => Enclosure::Edge(at),
-            Found::Doubtful(from) => Enclosure::Doubtful(from),
+            HitEnclosure::Misses => Enclosure::Misses,
+            HitEnclosure::Hits(at) => Enclosure::Hits(at),
+            HitEnclosure::Edge(at) => Enclosure::Edge(at),
+            HitEnclosure::Doubtful(from) => Enclosure::Doubtful(from),
         },
     }
 }
@@ -122,7 +122,7 @@ pub fn holds(shape: &impl Equation, at: DVec3, error: f64) -> Option<bool> {
     (!value.has_zero()).then_some(value.high < 0.0)
 }
 
-fn solve<F: Float>(shape: &dyn Values<Interval<F>>, sight: &Sight, pieces: usize) -> Found<F> {
+fn solve<F: Float>(shape: &dyn Values<Interval<F>>, sight: &Sight, pieces: usize) -> HitEnclosure<F> {
     first_along(shape, &sight.line(), false, pieces)
 }
 

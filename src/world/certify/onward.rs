@@ -4,7 +4,7 @@
 //! on the surface, somewhere in an enclosure. That the point lies on the surface is known, although no interval tells.
 
 use super::along::{PIECES, first_along, most_pieces};
-use super::equation::{Equation, Found};
+use super::equation::{Equation, HitEnclosure};
 use super::footprint::OverFootprint;
 use crate::geometry::sight::Line;
 use crate::numeric::affine::Affine;
@@ -17,7 +17,7 @@ use f256::f256;
 pub trait Onward<F: Float> {
     /// Returns what is proven about a line's first hit with t > 0, and the part of the shape that is hit. The line is
     /// in world coordinates; `leaves` is the part on which the line's true start lies, if it lies on the shape.
-    fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (Found<F>, usize);
+    fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (HitEnclosure<F>, usize);
 
     /// Encloses the value of the equation of a part at a point in world coordinates, and its derivative.
     fn slope(&self, at: [Dual<Interval<F>>; 3], part: usize) -> Dual<Interval<F>>;
@@ -54,7 +54,7 @@ pub trait Proven: Onward<f64> + Onward<f256> + Onward<Fraction> + OverFootprint 
 impl<T: Onward<f64> + Onward<f256> + Onward<Fraction> + OverFootprint> Proven for T {}
 
 impl<E: Equation, F: Precise> Onward<F> for E {
-    fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (Found<F>, usize) {
+    fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (HitEnclosure<F>, usize) {
         (F::along(self, line, leaves.is_some()), 0)
     }
 
@@ -101,7 +101,7 @@ pub trait Precise: Float {
     fn proofs(shape: &dyn Proven) -> &dyn Onward<Self>;
 
     /// Returns what is proven about a line's first hit. With `leaves`, the line's true start lies on the shape.
-    fn along(shape: &impl Equation, line: &Line<Interval<Self>>, leaves: bool) -> Found<Self>;
+    fn along(shape: &impl Equation, line: &Line<Interval<Self>>, leaves: bool) -> HitEnclosure<Self>;
 
     /// Converts an interval, rounded outward. Numbers that need no rounding stay as they are.
     fn narrow(of: Fine) -> Interval<Self>;
@@ -115,7 +115,7 @@ impl Precise for f64 {
         shape
     }
 
-    fn along(shape: &impl Equation, line: &Line<Interval>, leaves: bool) -> Found<Self> {
+    fn along(shape: &impl Equation, line: &Line<Interval>, leaves: bool) -> HitEnclosure<Self> {
         first_along(shape, line, leaves, PIECES)
     }
 
@@ -138,7 +138,7 @@ impl Precise for f256 {
         shape
     }
 
-    fn along(shape: &impl Equation, line: &Line<Wide>, leaves: bool) -> Found<Self> {
+    fn along(shape: &impl Equation, line: &Line<Wide>, leaves: bool) -> HitEnclosure<Self> {
         first_along(shape, line, leaves, most_pieces(shape))
     }
 
@@ -157,16 +157,16 @@ impl Precise for Fraction {
         shape
     }
 
-    fn along(shape: &impl Equation, line: &Line<Fine>, leaves: bool) -> Found<Self> {
+    fn along(shape: &impl Equation, line: &Line<Fine>, leaves: bool) -> HitEnclosure<Self> {
         if is_closed(shape) {
             return first_along(shape, line, leaves, 0);
         }
         let wide = Line { origin: line.origin.map(Interval::wide), dir: line.dir.map(Interval::wide) };
         match f256::along(shape, &wide, leaves) {
-            Found::Misses => Found::Misses,
-            Found::Hits(at) => Found::Hits(at.into()),
-            Found::Edge(at) => Found::Edge(at.into()),
-            Found::Doubtful(from) => Found::Doubtful(from.into()),
+            HitEnclosure::Misses => HitEnclosure::Misses,
+            HitEnclosure::Hits(at) => HitEnclosure::Hits(at.into()),
+            HitEnclosure::Edge(at) => HitEnclosure::Edge(at.into()),
+            HitEnclosure::Doubtful(from) => HitEnclosure::Doubtful(from.into()),
         }
     }
 

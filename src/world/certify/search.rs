@@ -1,6 +1,6 @@
 //! First hits of any surface, by splitting a line until each piece certainly has no root, or exactly one.
 
-use super::equation::{Found, Values, is_kept};
+use super::equation::{HitEnclosure, Values, is_kept};
 use crate::geometry::sight::Line;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::{Float, Interval};
@@ -22,19 +22,19 @@ pub fn first_hit<F: Float>(
     line: &Line<Interval<F>>,
     leaves: bool,
     pieces: usize,
-) -> Found<F> {
+) -> HitEnclosure<F> {
     let zero = F::of(0.0);
-    let Some((mut from, to)) = clipped(shape, line) else { return Found::Misses };
+    let Some((mut from, to)) = clipped(shape, line) else { return HitEnclosure::Misses };
     if !to.is_finite() {
-        return Found::Doubtful(from);
+        return HitEnclosure::Doubtful(from);
     }
     if leaves && from == zero {
         match left(shape, line, to) {
             Some(length) => from = length,
-            None => return Found::Doubtful(zero),
+            None => return HitEnclosure::Doubtful(zero),
         }
         if from == to {
-            return Found::Misses;
+            return HitEnclosure::Misses;
         }
     }
     // The parameter counts from near the shape, so that a piece of the line is not a small difference of large numbers.
@@ -51,7 +51,7 @@ pub fn first_hit<F: Float>(
     let search = Search { shape, line: &near };
     let mut pending = vec![(from, to)];
     for _ in 0..pieces {
-        let Some((low, high)) = pending.pop() else { return Found::Misses };
+        let Some((low, high)) = pending.pop() else { return HitEnclosure::Misses };
         let piece = Interval { low, high };
         let start = || (base + Interval::point(low)).low.max(zero);
         match search.judge(piece) {
@@ -62,12 +62,12 @@ pub fn first_hit<F: Float>(
                     continue;
                 }
                 if distance.low <= zero {
-                    return Found::Doubtful(zero);
+                    return HitEnclosure::Doubtful(zero);
                 }
                 match is_kept(shape, &near, root) {
-                    Some(true) => return Found::Hits(distance),
+                    Some(true) => return HitEnclosure::Hits(distance),
                     Some(false) => {}
-                    None => return Found::Edge(distance),
+                    None => return HitEnclosure::Edge(distance),
                 }
             }
             Judgement::Open if high - low > shortest => pending.extend(cut(low, high)),
@@ -75,12 +75,14 @@ pub fn first_hit<F: Float>(
             // A root that is certainly cut off is no hit.
             Judgement::Open | Judgement::Jump => {
                 if is_kept(shape, &near, piece) != Some(false) {
-                    return Found::Doubtful(start());
+                    return HitEnclosure::Doubtful(start());
                 }
             }
         }
     }
-    Found::Doubtful(pending.last().map_or(zero, |(low, _)| (base + Interval::point(*low)).low.max(zero)))
+    HitEnclosure::Doubtful(
+        pending.last().map_or(zero, |(low, _)| (base + Interval::point(*low)).low.max(zero)),
+    )
 }
 
 /// Returns a length from a line's start, which lies on the surface, within which the value is strictly monotonic, and so
@@ -259,7 +261,7 @@ mod tests {
             dir: [third(-1.0), third(0.0), third(0.0)],
         };
         let found = first_hit(&step, &line, false, 2000);
-        assert!(matches!(found, Found::Doubtful(_)), "{found:?}");
+        assert!(matches!(found, HitEnclosure::Doubtful(_)), "{found:?}");
         assert!(step.0.get() < 100, "{} evaluations", step.0.get());
     }
 
@@ -267,7 +269,7 @@ mod tests {
     fn a_jump_is_left_in_doubt_after_a_few_pieces() {
         let step = Step(Cell::new(0));
         let [origin, dir] = [[-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]].map(|of| of.map(Interval::<f256>::constant));
-        let Found::Doubtful(from) = first_hit(&step, &Line { origin, dir }, false, 2000) else {
+        let HitEnclosure::Doubtful(from) = first_hit(&step, &Line { origin, dir }, false, 2000) else {
             panic!("a jump is no root")
         };
         assert!((from.to_f64() - 2.3).abs() < 1e-15, "{from:?}");

@@ -103,7 +103,7 @@ pub fn triangle(ray: &Ray, corners: &[Vector; 3]) -> Hit {
 }
 
 /// A face that a ray meets, ahead of its origin.
-struct Met {
+struct FaceHit {
     face: usize,
     crossing: Crossing,
     /// Whether the ray passes through the inside of the face, not through an edge or a corner.
@@ -113,8 +113,8 @@ struct Met {
 }
 
 /// Returns the faces that a ray meets first, at one distance; `None` if the ray touches a face in whose plane it lies.
-fn met(ray: &Ray, faces: &[[Vector; 3]]) -> Option<Vec<Met>> {
-    let mut nearest: Vec<Met> = Vec::new();
+fn met(ray: &Ray, faces: &[[Vector; 3]]) -> Option<Vec<FaceHit>> {
+    let mut nearest: Vec<FaceHit> = Vec::new();
     for (face, [a, b, c]) in faces.iter().enumerate() {
         let from = [a, b, c].map(|corner| minus(corner, &ray.origin));
         let side = |one: usize, other: usize| dot(&cross(&from[one], &from[other]), &ray.dir).sign();
@@ -144,7 +144,7 @@ fn met(ray: &Ray, faces: &[[Vector; 3]]) -> Option<Vec<Met>> {
             nearest.clear();
         }
         let is_inner = !sides.contains(&Equal);
-        nearest.push(Met { face, crossing: Crossing { top, bottom }, is_inner, is_outside });
+        nearest.push(FaceHit { face, crossing: Crossing { top, bottom }, is_inner, is_outside });
     }
     Some(nearest)
 }

@@ -170,11 +170,11 @@ impl<T: Number> Jet<T> {
 }
 
 /// A further operation that all intervals have.
-trait Around: Number {
+trait HullOf: Number {
     /// Returns the hull of two intervals, in either order.
     fn hull_of(&self, other: &Self) -> Self {
         self.min(other).hull(&self.max(other))
     }
 }
 
-impl<T: Number> Around for T {}
+impl<T: Number> HullOf for T {}

@@ -22,7 +22,7 @@ pub enum Claim {
 }
 
 /// The first hit that the program finds for a ray.
-pub struct Found {
+pub struct ProgramHit {
     pub first: Option<usize>,
     pub distance: f64,
     /// The origin and the direction of the ray as the program rounds them.
@@ -41,10 +41,10 @@ impl Program {
         scene::read(registry(), "scene", path, text.as_bytes(), None).ok().map(|loaded| Self(loaded.model))
     }
 
-    pub fn find(&self, [x, y]: [usize; 2]) -> Found {
+    pub fn find(&self, [x, y]: [usize; 2]) -> ProgramHit {
         let ray = self.0.camera.value.ray(x as f64, y as f64);
         let hit = trace::first_hit(&Plan::new(&self.0), &self.0.camera.value.sight(x as f64, y as f64));
-        Found {
+        ProgramHit {
             first: hit.as_ref().map(|hit| self.entity(hit.index)),
             distance: hit.map_or(f64::INFINITY, |hit| hit.distance),
             origin: ray.origin.to_array(),

@@ -4,7 +4,7 @@ use super::classes::Class;
 use super::dyadic::Dyadic;
 use super::number::Number;
 use super::oracle::{self, Truth};
-use super::program::{Claim, Found, Program};
+use super::program::{Claim, Program, ProgramHit};
 use super::ray::Ray;
 use super::scenes::Question;
 use super::text::Scene;
@@ -96,7 +96,7 @@ impl Tally {
         question: &Question,
         number: u64,
         pixel: [usize; 2],
-        found: &Found,
+        found: &ProgramHit,
     ) -> Truth {
         self.rays += 1;
         let real = Ray::of_pixel(scene, pixel[0] as i64, pixel[1] as i64);
@@ -143,7 +143,7 @@ impl Tally {
         question: &Question,
         number: u64,
         pixel: [usize; 2],
-        found: &Found,
+        found: &ProgramHit,
         truth: &Truth,
         program: &Program,
     ) {
@@ -274,7 +274,7 @@ struct Off {
 }
 
 impl Off {
-    fn of(scene: &Scene, ray: &Ray, truth: &Truth, found: &Found) -> Self {
+    fn of(scene: &Scene, ray: &Ray, truth: &Truth, found: &ProgramHit) -> Self {
         let mut off = Self { is_hit: truth.first == found.first, error: 0.0, off: 0.0 };
         if let (true, Some(first), Some(place)) = (off.is_hit, truth.first, &truth.place) {
             if !found.distance.is_finite() {

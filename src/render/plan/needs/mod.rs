@@ -31,7 +31,7 @@ use crate::world::accuracy::Accuracy;
 use crate::world::body::AnyLight;
 use crate::world::material::{Look, Rgb};
 use hull::Hull;
-use view::{Seen, View};
+use view::{View, VisibleRegion};
 
 /// The maximum number of views, of the viewer and of the mirrors together.
 const MAX_VIEWS: usize = 16;
@@ -44,7 +44,7 @@ pub(crate) struct Needs {
     /// The indices of the lights that are needed.
     pub lights: Vec<usize>,
     /// The indices of the lights that are not, each with the reason.
-    pub dark: Vec<(usize, Darkness)>,
+    pub dark: Vec<(usize, UnlitReason)>,
     /// The indices of the objects that are not needed.
     pub unmet: Vec<usize>,
     /// A lower bound on the distance of these objects from all rays, in world units.
@@ -53,7 +53,7 @@ pub(crate) struct Needs {
 
 /// Why a light is not needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Darkness {
+pub(crate) enum UnlitReason {
     /// What is seen reflects none of its light.
     Black,
     /// All that is seen turns away from it.
@@ -64,7 +64,7 @@ pub(crate) enum Darkness {
     Mixed,
 }
 
-impl Darkness {
+impl UnlitReason {
     /// Describes the reason.
     pub fn reason(self) -> &'static str {
         match self {
@@ -111,7 +111,7 @@ struct Scene<'s> {
 impl Scene<'_> {
     fn needs(&self, view: View) -> Needs {
         let views = self.views(view);
-        let everything = |index: usize| Seen::of(self.bounds[index].as_ref());
+        let everything = |index: usize| VisibleRegion::of(self.bounds[index].as_ref());
         // For each view, the objects that it may show. Where anything may be seen, it is seen from anywhere.
         let all: Vec<usize>;
         let shown: Vec<(Option<&View>, &[usize])> = match &views {
@@ -145,7 +145,7 @@ impl Scene<'_> {
                             }
                         }
                         Some(own) if reason.is_none_or(|reason| reason == own) => reason = Some(own),
-                        Some(_) => reason = Some(Darkness::Mixed),
+                        Some(_) => reason = Some(UnlitReason::Mixed),
                     }
                 }
                 let region = |(view, depth): (&View, f64)| view.paths(depth, light.location(), light.size());
@@ -154,7 +154,7 @@ impl Scene<'_> {
             if is_needed {
                 needs.lights.push(index);
             } else {
-                needs.dark.push((index, reason.unwrap_or(Darkness::Black)));
+                needs.dark.push((index, reason.unwrap_or(UnlitReason::Black)));
             }
         }
         let Some(views) = views else { return needs };
@@ -229,11 +229,11 @@ impl Scene<'_> {
         &self,
         light: &AnyLight,
         object: &Object,
-        seen: &Seen,
+        seen: &VisibleRegion,
         view: Option<&View>,
-    ) -> Option<Darkness> {
+    ) -> Option<UnlitReason> {
         if self.is_black(light, object) {
-            return Some(Darkness::Black);
+            return Some(UnlitReason::Black);
         }
         let (location, size) = (light.location(), light.size());
         if let Some([at, normal]) = object.shape.plane() {
@@ -250,10 +250,10 @@ impl Scene<'_> {
                 (true, _) => None,
             };
             if turned.is_some_and(|side| side * height(location) < -slack) {
-                return Some(Darkness::Behind);
+                return Some(UnlitReason::Behind);
             }
         }
-        light.is_clear_of(&seen.bounds.with_slack(0.0)).then_some(Darkness::Aside)
+        light.is_clear_of(&seen.bounds.with_slack(0.0)).then_some(UnlitReason::Aside)
     }
 
     /// Tells whether all light that an object reflects of a light is black.

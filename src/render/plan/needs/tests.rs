@@ -1,7 +1,7 @@
 //! What is left out is met by no ray, and what is lit stays.
 
 use super::*;
-use crate::render::observer::{Event, Outcome, TraceObserver};
+use crate::render::observer::{Event, LightOutcome, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::trace;
 use crate::scene::reader;
@@ -11,21 +11,21 @@ use std::path::Path;
 
 /// The objects that rays meet, and the lights that shine.
 #[derive(Default)]
-struct Met {
+struct ReachedEntities {
     objects: BTreeSet<usize>,
     lights: BTreeSet<usize>,
     /// The lights, each with an object that blocks it somewhere.
     blocked: BTreeSet<(usize, usize)>,
 }
 
-impl TraceObserver for Met {
+impl TraceObserver for ReachedEntities {
     const SEES: bool = true;
 
     fn see(&mut self, event: Event) {
         match event {
-            Event::Met(Some(hit)) => drop(self.objects.insert(hit.index)),
-            Event::Light(light, Outcome::Blocked(index)) => drop(self.blocked.insert((light, index))),
-            Event::Light(light, Outcome::Shines { colour, .. }) if colour != Rgb::ZERO => {
+            Event::FirstHit(Some(hit)) => drop(self.objects.insert(hit.index)),
+            Event::Light(light, LightOutcome::Blocked(index)) => drop(self.blocked.insert((light, index))),
+            Event::Light(light, LightOutcome::Shines { colour, .. }) if colour != Rgb::ZERO => {
                 self.lights.insert(light);
             }
             _ => {}
@@ -43,7 +43,7 @@ fn model(text: &str) -> Model {
 fn left_out(text: &str) -> [usize; 2] {
     let model = model(text);
     let [whole, plan] = [Plan::new(&model), Plan::for_picture(&model)];
-    let mut met = Met::default();
+    let mut met = ReachedEntities::default();
     let [width, height] = model.camera.value.pixels;
     for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
         let all = trace::observe_pixel(&whole, x, y, &mut met);

@@ -46,9 +46,9 @@ impl View {
     }
 
     /// Returns where an object may be seen.
-    pub fn seen(&self, object: &Object, bounds: Option<&Aabb>) -> Seen {
+    pub fn seen(&self, object: &Object, bounds: Option<&Aabb>) -> VisibleRegion {
         if bounds.is_some() {
-            return Seen::of(bounds);
+            return VisibleRegion::of(bounds);
         }
         let crossing = |dir: &DVec3| {
             let [at, normal] = object.shape.plane()?;
@@ -57,14 +57,14 @@ impl View {
         };
         let corners: Vec<_> = self.dirs.iter().filter_map(crossing).collect();
         match <[DVec3; 4]>::try_from(corners) {
-            Ok(corners) => Seen { bounds: Aabb::around(&corners), corners: Some(corners) },
-            Err(_) => Seen::of(None),
+            Ok(corners) => VisibleRegion { bounds: Aabb::around(&corners), corners: Some(corners) },
+            Err(_) => VisibleRegion::of(None),
         }
     }
 
     /// Returns how far along the middle of the rays an object may be seen, in world units; infinite where nothing ends
     /// it.
-    pub fn depth(&self, seen: &Seen) -> f64 {
+    pub fn depth(&self, seen: &VisibleRegion) -> f64 {
         let middle = self.middle();
         let depth = |at: DVec3| middle.dot(at - self.apex);
         let far = match &seen.corners {
@@ -100,14 +100,14 @@ impl View {
 }
 
 /// Where an object may be seen.
-pub(super) struct Seen {
+pub(super) struct VisibleRegion {
     /// A box around the points, which may be unbounded.
     pub bounds: Aabb,
     /// The points of a plane at the corners of the image, if they all show it.
     corners: Option<[DVec3; 4]>,
 }
 
-impl Seen {
+impl VisibleRegion {
     /// Returns where an object with this bounding box may be seen from anywhere.
     pub fn of(bounds: Option<&Aabb>) -> Self {
         let everywhere = Aabb { low: DVec3::NEG_INFINITY, high: DVec3::INFINITY };
