@@ -149,7 +149,7 @@ fn mirrors(plan: &Plan) -> String {
     let is_blind = |index: usize| {
         plan.depth
             .as_ref()
-            .is_some_and(|depth| depth.most.is_finite() && plan.onward(index).mirrored.faint == 0.0)
+            .is_some_and(|depth| depth.most.is_finite() && plan.continuation(index).mirrored.faint == 0.0)
     };
     let names = some(mirrors().filter(|(index, _)| !is_blind(*index)).map(named));
     let blind = some(mirrors().filter(|(index, _)| is_blind(*index)).map(named));
@@ -197,7 +197,11 @@ fn depth(model: &Model, depth: &Depth) -> String {
             format!("a branch ends where it can add less than 1/1024 of a level, as {}; {ends}", bound())
         }
         (_, false) => {
-            let bright = model.objects.iter().zip(&depth.objects).find(|(_, onward)| !onward.own.is_finite());
+            let bright = model
+                .objects
+                .iter()
+                .zip(&depth.objects)
+                .find(|(_, continuation)| !continuation.own.is_finite());
             let reason = match bright {
                 Some((object, _)) => format!("`{}` may have any brightness", object.args.name()),
                 None => "mirrors and glass pass on as much light as they receive".to_owned(),

@@ -3,7 +3,7 @@
 pub(crate) mod depth;
 pub(crate) mod needs;
 
-use depth::{Depth, Onward};
+use depth::{ContinuationBounds, Depth};
 use needs::Needs;
 
 use crate::geometry::aabb::Aabb;
@@ -130,11 +130,11 @@ impl<'m> Plan<'m> {
     }
 
     /// Returns how rays continue from the object of this index.
-    pub(crate) fn onward(&self, index: usize) -> Onward {
+    pub(crate) fn continuation(&self, index: usize) -> ContinuationBounds {
         match &self.depth {
             Some(depth) => depth.objects[index],
             // Without reflecting or transmitting objects, no ray continues.
-            None => Onward::NONE,
+            None => ContinuationBounds::NONE,
         }
     }
 }

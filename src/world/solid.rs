@@ -122,25 +122,25 @@ impl Tree {
     /// Returns the path to a part through the condition, and whether the solid lies on the outer side of the part;
     /// `None` if the condition does not name the part. The path has, for each operation from the innermost one outward,
     /// the index of the operand that contains the part.
-    pub fn way_to(&self, part: usize) -> Option<(Vec<usize>, bool)> {
+    pub fn path_to(&self, part: usize) -> Option<(Vec<usize>, bool)> {
         let (operation, of) = match self {
             Self::Known(_) => return None,
             Self::Part(own) => return (*own == part).then_some((Vec::new(), false)),
             Self::Combined(operation, of) => (*operation, of),
         };
-        let (index, (mut way, is_outer)) =
-            of.iter().enumerate().find_map(|(index, one)| Some((index, one.way_to(part)?)))?;
-        way.push(index);
-        Some((way, is_outer != (operation == Operation::Difference && index > 0)))
+        let (index, (mut path, is_outer)) =
+            of.iter().enumerate().find_map(|(index, one)| Some((index, one.path_to(part)?)))?;
+        path.push(index);
+        Some((path, is_outer != (operation == Operation::Difference && index > 0)))
     }
 
-    /// Tells whether a point on the surface of the part at the end of a [path](Self::way_to) lies on the surface of the
+    /// Tells whether a point on the surface of the part at the end of a [path](Self::path_to) lies on the surface of the
     /// solid; `None` where that is undecided. `inside` tells whether the point lies in another part.
-    pub fn is_bare(&self, way: &[usize], inside: &mut dyn FnMut(usize) -> Option<bool>) -> Option<bool> {
-        let (Self::Combined(operation, of), Some((own, inner))) = (self, way.split_last()) else {
+    pub fn is_on_solid(&self, path: &[usize], inside: &mut dyn FnMut(usize) -> Option<bool>) -> Option<bool> {
+        let (Self::Combined(operation, of), Some((own, inner))) = (self, path.split_last()) else {
             return Some(true);
         };
-        let mut all = of[*own].is_bare(inner, inside);
+        let mut all = of[*own].is_on_solid(inner, inside);
         if all == Some(false) {
             return all;
         }
@@ -243,14 +243,14 @@ mod tests {
     fn a_surface_is_the_solids_where_the_other_parts_allow_it() {
         let tree = Tree::Combined(Difference, [parts(Union, &[0, 1]), parts(Difference, &[2, 3])].into());
         for part in 0..4 {
-            let (way, is_outer) = tree.way_to(part).expect("the part is there");
+            let (path, is_outer) = tree.path_to(part).expect("the part is there");
             assert_eq!(is_outer, part == 2, "{part}");
             for bits in 0..16_usize {
                 let inside: Vec<_> = (0..4).map(|part| bits >> part & 1 == 1).collect();
                 let mut beyond = inside.clone();
                 beyond[part] = !inside[part];
                 let holds = |inside: &[bool]| tree.holds(&mut |part| Some(inside[part]));
-                let is_seen = tree.is_bare(&way, &mut |part| Some(inside[part])) == Some(true);
+                let is_seen = tree.is_on_solid(&path, &mut |part| Some(inside[part])) == Some(true);
                 assert_eq!(is_seen, holds(&inside) != holds(&beyond), "{part} {bits:b}");
                 assert_eq!(tree.owner(&inside, &beyond).is_some(), is_seen, "{part} {bits:b}");
             }

@@ -112,21 +112,21 @@ impl<'s> Tracer<'s> {
                 return [Affine::WHOLE; 3];
             };
             let kept = Affine::constant(1.0) - Affine::constant(material.transparency);
-            let behind = self.onward(ray, surface, travelled, dir, &tint);
+            let behind = self.secondary(ray, surface, travelled, dir, &tint);
             colour = [0, 1, 2].map(|channel| kept * colour[channel] + tint[channel] * behind[channel]);
         }
         if !is_black(&surface.specular) {
             let across = dot(dir, surface.normal);
             let twice = across + across;
             let dir = [0, 1, 2].map(|axis| dir[axis] - twice * surface.normal[axis]);
-            let seen = self.onward(ray, surface, travelled, dir, &surface.specular);
+            let seen = self.secondary(ray, surface, travelled, dir, &surface.specular);
             colour = [0, 1, 2].map(|channel| colour[channel] + surface.specular[channel] * seen[channel]);
         }
         colour
     }
 
     /// Encloses the colours that rays return which continue from a surface. Their light is multiplied by `factor`.
-    fn onward(
+    fn secondary(
         &mut self,
         ray: &Ray,
         surface: &Surface,

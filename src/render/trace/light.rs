@@ -84,9 +84,9 @@ kernels! {
     /// Clears `goes` for the rays that can return too little to be seen. `ray_budget` has the number of rays that each
     /// ray may still cost; `None` where none has cost [`MANY`] yet.
     pub(super) fn leave_out(
-        travelled: &[f64], worth: PathWeight, branch: &Branch, ray_budget: Option<&[u32]>, goes: &mut [u64]
+        travelled: &[f64], path_weight: PathWeight, branch: &Branch, ray_budget: Option<&[u32]>, goes: &mut [u64]
     ) {
-        let (count, PathWeight { weight, share }) = (goes.len(), worth);
+        let (count, PathWeight { weight, share }) = (goes.len(), path_weight);
         let (faint, faint_alone) = (weight * branch.faint, weight * branch.faint_alone);
         let travelled = &travelled[..count];
         for lane in 0..count {

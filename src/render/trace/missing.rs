@@ -65,7 +65,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             self.scratch.missing.fill(0.0);
         }
         let missing = &mut self.scratch.missing[usize::from(group.camera[lane])];
-        let more = group.worth.map_or(f64::INFINITY, |worth| worth.weight * light);
+        let more = group.path_weight.map_or(f64::INFINITY, |path_weight| path_weight.weight * light);
         // A NaN bounds nothing.
         *missing = if more >= 0.0 { *missing + more } else { f64::INFINITY };
         self.scratch.any_missing = true;

@@ -2,7 +2,7 @@
 
 use super::arrays::{VectorList, gather, resized};
 use super::light::{self, PathWeight};
-use super::surface::{Errors, Onward, Surface};
+use super::surface::{Errors, SecondaryRays, Surface};
 use crate::geometry::ray::Side;
 use crate::geometry::ray_packet::{PACKET_SIZE, RayPacket};
 use crate::geometry::sight::Sight;
@@ -44,7 +44,7 @@ pub(super) struct RayGroup {
     /// [`Scratch::places`]: super::scratch::Scratch::places
     pub looks: bool,
     /// What the rays can add to a pixel; `None` where no ray continues, or where that has no bound.
-    pub worth: Option<PathWeight>,
+    pub path_weight: Option<PathWeight>,
     /// The lane of the primary ray that each ray descends from; empty where no ray continues and pixels have one
     /// sample.
     pub camera: Vec<u8>,
@@ -108,7 +108,7 @@ impl RayGroup {
         // Where no ray continues, a primary ray costs itself and one shadow ray for each light, so it needs no budget.
         resized(&mut self.ray_budget, count).fill(if depth.is_some() { MAX_RAYS as u32 } else { u32::MAX });
         let is_bounded = depth.is_some_and(|depth| depth.most.is_finite());
-        self.worth = is_bounded.then_some(PathWeight { weight: 1.0, share: 1.0 });
+        self.path_weight = is_bounded.then_some(PathWeight { weight: 1.0, share: 1.0 });
         if is_sampled || depth.is_some() {
             // The copies that pad the arrays are of the last ray, so they use its sample.
             let (cameras, copies) = resized(&mut self.camera, count).split_at_mut(len);
@@ -129,15 +129,17 @@ impl RayGroup {
 
     /// Clears `goes` for the rays that would return too little to be seen at their path lengths.
     pub fn leave_out(&self, cpu: Cpu, branch: &Branch, travelled: &[f64], goes: &mut [u64]) {
-        let Some(worth) = self.worth.filter(|_| branch.faint_alone != f64::INFINITY) else { return };
+        let Some(path_weight) = self.path_weight.filter(|_| branch.faint_alone != f64::INFINITY) else {
+            return;
+        };
         let ray_budget = &self.ray_budget[..goes.len()];
         let ray_budget = (light::fewest(cpu, ray_budget) < light::FEW).then_some(ray_budget);
-        light::leave_out(cpu, travelled, worth, branch, ray_budget, goes);
+        light::leave_out(cpu, travelled, path_weight, branch, ray_budget, goes);
     }
 
     /// Updates what the rays can add to a pixel when they continue along a branch of a surface.
     pub fn branch(&mut self, branch: &Branch) {
-        if let Some(PathWeight { weight, share }) = &mut self.worth {
+        if let Some(PathWeight { weight, share }) = &mut self.path_weight {
             *weight *= branch.weight;
             *share *= branch.share;
         }
@@ -181,7 +183,7 @@ impl RayGroup {
         let count = self.padded();
         self.dir.gather(&from.dir, lanes, count);
         gather(&mut self.ray_budget, &from.ray_budget, lanes, count);
-        self.worth = from.worth;
+        self.path_weight = from.path_weight;
         gather(&mut self.camera, &from.camera, lanes, count);
         self.origin_object = from.origin_object;
         self.is_from_one = from.is_from_one;
@@ -202,21 +204,21 @@ impl RayGroup {
     }
 
     /// Becomes the rays of some lanes that continue from where another group's rays have hit an object.
-    pub fn go_on(&mut self, from: &Self, onward: &Onward, lanes: &[u8]) {
+    pub fn continue_from(&mut self, from: &Self, rays: &SecondaryRays, lanes: &[u8]) {
         self.len = lanes.len();
         self.forget_sights();
         let count = self.padded();
-        self.origin.gather(onward.points, lanes, count);
-        self.dir.gather(onward.dir, lanes, count);
-        gather(&mut self.travelled, onward.travelled, lanes, count);
+        self.origin.gather(rays.points, lanes, count);
+        self.dir.gather(rays.dir, lanes, count);
+        gather(&mut self.travelled, rays.travelled, lanes, count);
         gather(&mut self.ray_budget, &from.ray_budget, lanes, count);
-        self.worth = from.worth;
+        self.path_weight = from.path_weight;
         gather(&mut self.camera, &from.camera, lanes, count);
-        self.origin_object = Some(onward.origin_object);
+        self.origin_object = Some(rays.origin_object);
         self.is_from_one = false;
-        gather(&mut self.sides, onward.sides, lanes, count);
-        self.errors = onward.errors;
-        self.gather_cosines(onward.cosines, lanes);
+        gather(&mut self.sides, rays.sides, lanes, count);
+        self.errors = rays.errors;
+        self.gather_cosines(rays.cosines, lanes);
     }
 
     /// Gathers the cosines of some lanes, where errors are computed at all.
@@ -236,7 +238,7 @@ impl RayGroup {
         swap(&mut self.dir, dir);
         swap(&mut self.travelled, &mut surface.travelled);
         swap(&mut self.ray_budget, &mut from.ray_budget);
-        self.worth = from.worth;
+        self.path_weight = from.path_weight;
         swap(&mut self.camera, &mut from.camera);
         self.origin_object = Some(surface.index);
         self.is_from_one = false;

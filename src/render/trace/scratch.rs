@@ -91,7 +91,7 @@ pub(super) struct ShadingScratch {
     /// The lanes of the rays that continue.
     pub lanes: Vec<u8>,
     /// The rays that continue.
-    pub onward: RayGroup,
+    pub secondary: RayGroup,
     /// The colours that the rays that continue return.
     pub seen: VectorList,
     /// The colours that come back to all lanes, black for rays that do not continue.

@@ -143,7 +143,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let tint = object.tint(&object.surface_point(surface.points.get(0), surface.sides[0]));
             self.observer.see(Event::Begin(RayPurpose::Transmitted { tint, kept }));
         }
-        let branch = self.plan.onward(surface.index).through;
+        let branch = self.plan.continuation(surface.index).through;
         let (travelled, goes) = (&surface.travelled[..count], resized(&mut shading.goes, count));
         light::reach(self.cpu, travelled, MAX_DIST, goes);
         group.leave_out(self.cpu, &branch, travelled, goes);
@@ -151,7 +151,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         shading.dir.copy(group.dir.view(count));
         let flip = |sides: &mut [Side]| sides.iter_mut().for_each(|side| *side = side.opposite());
         flip(&mut surface.sides[..count]);
-        self.onward(group, shading, RayKind::Transmitted, branch);
+        self.trace_secondary(group, shading, RayKind::Transmitted, branch);
         let surface = &mut shading.surface;
         flip(&mut surface.sides[..count]);
         for lane in 0..group.len {
@@ -187,7 +187,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let (normals, specular) = (surface.normals.view(count), surface.mirrors(count));
         let (travelled, goes) = (&surface.travelled[..count], resized(goes, count));
         let dir = dir.resized(count);
-        let branch = self.plan.onward(surface.index).mirrored;
+        let branch = self.plan.continuation(surface.index).mirrored;
         light::mirror(cpu, group.dir.view(count), normals, specular, travelled, MAX_DIST, goes, dir);
         if surface.is_bent {
             surface.keep_before(group.dir.view(count), &mut shading.dir);
@@ -196,9 +196,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.end_bounces(goes);
         let do_all = goes[0] != 0 && closest_hit::is_one(cpu, goes);
         if do_all && group.len <= self.max_packet() {
-            self.onward_all(group, shading, branch);
+            self.trace_all_secondary(group, shading, branch);
         } else {
-            self.onward(group, shading, RayKind::Reflected, branch);
+            self.trace_secondary(group, shading, RayKind::Reflected, branch);
         }
         let specular = shading.surface.mirrors(count);
         light::reflect(cpu, specular, shading.behind.view(count), colours.resized(count));
@@ -216,7 +216,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         colours: &mut VectorList,
     ) {
         let (count, surface) = (group.padded(), &mut shading.surface);
-        let (object, branches) = (&self.model.objects[surface.index], self.plan.onward(surface.index));
+        let (object, branches) = (&self.model.objects[surface.index], self.plan.continuation(surface.index));
         let kept = 1.0 - object.material.transparency;
         let crossings = refract::crossings(interface, group.dir.view(count), surface);
         let tints: Vec<Rgb> = (0..group.len)
@@ -290,13 +290,19 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
         group.leave_out(self.cpu, &branch, travelled, goes);
         self.end_bounces(goes);
-        self.onward(group, shading, kind, branch);
+        self.trace_secondary(group, shading, kind, branch);
     }
 
     /// Computes the light that returns along the rays that continue from a surface. It is black for points from which
     /// no ray continues: those that are too far away, or whose ray can return too little.
-    fn onward(&mut self, group: &mut RayGroup, shading: &mut ShadingScratch, kind: RayKind, branch: Branch) {
-        let ShadingScratch { surface, dir, goes, lanes, onward, seen, behind, .. } = shading;
+    fn trace_secondary(
+        &mut self,
+        group: &mut RayGroup,
+        shading: &mut ShadingScratch,
+        kind: RayKind,
+        branch: Branch,
+    ) {
+        let ShadingScratch { surface, dir, goes, lanes, secondary, seen, behind, .. } = shading;
         let lanes = compact(&goes[..group.len], lanes);
         if W::SEES && lanes.is_empty() {
             let is_far = surface.travelled[0] > MAX_DIST;
@@ -304,30 +310,30 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             self.observer.see(Event::Colour(DVec3::ZERO));
         }
         self.observer.count(Count::Rays(kind, lanes.len()));
-        let rays = surface.onward(dir);
+        let rays = surface.secondary_rays(dir);
         behind.fill(group.padded(), DVec3::ZERO);
         let max_packet = self.max_packet();
         self.depth += 1;
         for lanes in lanes.chunks(max_packet) {
-            onward.go_on(group, &rays, lanes);
-            onward.branch(&branch);
-            self.trace(onward, seen);
+            secondary.continue_from(group, &rays, lanes);
+            secondary.branch(&branch);
+            self.trace(secondary, seen);
             behind.scatter(seen, lanes);
-            group.charge(onward, lanes);
+            group.charge(secondary, lanes);
         }
         self.depth -= 1;
     }
 
-    /// Does the work of [`onward`](Self::onward) if all rays of the group are reflected. The rays are not needed here
+    /// Does the work of [`trace_secondary`](Self::trace_secondary) if all rays of the group are reflected. The rays are not needed here
     /// afterwards, so their arrays are swapped, not copied.
-    fn onward_all(&mut self, group: &mut RayGroup, shading: &mut ShadingScratch, branch: Branch) {
-        let ShadingScratch { surface, dir, onward, behind, .. } = shading;
+    fn trace_all_secondary(&mut self, group: &mut RayGroup, shading: &mut ShadingScratch, branch: Branch) {
+        let ShadingScratch { surface, dir, secondary, behind, .. } = shading;
         self.observer.count(Count::Rays(RayKind::Reflected, group.len));
         self.depth += 1;
-        onward.take(group, surface, dir);
-        onward.branch(&branch);
-        self.trace(onward, behind);
-        swap(&mut group.ray_budget, &mut onward.ray_budget);
+        secondary.take(group, surface, dir);
+        secondary.branch(&branch);
+        self.trace(secondary, behind);
+        swap(&mut group.ray_budget, &mut secondary.ray_budget);
         self.depth -= 1;
     }
 }

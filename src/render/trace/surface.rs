@@ -97,9 +97,9 @@ impl Surface {
     }
 
     /// Returns rays from the points in these directions.
-    pub fn onward<'o>(&'o self, dir: &'o VectorList) -> Onward<'o> {
+    pub fn secondary_rays<'o>(&'o self, dir: &'o VectorList) -> SecondaryRays<'o> {
         let Self { index, points, sides, travelled, cosines, errors, .. } = self;
-        Onward { points, dir, travelled, origin_object: *index, sides, cosines, errors: *errors }
+        SecondaryRays { points, dir, travelled, origin_object: *index, sides, cosines, errors: *errors }
     }
 
     /// Returns a bound on the error of a point, in world units.
@@ -117,7 +117,7 @@ impl Surface {
 }
 
 /// Rays that continue from the points where a group's rays have hit an object, in the same lanes.
-pub(super) struct Onward<'o> {
+pub(super) struct SecondaryRays<'o> {
     pub points: &'o VectorList,
     pub dir: &'o VectorList,
     /// The path length from the viewer to each point, in world units.

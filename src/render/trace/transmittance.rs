@@ -27,7 +27,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let mut lanes = Vec::new();
         let lanes = compact(&shines[..group.len], &mut lanes);
         let Transmittance { group: part, t_max: far, tint, blocker, .. } = &mut *transmittance;
-        part.go_on(group, &surface.onward(paths.toward), lanes);
+        part.continue_from(group, &surface.secondary_rays(paths.toward), lanes);
         let count = part.padded();
         gather(far, t_max, lanes, count);
         tint.fill(count, Rgb::ONE);

@@ -8,7 +8,7 @@ use crate::numeric::affine::Affine;
 use crate::numeric::interval::Interval;
 use crate::numeric::scalar::{Scalar, dot, per_axis};
 use crate::world::accuracy::Bounded;
-use crate::world::certify::{self, FootprintHit, HitEnclosure, Onward, OverFootprint, Precise};
+use crate::world::certify::{self, FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precise};
 
 impl Surface {
     /// Returns what is certain about a line's first hit with t > 0, and the face that is hit. `leaves` is the face on which

@@ -16,7 +16,7 @@ use crate::simd::cpu::Cpu;
 use crate::text;
 use crate::world::accuracy::{Accuracy, Bounded};
 use crate::world::certify::{
-    Enclosure, FootprintHit, HitEnclosure, Onward, OverFootprint, Precise, Precision, Proven,
+    Enclosure, FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precise, Precision, Proven,
 };
 use crate::world::coincidence::{CLOSE, ROUNDING};
 use crate::world::hittable::Hittable;
@@ -204,13 +204,13 @@ impl<A: Bounded> Proofs for Shape<Mesh<A>, ByPackets, ByFaces> {
     }
 }
 
-impl<A: Bounded, F: Precise> Onward<F> for Mesh<A> {
+impl<A: Bounded, F: Precise> HitProofs<F> for Mesh<A> {
     fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (HitEnclosure<F>, usize) {
         self.surface.first_along::<A, F>(line, leaves)
     }
 
     fn slope(&self, at: [Dual<Interval<F>>; 3], part: usize) -> Dual<Interval<F>> {
-        Onward::slope(&Face(self.surface.triangle::<A>(part)), at, 0)
+        HitProofs::slope(&Face(self.surface.triangle::<A>(part)), at, 0)
     }
 
     fn shading_normal(

@@ -54,9 +54,9 @@ impl PlacedShader {
     }
 
     /// Takes a point from the world to the object's own coordinates.
-    fn own_point(&self, at: &SurfacePoint) -> SurfacePoint {
+    fn object_point(&self, at: &SurfacePoint) -> SurfacePoint {
         let normal = (self.normal_to_own * at.normal).normalize_or_zero();
-        SurfacePoint { position: self.placed.own_point(at.position), normal, ..*at }
+        SurfacePoint { position: self.placed.object_point(at.position), normal, ..*at }
     }
 }
 
@@ -66,19 +66,19 @@ impl Shader for PlacedShader {
     }
 
     fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.own().ambient(material, &self.own_point(at))
+        self.own().ambient(material, &self.object_point(at))
     }
 
     fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.own().diffuse(material, &self.own_point(at))
+        self.own().diffuse(material, &self.object_point(at))
     }
 
     fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.own().specular(material, &self.own_point(at))
+        self.own().specular(material, &self.object_point(at))
     }
 
     fn tile(&self, at: &SurfacePoint) -> DVec2 {
-        self.own().tile(&self.own_point(at))
+        self.own().tile(&self.object_point(at))
     }
 
     fn bends(&self) -> bool {
@@ -86,7 +86,7 @@ impl Shader for PlacedShader {
     }
 
     fn bend(&self, at: &SurfacePoint) -> DVec3 {
-        let own = self.own().bend(&self.own_point(at));
+        let own = self.own().bend(&self.object_point(at));
         (self.placed.to_object_space.transpose() * own).try_normalize().unwrap_or(at.normal)
     }
 

@@ -5,8 +5,8 @@
 //! doubt, the ray as the scene gives it decides, with the sines and cosines of the angles enclosed in intervals.
 
 mod body;
-mod onward;
-mod own;
+mod hit_proofs;
+mod object_space;
 mod packets;
 mod shape;
 

@@ -1,7 +1,7 @@
 //! Packets of rays that may hit a copy: they are taken to the object's own coordinates together, so that the shape is
 //! tested against packets there, too.
 
-use super::own::{ObjectSpaceRays, take_out, to_world};
+use super::object_space::{ObjectSpaceRays, take_out, to_world};
 use super::shape::{ByPlacement, CAMERA, Placed, entered};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
@@ -63,7 +63,7 @@ impl Placed {
         let mut error = 0.0;
         if is_from_camera {
             let origins = (0..count).map(|lane| rays.origin.get(lane));
-            if let Some(drift) = self.own_drift(origins, drift.unwrap_or(CAMERA)) {
+            if let Some(drift) = self.object_drift(origins, drift.unwrap_or(CAMERA)) {
                 shape.brackets_within(cpu, own.rays(count), drift, &own.ends[..count], near, far);
                 error = drift.dir;
             } else {

@@ -58,28 +58,28 @@ impl Placed {
 
     /// Takes a point from the world to the object's own coordinates.
     #[inline(always)]
-    pub(super) fn own_point(&self, at: DVec3) -> DVec3 {
+    pub(super) fn object_point(&self, at: DVec3) -> DVec3 {
         self.to_object_space * (at - self.placement.translation)
     }
 
     /// Takes a ray from the world to the object's own coordinates. Returns it with the length there of a world unit.
     #[inline(always)]
-    pub(super) fn own_ray(&self, ray: &Ray) -> (Ray, f64) {
+    pub(super) fn object_ray(&self, ray: &Ray) -> (Ray, f64) {
         let dir = self.to_object_space * ray.dir;
         let length = dir.length();
-        (Ray { origin: self.own_point(ray.origin), dir: dir / length }, length)
+        (Ray { origin: self.object_point(ray.origin), dir: dir / length }, length)
     }
 
     /// Returns a bound on the error in the object's own coordinates of a point with this error in the world, the
     /// rounding of the transformation included.
-    pub(super) fn own_error(&self, at: DVec3, error: f64) -> f64 {
+    pub(super) fn object_error(&self, at: DVec3, error: f64) -> f64 {
         let size = at.abs().max_element() + self.placement.translation.abs().max_element();
         (error + ROUNDING * size) / self.placement.scale.min_element()
     }
 
     /// Returns the drift in the object's own coordinates of rays from these origins with a drift in the world. `None`
     /// where it is so large that brackets would say little.
-    pub(super) fn own_drift(&self, origins: impl Iterator<Item = DVec3>, drift: Drift) -> Option<Drift> {
+    pub(super) fn object_drift(&self, origins: impl Iterator<Item = DVec3>, drift: Drift) -> Option<Drift> {
         let Placement { scale, translation, .. } = self.placement;
         let away = origins.map(|origin| (origin - translation).abs().element_sum()).fold(0.0, f64::max);
         let (least, most) = (scale.min_element(), scale.max_element());
@@ -93,13 +93,13 @@ impl Placed {
     /// Returns a range in the object's own coordinates, for a ray along which a world unit has the length `length`
     /// there.
     #[inline(always)]
-    fn own_range(&self, ray: &Ray, range: &RayRange, length: f64) -> RayRange {
+    fn object_range(&self, ray: &Ray, range: &RayRange, length: f64) -> RayRange {
         let RayRange { near, far, origin_side, origin_error } = *range;
         RayRange {
             near: near * length,
             far: far * length * (1.0 + CLOSE),
             origin_side,
-            origin_error: self.own_error(ray.origin, origin_error),
+            origin_error: self.object_error(ray.origin, origin_error),
         }
     }
 
@@ -127,17 +127,17 @@ impl Placed {
             let bracket = self.t_bounds_within(ray, range, CAMERA);
             return entered(bracket, || Self::entry(self.bounds(), ray));
         }
-        let (own, length) = self.own_ray(ray);
-        let bracket = self.body.shape.t_bounds(&own, &self.own_range(ray, range, length));
+        let (own, length) = self.object_ray(ray);
+        let bracket = self.body.shape.t_bounds(&own, &self.object_range(ray, range, length));
         in_world(bracket, length, 0.0, range)
     }
 
     /// Returns a bracket of the first hits of all rays within a drift of a camera ray.
     pub(super) fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
-        let Some(drift) = self.own_drift([ray.origin].into_iter(), drift) else { return Bracket::UNKNOWN };
-        let (own, length) = self.own_ray(ray);
-        let own_range = RayRange { origin_error: 0.0, ..self.own_range(ray, range, length) };
-        let bracket = self.body.shape.packets().t_bounds_within(&own, &own_range, drift);
+        let Some(drift) = self.object_drift([ray.origin].into_iter(), drift) else { return Bracket::UNKNOWN };
+        let (own, length) = self.object_ray(ray);
+        let object_range = RayRange { origin_error: 0.0, ..self.object_range(ray, range, length) };
+        let bracket = self.body.shape.packets().t_bounds_within(&own, &object_range, drift);
         in_world(bracket, length, drift.dir, range)
     }
 }
@@ -188,17 +188,17 @@ pub(super) fn entered(bracket: Bracket, entry: impl FnOnce() -> Option<f64>) -> 
 
 impl Hittable for Placed {
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
-        let (own, length) = self.own_ray(ray);
-        let range_there = self.own_range(ray, range, length);
+        let (own, length) = self.object_ray(ray);
+        let range_there = self.object_range(ray, range, length);
         range.keep(self.body.shape.distance(&own, &range_there) / length)
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
-        (self.to_object_space.transpose() * self.body.shape.normal(self.own_point(at))).normalize()
+        (self.to_object_space.transpose() * self.body.shape.normal(self.object_point(at))).normalize()
     }
 
     fn shading_normal(&self, at: DVec3, normal: DVec3) -> DVec3 {
-        let (at, to_world) = (self.own_point(at), self.to_object_space.transpose());
+        let (at, to_world) = (self.object_point(at), self.to_object_space.transpose());
         let own = self.body.shape.normal(at);
         let own = if (to_world * own).dot(normal) < 0.0 { -own } else { own };
         let shaded = self.body.shape.shading_normal(at, own);
@@ -206,16 +206,16 @@ impl Hittable for Placed {
     }
 
     fn part(&self, ray: &Ray, distance: f64) -> Option<String> {
-        let (own, length) = self.own_ray(ray);
+        let (own, length) = self.object_ray(ray);
         self.body.shape.part(&own, distance * length)
     }
 
     fn uv(&self, at: DVec3) -> Option<DVec2> {
-        self.body.shape.uv(self.own_point(at))
+        self.body.shape.uv(self.object_point(at))
     }
 
     fn face(&self, at: DVec3) -> Option<u32> {
-        self.body.shape.face(self.own_point(at))
+        self.body.shape.face(self.object_point(at))
     }
 
     fn bounds(&self) -> Option<Aabb> {
@@ -239,7 +239,7 @@ impl Hittable for Placed {
     }
 
     fn search_cost(&self, ray: &Ray, origin_side: Option<Side>) -> u32 {
-        self.body.shape.search_cost(&self.own_ray(ray).0, origin_side)
+        self.body.shape.search_cost(&self.object_ray(ray).0, origin_side)
     }
 
     fn method(&self) -> String {
@@ -257,7 +257,7 @@ impl Hittable for Placed {
 
 /// Tells whether a point in the world lies on a copy, up to an error in world units.
 fn touches(placed: &Placed, at: DVec3, error: f64) -> bool {
-    placed.body.shape.touches(placed.own_point(at), placed.own_error(at, error))
+    placed.body.shape.touches(placed.object_point(at), placed.object_error(at, error))
 }
 
 impl Proofs for Shape<Placed, ByPackets, ByPlacement> {
@@ -266,11 +266,12 @@ impl Proofs for Shape<Placed, ByPackets, ByPlacement> {
     }
 
     fn holds(&self, at: DVec3, error: f64) -> Option<bool> {
-        self.shape.body.shape.holds(self.shape.own_point(at), self.shape.own_error(at, error))
+        self.shape.body.shape.holds(self.shape.object_point(at), self.shape.object_error(at, error))
     }
 
     fn facet(&self, at: DVec3, error: f64) -> Option<Facet> {
-        let own = self.shape.body.shape.facet(self.shape.own_point(at), self.shape.own_error(at, error))?;
+        let own =
+            self.shape.body.shape.facet(self.shape.object_point(at), self.shape.object_error(at, error))?;
         own.placed(self.shape.placement)
     }
 

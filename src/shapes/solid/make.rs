@@ -161,9 +161,9 @@ fn seen(solid: &Solid) -> Vec<Body> {
             return None;
         }
         let tree = solid.tree.without(&|other| other != index && !meets(other));
-        let (way, is_outer) = tree.way_to(index)?;
+        let (path, is_outer) = tree.path_to(index)?;
         let around = common(around, tree.bounds(&|part| bounds[part]));
-        let shape = Trimmed::new(&parts, &bounds, (index, is_outer), (tree, way), around);
+        let shape = Trimmed::new(&parts, &bounds, (index, is_outer), (tree, path), around);
         let part = &parts[index];
         let shader = PartShader(part.body.clone());
         let body = Body::shaded(Shape::new(shape).by::<ByPackets, ByParts>(), shader);

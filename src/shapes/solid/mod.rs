@@ -11,8 +11,8 @@
 //! solid on one side only are seen, once.
 
 mod crossings;
+mod hit_proofs;
 mod make;
-mod onward;
 mod packets;
 mod shader;
 mod trimmed;

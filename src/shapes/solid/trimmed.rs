@@ -6,7 +6,7 @@ use crate::geometry::sight::Sight;
 use crate::numeric::double_double::DoubleDouble;
 use crate::world::any_shape::AnyShape;
 use crate::world::body::Part;
-use crate::world::certify::{Enclosure, HitEnclosure, Onward, Precision, Proven};
+use crate::world::certify::{Enclosure, HitEnclosure, HitProofs, Precision, Proven};
 use crate::world::coincidence::{self, CLOSE, LEAST_COSINE, ROUNDING};
 use crate::world::hittable::Hittable;
 use crate::world::packets::shape::{Proofs, by_distance};
@@ -42,7 +42,7 @@ pub struct Trimmed {
     /// The condition on the parts that contain a point near this surface, by which the point lies in the solid.
     pub(super) tree: Tree,
     /// The way to the part through the tree.
-    way: Vec<usize>,
+    path: Vec<usize>,
     bounds: Option<Aabb>,
 }
 
@@ -52,11 +52,11 @@ impl Trimmed {
         parts: &Arc<[Part]>,
         around: &Arc<[Option<Aabb>]>,
         (index, is_outer): (usize, bool),
-        (tree, way): (Tree, Vec<usize>),
+        (tree, path): (Tree, Vec<usize>),
         bounds: Option<Aabb>,
     ) -> Self {
         let (parts, around) = (parts.clone(), around.clone());
-        Self { parts, around, index, is_outer, tree, way, bounds }
+        Self { parts, around, index, is_outer, tree, path, bounds }
     }
 
     /// Returns the shape of the part.
@@ -71,7 +71,7 @@ impl Trimmed {
 
     /// Tells whether all of the part's surface is the solid's.
     pub(super) fn is_whole(&self) -> bool {
-        self.way.is_empty()
+        self.path.is_empty()
     }
 
     /// Returns a side of the solid as a side of the part, and the other way round.
@@ -92,13 +92,13 @@ impl Trimmed {
 
     /// Tells whether a hit of the part is the solid's; `None` where the surface of another part may be within an error in
     /// world units.
-    fn is_bare(&self, at: DVec3, error: f64) -> Option<bool> {
-        self.tree.is_bare(&self.way, &mut |part| self.holds(part, at, error))
+    fn is_on_solid(&self, at: DVec3, error: f64) -> Option<bool> {
+        self.tree.is_on_solid(&self.path, &mut |part| self.holds(part, at, error))
     }
 
     /// Tells whether a hit of the part is the solid's where other surfaces within an error in world units lie in the plane of
     /// its own, as the numbers of the scene say; `None` where that is open.
-    fn is_bare_in_plane(&self, at: DVec3, error: f64) -> Option<bool> {
+    fn is_on_solid_in_plane(&self, at: DVec3, error: f64) -> Option<bool> {
         let own = self.own().facet(at, error)?;
         let (mut outside, mut inside) = (vec![false; self.parts.len()], vec![false; self.parts.len()]);
         inside[self.index] = true;
@@ -120,7 +120,7 @@ impl Trimmed {
 
     /// Tells whether a hit of the part is the solid's by what lies on both sides of it, at a distance that is a multiple
     /// of an error in world units: along the normal, or where another part has an edge there, along the ray.
-    fn is_bare_beside(&self, ray: &Ray, at: DVec3, normal: DVec3, error: f64) -> bool {
+    fn is_on_solid_by_sides(&self, ray: &Ray, at: DVec3, normal: DVec3, error: f64) -> bool {
         let step = BESIDE * (error + ROUNDING * at.abs().max_element());
         let ahead = if ray.dir.dot(normal) < 0.0 { -ray.dir } else { ray.dir };
         let beside = |outward: DVec3, may_guess: bool| -> Option<bool> {
@@ -140,12 +140,12 @@ impl Trimmed {
     }
 
     /// Tells whether a hit of the part is the solid's; `None` where that is open. `size` is what the hit is computed from.
-    fn is_surely_bare(&self, ray: &Ray, distance: f64, size: f64) -> Option<bool> {
+    fn is_certainly_on_solid(&self, ray: &Ray, distance: f64, size: f64) -> Option<bool> {
         let at = ray.at(distance);
         // The error of any hit first, then that of this one, which takes its normal.
-        self.is_bare(at, ROUNDING / LEAST_COSINE * size).or_else(|| {
+        self.is_on_solid(at, ROUNDING / LEAST_COSINE * size).or_else(|| {
             let error = coincidence::error(ray, distance, self.own().normal(at), self.reach());
-            self.is_bare(at, error).or_else(|| self.is_bare_in_plane(at, error))
+            self.is_on_solid(at, error).or_else(|| self.is_on_solid_in_plane(at, error))
         })
     }
 
@@ -194,16 +194,16 @@ impl Trimmed {
             };
             is_certain &= !bracket.is_doubtful() || leaves == Some(side);
             let size = ray.origin.abs().max_element() + distance + reach;
-            let sure = self.is_surely_bare(ray, distance, size).or_else(|| {
+            let sure = self.is_certainly_on_solid(ray, distance, size).or_else(|| {
                 let is_hidden = self.side(side) == Side::Outside && self.is_within(ray, distance, size);
                 is_hidden.then_some(false)
             });
             is_certain &= sure.is_some();
-            let is_bare = sure.unwrap_or_else(|| {
+            let is_on_solid = sure.unwrap_or_else(|| {
                 let normal = shape.normal(at);
-                self.is_bare_beside(ray, at, normal, coincidence::error(ray, distance, normal, reach))
+                self.is_on_solid_by_sides(ray, at, normal, coincidence::error(ray, distance, normal, reach))
             });
-            if is_bare {
+            if is_on_solid {
                 return (range.keep(distance), is_certain);
             }
             leaves = Some(side.opposite());
@@ -330,13 +330,13 @@ impl Proofs for Shape<Trimmed, ByPackets, ByParts> {
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
         match precision {
-            Precision::Double => match Onward::<f64>::first_hit(&self.shape, &sight.line(), None).0 {
+            Precision::Double => match HitProofs::<f64>::first_hit(&self.shape, &sight.line(), None).0 {
                 HitEnclosure::Misses => Enclosure::Misses,
                 HitEnclosure::Hits(at) => Enclosure::Hits(at.into()),
                 HitEnclosure::Edge(at) => Enclosure::Edge(at.into()),
                 HitEnclosure::Doubtful(from) => Enclosure::Doubtful(from.into()),
             },
-            Precision::Octuple => match Onward::<f256>::first_hit(&self.shape, &sight.line(), None).0 {
+            Precision::Octuple => match HitProofs::<f256>::first_hit(&self.shape, &sight.line(), None).0 {
                 HitEnclosure::Misses => Enclosure::Misses,
                 HitEnclosure::Hits(at) => Enclosure::Hits(at),
                 HitEnclosure::Edge(at) => Enclosure::Edge(at),

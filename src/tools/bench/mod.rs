@@ -33,7 +33,7 @@ pub struct Speed {
     /// The shadow rays of primary hits, and what lights add to the cost, shading included.
     pub shadow: Cost,
     /// The reflected and transmitted rays, with the shadow rays from their hits, and what they add to the cost.
-    pub onward: Cost,
+    pub secondary: Cost,
     /// All rays, and the cost of the whole frame, without writing a file.
     pub frame: Cost,
     /// The tests by entity type, sorted.
@@ -126,7 +126,7 @@ impl Speed {
             model.lights.clear();
             primary = measured(&model);
         }
-        Self { primary, shadow: lit.beyond(&primary), onward: frame.beyond(&lit), frame, tests, bare }
+        Self { primary, shadow: lit.beyond(&primary), secondary: frame.beyond(&lit), frame, tests, bare }
     }
 }
 

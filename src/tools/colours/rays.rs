@@ -112,21 +112,21 @@ impl<'s, 'p, 'm> Tracer<'s, 'p, 'm> {
         if material.transparency != 0.0 {
             let tint = tint(material.transparency, surface.diffuse)?;
             let kept = Interval::constant(1.0) - Interval::constant(material.transparency);
-            let behind = self.onward(ray, &surface, travelled, ray.path.line.dir, &tint)?;
+            let behind = self.secondary(ray, &surface, travelled, ray.path.line.dir, &tint)?;
             colour = per_axis(|channel| kept * colour[channel] + tint[channel] * behind[channel]);
         }
         if !is_black(&surface.specular) {
             let across = dot(ray.path.line.dir, surface.normal);
             let twice = across + across;
             let dir = per_axis(|axis| ray.path.line.dir[axis] - twice * surface.normal[axis]);
-            let seen = self.onward(ray, &surface, travelled, dir, &surface.specular)?;
+            let seen = self.secondary(ray, &surface, travelled, dir, &surface.specular)?;
             colour = per_axis(|channel| colour[channel] + surface.specular[channel] * seen[channel]);
         }
         Some(colour)
     }
 
     /// Encloses the colour that a ray returns which continues from a surface. Its light is multiplied by `factor`.
-    fn onward<F: Number>(
+    fn secondary<F: Number>(
         &mut self,
         ray: &Ray<F>,
         surface: &Surface<F>,

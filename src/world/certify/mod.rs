@@ -9,12 +9,12 @@ mod along;
 mod closed;
 mod equation;
 mod footprint;
-mod onward;
+mod hit_proofs;
 mod search;
 
 pub use equation::{Equation, HitEnclosure};
 pub use footprint::{FootprintHit, OverFootprint, coarse, gradient_over};
-pub use onward::{Onward, Precise, Proven, gradient, shading_normals};
+pub use hit_proofs::{HitProofs, Precise, Proven, gradient, shading_normals};
 
 use crate::geometry::sight::{Line, Sight};
 use crate::numeric::double_double::DoubleDouble;

@@ -9,7 +9,7 @@ pub(crate) const MANY: u32 = 4000;
 
 /// Bounds on what can be returned from where rays hit an object.
 #[derive(Clone, Copy)]
-pub(crate) struct Onward {
+pub(crate) struct ContinuationBounds {
     /// A bound on the light of the object's own surface, times the path length to the surface.
     pub own: f64,
     /// A bound on what rays that leave the object return, times the path length to the object.
@@ -33,7 +33,7 @@ pub(crate) struct Branch {
     pub faint_alone: f64,
 }
 
-impl Onward {
+impl ContinuationBounds {
     /// The value of an object from which no rays continue.
     pub const NONE: Self = Self { own: 0.0, beyond: 0.0, through: Branch::NONE, mirrored: Branch::NONE };
 }

@@ -57,7 +57,7 @@ mod sides;
 mod solve;
 mod surface;
 
-pub(crate) use branch::{Branch, FAINT, MANY, Onward, STEPS, step};
+pub(crate) use branch::{Branch, ContinuationBounds, FAINT, MANY, STEPS, step};
 pub(crate) use surface::clearance;
 
 use crate::parallel;
@@ -73,7 +73,7 @@ pub(crate) struct Depth {
     /// A bound on any channel of what a primary ray returns that hits an object, times the path length; infinite where there is none.
     pub most: f64,
     /// The bounds for each object, by the object's index.
-    pub objects: Vec<Onward>,
+    pub objects: Vec<ContinuationBounds>,
 }
 
 impl Depth {

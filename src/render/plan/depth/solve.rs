@@ -1,6 +1,6 @@
 //! The search for bounds that satisfy the inequalities of a scene.
 
-use super::branch::Onward;
+use super::branch::ContinuationBounds;
 use super::sides::{SIDES, Sides, above, gain};
 use super::surface::Surface;
 use crate::geometry::aabb::SLACK;
@@ -61,7 +61,7 @@ impl Scene {
 
     /// Returns a bound on what primary rays return, times the path length, and for each object how rays continue from
     /// it. `cuts` tells whether branches are cut at all.
-    pub fn bounds(&self, cuts: bool) -> (f64, Vec<Onward>) {
+    pub fn bounds(&self, cuts: bool) -> (f64, Vec<ContinuationBounds>) {
         let infinite = || vec![[f64::INFINITY; 2]; self.shiny.len()];
         let own = |surface: &Surface| surface.own;
         let beyond = self.solve(&self.matt_light, own).unwrap_or_else(infinite);
@@ -78,10 +78,10 @@ impl Scene {
             met.into_iter().fold(0.0, above)
         };
         let whole = most(&Surface::unit, &shares);
-        let none = |surface: &Surface| Onward { own: surface.own, ..Onward::NONE };
+        let none = |surface: &Surface| ContinuationBounds { own: surface.own, ..ContinuationBounds::NONE };
         let mut objects: Vec<_> = self.surfaces.iter().map(none).collect();
         for (((index, _), beyond), shares) in self.shiny.iter().zip(&beyond).zip(&shares) {
-            objects[*index] = self.surfaces[*index].onward(*beyond, *shares, whole, cuts);
+            objects[*index] = self.surfaces[*index].continuation(*beyond, *shares, whole, cuts);
         }
         (most(&own, &beyond), objects)
     }

@@ -1,6 +1,6 @@
 //! What an object's surface does with light, bounded over all of its points.
 
-use super::branch::{Branch, FAINT, Onward, REFLECTED};
+use super::branch::{Branch, ContinuationBounds, FAINT, REFLECTED};
 use super::sides::{Sides, above, gain};
 use crate::geometry::aabb;
 use crate::render::culling;
@@ -60,11 +60,11 @@ impl Surface {
     /// Bounds what rays that hit the surface on each side return, given its own light and what rays that leave it on
     /// each side return.
     pub fn met(&self, own: f64, [outside, inside]: [f64; 2]) -> [f64; 2] {
-        let onward = |through: f64, mirrored: f64| {
+        let continuation = |through: f64, mirrored: f64| {
             let (through, mirrored) = (gain(self.through, through), gain(self.mirrored, mirrored));
             if self.is_split { above(through, mirrored) } else { through + mirrored }
         };
-        [own + onward(inside, outside), own + onward(outside, inside)]
+        [own + continuation(inside, outside), own + continuation(outside, inside)]
     }
 
     /// Returns the surface's own light in the unit of shares: 1, or 0 where an interface passes on all light.
@@ -74,7 +74,13 @@ impl Surface {
 
     /// Computes how rays continue from the surface, given bounds on what they return. `whole` is the share of a primary
     /// ray, in the unit of `shares`.
-    pub fn onward(&self, beyond: Sides<f64>, shares: Sides<f64>, whole: f64, cuts: bool) -> Onward {
+    pub fn continuation(
+        &self,
+        beyond: Sides<f64>,
+        shares: Sides<f64>,
+        whole: f64,
+        cuts: bool,
+    ) -> ContinuationBounds {
         let Self { own, through, mirrored, is_split } = *self;
         let part = if through == 0.0 || mirrored == 0.0 { 1.0 } else { 0.5 };
         // The larger ratio of the two sides, since rays may leave on either. A side from which nothing is hit returns
@@ -93,7 +99,7 @@ impl Surface {
                 [faint, faint_alone].map(|faint| if cuts { above(0.0, faint) } else { f64::INFINITY });
             Branch { weight, share, faint, faint_alone }
         };
-        Onward {
+        ContinuationBounds {
             own,
             beyond: above(beyond[0], beyond[1]),
             through: branch(through, 1.0 - REFLECTED),

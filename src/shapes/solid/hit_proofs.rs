@@ -6,7 +6,7 @@ use crate::geometry::sight::Line;
 use crate::numeric::affine::Affine;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
-use crate::world::certify::{FootprintHit, HitEnclosure, Onward, OverFootprint, Precise, Proven, coarse};
+use crate::world::certify::{FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precise, Proven, coarse};
 
 impl Trimmed {
     fn proven(&self, part: usize) -> Option<&dyn Proven> {
@@ -64,7 +64,7 @@ impl Trimmed {
     }
 }
 
-impl<F: Precise> Onward<F> for Trimmed {
+impl<F: Precise> HitProofs<F> for Trimmed {
     fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (HitEnclosure<F>, usize) {
         if let Some(around) = self.around()
             && line.clip(around.low, around.high).is_none()

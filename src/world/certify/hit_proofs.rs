@@ -14,7 +14,7 @@ use crate::numeric::scalar::{Scalar, per_axis};
 use f256::f256;
 
 /// Proofs about a shape's hits along any line, in one precision.
-pub trait Onward<F: Float> {
+pub trait HitProofs<F: Float> {
     /// Returns what is proven about a line's first hit with t > 0, and the part of the shape that is hit. The line is
     /// in world coordinates; `leaves` is the part on which the line's true start lies, if it lies on the shape.
     fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (HitEnclosure<F>, usize);
@@ -49,11 +49,11 @@ pub trait Onward<F: Float> {
 }
 
 /// Proofs about a shape's hits along any line, in every precision.
-pub trait Proven: Onward<f64> + Onward<f256> + Onward<Fraction> + OverFootprint {}
+pub trait Proven: HitProofs<f64> + HitProofs<f256> + HitProofs<Fraction> + OverFootprint {}
 
-impl<T: Onward<f64> + Onward<f256> + Onward<Fraction> + OverFootprint> Proven for T {}
+impl<T: HitProofs<f64> + HitProofs<f256> + HitProofs<Fraction> + OverFootprint> Proven for T {}
 
-impl<E: Equation, F: Precise> Onward<F> for E {
+impl<E: Equation, F: Precise> HitProofs<F> for E {
     fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (HitEnclosure<F>, usize) {
         (F::along(self, line, leaves.is_some()), 0)
     }
@@ -71,7 +71,7 @@ impl<E: Equation, F: Precise> Onward<F> for E {
 
 /// Encloses the gradient of a part's equation at a point: a vector along the normal.
 pub fn gradient<F: Float>(
-    shape: &(impl Onward<F> + ?Sized),
+    shape: &(impl HitProofs<F> + ?Sized),
     at: [Interval<F>; 3],
     part: usize,
 ) -> [Interval<F>; 3] {
@@ -85,7 +85,7 @@ pub fn gradient<F: Float>(
 
 /// Encloses the unit normals with which points of a part are shaded; `None` where they are open.
 pub fn shading_normals(
-    shape: &(impl Onward<f64> + ?Sized),
+    shape: &(impl HitProofs<f64> + ?Sized),
     at: [Affine; 3],
     part: usize,
     normal: [Affine; 3],
@@ -98,7 +98,7 @@ pub fn shading_normals(
 /// A precision that proofs are tried in.
 pub trait Precise: Float {
     /// Returns a shape's proofs in this precision.
-    fn proofs(shape: &dyn Proven) -> &dyn Onward<Self>;
+    fn proofs(shape: &dyn Proven) -> &dyn HitProofs<Self>;
 
     /// Returns what is proven about a line's first hit. With `leaves`, the line's true start lies on the shape.
     fn along(shape: &impl Equation, line: &Line<Interval<Self>>, leaves: bool) -> HitEnclosure<Self>;
@@ -111,7 +111,7 @@ pub trait Precise: Float {
 }
 
 impl Precise for f64 {
-    fn proofs(shape: &dyn Proven) -> &dyn Onward<Self> {
+    fn proofs(shape: &dyn Proven) -> &dyn HitProofs<Self> {
         shape
     }
 
@@ -134,7 +134,7 @@ impl Precise for f64 {
 }
 
 impl Precise for f256 {
-    fn proofs(shape: &dyn Proven) -> &dyn Onward<Self> {
+    fn proofs(shape: &dyn Proven) -> &dyn HitProofs<Self> {
         shape
     }
 
@@ -153,7 +153,7 @@ impl Precise for f256 {
 
 /// Fractions decide ties of surfaces whose hits have closed forms; other surfaces are searched in 237 bits.
 impl Precise for Fraction {
-    fn proofs(shape: &dyn Proven) -> &dyn Onward<Self> {
+    fn proofs(shape: &dyn Proven) -> &dyn HitProofs<Self> {
         shape
     }
 

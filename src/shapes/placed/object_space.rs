@@ -46,7 +46,7 @@ impl<const N: usize> ObjectSpaceRays<N> {
             own.dir.view_mut(count),
         );
         if rays.origin_error > 0.0 {
-            own.origin_error = placed.own_error(DVec3::splat(largest), rays.origin_error);
+            own.origin_error = placed.object_error(DVec3::splat(largest), rays.origin_error);
         }
         own
     }
@@ -72,7 +72,7 @@ kernels! {
         let mut largest = 0.0_f64;
         for lane in 0..count {
             let ray = rays.get(lane);
-            let (own, length) = placed.own_ray(&ray);
+            let (own, length) = placed.object_ray(&ray);
             origins.set(lane, own.origin);
             dirs.set(lane, own.dir);
             lengths[lane] = length;

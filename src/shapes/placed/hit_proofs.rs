@@ -6,10 +6,10 @@ use crate::numeric::affine::Affine;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use crate::numeric::scalar::{Scalar, constants, dot, per_axis};
-use crate::world::certify::{FootprintHit, HitEnclosure, Onward, OverFootprint, Precise};
+use crate::world::certify::{FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precise};
 use glam::DVec3;
 
-impl<F: Precise> Onward<F> for Placed {
+impl<F: Precise> HitProofs<F> for Placed {
     fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (HitEnclosure<F>, usize) {
         let own = Line { origin: self.placement.point(line.origin), dir: self.placement.vector(line.dir) };
         match self.body.shape.proven() {
