@@ -89,7 +89,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     if let Some(question) = args.sampling {
         if let Some(file) = &args.output {
             for (scene, (_, model)) in args.scenes.iter().zip(&models) {
-                output::is_no_source(file, scene, model)?;
+                output::refuse_source(file, scene, model)?;
             }
         }
         return sampling::run(question, models, args.size, args.output.as_deref(), args.keep.as_deref());
@@ -145,7 +145,7 @@ impl SceneSummary {
         for (kind, cost) in [
             ("primary", &speed.primary),
             ("shadow", &speed.shadow),
-            ("secondary", &speed.onward),
+            ("secondary", &speed.secondary),
             ("all", &speed.frame),
         ] {
             let rate = number(cost.rate().map(|rate| rate / 1e6), 1);
@@ -183,7 +183,7 @@ impl SceneSummary {
             pixels: self.size,
             rays: Rays {
                 all: Rate::of(&speed.frame),
-                onward: Rate::of(&speed.onward),
+                onward: Rate::of(&speed.secondary),
                 primary: Rate::of(&speed.primary),
                 shadow: Rate::of(&speed.shadow),
             },

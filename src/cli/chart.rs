@@ -55,16 +55,16 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let limit = args.time_limit.unwrap_or(LIMIT).min(Duration::from_secs(1 << 30));
     let (mut work, start) = (Work::within(limit), Instant::now());
     let source = Source::read(&args.scene, &args.set)?;
-    let model = input::told(source.load(registry, None))?.model;
+    let model = input::print_warnings(source.load(registry, None))?.model;
     let load = all_accuracies(registry, &source)?;
     let name = match args.scene.file_stem() {
         Some(stem) if !input::is_standard(&args.scene) => stem.to_string_lossy().into_owned(),
         _ => "stdin".to_owned(),
     };
-    let files = files(&args.output, &name, |path| output::is_no_source(path, &args.scene, &model))?;
+    let files = files(&args.output, &name, |path| output::refuse_source(path, &args.scene, &model))?;
     drop(model);
     interrupt::catch(InterruptAction::SetFlagThenExit(NOTHING))?;
-    let (kept, units) = (work.kept(), work.units());
+    let (kept, units) = (work.panels(), work.units());
     let end = |chart: Chart| {
         interrupt::set_action(InterruptAction::SetFlag);
         end(&chart, files, start.elapsed() >= limit)
@@ -113,7 +113,7 @@ fn files(output: &Path, name: &str, may_be: impl Fn(&Path) -> Result<(), Failure
     match named.filter(|_| !output.is_dir()) {
         Some(one) => files[one] = open(output.to_owned())?,
         None => {
-            output::folder(output)?;
+            output::create_folder(output)?;
             for (file, extension) in files.iter_mut().zip(EXTENSIONS) {
                 *file = open(output.join(format!("{name}-chart.{extension}")))?;
             }
@@ -134,7 +134,7 @@ fn end(chart: &Chart, files: Files, is_late: bool) -> Result<(), Failure> {
     let words = chart::words(chart);
     for (file, bytes) in files.into_iter().zip(contents(chart, &words)?) {
         let Some((path, output)) = file else { continue };
-        output::put(&path, output, |out| out.write_all(&bytes))?;
+        output::write_image(&path, output, |out| out.write_all(&bytes))?;
     }
     print(&words)?;
     if interrupt::check().is_break() {

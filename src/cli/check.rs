@@ -2,7 +2,7 @@
 
 use crate::cli::files::input;
 use crate::cli::options::set;
-use crate::cli::process::failure::{Failure, status, tell};
+use crate::cli::process::failure::{Failure, report, status};
 use crate::cli::process::messages;
 use crate::scene::registry::Registry;
 use std::path::PathBuf;
@@ -33,7 +33,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             // The scene may be sound: the machine is at fault.
             Err(failure @ Failure::Failed(_)) => return Err(failure),
             Err(failure) => {
-                tell(&failure);
+                report(&failure);
                 worst = worst.max(status(&failure));
             }
         }

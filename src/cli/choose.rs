@@ -73,7 +73,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let (mut work, start) = (Work::within(limit), Instant::now());
     let units = work.units();
     let source = Source::read(&args.scene, &args.set)?;
-    input::told(source.load(registry, None))?;
+    input::print_warnings(source.load(registry, None))?;
     let load = all_accuracies(registry, &source)?;
     interrupt::catch(InterruptAction::Exit("nothing has been chosen"))?;
     let worst = args.worst;

@@ -49,7 +49,7 @@ impl Differences {
     }
 
     /// Prints where the default may differ, if it may.
-    pub fn tell(&self) {
+    pub fn print(&self) {
         let part = |names: &[String], what: &str| {
             let more = names.len().saturating_sub(NAMED);
             let mut named: Vec<_> = names.iter().take(NAMED).map(String::as_str).collect();

@@ -6,7 +6,7 @@ use crate::cli::files::input;
 use crate::cli::files::picture::Picture;
 use crate::cli::options::number::whole;
 use crate::cli::options::set;
-use crate::cli::process::failure::{Failure, print, tell};
+use crate::cli::process::failure::{Failure, print, report};
 use crate::output::compare::{Comparison, FullRangeComparison, Pixel};
 use crate::scene::registry::Registry;
 use std::path::PathBuf;
@@ -61,7 +61,7 @@ pub fn run(registry: &Registry, args: &Args) -> ExitCode {
     match compare(registry, args) {
         Ok(same) => ExitCode::from(u8::from(!same)),
         Err(failure) => {
-            tell(&failure);
+            report(&failure);
             ExitCode::from(2)
         }
     }

@@ -48,7 +48,7 @@ struct Slurm {
 pub fn run(args: &Args) -> Result<(), Failure> {
     let Engine::Slurm(Slurm { scene, output: image, parts, options }) = &args.engine;
     let (program, image_word) = (quoted(&env::current_exe()?), quoted(image));
-    let folder = output::ended(image, ".slurm");
+    let folder = output::append_to_path(image, ".slurm");
     let [render, merge] = ["render.sbatch", "merge.sbatch"].map(|name| folder.join(name));
     let mut words = String::new();
     for option in options {
@@ -83,7 +83,7 @@ exec {program} merge {image_word} --threads \"${{SLURM_CPUS_PER_TASK:-1}}\"
 ",
         log("merge.log")
     );
-    output::folder(&folder)?;
+    output::create_folder(&folder)?;
     output::replace(&render, render_text.as_bytes())?;
     output::replace(&merge, merge_text.as_bytes())?;
     let [render, merge] = [&render, &merge].map(|path| quoted(path));

@@ -111,7 +111,7 @@ fn frames(name: &Path) -> Result<Vec<PathBuf>, Failure> {
 }
 
 fn sheet(path: &Path, frames: &[PathBuf]) -> Result<(), Failure> {
-    let format = output::named(path, "end it in .png or .ppm")?;
+    let format = output::format_by_name(path, "end it in .png or .ppm")?;
     let format = if let Format::Png(_) = format { Format::Png(Compression::default()) } else { format };
     let count = frames.len().min(ON_SHEET);
     let (across, mut all) = ((count as f64).sqrt().ceil() as usize, image::RgbImage::new(0, 0));
@@ -131,14 +131,14 @@ fn sheet(path: &Path, frames: &[PathBuf]) -> Result<(), Failure> {
         imageops::replace(&mut all, &small, place[0].into(), place[1].into());
     }
     let size = [all.width() as usize, all.height() as usize];
-    output::put(path, out, |out| format.write(out, size, [Ok(all.into_raw())]))
+    output::write_image(path, out, |out| format.write(out, size, [Ok(all.into_raw())]))
 }
 
 fn animation(path: &Path, frames: &[PathBuf], rate: u16) -> Result<(), Failure> {
     let cannot = |error: png::EncodingError| Failure::cannot_write(path, &error.into());
     let first = picture::read(&frames[0])?;
     let (width, height) = first.dimensions();
-    memory::room(6 * width as usize * height as usize, "a frame")?;
+    memory::refuse_too_large(6 * width as usize * height as usize, "a frame")?;
     let mut out = BufWriter::with_capacity(1 << 16, Output::open(path)?);
     let mut encoder = png::Encoder::new(&mut out as &mut dyn Write, width, height);
     encoder.set_color(png::ColorType::Rgb);

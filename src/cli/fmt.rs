@@ -1,7 +1,7 @@
 //! `tabray fmt`: formats scenes.
 
 use crate::cli::files::{input, output};
-use crate::cli::process::failure::{Failure, print, status, tell};
+use crate::cli::process::failure::{Failure, print, report, status};
 use crate::cli::process::messages;
 use crate::editor::{self, Text, formatted, problem};
 use crate::scene::reader::{Fault, Report};
@@ -37,7 +37,7 @@ pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
             Ok(false) => Failure::Told,
             Err(failure) => failure,
         };
-        tell(&failure);
+        report(&failure);
         worst = worst.max(status(&failure));
     }
     if worst == 0 { Ok(()) } else { Err(Failure::Several(worst)) }

@@ -12,7 +12,7 @@ use super::watch::answer::{self, JOBS};
 use super::watch::frame::Frame;
 use super::watch::session::Session;
 use crate::cli::options::size::Part;
-use crate::cli::rendering::resume::{self, Begun};
+use crate::cli::rendering::resume::{self, ResumedImage};
 use crate::output::checkpoint::{self, Identity};
 use crate::output::picture::Format;
 use crate::render::tiles::{Band, TILE, Tiles};
@@ -75,8 +75,8 @@ impl Image {
     /// Continues from a checkpoint: returns all pixels, and which tiles need not be rendered any more. Nothing where the
     /// checkpoint is refused.
     pub fn resume(&self, file: File) -> Option<(Vec<[u8; 3]>, Vec<bool>)> {
-        let mut begun = Begun::read(PathBuf::new(), Ok(file)).ok()?;
-        begun.belongs_to(&self.identity, self.part.size()).ok()?;
+        let mut begun = ResumedImage::read(PathBuf::new(), Ok(file)).ok()?;
+        begun.refuse_other_image(&self.identity, self.part.size()).ok()?;
         let band = self.blank();
         begun.fill(&band).ok()?;
         let (mut pixels, mut tiles) = (Vec::new(), Vec::new());

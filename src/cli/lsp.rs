@@ -14,7 +14,7 @@ use answers::Server;
 use documents::Documents;
 use faults::Faults;
 use lsp_server::{ErrorCode, Message, Request};
-use protocol::{answered, capabilities, malformed, refused, told};
+use protocol::{capabilities, error_response, malformed, response};
 use serde_json::{Value, json};
 use std::io::{self, StdinLock, Write};
 use std::sync::mpsc::{self, Receiver, Sender};
@@ -94,11 +94,14 @@ fn begin(input: &mut StdinLock<'_>, sender: &Sender<String>) -> Result<Value, Fa
                     "capabilities": capabilities(),
                     "serverInfo": { "name": crate::cli::process::program::name(), "version": env!("CARGO_PKG_VERSION") },
                 });
-                send(sender, answered(&id, &result.to_string()))?;
+                send(sender, response(&id, &result.to_string()))?;
                 return Ok(params);
             }
             Message::Request(Request { id, .. }) => {
-                send(sender, refused(&id, ErrorCode::ServerNotInitialized, "`initialize` comes first"))?;
+                send(
+                    sender,
+                    error_response(&id, ErrorCode::ServerNotInitialized, "`initialize` comes first"),
+                )?;
             }
             Message::Notification(notification) if notification.method == "exit" => return Err(gone()),
             _ => {}
@@ -111,7 +114,7 @@ fn serve(input: &mut StdinLock<'_>, sender: &Sender<String>, server: &mut Server
     loop {
         match next(input, sender)? {
             Message::Request(request) if request.method == "shutdown" => {
-                send(sender, answered(&request.id, "null"))?;
+                send(sender, response(&request.id, "null"))?;
                 return match next(input, sender)? {
                     Message::Notification(notification) if notification.method == "exit" => Ok(()),
                     _ => Err(gone()),
@@ -122,7 +125,10 @@ fn serve(input: &mut StdinLock<'_>, sender: &Sender<String>, server: &mut Server
             Message::Notification(notification) => {
                 let handled = crash::catch(|| server.note(&notification.method, notification.params));
                 if let Err(Failure::Failed(said)) = handled {
-                    send(sender, told("window/logMessage", &json!({ "type": 1, "message": said })))?;
+                    send(
+                        sender,
+                        protocol::notification("window/logMessage", &json!({ "type": 1, "message": said })),
+                    )?;
                 }
             }
             Message::Response(_) => {}
@@ -134,10 +140,10 @@ fn serve(input: &mut StdinLock<'_>, sender: &Sender<String>, server: &mut Server
 fn answer(server: &mut Server<'_>, request: Request) -> String {
     let Request { id, method, params } = request;
     match crash::catch(|| server.answer(&method, params)) {
-        Ok(Ok(Some(result))) => answered(&id, &result),
-        Ok(Ok(None)) => refused(&id, ErrorCode::MethodNotFound, &format!("`{method}` is not known")),
-        Ok(Err(said)) => refused(&id, ErrorCode::RequestFailed, &said),
-        Err(Failure::Failed(said)) => refused(&id, ErrorCode::InternalError, &said),
-        Err(_) => refused(&id, ErrorCode::InternalError, "no answer"),
+        Ok(Ok(Some(result))) => response(&id, &result),
+        Ok(Ok(None)) => error_response(&id, ErrorCode::MethodNotFound, &format!("`{method}` is not known")),
+        Ok(Err(said)) => error_response(&id, ErrorCode::RequestFailed, &said),
+        Err(Failure::Failed(said)) => error_response(&id, ErrorCode::InternalError, &said),
+        Err(_) => error_response(&id, ErrorCode::InternalError, "no answer"),
     }
 }

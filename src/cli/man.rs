@@ -22,7 +22,7 @@ Examples:
 
 pub fn run(registry: &Registry, args: &Args, command: clap::Command) -> Result<(), Failure> {
     let folder = &args.folder;
-    output::folder(folder)?;
+    output::create_folder(folder)?;
     let mut command = program::described(command, registry).disable_help_subcommand(true);
     command.build();
     let count = pages(command, folder)?;

@@ -93,7 +93,7 @@ impl Work {
     }
 
     /// Returns the panels so far, for others to look at.
-    pub fn kept(&self) -> Panels {
+    pub fn panels(&self) -> Panels {
         Arc::clone(&self.kept)
     }
 }
@@ -125,7 +125,7 @@ impl Units {
 impl chart::Progress for Work {
     fn more(&mut self, units: usize) {
         self.units.0[1].fetch_add(units, Ordering::Relaxed);
-        self.progress.lengthen(units);
+        self.progress.inc_length(units);
     }
 
     fn done(&mut self, units: usize) -> ControlFlow<()> {

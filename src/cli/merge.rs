@@ -67,7 +67,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let path = aov::picture(&names, *aov);
         let is_this = |what: PixelFormat| matches!(what, PixelFormat::Beside(other, ..) if other == *aov);
         let parts = Parts::gather(&path, &args.parts, is_this)?;
-        main.belongs_with(&parts)?;
+        main.refuse_other_scene(&parts)?;
         beside.push((path, parts));
     }
     main.write(&args.image, &renderer)?;
@@ -103,15 +103,17 @@ impl Parts {
                 let values: Vec<Values> = pixels.iter().map(|pixel| pixel.each_ref().map(number)).collect();
                 drop(numbers);
                 let layer = Aov::layer(aov, &values, &setting);
-                aov::tell(&layer);
+                aov::print_remarks(&layer);
                 if aov.is_exact() {
                     let exact = aov::exact(path);
                     let bytes =
                         layer.exr(self.label.size).map_err(|error| Failure::cannot_write(&exact, &error))?;
-                    output::put(&exact, self.open(&exact)?, |out| out.write_all(&bytes))?;
+                    output::write_image(&exact, self.open(&exact)?, |out| out.write_all(&bytes))?;
                 }
                 let rows = iter::once(Ok(layer.bytes));
-                return output::put(path, self.open(path)?, |out| format.write(out, self.label.size, rows));
+                return output::write_image(path, self.open(path)?, |out| {
+                    format.write(out, self.label.size, rows)
+                });
             }
         }
         if path != Path::new("-") {
@@ -157,7 +159,10 @@ impl Parts {
 
     fn full_range(&self, path: &Path, format: FullRange) -> Result<(), Failure> {
         let [width, height] = self.label.size;
-        memory::room(full_range::PIXEL.saturating_mul(width).saturating_mul(height), "the image")?;
+        memory::refuse_too_large(
+            full_range::PIXEL.saturating_mul(width).saturating_mul(height),
+            "the image",
+        )?;
         let out = self.open(path)?;
         let bytes = self.all(12)?;
         let pixels: Vec<f32> = bytes.as_chunks().0.iter().map(|number| f32::from_le_bytes(*number)).collect();
@@ -170,7 +175,7 @@ impl Parts {
     /// Returns all bytes of an image that is held in memory.
     fn all(&self, pixel: usize) -> Result<Vec<u8>, Failure> {
         let [width, height] = self.label.size;
-        memory::room(2 * pixel * width * height, "the image")?;
+        memory::refuse_too_large(2 * pixel * width * height, "the image")?;
         let mut all = Vec::with_capacity(pixel * width * height);
         for rows in self.rows(pixel) {
             all.extend(rows?);

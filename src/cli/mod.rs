@@ -42,7 +42,7 @@ use crate::scene::registry::Registry;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 #[cfg(target_os = "linux")]
 use nix::sys::signal::{SigSet, Signal};
-use process::failure::{Failure, tell};
+use process::failure::{Failure, report};
 #[cfg(target_os = "linux")]
 use process::interrupt;
 use process::{arguments, color, crash, help, memory, messages, program};
@@ -135,15 +135,15 @@ pub fn run() -> ExitCode {
     let _ = SigSet::from(Signal::SIGXFSZ).thread_block();
     #[cfg(target_os = "linux")]
     interrupt::keep_ignoring_hangups();
-    crash::keep();
-    memory::tell_when_refused();
-    crash::catch(chosen).unwrap_or_else(|failure| tell(&failure))
+    crash::capture_panics();
+    memory::report_refused_allocations();
+    crash::catch(chosen).unwrap_or_else(|failure| report(&failure))
 }
 
 fn chosen() -> ExitCode {
     let matches = match arguments::matches(command()) {
         Ok(matches) => matches,
-        Err(failure) => return tell(&failure),
+        Err(failure) => return report(&failure),
     };
     let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     color::choose(cli.color);
@@ -187,6 +187,6 @@ fn chosen() -> ExitCode {
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => tell(&failure),
+        Err(failure) => report(&failure),
     }
 }

@@ -25,7 +25,8 @@ pub fn run(registry: &Registry) -> Result<(), Failure> {
     // The course's own image, unless the camera asks for another method.
     let accuracy = Chosen { by_default: Accuracy::Classic, ..Chosen::default() };
     let model =
-        input::told(Source::read(standard, &set::Args::default())?.load_by(registry, accuracy))?.model;
+        input::print_warnings(Source::read(standard, &set::Args::default())?.load_by(registry, accuracy))?
+            .model;
     interrupt::catch(InterruptAction::Exit("the image was not finished"))?;
     let _ = write!(std::io::stderr(), "{}", dump::notes(&model));
     let job = Job {

@@ -2,7 +2,7 @@
 
 use super::course::Differences;
 use crate::cli::files::input::Source;
-use crate::cli::files::output::{Output, named};
+use crate::cli::files::output::{Output, format_by_name};
 use crate::cli::files::{input, made, output, several};
 use crate::cli::options::number::whole;
 use crate::cli::options::size::Part;
@@ -11,7 +11,7 @@ use crate::cli::options::{cpu, frames, keep, method, samples, set, size};
 use crate::cli::process::failure::Failure;
 use crate::cli::process::{messages, progress};
 use crate::cli::rendering::job::Job;
-use crate::cli::rendering::resume::Begun;
+use crate::cli::rendering::resume::ResumedImage;
 use crate::cli::rendering::stats::{self, Stats};
 use crate::cli::rendering::{aov, debug, full_range, part, resume};
 use crate::output::aov::Aov;
@@ -126,7 +126,7 @@ pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
     let extension = if args.format == Some(Format::Ppm) { "ppm" } else { "png" };
     let targets = several::targets(&args.scenes, output, extension)?;
     let stop = args.stop.watch()?;
-    several::each(&args.scenes, |index| {
+    several::for_each_scene(&args.scenes, |index| {
         stop.exit_on_interrupt()?;
         one(registry, &args, (&args.scenes[index], targets[index].clone()), &stop)
     })
@@ -142,7 +142,7 @@ impl Args {
     /// Tells whether an existing image is not rendered again: with `--resume`, a complete frame.
     fn skips(&self, path: &Path, model: &Model) -> Result<bool, Failure> {
         let is_resumed = self.stop.resume && !self.continues(path);
-        Ok(is_resumed && aov::wanted(&self.aov, model)?.is_empty())
+        Ok(is_resumed && aov::requested(&self.aov, model)?.is_empty())
     }
 }
 
@@ -160,10 +160,10 @@ fn one(
     let start = Instant::now();
     let accuracy = args.method.accuracy()?;
     let source = Source::read(scene, &args.set)?;
-    let memory = args.stop.left();
+    let memory = args.stop.memory_left();
     let chosen = |accuracy| Chosen { above_all: accuracy, memory, ..Chosen::default() };
     let Loaded { mut model, building, warnings, .. } =
-        input::told(source.load_by(registry, chosen(accuracy)))?;
+        input::print_warnings(source.load_by(registry, chosen(accuracy)))?;
     let mut stats = Stats { reading: start.elapsed() - building, building, ..Stats::default() };
     let camera = &mut model.camera.value;
     args.samples.apply(camera)?;
@@ -171,7 +171,7 @@ fn one(
     let part = args.size.apply(camera)?;
     let made = made::texts(&source, &args.set, &model.camera.value, &part);
     let differences = Differences::of(registry, &source, &model);
-    output::is_no_source(&path, scene, &model)?;
+    output::refuse_source(&path, scene, &model)?;
     if let Some(number) = args.part.part {
         return share(
             registry,
@@ -182,7 +182,7 @@ fn one(
             (number, &made),
         );
     }
-    if args.skips(&path, &model)? && made::is_there(&path, &made, warnings.files()) {
+    if args.skips(&path, &model)? && made::is_up_to_date(&path, &made, warnings.files()) {
         messages::note(&format!("{} exists already", path.display()));
         return Ok(());
     }
@@ -194,7 +194,7 @@ fn one(
     if full_range.is_some() && args.stop.resume {
         return Err(full_range::refuse(&path, "resumed"));
     }
-    let begun = Begun::open(args.continues(&path), &model, &part, &path, &output)?;
+    let begun = ResumedImage::open(args.continues(&path), &model, &part, &path, &output)?;
     debug::print(&model, &args.debug)?;
     let threads = args.threads.unwrap_or(0).into();
     let start = Instant::now();
@@ -203,7 +203,7 @@ fn one(
     let renderer = Renderer::new(threads)?.on(cpu);
     let whole = Instant::now();
     if let Some(format) = full_range {
-        args.stop.fits(full_range::PIXEL * part.columns.len() * part.rows.len())?;
+        args.stop.refuse_too_large(full_range::PIXEL * part.columns.len() * part.rows.len())?;
         full_range::render((&plan, &part), (&renderer, stop), (format, &path), output, &stats)?;
     } else {
         let job = Job {
@@ -226,7 +226,7 @@ fn one(
                 "{which}wrote {} ({width} x {height} pixels, {seconds:.2} s)",
                 path.display()
             ));
-            differences.tell();
+            differences.print();
         }
     }
     stats.writing = whole.elapsed().saturating_sub(stats.rendering.get());
@@ -256,7 +256,7 @@ fn share(
         ));
     }
     debug::print(model, &args.debug)?;
-    let beside = aov::wanted(&args.aov, model)?;
+    let beside = aov::requested(&args.aov, model)?;
     let start = Instant::now();
     let plan = args.keep.plan(model);
     stats.building += start.elapsed();
@@ -278,7 +278,7 @@ fn share(
     let whole = Instant::now();
     let exact = || {
         let chosen =
-            Chosen { above_all: Some(Accuracy::Exact), memory: args.stop.left(), ..Chosen::default() };
+            Chosen { above_all: Some(Accuracy::Exact), memory: args.stop.memory_left(), ..Chosen::default() };
         source.load_by(registry, chosen).map(|loaded| loaded.model).map_err(Failure::Scene)
     };
     let is_wanted = beside.contains(&Aov::Error);
@@ -311,7 +311,7 @@ fn format(args: &Args, path: &Path) -> Result<Format, Failure> {
     let format = match args.format {
         Some(format) => format,
         None if path == Path::new("-") => Format::Ppm,
-        None => named(path, "end it in .png or .ppm, or give `--format png` or `--format ppm`")?,
+        None => format_by_name(path, "end it in .png or .ppm, or give `--format png` or `--format ppm`")?,
     };
     Ok(match format {
         Format::Png(_) => Format::Png(args.compress),

@@ -3,7 +3,7 @@
 mod colours;
 
 use crate::cli::files::input;
-use crate::cli::files::output::{self, Output, named};
+use crate::cli::files::output::{self, Output, format_by_name};
 use crate::cli::options::number::whole;
 use crate::cli::options::{method, set};
 use crate::cli::process::failure::{Failure, print};
@@ -64,8 +64,8 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     interrupt::catch(InterruptAction::Exit("the image was not finished"))?;
     let picture = match args.output {
         Some(path) => {
-            let format = named(&path, "end it in .png or .ppm")?;
-            output::is_no_source(&path, &args.scene, &model)?;
+            let format = format_by_name(&path, "end it in .png or .ppm")?;
+            output::refuse_source(&path, &args.scene, &model)?;
             let output = Output::open(&path)?;
             Some((path, format, output))
         }
@@ -102,7 +102,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             Verdict::Contradicted => [255, 0, 0],
         };
         let bytes = verdicts.iter().flat_map(colour).collect();
-        output::put(&path, output, |out| format.write(out, size, iter::once(Ok(bytes))))?;
+        output::write_image(&path, output, |out| format.write(out, size, iter::once(Ok(bytes))))?;
     }
     if contradicted > 0 {
         return Err(Failure::Failed(format!(

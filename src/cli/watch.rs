@@ -12,7 +12,7 @@ mod files;
 pub(super) mod frame;
 mod scenes;
 pub(super) mod session;
-pub(super) mod tries;
+pub(super) mod trial_values;
 mod watched;
 
 use super::serve::{Server, Work};

@@ -36,7 +36,7 @@ pub fn load(
     sets: &set::Args,
     accuracy: Option<Accuracy>,
 ) -> Result<Model, Failure> {
-    told(Source::read(path, sets)?.load(registry, accuracy)).map(|loaded| loaded.model)
+    print_warnings(Source::read(path, sets)?.load(registry, accuracy)).map(|loaded| loaded.model)
 }
 
 /// The warnings that were printed last.
@@ -44,13 +44,13 @@ static TOLD: Mutex<String> = Mutex::new(String::new());
 
 /// Prints the warnings of a scene that was loaded, unless they are those of the scene before: the frames of a film
 /// mostly have the same.
-pub fn told(loaded: Result<Loaded, Report>) -> Result<Loaded, Failure> {
+pub fn print_warnings(loaded: Result<Loaded, Report>) -> Result<Loaded, Failure> {
     let loaded = loaded.map_err(Failure::Scene)?;
-    let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut print_warnings = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
     let warnings = loaded.warnings.short();
-    if *told != warnings {
+    if *print_warnings != warnings {
         messages::report(&loaded.warnings);
-        *told = warnings;
+        *print_warnings = warnings;
     }
     Ok(loaded)
 }
@@ -70,7 +70,7 @@ impl Source {
         let syntax = Syntax::of_name(path);
         let syntax = syntax.or_else(|| Some(Syntax::of_text(std::str::from_utf8(&bytes).ok()?)));
         let model = if syntax == Some(Syntax::Toml) { MODEL_IN_TOML } else { MODEL };
-        memory::room(model.saturating_mul(bytes.len()), &format!("the model of `{name}`"))?;
+        memory::refuse_too_large(model.saturating_mul(bytes.len()), &format!("the model of `{name}`"))?;
         Ok(Self { name, folder: path.parent().unwrap_or(path).to_owned(), bytes, sets: sets.values.clone() })
     }
 
@@ -98,7 +98,7 @@ pub fn read(path: &Path) -> Result<(String, Vec<u8>), Failure> {
     } else {
         (path.display().to_string(), files::open_stream(path).and_then(to_first_nul))
     };
-    crash::about(&name);
+    crash::set_scene(&name);
     match bytes {
         Ok(bytes) if bytes.len() as u64 > LARGEST => {
             let message = format!("`{name}` is larger than {} MiB, too large for a scene", LARGEST >> 20);

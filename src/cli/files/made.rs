@@ -27,7 +27,7 @@ pub fn texts(source: &Source, set: &set::Args, camera: &Film, part: &Part) -> Ve
 
 /// Tells whether a complete image exists: a PNG that has these texts, and is newer than the program and than the files
 /// that its scene names. The texts do not contain the content of these files.
-pub fn is_there(path: &Path, texts: &[(&str, String)], named: &[PathBuf]) -> bool {
+pub fn is_up_to_date(path: &Path, texts: &[(&str, String)], named: &[PathBuf]) -> bool {
     let changed = |path: &Path| fs::metadata(path).and_then(|meta| meta.modified()).ok();
     let made = changed(path);
     // What has no time is not known to be older.

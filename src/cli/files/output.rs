@@ -29,9 +29,9 @@ pub enum Output {
 
 /// Writes a new file as a whole; an existing file is not replaced.
 pub fn create(path: &Path, text: &str) -> Result<(), Failure> {
-    is_new(path)?;
+    refuse_existing(path)?;
     let cannot = |error: io::Error| match error.kind() {
-        io::ErrorKind::AlreadyExists => is_there(path),
+        io::ErrorKind::AlreadyExists => already_exists(path),
         _ => Failure::cannot_write(path, &error),
     };
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
@@ -50,7 +50,7 @@ pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 }
 
 /// Writes an image or a file beside it, moves it to its path, and reports it.
-pub fn put(
+pub fn write_image(
     path: &Path,
     output: Output,
     write: impl FnOnce(&mut BufWriter<Output>) -> io::Result<()>,
@@ -72,14 +72,14 @@ pub fn finished(path: &Path, written: io::Result<()>, out: BufWriter<Output>) ->
 }
 
 /// Appends to a path. `with_extension` would replace the end of the name.
-pub fn ended(path: &Path, end: impl AsRef<OsStr>) -> PathBuf {
+pub fn append_to_path(path: &Path, end: impl AsRef<OsStr>) -> PathBuf {
     let mut path = path.as_os_str().to_owned();
     path.push(end);
     path.into()
 }
 
 /// Makes a folder and its parents, where they do not exist.
-pub fn folder(path: &Path) -> Result<(), Failure> {
+pub fn create_folder(path: &Path) -> Result<(), Failure> {
     fs::create_dir_all(path).map_err(|error| {
         let reason = match error.kind() {
             io::ErrorKind::AlreadyExists => "a file of this name exists".to_owned(),
@@ -90,11 +90,11 @@ pub fn folder(path: &Path) -> Result<(), Failure> {
 }
 
 /// Refuses a path that already exists.
-pub fn is_new(path: &Path) -> Result<(), Failure> {
-    if path.symlink_metadata().is_ok() { Err(is_there(path)) } else { Ok(()) }
+pub fn refuse_existing(path: &Path) -> Result<(), Failure> {
+    if path.symlink_metadata().is_ok() { Err(already_exists(path)) } else { Ok(()) }
 }
 
-fn is_there(path: &Path) -> Failure {
+fn already_exists(path: &Path) -> Failure {
     Failure::Usage(
         format!("`{}` already exists", path.display()),
         Some("existing files are not overwritten: choose another name".to_owned()),
@@ -114,7 +114,7 @@ fn target(path: &Path) -> io::Result<PathBuf> {
 }
 
 /// Refuses to write an image to a file that the model was read from, whatever its name here.
-pub fn is_no_source(path: &Path, scene: &Path, model: &Model) -> Result<(), Failure> {
+pub fn refuse_source(path: &Path, scene: &Path, model: &Model) -> Result<(), Failure> {
     let refused = |what| {
         Err(Failure::Usage(
             format!("`{}` is {what}, which the image would replace", path.display()),
@@ -190,7 +190,7 @@ impl Output {
     }
 
     /// Sets the length of the file in bytes; a longer file is filled with zeros.
-    pub fn lengthen(&self, len: u64) -> io::Result<()> {
+    pub fn set_len(&self, len: u64) -> io::Result<()> {
         match self {
             Self::File(file, _) => file.file().set_len(len),
             Self::Standard | Self::Special(_) => Err(io::ErrorKind::Unsupported.into()),
@@ -225,7 +225,7 @@ impl Write for Output {
 }
 
 /// Returns the format that a file's name implies, or an error with this help.
-pub fn named(path: &Path, help: &str) -> Result<Format, Failure> {
+pub fn format_by_name(path: &Path, help: &str) -> Result<Format, Failure> {
     Format::of(path).ok_or_else(|| {
         let message = format!("the name `{}` does not determine the format of the image", path.display());
         Failure::Usage(message, Some(help.to_owned()))

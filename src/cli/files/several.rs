@@ -1,7 +1,7 @@
 //! Several scenes for one command: the names of their images, what is said about all of them, and the exit status.
 
 use crate::cli::files::{input, output};
-use crate::cli::process::failure::{Failure, status, tell};
+use crate::cli::process::failure::{Failure, report, status};
 use crate::cli::process::progress;
 use crate::text::{self, list};
 use std::collections::HashMap;
@@ -42,7 +42,7 @@ pub fn targets(scenes: &[PathBuf], output: Option<&Path>, extension: &str) -> Re
         }
         targets.push(target);
     }
-    output.map_or(Ok(()), output::folder)?;
+    output.map_or(Ok(()), output::create_folder)?;
     Ok(targets)
 }
 
@@ -57,13 +57,16 @@ fn is_file_name(path: &Path) -> bool {
 
 /// Runs a function for each scene, continues after a failure, and reports at the end how many have failed. The exit
 /// status is the worst of all.
-pub fn each(scenes: &[PathBuf], mut one: impl FnMut(usize) -> Result<(), Failure>) -> Result<(), Failure> {
+pub fn for_each_scene(
+    scenes: &[PathBuf],
+    mut one: impl FnMut(usize) -> Result<(), Failure>,
+) -> Result<(), Failure> {
     let start = Instant::now();
     let (mut worst, mut failed) = (0, Vec::new());
     for (index, scene) in scenes.iter().enumerate() {
         progress::begin(index, scenes.len());
         if let Err(failure) = one(index) {
-            tell(&failure);
+            report(&failure);
             worst = worst.max(status(&failure));
             failed.push(scene.display().to_string());
         }

@@ -49,13 +49,13 @@ fn read_once(shared: &OnceLock<Arc<View>>, registry: &Registry, path: &Path, tex
 }
 
 /// A file as it was read: when it was last changed, and what it says.
-type Stored = (Option<SystemTime>, Arc<View>);
+type CachedFile = (Option<SystemTime>, Arc<View>);
 
 /// The texts that are open in the editor, by their paths, and the files that were read beside them.
 pub struct Documents<'r> {
     registry: &'r Registry,
     open: BTreeMap<PathBuf, Document>,
-    stored: RefCell<BTreeMap<PathBuf, Stored>>,
+    stored: RefCell<BTreeMap<PathBuf, CachedFile>>,
 }
 
 impl<'r> Documents<'r> {

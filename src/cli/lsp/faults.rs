@@ -107,7 +107,7 @@ impl Faults {
             };
             let start = Instant::now();
             let read = |scene: &documents::Scene| {
-                crash::about(&path.display().to_string());
+                crash::set_scene(&path.display().to_string());
                 let faults = || {
                     let faults = diagnose(registry, &path, scene.text.as_str(), &scene.open);
                     let is_scene =
@@ -155,7 +155,7 @@ impl Faults {
                     Some((uri, version)) => json!({ "uri": uri, "version": version, "diagnostics": told }),
                     None => json!({ "uri": uri(&path), "diagnostics": told }),
                 };
-                protocol::told("textDocument/publishDiagnostics", &parameters)
+                protocol::notification("textDocument/publishDiagnostics", &parameters)
             })
             .collect()
     }

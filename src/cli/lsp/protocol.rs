@@ -174,12 +174,12 @@ pub fn text_of(value: &impl Serialize) -> String {
 }
 
 /// Writes an answer, whose result is in JSON.
-pub fn answered(id: &RequestId, result: &str) -> String {
+pub fn response(id: &RequestId, result: &str) -> String {
     format!(r#"{{"jsonrpc":"2.0","id":{},"result":{result}}}"#, text_of(id))
 }
 
 /// Writes why there is no answer.
-pub fn refused(id: &RequestId, code: ErrorCode, message: &str) -> String {
+pub fn error_response(id: &RequestId, code: ErrorCode, message: &str) -> String {
     json!({ "jsonrpc": "2.0", "id": id, "error": { "code": code as i32, "message": message } }).to_string()
 }
 
@@ -190,7 +190,7 @@ pub fn malformed(why: &str) -> String {
 }
 
 /// Writes what an editor is told without having asked.
-pub fn told(method: &str, parameters: &Value) -> String {
+pub fn notification(method: &str, parameters: &Value) -> String {
     json!({ "jsonrpc": "2.0", "method": method, "params": parameters }).to_string()
 }
 

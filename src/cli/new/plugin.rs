@@ -90,7 +90,7 @@ pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
     let files: Vec<_> =
         templates.iter().map(|(path, text)| (path.replace("NAME", name), named(text, name))).collect();
     for (path, _) in &files {
-        output::is_new(Path::new(path))?;
+        output::refuse_existing(Path::new(path))?;
     }
     for (path, text) in &files {
         output::create(Path::new(path), text)?;

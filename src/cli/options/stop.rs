@@ -60,7 +60,7 @@ enum Limit {
 }
 
 impl Limit {
-    fn tell(&self) {
+    fn report(&self) {
         messages::note(&format!("the {self} has been reached"));
     }
 }
@@ -91,15 +91,15 @@ impl Stop {
     }
 
     /// Reports why the render stops.
-    pub fn tell(&self) {
+    pub fn report(&self) {
         match self.reached.get() {
-            Some(limit) => limit.tell(),
+            Some(limit) => limit.report(),
             None => messages::note("interrupted; press Ctrl-C again to quit at once"),
         }
     }
 
     /// Adds time that was spent on writing the image.
-    pub fn wrote(&self, time: Duration) {
+    pub fn add_writing_time(&self, time: Duration) {
         self.written.fetch_add(time.as_micros() as u64, Ordering::Relaxed);
     }
 
@@ -121,7 +121,7 @@ impl Stop {
         interrupt::set_action(InterruptAction::Exit(NOT_FINISHED));
         match self.reached.get() {
             Some(limit) if matches!(limit, Limit::Time(_)) => {
-                limit.tell();
+                limit.report();
                 messages::note(NOT_FINISHED);
                 Err(Failure::Stopped)
             }
@@ -158,7 +158,7 @@ impl Args {
                     // If nothing is rendered yet, there is nothing to keep.
                     if matches!(limit, Limit::Time(_)) {
                         interrupt::exit_if_interrupt_would(|said| {
-                            limit.tell();
+                            limit.report();
                             messages::note(if begun.get().is_some() { said } else { NOT_BEGUN });
                         });
                     }
@@ -174,14 +174,14 @@ impl Args {
     }
 
     /// Returns the memory that the textures and the objects of a scene may take, in bytes, if there is a limit.
-    pub fn left(&self) -> Option<u64> {
+    pub fn memory_left(&self) -> Option<u64> {
         let now = memory::now().unwrap_or(0) + ASIDE;
         self.max_memory.map(|limit| limit.as_u64().saturating_sub(now))
     }
 
     /// Refuses an image that takes more memory at one time, in bytes, than the limit leaves.
-    pub fn fits(&self, bytes: usize) -> Result<(), Failure> {
-        match (self.max_memory, self.left()) {
+    pub fn refuse_too_large(&self, bytes: usize) -> Result<(), Failure> {
+        match (self.max_memory, self.memory_left()) {
             (Some(limit), Some(left)) if left < bytes as u64 => Err(Failure::Usage(
                 format!("{limit} of memory is not enough for this image"),
                 Some(format!("it needs about {} more", ByteSize(bytes as u64 - left))),

@@ -13,7 +13,7 @@ fn last() -> MutexGuard<'static, (String, String)> {
 }
 
 /// Keeps panics, in place of printing them, so that [`catch`] can report them.
-pub fn keep() {
+pub fn capture_panics() {
     panic::set_hook(Box::new(|info| {
         let payload = info.payload();
         let text = payload.downcast_ref::<String>().map(String::as_str);
@@ -21,7 +21,7 @@ pub fn keep() {
         // So the standard library tells that a thread did not start for lack of memory, where nothing can be unwound.
         if said.contains("alternative stack") {
             let scene = scene().map_or(String::new(), |scene| format!(" for `{scene}`"));
-            failure::end_in_haste(&Failure::Failed(format!(
+            failure::end_keeping_bar(&Failure::Failed(format!(
                 "not enough memory{scene}: a thread did not start"
             )));
         }
@@ -31,7 +31,7 @@ pub fn keep() {
 }
 
 /// Names the scene that later panics are reported for.
-pub fn about(scene: &str) {
+pub fn set_scene(scene: &str) {
     scene.clone_into(&mut last().1);
 }
 
@@ -59,7 +59,7 @@ mod tests {
 
     #[test]
     fn a_panic_is_a_failure_that_names_the_scene_and_the_version() {
-        about("ball.ray");
+        set_scene("ball.ray");
         let Err(Failure::Failed(told)) = catch(|| panic!("a bug")) else { panic!("no failure") };
         assert!(told.starts_with("internal error at `ball.ray`: "), "{told}");
         assert!(told.contains(env!("CARGO_PKG_VERSION")), "{told}");

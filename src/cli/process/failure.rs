@@ -66,14 +66,14 @@ impl Failure {
 }
 
 /// Prints why a command failed, and returns the exit status.
-pub fn tell(failure: &Failure) -> ExitCode {
-    told(failure).into()
+pub fn report(failure: &Failure) -> ExitCode {
+    report_and_status(failure).into()
 }
 
 /// Prints why a command failed, and ends the program, whatever its other threads are doing.
 pub fn end(failure: &Failure) -> ! {
     progress::clear();
-    end_in_haste(failure)
+    end_keeping_bar(failure)
 }
 
 /// Lets the program end soon with a failure's status, even if the reader of standard error does not read, so that no
@@ -89,10 +89,10 @@ pub fn end_even_if_blocked(failure: &Failure) {
 }
 
 /// Ends the program as [`end`] does, but a bar on the terminal stays: it may be what the thread was drawing.
-pub fn end_in_haste(failure: &Failure) -> ! {
+pub fn end_keeping_bar(failure: &Failure) -> ! {
     // From here on no other thread prints anything.
     let _held = io::stderr().lock();
-    let status = told(failure);
+    let status = report_and_status(failure);
     temporary::remove_all();
     process::exit(status.into())
 }
@@ -104,7 +104,7 @@ pub fn exit() -> ! {
     process::exit(0)
 }
 
-fn told(failure: &Failure) -> u8 {
+fn report_and_status(failure: &Failure) -> u8 {
     match failure {
         Failure::Scene(report) => messages::report(report),
         Failure::Usage(message, help) | Failure::Unread(message, help) => {

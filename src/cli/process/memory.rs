@@ -20,7 +20,7 @@ static RESERVE: Mutex<Vec<u8>> = Mutex::new(Vec::new());
 static IS_ENDING: AtomicBool = AtomicBool::new(false);
 
 /// Returns an error if the system would not provide about `bytes` bytes.
-pub fn room(bytes: usize, what: &str) -> Result<(), Failure> {
+pub fn refuse_too_large(bytes: usize, what: &str) -> Result<(), Failure> {
     if heap::has_room(bytes) {
         return Ok(());
     }
@@ -28,7 +28,7 @@ pub fn room(bytes: usize, what: &str) -> Result<(), Failure> {
 }
 
 /// Ends the program with a message, from now on, if the system refuses it memory.
-pub fn tell_when_refused() {
+pub fn report_refused_allocations() {
     if let Ok(mut reserve) = RESERVE.lock() {
         heap::may_fail(|| reserve.try_reserve_exact(KEPT).ok());
     }
@@ -49,7 +49,7 @@ fn end(bytes: usize) {
     let scene = crash::scene().map_or(String::new(), |scene| format!(" for `{scene}`"));
     let bytes = ByteSize(bytes as u64);
     let message = format!("not enough memory{scene}: the system refused {bytes} more");
-    failure::end_in_haste(&Failure::Failed(message))
+    failure::end_keeping_bar(&Failure::Failed(message))
 }
 
 /// Returns the memory that the program uses now, in bytes.

@@ -62,7 +62,7 @@ impl Progress {
     }
 
     /// Adds steps that are to be done.
-    pub fn lengthen(&self, steps: usize) {
+    pub fn inc_length(&self, steps: usize) {
         self.bar.inc_length(steps as u64);
     }
 

@@ -54,9 +54,9 @@ pub fn open(
             Some("name a file for the main image with `-o FILE`".to_owned()),
         ));
     }
-    let aovs = wanted(args, model)?;
+    let aovs = requested(args, model)?;
     let opened = |path: PathBuf| {
-        output::is_no_source(&path, scene, model)?;
+        output::refuse_source(&path, scene, model)?;
         Output::open(&path).map(|output| (path, output))
     };
     aovs.into_iter()
@@ -70,7 +70,7 @@ pub fn open(
 }
 
 /// Returns the images that are asked for, each once.
-pub fn wanted(args: &Args, model: &Model) -> Result<Vec<Aov>, Failure> {
+pub fn requested(args: &Args, model: &Model) -> Result<Vec<Aov>, Failure> {
     let [width, height] = model.camera.value.pixels;
     if !args.aov.is_empty() && width * height > LARGEST {
         return Err(Failure::Usage(
@@ -92,7 +92,7 @@ pub fn picture(main: &Path, aov: Aov) -> PathBuf {
     let mut stem = main.file_stem().unwrap_or_default().to_owned();
     stem.push(format!("-{}", text::name(&aov)));
     let picture = main.with_file_name(stem);
-    let with = |extension: &OsStr| output::ended(&output::ended(&picture, "."), extension);
+    let with = |extension: &OsStr| output::append_to_path(&output::append_to_path(&picture, "."), extension);
     main.extension().map_or_else(|| picture.clone(), with)
 }
 
@@ -108,15 +108,15 @@ const TRUE_LEAST: u32 = 64;
 /// The maximum number of samples per pixel of the reference where pixels take different numbers.
 const TRUE_MOST: u32 = 1024;
 
-/// Calls `work` with the plan of the reference for errors, if that is `wanted`, and else with the plan itself. `exact`
+/// Calls `work` with the plan of the reference for errors, if that is `requested`, and else with the plan itself. `exact`
 /// makes the model of the reference.
 pub fn with_truth<T>(
     plan: &Plan,
-    wanted: bool,
+    requested: bool,
     exact: impl FnOnce() -> Result<Model, Failure>,
     work: impl FnOnce(&Plan) -> Result<T, Failure>,
 ) -> Result<T, Failure> {
-    if !wanted || plan.camera.certain {
+    if !requested || plan.camera.certain {
         return work(plan);
     }
     let exact_model = exact()?;
@@ -141,8 +141,8 @@ pub fn write(
     format: Format,
     files: Vec<Files>,
 ) -> Result<(), Failure> {
-    let wanted = files.iter().any(|file| file.aov == Aov::Error);
-    with_truth(plan, wanted, exact, |truth| all(plan, truth, threads, format, files))
+    let requested = files.iter().any(|file| file.aov == Aov::Error);
+    with_truth(plan, requested, exact, |truth| all(plan, truth, threads, format, files))
 }
 
 fn all(plan: &Plan, truth: &Plan, threads: usize, format: Format, files: Vec<Files>) -> Result<(), Failure> {
@@ -156,19 +156,19 @@ fn all(plan: &Plan, truth: &Plan, threads: usize, format: Format, files: Vec<Fil
         });
         progress.end();
         let layer = layer.map_err(|_| Failure::Interrupted("the image was not finished"))?;
-        tell(&layer);
+        print_remarks(&layer);
         if let Some((path, output)) = exact {
             let bytes = layer.exr(size).map_err(|error| Failure::cannot_write(&path, &error))?;
-            output::put(&path, output, |out| out.write_all(&bytes))?;
+            output::write_image(&path, output, |out| out.write_all(&bytes))?;
         }
         let (path, output) = picture;
-        output::put(&path, output, |out| format.write(out, size, iter::once(Ok(layer.bytes))))?;
+        output::write_image(&path, output, |out| format.write(out, size, iter::once(Ok(layer.bytes))))?;
     }
     Ok(())
 }
 
 /// Tells what is remarkable about an image.
-pub fn tell(layer: &Layer) {
+pub fn print_remarks(layer: &Layer) {
     if let Some((most, [x, y])) = layer.most {
         messages::note(&format!("the most expensive pixel is {x} {y}, with {most} rays"));
     }

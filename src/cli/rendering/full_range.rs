@@ -29,7 +29,7 @@ pub fn render(
     stats: &Stats,
 ) -> Result<(), Failure> {
     let [width, height] = part.size();
-    memory::room(PIXEL.saturating_mul(width).saturating_mul(height), "the image")?;
+    memory::refuse_too_large(PIXEL.saturating_mul(width).saturating_mul(height), "the image")?;
     let progress = Progress::new(height);
     stop.begin_unkept(UNKEPT);
     let overseer = Overseer { stops: &|| stop.is_due(), row: &|| progress.step() };
@@ -39,13 +39,13 @@ pub fn render(
     stats.timed(|| pixels = renderer.colours(plan, [&part.columns, &part.rows], overseer, &add));
     progress.end();
     job::warn_of(stats.tally.cuts());
-    job::tell_proofs(stats.tally.proofs(), plan);
+    job::report_proofs(stats.tally.proofs(), plan);
     let Some(pixels) = pixels else {
-        stop.tell();
+        stop.report();
         messages::note(UNKEPT);
         return Err(Failure::Stopped);
     };
-    output::put(path, output, |out| format.write(out, [width, height], &pixels))
+    output::write_image(path, output, |out| format.write(out, [width, height], &pixels))
 }
 
 /// Returns the error for options that these formats cannot serve.

@@ -6,7 +6,7 @@ use crate::cli::options::stop::Stop;
 use crate::cli::process::failure::{self, Failure};
 use crate::cli::process::progress::Progress;
 use crate::cli::process::{memory, messages};
-use crate::cli::rendering::resume::{self, Begun};
+use crate::cli::rendering::resume::{self, ResumedImage};
 use crate::cli::rendering::stats::Stats;
 use crate::output::packing::PIECE;
 use crate::output::picture::Format;
@@ -47,7 +47,7 @@ pub struct Job<'a> {
 impl Job<'_> {
     /// Renders what a checkpoint does not have, and writes the image to its path. If the render is stopped, the program
     /// ends with what is done, because threads may still be at work.
-    pub fn run(&self, output: Output, begun: Option<Begun>) -> Result<(), Failure> {
+    pub fn run(&self, output: Output, begun: Option<ResumedImage>) -> Result<(), Failure> {
         let progress = Progress::new(self.part.rows.len());
         let (cuts, proofs) = (Mutex::new(Cuts::default()), Mutex::new(Proofs::default()));
         let cut = |part| cuts.lock().unwrap_or_else(PoisonError::into_inner).add(part);
@@ -69,7 +69,7 @@ impl Job<'_> {
             let outcome = self.write(output, begun, &progress, fill);
             progress.end();
             warn_of(take(&mut cuts.lock().unwrap_or_else(PoisonError::into_inner)));
-            tell_proofs(take(&mut proofs.lock().unwrap_or_else(PoisonError::into_inner)), plan);
+            report_proofs(take(&mut proofs.lock().unwrap_or_else(PoisonError::into_inner)), plan);
             match outcome {
                 Err(failure) if self.stop.is_due() => failure::end(&failure),
                 outcome => outcome,
@@ -80,7 +80,7 @@ impl Job<'_> {
     fn write(
         &self,
         output: Output,
-        mut begun: Option<Begun>,
+        mut begun: Option<ResumedImage>,
         progress: &Progress,
         fill: impl Fn(&mut Band),
     ) -> Result<(), Failure> {
@@ -91,12 +91,12 @@ impl Job<'_> {
         let mut writing = None;
         let bands = Band::split(columns, rows, self.at_once).flat_map(|band| {
             if let Some(since) = writing.take() {
-                self.stop.wrote(Instant::elapsed(&since));
+                self.stop.add_writing_time(Instant::elapsed(&since));
             }
-            let is_blank = self.stop.is_due() && begun.as_ref().is_none_or(Begun::is_over);
+            let is_blank = self.stop.is_due() && begun.as_ref().is_none_or(ResumedImage::is_over);
             if is_blank && (rows.end - band.start) * columns.len() > MOST_BLANK {
                 is_cut = true;
-                self.tell_once(&mut told, progress);
+                self.report_once(&mut told, progress);
                 // One row more, so that the compressor writes the rows before it.
                 return vec![Ok(vec![0; 3 * columns.len()]), Err(io::ErrorKind::Other.into())];
             }
@@ -110,7 +110,7 @@ impl Job<'_> {
             fill(&mut band);
             tiles.add(&band);
             if !band.is_whole() {
-                self.tell_once(&mut told, progress);
+                self.report_once(&mut told, progress);
             }
             writing = Some(Instant::now());
             band.bytes(PIECE).into_iter().map(Ok).collect()
@@ -126,23 +126,23 @@ impl Job<'_> {
             (None, Ok(())) if !tiles.is_whole() => self.leave(out, &tiles, rows.len()),
             (None, written) => {
                 finished(self.path, written, out)?;
-                begun.map_or(Ok(()), Begun::remove)
+                begun.map_or(Ok(()), ResumedImage::remove)
             }
         }
     }
 
     /// Reports why the render stops, once.
-    fn tell_once(&self, told: &mut bool, progress: &Progress) {
+    fn report_once(&self, told: &mut bool, progress: &Progress) {
         if !replace(told, true) {
             progress.end();
-            self.stop.tell();
+            self.stop.report();
         }
     }
 
     /// Makes a band, filled with the pixels of a checkpoint.
-    fn band(&self, rows: Range<usize>, begun: Option<&mut Begun>) -> Result<Band, Failure> {
+    fn band(&self, rows: Range<usize>, begun: Option<&mut ResumedImage>) -> Result<Band, Failure> {
         let columns = self.part.columns.clone();
-        memory::room(3 * rows.len() * columns.len(), "the image")?;
+        memory::refuse_too_large(3 * rows.len() * columns.len(), "the image")?;
         let band = Band::blank(columns, rows);
         begun.map_or(Ok(()), |begun| begun.fill(&band))?;
         Ok(band)
@@ -185,7 +185,7 @@ impl Job<'_> {
 }
 
 /// Tells how many pixels are certified, and how much the others may be off, if anything is proven.
-pub fn tell_proofs(proofs: Proofs, plan: &Plan) {
+pub fn report_proofs(proofs: Proofs, plan: &Plan) {
     let (Some(error), 1..) = (plan.camera.adaptive.and_then(|adaptive| adaptive.error), proofs.pixels())
     else {
         return;

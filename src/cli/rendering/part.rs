@@ -6,8 +6,8 @@ use crate::cli::options::stop::Stop;
 use crate::cli::process::failure::{self, Failure};
 use crate::cli::process::progress::Progress;
 use crate::cli::process::{memory, messages};
-use crate::cli::rendering::job::{tell_proofs, warn_of};
-use crate::cli::rendering::part_begun::{Begun, is_there, remove};
+use crate::cli::rendering::job::{report_proofs, warn_of};
+use crate::cli::rendering::part_begun::{UnfinishedPart, is_complete, remove};
 use crate::cli::rendering::stats::Stats;
 use crate::cli::rendering::{aov, full_range, resume};
 use crate::output::aov::{Aov, Setting};
@@ -55,7 +55,7 @@ fn share(text: &str) -> Result<[usize; 2], String> {
 
 /// Returns the path of a part of an image.
 pub fn beside(picture: &Path, [number, of]: [usize; 2]) -> PathBuf {
-    output::ended(picture, format!(".part-{number}-of-{of}"))
+    output::append_to_path(picture, format!(".part-{number}-of-{of}"))
 }
 
 /// A part that is to be rendered.
@@ -97,15 +97,15 @@ impl Share<'_> {
             Label { part, tiles, size, what, beside, identity, made, unfinished }
         };
         let main = beside_and_label(path, label(self.what, false));
-        if resumes && is_there(&main)? {
+        if resumes && is_complete(&main)? {
             // Where the program was killed just after it had finished the part, its checkpoint is still there.
-            Begun::remove(&resume::beside(&main.0), &main.1)?;
+            UnfinishedPart::remove(&resume::beside(&main.0), &main.1)?;
         } else {
             match self.what {
                 PixelFormat::Exr | PixelFormat::Pfm => self.full_range(&main)?,
                 _ => self.bytes(&main, resumes, label(self.what, true))?,
             }
-            wrote(&main.0, &main.1);
+            add_writing_time(&main.0, &main.1);
         }
         if self.beside.is_empty() {
             return Ok(());
@@ -119,9 +119,9 @@ impl Share<'_> {
                 };
                 let what = PixelFormat::Beside(*aov, compression, Setting::of(&self.plan.camera));
                 let file = beside_and_label(&aov::picture(beside, *aov), label(what, false));
-                if !(resumes && is_there(&file)?) {
+                if !(resumes && is_complete(&file)?) {
                     self.values(&file, *aov, truth)?;
-                    wrote(&file.0, &file.1);
+                    add_writing_time(&file.0, &file.1);
                 }
             }
             Ok(())
@@ -150,7 +150,7 @@ impl Share<'_> {
     fn bytes(&self, file: &(PathBuf, Label), resumes: bool, unfinished: Label) -> Result<(), Failure> {
         let (path, label) = file;
         let checkpoint = resume::beside(path);
-        let mut begun = if resumes { Begun::open(&checkpoint, label)? } else { None };
+        let mut begun = if resumes { UnfinishedPart::open(&checkpoint, label)? } else { None };
         let was_begun = begun.is_some();
         let tiles = label.tiles();
         let progress = Progress::new(self.grid().rows(&tiles).len());
@@ -167,9 +167,9 @@ impl Share<'_> {
                 if self.stop.is_due() && begun.is_none() {
                     break;
                 }
-                memory::room(3 * rows.len() * all, "the image")?;
+                memory::refuse_too_large(3 * rows.len() * all, "the image")?;
                 let mut band = self.band(&tiles, rows.clone(), begun.as_mut())?;
-                if begun.as_ref().is_some_and(Begun::is_over) {
+                if begun.as_ref().is_some_and(UnfinishedPart::is_over) {
                     begun = None;
                 }
                 self.stats.timed(|| renders.fill(self.plan, &mut band, overseer, &add));
@@ -186,12 +186,12 @@ impl Share<'_> {
             progress.end();
             let tally = &self.stats.tally;
             warn_of(tally.cuts());
-            tell_proofs(tally.proofs(), self.plan);
+            report_proofs(tally.proofs(), self.plan);
             let is_whole = mask.len() == tiles.len() && mask.iter().all(|done| *done == 1);
             if is_whole {
                 return Ok::<_, Failure>(());
             }
-            self.stop.tell();
+            self.stop.report();
             // Threads may be at work on tiles of which nothing is kept.
             failure::end(&match self.leave(&checkpoint, unfinished, &mask, writer.begin, &mut writer) {
                 Ok(()) => Failure::Stopped,
@@ -221,7 +221,7 @@ impl Share<'_> {
         &self,
         tiles: &Range<usize>,
         rows: Range<usize>,
-        mut begun: Option<&mut Begun>,
+        mut begun: Option<&mut UnfinishedPart>,
     ) -> Result<Band, Failure> {
         let Part { columns, rows: all } = self.region;
         let band = Band::blank(columns.clone(), all.start + rows.start..all.start + rows.end);
@@ -293,7 +293,7 @@ impl Share<'_> {
         for run in grid.rectangles(&tiles, self.at_once / (TILE * columns.len())) {
             let [first, last] = [grid.tile(run.start), grid.tile(run.end - 1)];
             let (wide, tall) = (first[0].start..last[0].end, first[1].start..last[1].end);
-            memory::room(full_range::PIXEL * wide.len() * tall.len(), "the image")?;
+            memory::refuse_too_large(full_range::PIXEL * wide.len() * tall.len(), "the image")?;
             let whole = [
                 &(columns.start + wide.start..columns.start + wide.end),
                 &(rows.start + tall.start..rows.start + tall.end),
@@ -302,7 +302,7 @@ impl Share<'_> {
             self.stats.timed(|| colours = self.renderer.colours(self.plan, whole, overseer, &add));
             let Some(colours) = colours else {
                 progress.end();
-                self.stop.tell();
+                self.stop.report();
                 messages::note(UNKEPT);
                 return Err(Failure::Stopped);
             };
@@ -317,7 +317,7 @@ impl Share<'_> {
         }
         progress.end();
         warn_of(self.stats.tally.cuts());
-        tell_proofs(self.stats.tally.proofs(), self.plan);
+        report_proofs(self.stats.tally.proofs(), self.plan);
         finish(path, writer)
     }
 
@@ -326,7 +326,7 @@ impl Share<'_> {
         let (path, label) = file;
         let (plan, grid) = (self.plan, self.grid());
         let (tiles, height) = (label.tiles(), plan.camera.pixels[1]);
-        memory::room(24 * self.grid().pixels_of(tiles.clone()), "the part")?;
+        memory::refuse_too_large(24 * self.grid().pixels_of(tiles.clone()), "the part")?;
         let progress = Progress::new(tiles.len());
         let tile = |index: usize| {
             let [columns, rows] = grid.tile(tiles.start + index);
@@ -381,7 +381,7 @@ impl Writer<BufWriter<Output>> {
     }
 }
 
-fn wrote(path: &Path, label: &Label) {
+fn add_writing_time(path: &Path, label: &Label) {
     let [number, of] = label.part;
     let tiles = text::count(label.tiles().len(), "tile");
     messages::note(&format!("wrote {} (part {number} of {of}, {tiles})", path.display()));

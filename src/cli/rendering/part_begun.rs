@@ -11,20 +11,20 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// Tells whether a complete part exists.
-pub fn is_there((path, label): &(PathBuf, Label)) -> Result<bool, Failure> {
+pub fn is_complete((path, label): &(PathBuf, Label)) -> Result<bool, Failure> {
     let Ok(mut reader) = files::open(path).and_then(Reader::open) else { return Ok(false) };
     let there = &reader.label;
     let is_same = label.identity.differences(&there.identity).is_empty()
         && (label.tiles, label.what, &label.beside) == (there.tiles, there.what, &there.beside);
-    let is_there = is_same && !there.unfinished && reader.check().is_ok();
-    if is_there {
+    let is_complete = is_same && !there.unfinished && reader.check().is_ok();
+    if is_complete {
         messages::note(&format!("{} exists already", path.display()));
     }
-    Ok(is_there)
+    Ok(is_complete)
 }
 
 /// The unfinished part that a stopped render left.
-pub struct Begun {
+pub struct UnfinishedPart {
     path: PathBuf,
     reader: Reader,
     mask: Vec<u8>,
@@ -32,7 +32,7 @@ pub struct Begun {
     next: usize,
 }
 
-impl Begun {
+impl UnfinishedPart {
     /// Opens an unfinished part, if there is one.
     pub fn open(path: &Path, label: &Label) -> Result<Option<Self>, Failure> {
         let file = match files::open(path) {

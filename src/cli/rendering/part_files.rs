@@ -113,7 +113,7 @@ impl Parts {
     }
 
     /// Refuses parts of an image beside this one that belong to another scene.
-    pub fn belongs_with(&self, other: &Self) -> Result<(), Failure> {
+    pub fn refuse_other_scene(&self, other: &Self) -> Result<(), Failure> {
         let what = self.label.what;
         let like = |label: &Label| Label {
             part: self.label.part,

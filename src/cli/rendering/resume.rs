@@ -15,17 +15,17 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// The checkpoint that a render continues from.
-pub struct Begun {
+pub struct ResumedImage {
     path: PathBuf,
     checkpoint: Checkpoint,
 }
 
 /// Returns the path of an image's checkpoint.
 pub fn beside(picture: &Path) -> PathBuf {
-    output::ended(picture, ".checkpoint")
+    output::append_to_path(picture, ".checkpoint")
 }
 
-impl Begun {
+impl ResumedImage {
     /// Opens the checkpoint of an image, if there is one and it is `wanted`.
     pub fn open(
         wanted: bool,
@@ -62,7 +62,7 @@ impl Begun {
             file => file,
         };
         let begun = Self::read(path, file)?;
-        begun.belongs_to(&identity(model, part)?, part.size())?;
+        begun.refuse_other_image(&identity(model, part)?, part.size())?;
         Ok(Some(begun))
     }
 
@@ -75,7 +75,7 @@ impl Begun {
     }
 
     /// Refuses the checkpoint of another image than this one.
-    pub fn belongs_to(&self, identity: &Identity, size: [usize; 2]) -> Result<(), Failure> {
+    pub fn refuse_other_image(&self, identity: &Identity, size: [usize; 2]) -> Result<(), Failure> {
         let differences = identity.differences(&self.checkpoint.identity);
         if !differences.is_empty() {
             return Err(Failure::Usage(
@@ -149,7 +149,7 @@ pub fn leave(
         Format::Ppm => {
             // The missing end of the file becomes a hole, which reads as black.
             let len = format.len([width, height]).unwrap_or_default();
-            written.lengthen(len).map_err(|error| Failure::cannot_write(picture, &error))?;
+            written.set_len(len).map_err(|error| Failure::cannot_write(picture, &error))?;
             written
         }
         // The checkpoint's transparency shows which pixels are missing.

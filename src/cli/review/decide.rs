@@ -2,7 +2,7 @@
 
 use super::items::items;
 use super::pending::{self, Pending};
-use crate::cli::process::failure::{Failure, tell};
+use crate::cli::process::failure::{self, Failure};
 use crate::cli::process::messages;
 use crate::cli::report;
 use crate::cli::serve::{self, Answer, Server, Work};
@@ -77,7 +77,7 @@ fn page(registry: &Registry, folder: &Path, before: Option<&Path>) -> Response<s
     match html {
         Ok(html) => serve::content(StatusCode::OK, "text/html; charset=utf-8", html),
         Err(failure) => {
-            tell(&failure);
+            failure::report(&failure);
             serve::text(StatusCode::INTERNAL_SERVER_ERROR, "failed: see the terminal for the reason")
         }
     }
@@ -103,7 +103,7 @@ fn decide(
     let DecisionRequest { snapshot: name, version } =
         request.map_err(|_| (StatusCode::BAD_REQUEST, "the request names no snapshot".to_owned()))?;
     let failed = |failure: Failure| {
-        tell(&failure);
+        failure::report(&failure);
         (StatusCode::INTERNAL_SERVER_ERROR, "failed: see the terminal for the reason".to_owned())
     };
     let found = pending::find(folder).map_err(failed)?;

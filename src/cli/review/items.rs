@@ -5,7 +5,7 @@ use crate::cli::explain::Place;
 use crate::cli::files::{input, picture};
 use crate::cli::options::set;
 use crate::cli::process::crash;
-use crate::cli::process::failure::{Failure, tell};
+use crate::cli::process::failure::{self, Failure};
 use crate::cli::report::{Change, Decision, Item};
 use crate::output::compare::Comparison;
 use crate::scene::registry::Registry;
@@ -27,7 +27,7 @@ pub fn items(
         match Pending::read(new).and_then(|snapshot| crash::catch(|| item(registry, &snapshot, before))?) {
             Ok(item) => items.push(item),
             Err(failure) => {
-                tell(&failure);
+                failure::report(&failure);
             }
         }
     }
@@ -49,7 +49,7 @@ fn item(registry: &Registry, snapshot: &Pending, before: Option<&Path>) -> Resul
                 Place { scene: &scene, set, model, size: *size, pixel: *pixel }.explained(before)
             }
             Err(failure) => {
-                tell(&failure);
+                failure::report(&failure);
                 Vec::new()
             }
         },

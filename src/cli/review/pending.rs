@@ -57,7 +57,7 @@ impl Content {
 pub fn find(path: &Path) -> Result<Vec<PathBuf>, Failure> {
     if !path.is_dir() {
         let snapshot = if path.extension() == Some("new".as_ref()) { &path.with_extension("") } else { path };
-        return match output::ended(snapshot, ".new") {
+        return match output::append_to_path(snapshot, ".new") {
             new if new.is_file() => Ok(vec![new]),
             _ if snapshot.is_file() => {
                 Err(Failure::Usage(format!("nothing is pending for `{}`", path.display()), None))
@@ -115,7 +115,7 @@ impl Pending {
     /// Replaces the accepted snapshot by the pending one.
     pub fn accept(&self) -> Result<(), Failure> {
         if let Content::Binary(bytes, extension) = &self.new {
-            output::replace(&output::ended(&self.path, format!(".{extension}")), bytes)?;
+            output::replace(&output::append_to_path(&self.path, format!(".{extension}")), bytes)?;
         }
         // The line number of the test's source is for reviewing only: it changes too often to be kept.
         let kept = |line: &&str| !line.starts_with("assertion_line:");
@@ -127,10 +127,10 @@ impl Pending {
 
     /// Removes the pending snapshot.
     pub fn reject(&self) -> Result<(), Failure> {
-        let new = output::ended(&self.path, ".new");
+        let new = output::append_to_path(&self.path, ".new");
         let binary = match &self.new {
             Content::Text(_) => None,
-            Content::Binary(_, extension) => Some(output::ended(&new, format!(".{extension}"))),
+            Content::Binary(_, extension) => Some(output::append_to_path(&new, format!(".{extension}"))),
         };
         [Some(new), binary].into_iter().flatten().try_for_each(|file| {
             fs::remove_file(&file).map_err(|error| {
@@ -151,7 +151,7 @@ fn content(path: &Path, file: &str) -> Result<Option<Content>, String> {
     }
     let extension = field("extension").filter(|extension| extension.chars().all(char::is_alphanumeric));
     let extension = extension.ok_or("its header names no extension")?;
-    match bytes(&output::ended(path, format!(".{extension}"))) {
+    match bytes(&output::append_to_path(path, format!(".{extension}"))) {
         Ok(bytes) => Ok(Some(Content::Binary(bytes, extension.to_owned()))),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(format!("its .{extension} file: {}", text::reason(&error))),

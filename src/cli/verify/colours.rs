@@ -110,7 +110,7 @@ pub fn report(args: &Args, proof: Proof, picture: Option<(PathBuf, Format, Outpu
             contradicted: first(Verdict::Contradicted),
         },
     };
-    print(&if args.json { text::json_in_lines(&numbers) } else { numbers.told() })?;
+    print(&if args.json { text::json_in_lines(&numbers) } else { numbers.message() })?;
     if let Some((path, format, output)) = picture {
         let colour = |verdict: &Option<Verdict>| match verdict {
             Some(Verdict::Proven) => [0; 3],
@@ -119,7 +119,7 @@ pub fn report(args: &Args, proof: Proof, picture: Option<(PathBuf, Format, Outpu
             Some(Verdict::Contradicted) => [255, 0, 0],
         };
         let bytes = verdicts.iter().flat_map(colour).collect();
-        output::put(&path, output, |out| format.write(out, *size, iter::once(Ok(bytes))))?;
+        output::write_image(&path, output, |out| format.write(out, *size, iter::once(Ok(bytes))))?;
     }
     let contradicted = numbers.pixels.contradicted;
     if contradicted > 0 {
@@ -152,7 +152,7 @@ impl Counts {
         }
     }
 
-    fn told(&self, what: &str) -> String {
+    fn message(&self, what: &str) -> String {
         let Self { all, proven, rounded, open, contradicted, not_reached } = self;
         let percent = 100.0 * *proven as f64 / *all as f64;
         let rest = if *not_reached > 0 { format!(", {not_reached} not reached") } else { String::new() };
@@ -163,7 +163,7 @@ impl Counts {
 }
 
 impl Numbers {
-    fn told(&self) -> String {
+    fn message(&self) -> String {
         let named = |kind: &str, pixels: &[[usize; 2]]| match pixels {
             [] => String::new(),
             _ => {
@@ -172,8 +172,8 @@ impl Numbers {
             }
         };
         let First { rounded, open, contradicted } = &self.first;
-        self.pixels.told("pixels")
-            + &self.bytes.told("bytes")
+        self.pixels.message("pixels")
+            + &self.bytes.message("bytes")
             + &named("off by rounding", rounded)
             + &named("open", open)
             + &named("contradicted", contradicted)

@@ -9,7 +9,7 @@ use super::frame::Frame;
 use super::session::Session;
 use crate::cli::plan;
 use crate::cli::process::crash;
-use crate::cli::process::failure::tell;
+use crate::cli::process::failure::report;
 use crate::cli::serve::{self, Body, Client, Work};
 use crate::output::aov::Aov;
 use crate::render::plan::Plan;
@@ -128,7 +128,7 @@ pub async fn answer(request: &Request<Bytes>, session: &Session, work: &Work) ->
 
 fn events(session: &Session) -> Body {
     let (mut sender, body) = Channel::new(1);
-    let (mut subscriber, look) = (session.feed.subscribe(), session.look());
+    let (mut subscriber, viewer) = (session.feed.subscribe(), session.add_viewer());
     tokio::spawn(async move {
         // When the program ends, the page should soon look for the next one.
         let mut event = Some(Bytes::from("retry: 500\n\n"));
@@ -140,9 +140,9 @@ fn events(session: &Session) -> Body {
             event = timeout(QUIET, subscriber.next()).await.unwrap_or(quiet);
         }
     });
-    // The closure owns `look`, so that the page counts as looking until the body is dropped, which is when it has gone.
+    // The closure owns `viewer`, so that the page counts as looking until the body is dropped, which is when it has gone.
     let looked_at = move |frame| {
-        let _ = &look;
+        let _ = &viewer;
         frame
     };
     body.map_frame(looked_at).boxed()
@@ -172,7 +172,7 @@ async fn about(
             serve::text(StatusCode::CONFLICT, &format!("{error}\n"))
         }
         Some(Err(failure)) => {
-            tell(&failure);
+            report(&failure);
             serve::text(StatusCode::INTERNAL_SERVER_ERROR, "internal error: see the terminal\n")
         }
         _ => serve::text(StatusCode::INTERNAL_SERVER_ERROR, "internal error\n"),
@@ -231,8 +231,10 @@ fn pixel(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
                 }
                 written => written?,
             }
-            let explained =
-                Explained { lines: frame.lines_of([x, y]), text: &String::from_utf8_lossy(&told.text) };
+            let explained = PixelExplanation {
+                lines: frame.lines_of([x, y]),
+                text: &String::from_utf8_lossy(&told.text),
+            };
             Ok(("application/json", text::json(&explained).into_bytes()))
         })
     }))
@@ -240,7 +242,7 @@ fn pixel(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
 
 /// The explanation of a pixel.
 #[derive(Serialize)]
-struct Explained<'e> {
+struct PixelExplanation<'e> {
     /// The first and the last line of the object that the pixel shows, from 1; null where it shows none.
     lines: Option<[usize; 2]>,
     /// The output of `tabray probe`, or the beginning of it.

@@ -60,7 +60,7 @@ pub fn state(session: &Session) -> Response<Body> {
     let (name, camera) = (record.name(), record.args());
     let mut stand = navigation::camera_pose(&camera);
     for (attribute, values) in &mut stand {
-        let tried = session.tries.get(name, attribute);
+        let tried = session.trial_values.get(name, attribute);
         *values = tried.filter(|tried| tried.len() == values.len()).unwrap_or_else(|| values.clone());
     }
     let state = CameraState { name, stand, is_window: navigation::is_window(&camera) };
@@ -100,8 +100,10 @@ pub fn move_by(session: &Session, body: &[u8]) -> Response<Body> {
         return serve::text(StatusCode::CONFLICT, "the camera cannot go there\n");
     };
     for (attribute, values) in &after {
-        if stand.get(attribute) != Some(values) || session.tries.get(record.name(), attribute).is_some() {
-            session.tries.put(record.name(), attribute, values);
+        if stand.get(attribute) != Some(values)
+            || session.trial_values.get(record.name(), attribute).is_some()
+        {
+            session.trial_values.put(record.name(), attribute, values);
         }
     }
     session.done("moved\n")

@@ -3,7 +3,7 @@
 use super::frame::Frame;
 use crate::cli::measuring::Time;
 use crate::cli::process::crash;
-use crate::cli::process::failure::tell;
+use crate::cli::process::failure::report;
 use crate::scene::registry::Registry;
 use crate::text;
 use crate::tools::chart::{self, Chart, Panel, Progress};
@@ -68,7 +68,7 @@ impl Drop for Measurement {
 
 /// A chart, as a page receives it.
 #[derive(Serialize)]
-struct Charted {
+struct ChartMessage {
     /// The chart as an image.
     svg: String,
     /// The verdict.
@@ -117,7 +117,7 @@ pub fn measure(
         match measured.recv_timeout(LOOK) {
             Ok(Ok(chart)) => break chart?,
             Ok(Err(failure)) => {
-                tell(&failure);
+                report(&failure);
                 return Err(refuse("internal error: see the terminal"));
             }
             // The thread that measures ends as soon as it looks.
@@ -137,5 +137,5 @@ pub fn measure(
         return Err(refuse("the time limit has been reached, and nothing is measured yet"));
     }
     let (svg, words) = (chart::svg(&chart)?, chart::words(&chart));
-    Ok(text::json(&Charted { svg, words, is_whole: chart.is_whole }).into_bytes())
+    Ok(text::json(&ChartMessage { svg, words, is_whole: chart.is_whole }).into_bytes())
 }

@@ -55,12 +55,12 @@ pub fn singles(colours: &[Rgb]) -> Vec<u8> {
 
 /// Announces that all parts of a scene's image have been sent.
 pub fn done(frame: &Frame, took: Duration) -> Bytes {
-    event("done", &Done { seconds: took.as_secs_f64(), version: frame.version })
+    event("done", &ImageDone { seconds: took.as_secs_f64(), version: frame.version })
 }
 
 /// The end of an image.
 #[derive(Serialize)]
-struct Done {
+struct ImageDone {
     /// The time for the image, in seconds.
     seconds: f64,
     /// The version of the scene.
@@ -86,13 +86,13 @@ pub struct Fault<'f> {
 }
 
 /// Tells which scenes there are, in the order of the list.
-pub fn scenes(list: &[Listed]) -> Bytes {
+pub fn scenes(list: &[SceneEntry]) -> Bytes {
     event("scenes", &list)
 }
 
 /// A scene in the list of all scenes.
 #[derive(Serialize)]
-pub struct Listed {
+pub struct SceneEntry {
     /// The number in the address of its page.
     pub number: usize,
     /// Its name.

@@ -32,7 +32,7 @@ pub struct Frame {
     /// The accuracy that overrides the scene's own.
     pub accuracy: Option<Accuracy>,
     /// The state of its chart.
-    pub charting: Charting,
+    pub charting: ChartState,
     /// Whether a newer scene has replaced this one.
     pub stale: AtomicBool,
 }
@@ -64,14 +64,14 @@ impl Frame {
 
 /// The state of the chart of a scene.
 #[derive(Default)]
-pub struct Charting {
+pub struct ChartState {
     /// Whether it is being measured.
     pub is_busy: AtomicBool,
     /// The units of work that are done, and all units.
     pub units: [AtomicUsize; 2],
 }
 
-impl Charting {
+impl ChartState {
     /// Returns the units of work that are done, and all units.
     pub fn units(&self) -> [usize; 2] {
         self.units.each_ref().map(|units| units.load(Ordering::Relaxed))

@@ -1,9 +1,9 @@
 //! All scenes that are watched: those that were named, and those in folders.
 
 use super::answer;
-use super::events::{self, Listed};
+use super::events::{self, SceneEntry};
 use super::files::{Files, is_scene};
-use super::session::{Changed, Session};
+use super::session::{ChangeListener, Session};
 use crate::cli::files::input;
 use crate::cli::process::failure::Failure;
 use crate::cli::serve::{self, Body, Work};
@@ -22,13 +22,13 @@ pub struct Scenes {
     registry: &'static Registry,
     /// The paths that the command names, and whether each is a folder.
     named: Vec<(PathBuf, bool)>,
-    changed: Changed,
-    known: Mutex<Known>,
+    changed: ChangeListener,
+    known: Mutex<KnownScenes>,
 }
 
 /// The scenes that are known.
 #[derive(Default)]
-struct Known {
+struct KnownScenes {
     /// All scenes that there have been, by their numbers: a number never comes to mean another scene.
     sessions: Vec<Arc<Session>>,
     numbers: BTreeMap<PathBuf, usize>,
@@ -41,7 +41,7 @@ impl Scenes {
     pub fn new(
         registry: &'static Registry,
         named: &[PathBuf],
-        changed: Changed,
+        changed: ChangeListener,
         files: &mut Files,
     ) -> Result<Self, Failure> {
         let named: Vec<_> = named.iter().map(|path| (path.clone(), path.is_dir())).collect();
@@ -72,7 +72,7 @@ impl Scenes {
         Ok(scenes)
     }
 
-    fn known(&self) -> MutexGuard<'_, Known> {
+    fn known(&self) -> MutexGuard<'_, KnownScenes> {
         self.known.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -117,7 +117,7 @@ impl Scenes {
         }
         let name = |number: &usize| {
             let name = known.sessions[*number].path.display().to_string();
-            Listed { number: *number, name }
+            SceneEntry { number: *number, name }
         };
         let event = events::scenes(&known.list.iter().map(name).collect::<Vec<_>>());
         for session in &known.sessions {
@@ -132,7 +132,7 @@ impl Scenes {
 
     /// Tells whether a scene is to be read and rendered: a page looks at it, or it is the only one.
     pub fn is_wanted(&self, number: usize) -> bool {
-        self.only().is_some() || self.known().sessions[number].is_looked_at()
+        self.only().is_some() || self.known().sessions[number].has_viewers()
     }
 
     /// Answers a request.

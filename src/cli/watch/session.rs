@@ -1,7 +1,7 @@
 //! What the page of a scene shows, and what it may change: the values that it tries out, and the scene's text.
 
 use super::feed::EventFeed;
-use super::tries::Tries;
+use super::trial_values::TrialValues;
 use crate::cli::files::output;
 use crate::cli::process::failure::Failure;
 use crate::cli::serve::{self, Body};
@@ -17,55 +17,55 @@ pub struct Session {
     /// The events that the pages show.
     pub feed: EventFeed,
     /// The values that a page tries out.
-    pub tries: Tries,
+    pub trial_values: TrialValues,
     /// The entity types.
     pub registry: &'static Registry,
     /// The file of the scene.
     pub path: PathBuf,
     /// Tells the program that the values have changed, or the number of pages that look.
-    pub changed: Changed,
+    pub changed: ChangeListener,
     /// The number of pages that look at the scene.
-    pub looks: Arc<AtomicUsize>,
+    pub viewers: Arc<AtomicUsize>,
 }
 
 /// Tells the program that it has something to do.
-pub type Changed = Arc<dyn Fn() + Send + Sync>;
+pub type ChangeListener = Arc<dyn Fn() + Send + Sync>;
 
 /// A page that looks at a scene, until it is dropped. It does not keep the scene.
-pub struct Look {
-    looks: Arc<AtomicUsize>,
-    changed: Changed,
+pub struct Viewer {
+    viewers: Arc<AtomicUsize>,
+    changed: ChangeListener,
 }
 
-impl Drop for Look {
+impl Drop for Viewer {
     fn drop(&mut self) {
-        self.looks.fetch_sub(1, Ordering::Relaxed);
+        self.viewers.fetch_sub(1, Ordering::Relaxed);
         (self.changed)();
     }
 }
 
 impl Session {
     /// Makes the session of a scene that has not been read yet.
-    pub fn new(registry: &'static Registry, path: PathBuf, changed: Changed) -> Self {
-        let (feed, tries) = (EventFeed::new(), Tries::default());
-        Self { feed, tries, registry, path, changed, looks: Arc::default() }
+    pub fn new(registry: &'static Registry, path: PathBuf, changed: ChangeListener) -> Self {
+        let (feed, trial_values) = (EventFeed::new(), TrialValues::default());
+        Self { feed, trial_values, registry, path, changed, viewers: Arc::default() }
     }
 
     /// Begins to look at the scene.
-    pub fn look(&self) -> Look {
-        self.looks.fetch_add(1, Ordering::Relaxed);
+    pub fn add_viewer(&self) -> Viewer {
+        self.viewers.fetch_add(1, Ordering::Relaxed);
         (self.changed)();
-        Look { looks: self.looks.clone(), changed: self.changed.clone() }
+        Viewer { viewers: self.viewers.clone(), changed: self.changed.clone() }
     }
 
     /// Tells whether a page looks at the scene.
-    pub fn is_looked_at(&self) -> bool {
-        self.looks.load(Ordering::Relaxed) > 0
+    pub fn has_viewers(&self) -> bool {
+        self.viewers.load(Ordering::Relaxed) > 0
     }
 
     /// Tries out other values of an attribute.
     pub fn try_out(&self, body: &[u8]) -> Response<Body> {
-        match self.tries.set(body) {
+        match self.trial_values.set(body) {
             Some(()) => self.done("tried\n"),
             None => serve::text(StatusCode::BAD_REQUEST, "these are not numbers\n"),
         }
@@ -73,7 +73,7 @@ impl Session {
 
     /// Returns to the values of the text.
     pub fn discard(&self) -> Response<Body> {
-        self.tries.clear();
+        self.trial_values.clear();
         self.done("discarded\n")
     }
 
@@ -92,7 +92,7 @@ impl Session {
             return refuse("the scene has changed meanwhile: try again\n".to_owned());
         }
         let file = self.path.display().to_string();
-        let written = match self.tries.written(self.registry, &file, &text) {
+        let written = match self.trial_values.written(self.registry, &file, &text) {
             Ok(written) => written,
             Err(name) => {
                 return refuse(format!("`{name}` has no place of its own in the text: change the text\n"));
@@ -103,7 +103,7 @@ impl Session {
             Err(Failure::Failed(reason)) => return refuse(format!("{reason}\n")),
             Err(_) => return refuse("the scene cannot be written\n".to_owned()),
         }
-        self.tries.clear();
+        self.trial_values.clear();
         self.done("written\n")
     }
 

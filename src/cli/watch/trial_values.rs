@@ -21,9 +21,9 @@ pub struct Try {
 
 /// The values of all attributes that are tried out.
 #[derive(Default)]
-pub struct Tries(Mutex<BTreeMap<(String, String), Vec<String>>>);
+pub struct TrialValues(Mutex<BTreeMap<(String, String), Vec<String>>>);
 
-impl Tries {
+impl TrialValues {
     fn all(&self) -> MutexGuard<'_, BTreeMap<(String, String), Vec<String>>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -120,9 +120,9 @@ fn write(view: &View, name: &str, attribute: &str, values: &[String]) -> Option<
 mod tests {
     use super::*;
 
-    fn written(file: &str, text: &str, tries: &[(&str, &str, &[&str])]) -> Result<String, String> {
-        let all = Tries::default();
-        for (name, attribute, values) in tries {
+    fn written(file: &str, text: &str, trial_values: &[(&str, &str, &[&str])]) -> Result<String, String> {
+        let all = TrialValues::default();
+        for (name, attribute, values) in trial_values {
             let body =
                 serde_json::json!({ "name": name, "attribute": attribute, "values": values }).to_string();
             all.set(body.as_bytes()).expect("numbers");
@@ -133,23 +133,23 @@ mod tests {
     #[test]
     fn what_is_tried_is_written_and_nothing_else_changes() {
         let text = "# two\nsphere ball { center 1   2 # up\n 3  radius 1 material red } # end\n";
-        let tries: &[(&str, &str, &[&str])] =
+        let trial_values: &[(&str, &str, &[&str])] =
             &[("ball", "radius", &["2.5"]), ("ball", "center", &["4", "5", "6"])];
         let after = "# two\nsphere ball { center 4   5 # up\n 6  radius 2.5 material red } # end\n";
-        assert_eq!(written("a.ray", text, tries), Ok(after.to_owned()));
+        assert_eq!(written("a.ray", text, trial_values), Ok(after.to_owned()));
         let text = "[sphere.ball]\ncenter = [1, 2, 3] # here\nradius = 1\n";
         let after = "[sphere.ball]\ncenter = [4, 5, 6] # here\nradius = 2.5\n";
-        assert_eq!(written("a.toml", text, tries), Ok(after.to_owned()));
+        assert_eq!(written("a.toml", text, trial_values), Ok(after.to_owned()));
     }
 
     #[test]
     fn an_attribute_that_the_text_lacks_is_added_to_it() {
-        let tries: &[(&str, &str, &[&str])] = &[("t", "shininess", &["9"])];
-        let on_one = written("a.ray", "material t { diffuse 1 1 1 }", tries);
+        let trial_values: &[(&str, &str, &[&str])] = &[("t", "shininess", &["9"])];
+        let on_one = written("a.ray", "material t { diffuse 1 1 1 }", trial_values);
         assert_eq!(on_one, Ok("material t { diffuse 1 1 1  shininess 9 }".to_owned()));
-        let on_lines = written("a.ray", "material t\n{\n    diffuse 1 1 1\n}\n", tries);
+        let on_lines = written("a.ray", "material t\n{\n    diffuse 1 1 1\n}\n", trial_values);
         assert_eq!(on_lines, Ok("material t\n{\n    diffuse 1 1 1\n    shininess 9\n}\n".to_owned()));
-        let toml = written("a.toml", "[material.t]\ndiffuse = [1, 1, 1]\n", tries);
+        let toml = written("a.toml", "[material.t]\ndiffuse = [1, 1, 1]\n", trial_values);
         assert_eq!(toml, Ok("[material.t]\ndiffuse = [1, 1, 1]\nshininess = 9\n".to_owned()));
     }
 
@@ -163,7 +163,7 @@ mod tests {
     fn only_numbers_are_tried() {
         for values in ["[]", "[\"1; rm\"]", "[\"1\\\"\"]", "7"] {
             let body = format!("{{\"name\":\"a\",\"attribute\":\"b\",\"values\":{values}}}");
-            assert_eq!(Tries::default().set(body.as_bytes()), None, "{body}");
+            assert_eq!(TrialValues::default().set(body.as_bytes()), None, "{body}");
         }
     }
 }

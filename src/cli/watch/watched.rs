@@ -3,11 +3,11 @@
 use super::events::{self, Fault};
 use super::feed::EventFeed;
 use super::files::Files;
-use super::frame::{Charting, Frame, lines};
+use super::frame::{ChartState, Frame, lines};
 use super::session::Session;
 use crate::cli::files::input;
 use crate::cli::process::crash;
-use crate::cli::process::failure::{Failure, tell};
+use crate::cli::process::failure::{Failure, report};
 use crate::render::plan::Plan;
 use crate::render::progressive;
 use crate::render::renderer::Renderer;
@@ -49,22 +49,22 @@ fn painter(session: Arc<Session>) -> Result<Sender<Arc<Frame>>, Failure> {
 }
 
 /// The modification time of a file, and its length in bytes.
-type Stamp = (SystemTime, u64);
+type FileStamp = (SystemTime, u64);
 
-fn stamp(file: &Path) -> Option<Stamp> {
+fn stamp(file: &Path) -> Option<FileStamp> {
     let meta = fs::metadata(file).ok()?;
     Some((meta.modified().ok()?, meta.len()))
 }
 
 /// The text and files that an image was made from.
 #[derive(PartialEq)]
-struct Read {
+struct SourceFiles {
     /// The scene.
     bytes: Vec<u8>,
     /// The values that are set beside it.
     sets: Vec<String>,
     /// The stamps of the files that it names.
-    stamps: Vec<Option<Stamp>>,
+    stamps: Vec<Option<FileStamp>>,
 }
 
 /// The file of a scene, which is read again and again.
@@ -78,7 +78,7 @@ pub struct Watched {
     /// The files that the scene names.
     named: Vec<PathBuf>,
     /// The text and files that were read last.
-    last: Option<Read>,
+    last: Option<SourceFiles>,
     /// The number of times that the scene was valid.
     version: u64,
     /// Takes what is to be rendered; `None` while nobody looks at the scene.
@@ -128,12 +128,12 @@ impl Watched {
         };
         // One save may cause several events. The stamps of the files are taken before the files are read, so that a
         // change in the meantime is noticed.
-        let sets = [&self.sets[..], &session.tries.sets()].concat();
-        let now = Read { bytes, sets, stamps: self.named.iter().map(|file| stamp(file)).collect() };
+        let sets = [&self.sets[..], &session.trial_values.sets()].concat();
+        let now = SourceFiles { bytes, sets, stamps: self.named.iter().map(|file| stamp(file)).collect() };
         if self.last.as_ref() == Some(&now) {
             return Ok(());
         }
-        let Read { bytes, sets, .. } = self.last.insert(now);
+        let SourceFiles { bytes, sets, .. } = self.last.insert(now);
         let text = String::from_utf8_lossy(bytes);
         let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
         let folder = session.path.parent().unwrap_or(&session.path);
@@ -169,7 +169,7 @@ impl Watched {
                     folder: folder.to_owned(),
                     sets: sets.clone(),
                     accuracy: self.accuracy,
-                    charting: Charting::default(),
+                    charting: ChartState::default(),
                     stale: AtomicBool::new(false),
                 });
                 feed.show(&frame);
@@ -190,7 +190,7 @@ impl Watched {
 
 /// Reports that the program failed on a scene. It continues with the next one.
 fn crashed(feed: &EventFeed, name: &str, text: &str, failure: &Failure) {
-    tell(failure);
+    report(failure);
     let Failure::Failed(message) = failure else { return };
     let report = &format!("error: {message}");
     feed.fault(events::fault(&Fault { lines: &[], name, report, text: Some(text) }));
