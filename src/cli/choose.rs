@@ -141,7 +141,7 @@ impl<'e> Selection<'e> {
             (one.accuracy, one.most.is_some()) == (other.accuracy, other.most.is_some())
         });
         let mut best: Option<&Estimate> = None;
-        for met in accuracies.filter_map(|choices| self.goal.met(choices, self.cores)) {
+        for met in accuracies.filter_map(|choices| self.goal.first_meeting(choices, self.cores)) {
             let is_better = |best: &Estimate| match self.goal {
                 Goal::Error { .. } => Self::is_faster(met, best),
                 Goal::Time { .. } => met.bound <= GAIN * best.bound,

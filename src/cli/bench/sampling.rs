@@ -5,7 +5,7 @@ use crate::cli::process::failure::{Failure, print};
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
 use crate::text::{self, short};
-use crate::tools::chart::{self, Chart, Family, Machine, Panel, Point, Subject, Times, Wrong};
+use crate::tools::chart::{self, Chart, Family, Machine, Panel, Point, Subject, Times, WrongHits};
 use crate::tools::sampling::{self, LEVELS, Measured, Samples};
 use crate::world::film::Adaptive;
 use crate::world::sample::Sampler;
@@ -209,7 +209,7 @@ fn point((choice, measured): &(Samples, Measured), pixels: usize) -> Point {
         times: Times { least: seconds, median: seconds, rounds: ROUNDS, waited: 0.0 },
         error: measured.rms / 255.0,
         worst: measured.worst / 255.0,
-        wrong: Wrong::default(),
+        wrong: WrongHits::default(),
         visible: None,
         changed: None,
         samples: choice.adaptive.map_or(choice.samples, |adaptive| adaptive.most),

@@ -12,7 +12,7 @@ const SHAPES: usize = 8;
 
 /// A textbook intersection test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Bare {
+pub enum TextbookTest {
     /// A ray and a plane.
     Plane,
     /// A ray and a sphere.
@@ -21,7 +21,7 @@ pub enum Bare {
     Triangle,
 }
 
-impl Bare {
+impl TextbookTest {
     /// Returns the test that an entity of this type needs, if there is one for it.
     pub fn of(entity: &str) -> Option<Self> {
         match entity {

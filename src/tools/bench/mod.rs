@@ -12,14 +12,14 @@ pub use packets::Times;
 use crate::render::observer::RayKind;
 use crate::render::plan::Plan;
 use crate::render::ray_stats::{Cuts, RayStats};
-use crate::render::renderer::{Overseer, Renderer};
+use crate::render::renderer::{RenderCallbacks, Renderer};
 use crate::render::tiles::{BAND, Band};
 use crate::scene::model::{Model, Object};
 use crate::simd::cpu::Cpu;
 use crate::world::body::AnyShader;
 use crate::world::material::{Look, Material, Rgb};
 use crate::world::shader::{Sees, Shader, SurfacePoint};
-use ceiling::Bare;
+use ceiling::TextbookTest;
 use glam::{DVec2, DVec3};
 use std::io;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -98,7 +98,7 @@ impl Speed {
         let tally = counted(renderer, &plan);
         let tests = tests(&plan, &tally, cpu, patience);
         let bare: Option<Vec<_>> =
-            tests.iter().map(|tests| Some((Bare::of(tests.entity)?, tests.number))).collect();
+            tests.iter().map(|tests| Some((TextbookTest::of(tests.entity)?, tests.number))).collect();
         let mut arithmetic = || {
             for (bare, tests) in bare.iter().flatten() {
                 bare.run(cpu, *tests);
@@ -140,7 +140,7 @@ fn render(renderer: &Renderer, plan: &Plan, room: &mut Option<Band>) {
         };
         band.rows = rows;
         (0..band.strips.len()).for_each(|index| band.strip(index).tiles.fill(false));
-        renderer.fill(plan, &band, Overseer { stops: &|| false, row: &|| () }, &|_: Cuts| {});
+        renderer.fill(plan, &band, RenderCallbacks { stops: &|| false, row: &|| () }, &|_: Cuts| {});
         *room = Some(band);
     }
 }
@@ -165,7 +165,7 @@ fn tests(plan: &Plan, tally: &RayStats, cpu: Cpu, patience: Duration) -> Vec<Tes
         times: packets::times(&packets, model, cpu, patience, |object| {
             model.objects[object].args.entity().name == entity
         }),
-        bare: Bare::of(entity).map(|bare| {
+        bare: TextbookTest::of(entity).map(|bare| {
             let [seconds] = clock::least(patience, [&mut || bare.run(cpu, ROUND)]);
             1e9 * seconds / ROUND as f64
         }),
@@ -179,7 +179,7 @@ fn matt(model: Model) -> Model {
         let material = Material { specular: Rgb::ZERO, transparency: 0.0, ..(*object.material).clone() };
         // Nearly all shaders use the material's reflectivity, and keep their speed.
         let is_matt = object.shader.brightest(&material).is_some_and(|look| look.specular == Rgb::ZERO);
-        let shader = if is_matt { object.shader } else { Box::new(Matt(object.shader)) };
+        let shader = if is_matt { object.shader } else { Box::new(WithoutReflections(object.shader)) };
         Object { material: Arc::new(material), shader, ..object }
     };
     let objects = model.objects.into_iter().map(matt).collect();
@@ -187,9 +187,9 @@ fn matt(model: Model) -> Model {
 }
 
 /// Wraps a shader and removes its reflections.
-struct Matt(AnyShader);
+struct WithoutReflections(AnyShader);
 
-impl Shader for Matt {
+impl Shader for WithoutReflections {
     fn sees(&self) -> Sees {
         self.0.sees()
     }

@@ -19,7 +19,7 @@ const TILES: usize = 256;
 /// The primary rays of a tile, and the objects they are tested against.
 pub(super) struct Packet {
     view: RayBundle,
-    tested: Tested,
+    tested: TestedObjects,
     /// The object that most of the rays hit, and their hits on it.
     met: Option<ObjectHits>,
 }
@@ -106,7 +106,7 @@ impl Packet {
             }
             ObjectHits { object, view, toward, sides, t_max }
         });
-        Self { view, tested: Tested::of(plan, cpu, tile), met }
+        Self { view, tested: TestedObjects::of(plan, cpu, tile), met }
     }
 }
 
@@ -208,13 +208,13 @@ fn split([width, height]: [usize; 2]) -> impl Iterator<Item = Vec<[usize; 2]>> {
 
 /// The objects that the primary rays and the first shadow rays are tested against.
 #[derive(Default)]
-struct Tested {
+struct TestedObjects {
     primary: Vec<usize>,
     shadow: Vec<usize>,
     kind: Option<RayKind>,
 }
 
-impl TraceObserver for Tested {
+impl TraceObserver for TestedObjects {
     const SEES: bool = false;
 
     fn count(&mut self, count: Count) {
@@ -227,7 +227,7 @@ impl TraceObserver for Tested {
     }
 }
 
-impl Tested {
+impl TestedObjects {
     /// Collects the objects of a tile, each once.
     fn of(plan: &Plan, cpu: Cpu, tile: &[[usize; 2]]) -> Self {
         let mut tested = Self::default();

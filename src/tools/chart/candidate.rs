@@ -60,7 +60,9 @@ pub fn all(load: Load) -> io::Result<Vec<Candidate>> {
         }
         let by = |object: Object| match is_searched(&object.shape) {
             true => Object {
-                shape: Shape::new(By { shape: object.shape, method }).by::<ByDistance, ByItsOwn>().into(),
+                shape: Shape::new(WithMethod { shape: object.shape, method })
+                    .by::<ByDistance, OriginalProofs>()
+                    .into(),
                 ..object
             },
             false => object,
@@ -90,15 +92,15 @@ pub fn is_searched(shape: &AnyShape) -> bool {
 }
 
 /// A shape whose hits are found by another method.
-struct By {
+struct WithMethod {
     shape: AnyShape,
     method: Method,
 }
 
 /// Takes the proofs of its hits from the original shape.
-struct ByItsOwn;
+struct OriginalProofs;
 
-impl Hittable for By {
+impl Hittable for WithMethod {
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         self.shape.packets().distance_by(self.method, ray, range).unwrap_or(MISS)
     }
@@ -120,9 +122,9 @@ impl Hittable for By {
     }
 }
 
-impl Coincidence for ByItsOwn {}
+impl Coincidence for OriginalProofs {}
 
-impl Proofs for Shape<By, ByDistance, ByItsOwn> {
+impl Proofs for Shape<WithMethod, ByDistance, OriginalProofs> {
     fn touches(&self, at: DVec3, error: f64) -> bool {
         self.shape.shape.touches(at, error)
     }

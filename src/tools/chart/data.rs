@@ -61,7 +61,7 @@ pub struct Point {
     /// The greatest error, in the same unit.
     pub worst: f64,
     /// The numbers of wrong hits.
-    pub wrong: Wrong,
+    pub wrong: WrongHits,
     /// For colours, the 99th percentile of the visible differences: distances in Oklab, in hundredths of the distance
     /// from black to white.
     pub visible: Option<f64>,
@@ -73,7 +73,7 @@ pub struct Point {
 
 /// The numbers of wrong hits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Wrong {
+pub struct WrongHits {
     /// The number of rays that were compared and whose true hit is known.
     pub of: usize,
     /// Hits that were not found.
@@ -84,7 +84,7 @@ pub struct Wrong {
     pub later: usize,
 }
 
-impl Wrong {
+impl WrongHits {
     /// Returns the number of all wrong hits.
     pub fn count(&self) -> usize {
         self.missed + self.invented + self.later

@@ -5,7 +5,7 @@
 //! time runs out.
 
 use super::candidate::Load;
-use super::data::{Family, Panel, Point, Subject, Wrong};
+use super::data::{Family, Panel, Point, Subject, WrongHits};
 use super::needed;
 use super::pictures::{count, render, timed};
 use super::places::{Pixels, spread};
@@ -115,7 +115,7 @@ impl Goal {
     }
 
     /// Returns the first choice that meets the goal, among those of one accuracy by ascending samples.
-    pub fn met(self, estimates: &[Estimate], threads: usize) -> Option<&Estimate> {
+    pub fn first_meeting(self, estimates: &[Estimate], threads: usize) -> Option<&Estimate> {
         match self {
             Self::Error { most, .. } => estimates.iter().find(|one| one.bound <= most),
             Self::Time { most, .. } => estimates.iter().rfind(|one| one.seconds / threads as f64 <= most),
@@ -146,10 +146,13 @@ pub fn estimates(load: Load, goal: Goal, progress: &mut dyn Progress) -> io::Res
     let mut last = None;
     for (samples, against) in STAGES {
         let estimates = study.measure(&models, right, samples, against, progress)?;
-        let is_met = goal.met(&estimates.all[..samples.len()], study.cores()).is_some_and(|met| match goal {
-            Goal::Error { .. } => true,
-            Goal::Time { .. } => met.samples < samples[samples.len() - 1],
-        });
+        let is_met =
+            goal.first_meeting(&estimates.all[..samples.len()], study.cores()).is_some_and(
+                |met| match goal {
+                    Goal::Error { .. } => true,
+                    Goal::Time { .. } => met.samples < samples[samples.len() - 1],
+                },
+            );
         let before = last.replace(estimates);
         if let (Some(before), Some(last)) = (before, &mut last) {
             last.all.extend(before.all);
@@ -189,7 +192,7 @@ pub(super) fn panel(load: Load, progress: &mut dyn Progress) -> io::Result<Panel
             times: Times { least: seconds, median: seconds, rounds: ROUNDS, waited: 0.0 },
             error: one.error,
             worst: one.worst,
-            wrong: Wrong::default(),
+            wrong: WrongHits::default(),
             visible: None,
             changed: None,
             samples: one.most.unwrap_or(one.samples),
@@ -325,7 +328,7 @@ impl Study {
                 samples.iter().enumerate().map(choice)
             });
             let mut estimates: Vec<_> = estimates.collect();
-            let met = self.goal.met(&estimates[..samples.len()], self.cores());
+            let met = self.goal.first_meeting(&estimates[..samples.len()], self.cores());
             let picture = met.map_or(samples[samples.len() - 1], |met| met.samples);
             if is_short || measured >= most(picture) {
                 if !is_short && picture >= ADAPTIVE_FROM {

@@ -10,20 +10,21 @@ const SAME_ERROR: f64 = 1.5;
 
 /// Marks the points that have no wrong hits and are beaten by none. Errors up to `negligible` count as equal.
 pub fn of(points: &[Point], negligible: f64) -> Vec<bool> {
-    let is_best = |point: &Point| point.wrong.count() == 0 && beaten_by(points, point, negligible).is_none();
+    let is_best =
+        |point: &Point| point.wrong.count() == 0 && fastest_dominating(points, point, negligible).is_none();
     points.iter().map(is_best).collect()
 }
 
 /// Returns the fastest choice that beats `beaten`, if any does.
-pub fn beaten_by<'p>(points: &'p [Point], beaten: &Point, negligible: f64) -> Option<&'p Point> {
+pub fn fastest_dominating<'p>(points: &'p [Point], beaten: &Point, negligible: f64) -> Option<&'p Point> {
     points
         .iter()
-        .filter(|other| other.wrong.count() == 0 && beats(other, beaten, negligible))
+        .filter(|other| other.wrong.count() == 0 && dominates(other, beaten, negligible))
         .min_by(|a, b| a.times.least.total_cmp(&b.times.least))
 }
 
 /// Tells whether `one` is as fast and as accurate as `other`, and clearly faster or clearly more accurate.
-fn beats(one: &Point, other: &Point, negligible: f64) -> bool {
+fn dominates(one: &Point, other: &Point, negligible: f64) -> bool {
     let time = one.times.least / other.times.least;
     let [error, than] = [one, other].map(|point| point.error.max(negligible));
     time <= SAME_TIME && error <= SAME_ERROR * than && (time * SAME_TIME < 1.0 || error * SAME_ERROR < than)
@@ -39,7 +40,7 @@ impl Panel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tools::chart::{Family, Times, Wrong};
+    use crate::tools::chart::{Family, Times, WrongHits};
 
     fn point(time: f64, error: f64, missed: usize) -> Point {
         Point {
@@ -49,7 +50,7 @@ mod tests {
             times: Times { least: time, median: time, rounds: 1, waited: 0.0 },
             error,
             worst: error,
-            wrong: Wrong { of: 9, missed, ..Wrong::default() },
+            wrong: WrongHits { of: 9, missed, ..WrongHits::default() },
             visible: None,
             changed: None,
             samples: 1,

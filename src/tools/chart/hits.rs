@@ -3,7 +3,7 @@
 
 use super::candidate::{Candidate, is_searched};
 use super::clock;
-use super::data::{Panel, Point, Subject, Wrong};
+use super::data::{Panel, Point, Subject, WrongHits};
 use super::packets::Packet;
 use super::places::{spread, tiles};
 use super::progress::Progress;
@@ -176,8 +176,8 @@ fn side(shape: &AnyShape, ray: &Ray, distance: f64) -> Side {
 }
 
 /// Returns the errors of the right hits, sorted, and the numbers of the wrong ones.
-fn tally(candidate: &Candidate, set: &Set, truths: &[Truth], screen: f64) -> (Vec<f64>, Wrong) {
-    let (mut errors, mut wrong) = (Vec::new(), Wrong::default());
+fn tally(candidate: &Candidate, set: &Set, truths: &[Truth], screen: f64) -> (Vec<f64>, WrongHits) {
+    let (mut errors, mut wrong) = (Vec::new(), WrongHits::default());
     let cpu = Cpu::best();
     let found = set.packets.iter().flat_map(|packet| {
         let shape = &candidate.model.objects[packet.object].shape;

@@ -28,7 +28,7 @@ mod times;
 mod verdict;
 
 pub use candidate::Load;
-pub use data::{Chart, Family, Panel, Point, Subject, Wrong};
+pub use data::{Chart, Family, Panel, Point, Subject, WrongHits};
 pub use draw::{png, svg};
 pub use estimate::{Estimate, Estimates, Goal, estimates};
 pub use files::{csv, json};

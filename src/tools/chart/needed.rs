@@ -94,7 +94,7 @@ fn colours(threads: &Renderer, plan: &Plan, pixels: &Pixels) -> (Vec<Rgb>, f64) 
         };
         pixels[range].iter().map(one).collect()
     };
-    let all = threads.run(|| parallel::ranges(pixels.len(), 8, &part));
+    let all = threads.run(|| parallel::map_ranges(pixels.len(), 8, &part));
     let samples = all.iter().map(|(_, samples)| *samples).sum::<u64>() as f64;
     (all.iter().map(|(colour, _)| *colour).collect(), samples / pixels.len() as f64)
 }

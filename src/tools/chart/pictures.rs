@@ -5,7 +5,7 @@
 
 use super::clock;
 use super::colours::{Difference, difference};
-use super::data::{Family, Panel, Point, Subject, Wrong};
+use super::data::{Family, Panel, Point, Subject, WrongHits};
 use super::places::{Pixels, spread, tiles};
 use super::progress::Progress;
 use super::study::Study;
@@ -233,7 +233,7 @@ fn point(
         times,
         error: off.rmse,
         worst: off.worst,
-        wrong: Wrong::default(),
+        wrong: WrongHits::default(),
         visible: Some(off.visible),
         changed: Some([off.changed, pixels]),
         samples,
@@ -298,7 +298,7 @@ pub(super) fn shown_colours(threads: &Renderer, plan: &Plan, pixels: &[[usize; 2
         }
         shades
     };
-    threads.run(|| parallel::ranges(packets.len(), 2, &part))
+    threads.run(|| parallel::map_ranges(packets.len(), 2, &part))
 }
 
 /// Returns the true colours: with so many samples that more make no difference, and other ones than those that are

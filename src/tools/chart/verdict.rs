@@ -26,7 +26,7 @@ pub fn words(chart: &Chart) -> String {
             Subject::Methods => methods(panel),
             Subject::Samples => samples(panel),
             Subject::Bounces => bounces(panel),
-            Subject::Whole => [front(panel)].into_iter().chain(standing(panel)).collect(),
+            Subject::Whole => [front(panel)].into_iter().chain(default_position(panel)).collect(),
         };
         for line in lines {
             let _ = writeln!(text, "  {line}");
@@ -105,7 +105,7 @@ fn looks_right(point: &Point) -> bool {
 
 fn distances(panel: &Panel) -> Vec<String> {
     let mut lines = vec![front(panel)];
-    lines.extend(standing(panel));
+    lines.extend(default_position(panel));
     let (wrong, right): (Vec<_>, Vec<_>) = panel.points.iter().partition(|point| point.wrong.count() > 0);
     if !wrong.is_empty() {
         let each = |point: &&Point| {
@@ -131,7 +131,7 @@ fn distances(panel: &Panel) -> Vec<String> {
 
 fn methods(panel: &Panel) -> Vec<String> {
     let mut lines = vec![front(panel)];
-    lines.extend(standing(panel));
+    lines.extend(default_position(panel));
     let (mut same, mut others) = (Vec::new(), Vec::new());
     for point in &panel.points {
         match point.changed {
@@ -163,7 +163,7 @@ fn bounces(panel: &Panel) -> Vec<String> {
 }
 
 fn samples(panel: &Panel) -> Vec<String> {
-    let mut lines: Vec<_> = standing(panel).into_iter().collect();
+    let mut lines: Vec<_> = default_position(panel).into_iter().collect();
     let of = |family: Family| -> Vec<&Point> {
         panel.points.iter().filter(|point| point.family == family && point.samples > 1).collect()
     };
@@ -211,13 +211,13 @@ fn front(panel: &Panel) -> String {
 }
 
 /// Says where the default stands.
-fn standing(panel: &Panel) -> Option<String> {
+fn default_position(panel: &Panel) -> Option<String> {
     let default = panel.points.iter().find(|point| point.is_default)?;
     let name = &default.name;
     if default.wrong.count() > 0 {
         return Some(format!("the default, {name}, has wrong hits"));
     }
-    Some(match front::beaten_by(&panel.points, default, panel.negligible()) {
+    Some(match front::fastest_dominating(&panel.points, default, panel.negligible()) {
         None => format!("the default, {name}, is on the front: {}", time(panel, default)),
         Some(best) => {
             let (own, other) = (time(panel, default), time(panel, best));

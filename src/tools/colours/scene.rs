@@ -64,13 +64,13 @@ pub(super) enum First<F> {
     /// This place, at a t in this interval, for certain.
     Hit(Interval<F>, Place),
     /// One of these places, at a t in the interval beside it, or nothing.
-    OneOf(Vec<(Interval<F>, Place)>, MayBeNothing),
+    OneOf(Vec<(Interval<F>, Place)>, MayMiss),
     /// An unknown hit.
     Open,
 }
 
 /// Whether a line may hit nothing.
-pub(super) type MayBeNothing = bool;
+pub(super) type MayMiss = bool;
 
 /// A line, and the place that it leaves.
 #[derive(Clone, Copy)]

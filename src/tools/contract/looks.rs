@@ -10,7 +10,7 @@ use crate::scene::profile::Profile;
 use crate::scene::reader;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
-use crate::shapes::revolution::{Finish, Revolution};
+use crate::shapes::revolution::{Refinement, Revolution};
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::{LANES, Vectors};
 use crate::world::background::Background;
@@ -244,8 +244,8 @@ pub fn material(material: &Material, draw: &mut Draw) -> Result<(), Fault> {
 pub fn profile(profile: &Profile) -> Result<(), Fault> {
     let line = profile.line();
     let fault = |found: String| Promise::ProfileIsFinite.fault(found);
-    Revolution::new(&line.radius, 4.0, Finish::Root)
-        .map_err(|none| fault(format!("it is one {}", none.told().0)))?;
+    Revolution::new(&line.radius, 4.0, Refinement::Root)
+        .map_err(|none| fault(format!("it is one {}", none.message().0)))?;
     let mut heights = (0..=400).map(|part| f64::from(part) / 100.0);
     match heights.find(|y| !line.slope_at(*y).is_finite()) {
         Some(y) => Err(fault(format!("its slope is {} at y = {y}", line.slope_at(y)))),

@@ -54,7 +54,7 @@ impl fmt::Display for Breach {
         let Self { plugin, place, promise, found, scene } = self;
         writeln!(f, "{place}: {plugin} breaks its contract: {promise}")?;
         writeln!(f, "  found: {found}")?;
-        writeln!(f, "  fix:   {}", promise.cure())?;
+        writeln!(f, "  fix:   {}", promise.help())?;
         if !scene.is_empty() {
             writeln!(f, "  in this scene:\n")?;
             scene.lines().try_for_each(|line| writeln!(f, "    {line}"))?;
@@ -71,8 +71,8 @@ impl fmt::Display for Breach {
 #[track_caller]
 pub fn assert_kept() {
     let registry = Registry::get().unwrap_or_else(|faults| panic!("{faults}"));
-    let told: Vec<_> = breaches(registry).iter().map(Breach::to_string).collect();
-    assert!(told.is_empty(), "\n\n{}", told.join("\n"));
+    let breaches: Vec<_> = breaches(registry).iter().map(Breach::to_string).collect();
+    assert!(breaches.is_empty(), "\n\n{}", breaches.join("\n"));
 }
 
 /// Returns the gravest breach of each entity type of a registry, and of each profile.

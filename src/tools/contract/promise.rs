@@ -82,7 +82,7 @@ impl Promise {
     ];
 
     /// Returns how to keep the promise.
-    pub fn cure(self) -> &'static str {
+    pub fn help(self) -> &'static str {
         match self {
             Self::TakesWhatItsTableAllows => {
                 "state the rule of each attribute with `must`; in the constructor, refuse only what depends on several attributes"

@@ -3,7 +3,7 @@
 use super::draw::Draw;
 use super::looks::shader;
 use super::promise::Fault;
-use super::shape::{GRAZING, Tried};
+use super::shape::{GRAZING, RayTrial};
 use crate::geometry::ray::{MISS, Ray, RayRange, Side};
 use crate::scene::model::Object;
 use crate::scene::value::Datum;
@@ -30,7 +30,7 @@ pub fn try_object(object: &Object, draw: &mut Draw, rays: usize) -> Outcome {
     let mut outcome = Outcome { hits: 0, gravest: None };
     for index in 0..rays {
         let ray = ray(&aims, draw, index);
-        let tried = try_ray(&Tried { shape: &object.shape, ray, is_exact: index < EXACT }, draw);
+        let tried = try_ray(&RayTrial { shape: &object.shape, ray, is_exact: index < EXACT }, draw);
         let tried = tried.and_then(|hit| match hit {
             Some(at) => {
                 let side = Side::seen_along(ray.dir, object.shape.normal(at));
@@ -82,26 +82,26 @@ fn ray(aims: &[DVec3], draw: &mut Draw, index: usize) -> Ray {
 }
 
 /// Checks a shape with one ray; returns the point of the hit, if there is one.
-fn try_ray(tried: &Tried, draw: &mut Draw) -> Result<Option<DVec3>, Fault> {
-    let distance = tried.in_span(&tried.ray, &RayRange::ALL)?;
-    tried.repeats(distance)?;
-    tried.packets_agree(distance)?;
-    tried.keeps_to_spans(distance)?;
-    tried.agrees_with_its_proof(distance)?;
+fn try_ray(tried: &RayTrial, draw: &mut Draw) -> Result<Option<DVec3>, Fault> {
+    let distance = tried.distance_in_range(&tried.ray, &RayRange::ALL)?;
+    tried.check_repeats(distance)?;
+    tried.check_packets(distance)?;
+    tried.check_ranges(distance)?;
+    tried.check_proof(distance)?;
     if distance == MISS {
         return Ok(None);
     }
-    let met = tried.met(distance)?;
-    tried.is_held(met.at)?;
+    let met = tried.hit_at(distance)?;
+    tried.check_touches(met.at)?;
     if !tried.is_exact {
-        tried.is_met_from_elsewhere(&met, draw)?;
+        tried.check_from_elsewhere(&met, draw)?;
     }
     if !tried.is_exact && met.normal.dot(tried.ray.dir).abs() >= GRAZING {
-        tried.stands_upright(&met)?;
+        tried.check_normal(&met)?;
         if !tried.shape.can_hit_itself(Side::Outside) {
-            tried.is_convex(&met)?;
+            tried.check_convex(&met)?;
         }
-        tried.leaves(&met, draw)?;
+        tried.check_leaving(&met, draw)?;
         tried.is_touched(&met, draw)?;
     }
     Ok(Some(met.at))

@@ -27,14 +27,14 @@ pub const SLACK: f64 = 1e-7;
 pub const GRAZING: f64 = 0.05;
 
 /// A shape and the ray with which it is tried.
-pub struct Tried<'s> {
+pub struct RayTrial<'s> {
     pub shape: &'s AnyShape,
     pub ray: Ray,
     /// Whether the ray may hit an edge or a corner, where rounding decides what a ray from elsewhere hits.
     pub is_exact: bool,
 }
 
-impl Tried<'_> {
+impl RayTrial<'_> {
     /// Returns the size of the numbers from which the ray's distance is computed, in world units.
     pub fn size(&self, distance: f64) -> f64 {
         1.0 + self.ray.origin.abs().max_element() + distance
@@ -57,28 +57,29 @@ impl Tried<'_> {
     }
 
     /// Returns the distance along a ray, after checking that it lies within the range or is a miss.
-    pub fn in_span(&self, ray: &Ray, range: &RayRange) -> Result<f64, Fault> {
+    pub fn distance_in_range(&self, ray: &Ray, range: &RayRange) -> Result<f64, Fault> {
         let distance = self.shape.distance(ray, range);
         if distance == MISS || (range.near < distance && distance < range.far) {
             return Ok(distance);
         }
         let RayRange { near, far, .. } = range;
         Err(Promise::DistanceIsInItsSpan
-            .fault(format!("`distance` gives {distance} between {near} and {far}, {}", told(ray))))
+            .fault(format!("`distance` gives {distance} between {near} and {far}, {}", describe_ray(ray))))
     }
 
-    pub fn repeats(&self, distance: f64) -> Result<(), Fault> {
+    pub fn check_repeats(&self, distance: f64) -> Result<(), Fault> {
         let again = self.shape.distance(&self.ray, &RayRange::ALL);
         if again.to_bits() == distance.to_bits() {
             return Ok(());
         }
         Err(Promise::DistanceIsTheSameAgain
-            .fault(format!("first {distance}, then {again}, {}", told(&self.ray))))
+            .fault(format!("first {distance}, then {again}, {}", describe_ray(&self.ray))))
     }
 
-    pub fn packets_agree(&self, distance: f64) -> Result<(), Fault> {
+    pub fn check_packets(&self, distance: f64) -> Result<(), Fault> {
         let Self { shape, ray, .. } = self;
-        let fault = |found: String| Err(Promise::PacketsAgree.fault(format!("{found}, {}", told(ray))));
+        let fault =
+            |found: String| Err(Promise::PacketsAgree.fault(format!("{found}, {}", describe_ray(ray))));
         let bracket = shape.t_bounds(ray, &RayRange::ALL);
         if bracket.near.is_nan() || bracket.far.is_nan() || bracket.near > distance || distance > bracket.far
         {
@@ -149,7 +150,7 @@ impl Tried<'_> {
 
     /// Checks that no distance outside a range is returned, and that the end of the range does not change the hits
     /// before it.
-    pub fn keeps_to_spans(&self, distance: f64) -> Result<(), Fault> {
+    pub fn check_ranges(&self, distance: f64) -> Result<(), Fault> {
         let slack = SLACK * self.size(if distance == MISS { 0.0 } else { distance });
         let middle = if distance == MISS { 5.0 } else { distance };
         for range in [
@@ -157,24 +158,24 @@ impl Tried<'_> {
             RayRange { near: middle + slack, ..RayRange::ALL },
             RayRange { near: 0.5 * middle, far: 0.5 * middle + slack, ..RayRange::ALL },
         ] {
-            self.in_span(&self.ray, &range)?;
+            self.distance_in_range(&self.ray, &range)?;
         }
         // The end of the range does not change the hits before it.
         let t_max =
             if distance == MISS { [middle, 2.0 * middle] } else { [distance.next_up(), distance + slack] };
         for far in t_max {
-            let until = self.in_span(&self.ray, &RayRange { far, ..RayRange::ALL })?;
+            let until = self.distance_in_range(&self.ray, &RayRange { far, ..RayRange::ALL })?;
             if until != distance {
                 return Err(Promise::HitIsOnTheSurface.fault(format!(
                     "`distance` gives {distance}, and {until} where the ray range ends at {far}, {}",
-                    told(&self.ray)
+                    describe_ray(&self.ray)
                 )));
             }
         }
         Ok(())
     }
 
-    pub fn agrees_with_its_proof(&self, distance: f64) -> Result<(), Fault> {
+    pub fn check_proof(&self, distance: f64) -> Result<(), Fault> {
         let proven = self.shape.certify(&Sight::along(&self.ray), Precision::Double);
         let agrees = |slack: f64| match proven {
             Enclosure::Misses => distance == MISS || slack == MISS,
@@ -186,13 +187,14 @@ impl Tried<'_> {
         if agrees(0.0) || agrees(self.tolerance(&self.ray, &RayRange::ALL, distance)) {
             return Ok(());
         }
-        let found = format!("`distance` gives {distance}, and `certify` {proven:?}, {}", told(&self.ray));
+        let found =
+            format!("`distance` gives {distance}, and `certify` {proven:?}, {}", describe_ray(&self.ray));
         Err(Promise::AgreesWithItsProof.fault(found))
     }
 }
 
 /// Describes a ray in words.
-pub fn told(Ray { origin, dir }: &Ray) -> String {
+pub fn describe_ray(Ray { origin, dir }: &Ray) -> String {
     format!("from {origin} along {dir}")
 }
 

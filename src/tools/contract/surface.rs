@@ -2,14 +2,14 @@
 
 use super::draw::Draw;
 use super::promise::{Fault, Promise};
-use super::shape::{GRAZING, SLACK, Tried, told};
+use super::shape::{GRAZING, RayTrial, SLACK, describe_ray};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{MISS, Ray, RayRange, Side};
 use crate::world::coincidence;
 use glam::DVec3;
 
 /// A step that is far longer than rounding errors, and far shorter than visible details: in world units around a hit,
-/// else as a fraction of [`Tried::size`].
+/// else as a fraction of [`RayTrial::size`].
 const STRIDE: f64 = 1e-4;
 
 /// A hit that is not blurred by rounding.
@@ -19,9 +19,9 @@ pub struct SurfaceHit {
     pub normal: DVec3,
 }
 
-impl Tried<'_> {
+impl RayTrial<'_> {
     /// Returns the hit at a distance, after checking that the normal is a unit vector.
-    pub fn met(&self, distance: f64) -> Result<SurfaceHit, Fault> {
+    pub fn hit_at(&self, distance: f64) -> Result<SurfaceHit, Fault> {
         let at = self.ray.at(distance);
         let normal = self.shape.normal(at);
         if (normal.length() - 1.0).abs() <= 1e-9 {
@@ -31,7 +31,7 @@ impl Tried<'_> {
         Err(Promise::NormalIsUnit.fault(found))
     }
 
-    pub fn is_held(&self, at: DVec3) -> Result<(), Fault> {
+    pub fn check_touches(&self, at: DVec3) -> Result<(), Fault> {
         let around = Aabb { low: at - STRIDE, high: at + STRIDE };
         let (up, down) =
             (Aabb { high: DVec3::INFINITY, ..around }, Aabb { low: DVec3::NEG_INFINITY, ..around });
@@ -48,7 +48,7 @@ impl Tried<'_> {
     }
 
     /// Checks that rays from nearer, from behind and from other directions hit the surface at the point too.
-    pub fn is_met_from_elsewhere(&self, met: &SurfaceHit, draw: &mut Draw) -> Result<(), Fault> {
+    pub fn check_from_elsewhere(&self, met: &SurfaceHit, draw: &mut Draw) -> Result<(), Fault> {
         let (Ray { dir, .. }, stride) = (self.ray, STRIDE * self.size(met.distance));
         let mut origins = vec![self.ray.at(0.75 * met.distance), met.at + stride * dir];
         for _ in 0..4 {
@@ -60,15 +60,15 @@ impl Tried<'_> {
         for origin in origins {
             let way = met.at - origin;
             let ray = Ray { origin, dir: way.normalize() };
-            let distance = self.in_span(&ray, &RayRange::ALL)?;
+            let distance = self.distance_in_range(&ray, &RayRange::ALL)?;
             let is_farther = |slack: f64| distance > way.length() + slack;
             if is_farther(0.0) && is_farther(self.tolerance(&ray, &RayRange::ALL, distance)) {
                 return Err(Promise::HitIsOnTheSurface.fault(format!(
                     "it is hit at {}, {}; but `distance` gives {distance} for that point, which is {} away, {}",
                     met.at,
-                    told(&self.ray),
+                    describe_ray(&self.ray),
                     way.length(),
-                    told(&ray)
+                    describe_ray(&ray)
                 )));
             }
         }
@@ -77,7 +77,7 @@ impl Tried<'_> {
 
     /// Checks, where the surface is smooth, that the normal is perpendicular to it and points to the same side as those
     /// nearby.
-    pub fn stands_upright(&self, met: &SurfaceHit) -> Result<(), Fault> {
+    pub fn check_normal(&self, met: &SurfaceHit) -> Result<(), Fault> {
         let (across, up) = self.ray.dir.any_orthonormal_pair();
         let stride = STRIDE * self.size(met.distance).min(10.0);
         for aside in [stride * across, stride * up] {
@@ -110,15 +110,15 @@ impl Tried<'_> {
     }
 
     /// Checks that a shape whose outside no ray hits again is convex: a ray that goes through it enters from outside.
-    pub fn is_convex(&self, met: &SurfaceHit) -> Result<(), Fault> {
+    pub fn check_convex(&self, met: &SurfaceHit) -> Result<(), Fault> {
         let (Ray { dir, .. }, stride) = (self.ray, STRIDE * self.size(met.distance));
         let beyond = Ray { origin: met.at + stride * dir, dir };
-        let through = self.in_span(&beyond, &RayRange::ALL)?;
+        let through = self.distance_in_range(&beyond, &RayRange::ALL)?;
         if through != MISS {
             let at = beyond.at(through);
             let behind = Ray { origin: at + stride * dir, dir };
             let sides = [(met.at, met.normal), (at, self.shape.normal(at))];
-            let ends = self.in_span(&behind, &RayRange::ALL)? == MISS;
+            let ends = self.distance_in_range(&behind, &RayRange::ALL)? == MISS;
             match sides.map(|(_, normal)| Side::seen_along(dir, normal)) {
                 // Too thin to be distinguished from a single touch.
                 _ if through <= 10.0 * stride => {}
@@ -126,12 +126,12 @@ impl Tried<'_> {
                 [Side::Inside, Side::Outside] if ends => {
                     let found = format!(
                         "a ray passes through it, and the normals show the sides {sides:?}, {}",
-                        told(&self.ray)
+                        describe_ray(&self.ray)
                     );
                     return Err(Promise::NormalsPointOut.fault(found));
                 }
                 _ => {
-                    let found = format!("a ray enters or leaves twice, {}", told(&self.ray));
+                    let found = format!("a ray enters or leaves twice, {}", describe_ray(&self.ray));
                     return Err(Promise::IsNotMetAgain.fault(found));
                 }
             }
@@ -146,20 +146,26 @@ impl Tried<'_> {
         let origin_error = coincidence::error(ray, met.distance, met.normal, shape.reach());
         let fault = |what: String| Err(Promise::HitIsTouched.fault(what));
         if !shape.touches(met.at, origin_error) {
-            return fault(format!("it is hit at {}, {}, where `touches` is false", met.at, told(ray)));
+            return fault(format!(
+                "it is hit at {}, {}, where `touches` is false",
+                met.at,
+                describe_ray(ray)
+            ));
         }
         for _ in 0..4 {
             let onward = Ray { origin: met.at, dir: draw.direction() };
             let bracket = shape.t_bounds(&onward, &RayRange { origin_error, ..RayRange::ALL });
             let side = Side::seen_along(onward.dir, met.normal).opposite();
             let distance = match shape.can_hit_itself(side) {
-                true => self.in_span(&onward, &RayRange { origin_side: Some(side), ..RayRange::ALL })?,
+                true => {
+                    self.distance_in_range(&onward, &RayRange { origin_side: Some(side), ..RayRange::ALL })?
+                }
                 false => MISS,
             };
             if !(bracket.near <= distance && distance <= bracket.far) {
                 return fault(format!(
                     "`touches` is true of the start of a ray, whose distance on leaving is {distance}; `t_bounds` is {bracket:?} with an `origin_error` of {origin_error:e}, {}",
-                    told(&onward)
+                    describe_ray(&onward)
                 ));
             }
         }
@@ -168,7 +174,7 @@ impl Tried<'_> {
 
     /// Checks that a ray that leaves the surface hits what it hits from a little farther, or nothing where the shape
     /// says so.
-    pub fn leaves(&self, met: &SurfaceHit, draw: &mut Draw) -> Result<(), Fault> {
+    pub fn check_leaving(&self, met: &SurfaceHit, draw: &mut Draw) -> Result<(), Fault> {
         let stride = STRIDE * self.size(met.distance);
         for _ in 0..4 {
             let dir = draw.direction();
@@ -180,18 +186,20 @@ impl Tried<'_> {
             let ray = Ray { origin: met.at, dir };
             let ahead = Ray { origin: ray.at(stride), dir };
             if !self.shape.can_hit_itself(side) {
-                if self.in_span(&ahead, &RayRange::ALL)? != MISS {
+                if self.distance_in_range(&ahead, &RayRange::ALL)? != MISS {
                     let found = format!(
                         "`can_hit_itself` is false for its {side:?}, yet a ray that leaves it hits it again, {}",
-                        told(&ahead)
+                        describe_ray(&ahead)
                     );
                     return Err(Promise::IsNotMetAgain.fault(found));
                 }
                 continue;
             }
-            let leaving = self.in_span(&ray, &RayRange { origin_side: Some(side), ..RayRange::ALL })?;
-            let from_ahead = self.in_span(&ahead, &RayRange::ALL)? + stride;
-            let found = |what: String| Err(Promise::StartIsNoHit.fault(format!("{what}, {}", told(&ray))));
+            let leaving =
+                self.distance_in_range(&ray, &RayRange { origin_side: Some(side), ..RayRange::ALL })?;
+            let from_ahead = self.distance_in_range(&ahead, &RayRange::ALL)? + stride;
+            let found =
+                |what: String| Err(Promise::StartIsNoHit.fault(format!("{what}, {}", describe_ray(&ray))));
             if leaving <= SLACK * self.size(met.distance) {
                 return found(format!("on leaving its {side:?} `distance` gives {leaving}"));
             }
