@@ -27,7 +27,7 @@ inventory::submit! {
         let surface =
             Surface { formula: args.get(&FORMULA), corners: [DVec3::new(x, y, z), DVec3::new(x2, y2, z2)] };
         field::check(&surface.formula, surface.corners).map_err(|fault| {
-            let (what, help) = fault.told();
+            let (what, help) = fault.message();
             Refusal { attribute: Some("formula"), message: format!("has a formula {what}"), help }
         })?;
         Ok(Body::implicit(surface, Frame::at(args.get(&CENTER))))

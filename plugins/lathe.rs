@@ -1,7 +1,7 @@
 //! A turned piece: a surface of revolution whose profile is a spline through points.
 
 use crate::prelude::*;
-use crate::shapes::{ClassicRevolution, Finish, InFrame, Revolution};
+use crate::shapes::{ClassicRevolution, InFrame, Refinement, Revolution};
 
 /// The points of a profile: the height and the radius of each.
 type Points = List<DVec2, 2, 64>;
@@ -32,11 +32,11 @@ inventory::submit! {
                 let surface = ClassicRevolution { line: ProfileLine { radius, slope: None }, height };
                 return Ok(Body::plain(Shape::new(InFrame { surface, frame }).classic()));
             }
-            Accuracy::Draft => Finish::Bracket,
-            Accuracy::Exact | Accuracy::Strict => Finish::Root,
+            Accuracy::Draft => Refinement::Bracket,
+            Accuracy::Exact | Accuracy::Strict => Refinement::Root,
         };
         let surface = Revolution::new(&radius, height, finish).map_err(|fault| {
-            let (what, help) = fault.told();
+            let (what, help) = fault.message();
             Refusal { attribute: Some("points"), message: format!("has a profile {what}"), help }
         })?;
         Ok(Body::plain(Shape::new(InFrame { surface, frame }).in_packets().searched()))

@@ -1,7 +1,7 @@
 //! A surface of revolution: a profile curve rotated around an axis.
 
 use crate::prelude::*;
-use crate::shapes::{ClassicRevolution, Finish, InFrame, Revolution};
+use crate::shapes::{ClassicRevolution, InFrame, Refinement, Revolution};
 use std::sync::Arc;
 
 static SURFER: Pparm<Option<&'static Profile>> =
@@ -32,12 +32,12 @@ inventory::submit! {
             Accuracy::Classic => {
                 return Ok(Body::plain(Shape::new(InFrame { surface: ClassicRevolution { line, height }, frame }).classic()));
             }
-            Accuracy::Draft => Finish::Bracket,
-            Accuracy::Exact | Accuracy::Strict => Finish::Root,
+            Accuracy::Draft => Refinement::Bracket,
+            Accuracy::Exact | Accuracy::Strict => Refinement::Root,
         };
         let surface = Revolution::new(&line.radius, height, finish).map_err(|fault| {
             let attribute = Some(if args.get(&SURFER).is_some() { "surfer" } else { "profile" });
-            let (what, help) = fault.told();
+            let (what, help) = fault.message();
             Refusal { attribute, message: format!("has a profile {what}"), help }
         })?;
         Ok(Body::plain(Shape::new(InFrame { surface, frame }).in_packets().searched()))

@@ -13,7 +13,7 @@ use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::render::tiles::BAND;
 use crate::scene::dump;
-use crate::scene::reader::Chosen;
+use crate::scene::reader::ReadOptions;
 use crate::scene::registry::Registry;
 use crate::world::accuracy::Accuracy;
 use std::io::Write;
@@ -23,7 +23,7 @@ pub fn run(registry: &Registry) -> Result<(), Failure> {
     let standard = Path::new("-");
     let output = Output::open(standard)?;
     // The course's own image, unless the camera asks for another method.
-    let accuracy = Chosen { by_default: Accuracy::Classic, ..Chosen::default() };
+    let accuracy = ReadOptions { by_default: Accuracy::Classic, ..ReadOptions::default() };
     let model =
         input::print_warnings(Source::read(standard, &set::Args::default())?.load_by(registry, accuracy))?
             .model;

@@ -21,7 +21,7 @@ use crate::output::part::PixelFormat;
 use crate::output::picture::Format;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
-use crate::scene::reader::{Chosen, Loaded};
+use crate::scene::reader::{Loaded, ReadOptions};
 use crate::scene::registry::Registry;
 use crate::world::accuracy::Accuracy;
 use std::path::{Path, PathBuf};
@@ -161,7 +161,7 @@ fn one(
     let accuracy = args.method.accuracy()?;
     let source = Source::read(scene, &args.set)?;
     let memory = args.stop.memory_left();
-    let chosen = |accuracy| Chosen { above_all: accuracy, memory, ..Chosen::default() };
+    let chosen = |accuracy| ReadOptions { above_all: accuracy, memory, ..ReadOptions::default() };
     let Loaded { mut model, building, warnings, .. } =
         input::print_warnings(source.load_by(registry, chosen(accuracy)))?;
     let mut stats = Stats { reading: start.elapsed() - building, building, ..Stats::default() };
@@ -277,8 +277,11 @@ fn share(
     };
     let whole = Instant::now();
     let exact = || {
-        let chosen =
-            Chosen { above_all: Some(Accuracy::Exact), memory: args.stop.memory_left(), ..Chosen::default() };
+        let chosen = ReadOptions {
+            above_all: Some(Accuracy::Exact),
+            memory: args.stop.memory_left(),
+            ..ReadOptions::default()
+        };
         source.load_by(registry, chosen).map(|loaded| loaded.model).map_err(Failure::Scene)
     };
     let is_wanted = beside.contains(&Aov::Error);

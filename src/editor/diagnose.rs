@@ -2,7 +2,7 @@
 
 use super::text::{Position, Text};
 use crate::files::plain;
-use crate::scene::reader::{self, Chosen, Fault, Located, Severity};
+use crate::scene::reader::{self, Fault, Located, ReadOptions, Severity};
 use crate::scene::registry::Registry;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -44,18 +44,22 @@ pub fn diagnose(
 ) -> Vec<Diagnosis> {
     let folder = path.parent().unwrap_or(path);
     let name = path.display().to_string();
-    let report =
-        match reader::read_by(registry, &name, folder, text.as_bytes(), Chosen { open, ..Chosen::default() })
-        {
-            Ok(loaded) => loaded.warnings,
-            Err(report) => report,
-        };
+    let report = match reader::read_by(
+        registry,
+        &name,
+        folder,
+        text.as_bytes(),
+        ReadOptions { open, ..ReadOptions::default() },
+    ) {
+        Ok(loaded) => loaded.warnings,
+        Err(report) => report,
+    };
     let mut texts = HashMap::new();
-    report.located().map(|(fault, located)| told(fault, located, &mut texts)).collect()
+    report.located().map(|(fault, located)| diagnosis(fault, located, &mut texts)).collect()
 }
 
 /// Returns a fault with its places.
-fn told<'r>(fault: &Fault, located: Vec<Located<'r>>, texts: &mut HashMap<&'r str, Text>) -> Diagnosis {
+fn diagnosis<'r>(fault: &Fault, located: Vec<Located<'r>>, texts: &mut HashMap<&'r str, Text>) -> Diagnosis {
     let mut remarks: Vec<_> = located
         .iter()
         .map(|located| {
@@ -69,8 +73,8 @@ fn told<'r>(fault: &Fault, located: Vec<Located<'r>>, texts: &mut HashMap<&'r st
     if !first.text.is_empty() {
         message += &format!(": {}", first.text);
     }
-    if fault.alike.0 > 0 {
-        message += &format!(" (and in {})", crate::text::count(fault.alike.0, "more place"));
+    if fault.similar_faults.0 > 0 {
+        message += &format!(" (and in {})", crate::text::count(fault.similar_faults.0, "more place"));
     }
     if let Some(help) = &fault.help {
         message += &format!("\nhelp: {help}");

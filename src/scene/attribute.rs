@@ -78,11 +78,11 @@ impl dyn Attribute + '_ {
     /// Says how many values of which type the attribute takes: "1 or 3 numbers".
     pub fn takes(&self) -> String {
         match self.value_type() {
-            Type::Whole => self.arity().told("whole number"),
-            Type::Number | Type::Rotation => self.arity().told("number"),
+            Type::Whole => self.arity().describe("whole number"),
+            Type::Number | Type::Rotation => self.arity().describe("number"),
             Type::Word => "a word".to_owned(),
             Type::File => "the name of a file".to_owned(),
-            Type::Name(kind) if self.arity().most() > 1 => self.arity().told(&format!("{kind} name")),
+            Type::Name(kind) if self.arity().most() > 1 => self.arity().describe(&format!("{kind} name")),
             Type::Name(kind) => format!("the name of {}", kind.with_article()),
             Type::Choice(choices) => {
                 let has_numbers = choices.all().iter().any(|choice| choice.number.is_some());
@@ -92,7 +92,7 @@ impl dyn Attribute + '_ {
             Type::Formula(variables) => {
                 let what = match self.arity().most() {
                     1 => "a formula".to_owned(),
-                    _ => self.arity().told("formula"),
+                    _ => self.arity().describe("formula"),
                 };
                 format!("{what} in {}, in quotes", text::and(variables))
             }

@@ -49,7 +49,7 @@ impl Counts {
 
     /// Says how many values of a type there are, whose name ends the phrase: "1 or 3 numbers", "2 to 64 pairs of
     /// numbers".
-    pub(super) fn told(self, noun: &str) -> String {
+    pub(super) fn describe(self, noun: &str) -> String {
         match self {
             Self::Of([1]) => format!("1 {noun}"),
             Self::Of(counts) => {
@@ -88,7 +88,7 @@ pub struct OneOf {
 
 impl OneOf {
     /// Lists the names for messages: `surfer` or `profile`.
-    pub(super) fn told(&self, conjunction: &str) -> String {
+    pub(super) fn describe(&self, conjunction: &str) -> String {
         let names: Vec<_> = self.names.iter().map(|name| format!("`{name}`")).collect();
         names.join(&format!(" {conjunction} "))
     }

@@ -72,8 +72,9 @@ impl Word {
             aliases => format!("\nAlso written {}.\n", text::list(aliases.iter().copied())),
         };
         let rows: String = entity.attributes().map(attribute_row).collect();
-        let one_of =
-            |group: &OneOf| format!("\nExactly one of {} is given: {}.\n", group.told("and"), group.meaning);
+        let one_of = |group: &OneOf| {
+            format!("\nExactly one of {} is given: {}.\n", group.describe("and"), group.meaning)
+        };
         let groups: String = entity.groups().map(one_of).collect();
         let numbers = numbers(&[(entity.numbers[0], " on planes"), (entity.numbers[1], " on spheres")]);
         let details = format!(

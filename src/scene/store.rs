@@ -57,7 +57,7 @@ impl Store {
             self.types.len() - 1
         });
         let mut bytes = take(&mut self.bytes);
-        let mut packed = Packed::begin(&mut bytes, number, name, values.is_some());
+        let mut packed = Packer::begin(&mut bytes, number, name, values.is_some());
         for (datum, is_given) in values.unwrap_or_default() {
             match datum {
                 _ if !is_given => packed.default(),
@@ -222,9 +222,9 @@ impl Store {
 }
 
 /// An entity that is being packed: its type, its name, and its values in the order of its table.
-pub struct Packed<'b>(&'b mut Vec<u8>);
+pub struct Packer<'b>(&'b mut Vec<u8>);
 
-impl<'b> Packed<'b> {
+impl<'b> Packer<'b> {
     /// Begins an entity of the type of this [number](Store::number), after what was packed before.
     pub fn begin(bytes: &'b mut Vec<u8>, number: usize, name: &str, has_values: bool) -> Self {
         let mut packed = Self(bytes);

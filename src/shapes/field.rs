@@ -37,7 +37,7 @@ pub enum NoField {
 
 impl NoField {
     /// Returns the error of the formula and its correction, for messages: "has a formula ...".
-    pub fn told(self) -> (String, &'static str) {
+    pub fn message(self) -> (String, &'static str) {
         let place = |DVec3 { x, y, z }: DVec3| format!("near x = {x:.4}, y = {y:.4}, z = {z:.4}");
         match self {
             Self::Unbounded { near } => (

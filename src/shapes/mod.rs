@@ -20,7 +20,7 @@ pub use ellipsoid::Ellipsoid;
 pub use implicit::Implicit;
 pub use placed::Placed;
 pub use quadratic::Quadric;
-pub use revolution::{ClassicRevolution, Finish, InFrame, Revolution};
+pub use revolution::{ClassicRevolution, InFrame, Refinement, Revolution};
 pub use solid::{Objects, combined};
 pub use triangle::Triangle;
 

@@ -158,7 +158,7 @@ fn a_place_in_a_long_line_is_told_by_its_own_line_and_column() {
 fn errors_that_differ_in_their_places_alone_are_one() {
     let report = refused("many", &format!("{HEAD}{}", "}\n".repeat(5_000)));
     let [fault] = report.faults() else { panic!("{report}") };
-    assert_eq!((fault.message.as_str(), fault.alike.0), ("stray `}`", 4_999));
+    assert_eq!((fault.message.as_str(), fault.similar_faults.0), ("stray `}`", 4_999));
     let told = report.to_string();
     assert!(told.contains("note: the same in 4999 more places, first in lines 4, 5, 6\n"), "{told}");
     assert!(told.ends_with("\nmany: 5000 errors\n"), "{told}");

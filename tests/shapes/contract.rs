@@ -399,7 +399,7 @@ fn every_broken_promise_is_found_for_what_it_is() {
             told.starts_with(&format!("{}: the {} `{}`", entity.place(), entity.kind(), entity.name)),
             "{told}"
         );
-        assert!(told.contains(promise.cure()) && told.contains(&format!("\n    {} ", entity.name)), "{told}");
+        assert!(told.contains(promise.help()) && told.contains(&format!("\n    {} ", entity.name)), "{told}");
     }
 }
 
@@ -407,7 +407,7 @@ fn every_broken_promise_is_found_for_what_it_is() {
 fn the_docs_tell_each_promise_and_its_cure() {
     let page = fs::read_to_string(root().join("docs/plugins.md")).expect("the page");
     for promise in Promise::ALL {
-        let row = format!("\n| {promise} | {} |\n", promise.cure());
+        let row = format!("\n| {promise} | {} |\n", promise.help());
         assert!(page.contains(&row), "docs/plugins.md lacks {row}");
     }
 }

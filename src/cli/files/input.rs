@@ -5,7 +5,7 @@ use crate::cli::process::failure::Failure;
 use crate::cli::process::{crash, memory, messages};
 use crate::files;
 use crate::scene::model::Model;
-use crate::scene::reader::{self, Chosen, Loaded, Report};
+use crate::scene::reader::{self, Loaded, ReadOptions, Report};
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
 use crate::text;
@@ -81,12 +81,12 @@ impl Source {
 
     /// Makes a model, with the given accuracy or with the scene's own, and its warnings.
     pub fn load(&self, registry: &Registry, accuracy: Option<Accuracy>) -> Result<Loaded, Report> {
-        self.load_by(registry, Chosen { above_all: accuracy, ..Chosen::default() })
+        self.load_by(registry, ReadOptions { above_all: accuracy, ..ReadOptions::default() })
     }
 
-    /// Makes a model and its warnings, with the choices of [`Chosen`].
-    pub fn load_by(&self, registry: &Registry, accuracy: Chosen<'_>) -> Result<Loaded, Report> {
-        let chosen = Chosen { sets: &self.sets, ..accuracy };
+    /// Makes a model and its warnings, with the choices of [`ReadOptions`].
+    pub fn load_by(&self, registry: &Registry, accuracy: ReadOptions<'_>) -> Result<Loaded, Report> {
+        let chosen = ReadOptions { sets: &self.sets, ..accuracy };
         reader::read_by(registry, &self.name, &self.folder, &self.bytes, chosen)
     }
 }

@@ -11,7 +11,7 @@ use crate::cli::rendering::stats::Stats;
 use crate::output::full_range::FullRange;
 use crate::render::plan::Plan;
 use crate::render::ray_stats::RayStats;
-use crate::render::renderer::{Overseer, Renderer};
+use crate::render::renderer::{RenderCallbacks, Renderer};
 use std::path::Path;
 
 /// The memory for a pixel, in bytes: its colour, and what encodes it.
@@ -32,7 +32,7 @@ pub fn render(
     memory::refuse_too_large(PIXEL.saturating_mul(width).saturating_mul(height), "the image")?;
     let progress = Progress::new(height);
     stop.begin_unkept(UNKEPT);
-    let overseer = Overseer { stops: &|| stop.is_due(), row: &|| progress.step() };
+    let overseer = RenderCallbacks { stops: &|| stop.is_due(), row: &|| progress.step() };
     let tally = &stats.tally;
     let add = |part: RayStats| tally.add(&part);
     let mut pixels = None;

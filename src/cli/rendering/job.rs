@@ -13,7 +13,7 @@ use crate::output::picture::Format;
 use crate::render::limits::MAX_RAYS;
 use crate::render::plan::Plan;
 use crate::render::ray_stats::{Cuts, Proofs, RayStats};
-use crate::render::renderer::{Overseer, Renderer};
+use crate::render::renderer::{RenderCallbacks, Renderer};
 use crate::render::tiles::{BAND, Band, Tiles};
 use crate::text::{count, short};
 use std::io::{self, BufWriter};
@@ -57,7 +57,7 @@ impl Job<'_> {
             proofs.lock().unwrap_or_else(PoisonError::into_inner).add(tally.proofs);
             sum.iter().for_each(|sum| sum.add(&tally));
         };
-        let overseer = Overseer { stops: &|| self.stop.is_due(), row: &|| progress.step() };
+        let overseer = RenderCallbacks { stops: &|| self.stop.is_due(), row: &|| progress.step() };
         let (plan, plain, counted) = (self.plan, &cut, &add);
         self.stop.begin();
         self.renderer.unfinished(|renders| {

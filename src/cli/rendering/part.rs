@@ -18,7 +18,7 @@ use crate::parallel;
 use crate::render::division::{self, Grid};
 use crate::render::plan::Plan;
 use crate::render::ray_stats::RayStats;
-use crate::render::renderer::{Overseer, Renderer};
+use crate::render::renderer::{RenderCallbacks, Renderer};
 use crate::render::tiles::{Band, TILE};
 use crate::text;
 use std::fs;
@@ -154,7 +154,7 @@ impl Share<'_> {
         let was_begun = begun.is_some();
         let tiles = label.tiles();
         let progress = Progress::new(self.grid().rows(&tiles).len());
-        let overseer = Overseer { stops: &|| self.stop.is_due(), row: &|| progress.step() };
+        let overseer = RenderCallbacks { stops: &|| self.stop.is_due(), row: &|| progress.step() };
         let sum = &self.stats.tally;
         let add = |tally: RayStats| sum.add(&tally);
         let cannot = |error: io::Error| Failure::cannot_write(path, &error);
@@ -284,7 +284,7 @@ impl Share<'_> {
         let (tiles, grid) = (label.tiles(), self.grid());
         let Part { columns, rows } = self.region;
         let progress = Progress::new(grid.rows(&tiles).len());
-        let overseer = Overseer { stops: &|| self.stop.is_due(), row: &|| progress.step() };
+        let overseer = RenderCallbacks { stops: &|| self.stop.is_due(), row: &|| progress.step() };
         let sum = &self.stats.tally;
         let add = |tally: RayStats| sum.add(&tally);
         let mut writer = begin(path, label)?;

@@ -3,7 +3,7 @@
 use crate::render::plan::Plan;
 use crate::render::trace;
 use crate::scene::model::Model;
-use crate::scene::reader::{self, Chosen, Places, Report};
+use crate::scene::reader::{self, Places, ReadOptions, Report};
 use crate::scene::registry::Registry;
 use crate::world::accuracy::Accuracy;
 use std::io;
@@ -43,7 +43,8 @@ impl Frame {
     /// # Errors
     /// The faults of the scene with that accuracy.
     pub fn load(&self, registry: &Registry, accuracy: Option<Accuracy>) -> io::Result<Model> {
-        let chosen = Chosen { above_all: accuracy.or(self.accuracy), sets: &self.sets, ..Chosen::default() };
+        let chosen =
+            ReadOptions { above_all: accuracy.or(self.accuracy), sets: &self.sets, ..ReadOptions::default() };
         let loaded = reader::read_by(registry, &self.name, &self.folder, self.text.as_bytes(), chosen);
         let faults = |report: Report| io::Error::new(io::ErrorKind::InvalidData, report.to_string());
         loaded.map(|loaded| loaded.model).map_err(faults)

@@ -12,7 +12,7 @@ use crate::render::plan::Plan;
 use crate::render::progressive;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
-use crate::scene::reader::{self, Chosen, Loaded};
+use crate::scene::reader::{self, Loaded, ReadOptions};
 use crate::world::accuracy::Accuracy;
 use std::fs;
 use std::ops::ControlFlow;
@@ -137,7 +137,7 @@ impl Watched {
         let text = String::from_utf8_lossy(bytes);
         let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
         let folder = session.path.parent().unwrap_or(&session.path);
-        let chosen = Chosen { above_all: self.accuracy, sets, ..Chosen::default() };
+        let chosen = ReadOptions { above_all: self.accuracy, sets, ..ReadOptions::default() };
         let read = match crash::catch(|| reader::read_by(session.registry, &name, folder, bytes, chosen)) {
             Ok(read) => read,
             Err(failure) => {

@@ -125,7 +125,7 @@ impl AttributeChecker<'_, '_> {
                     if is_formula { format!("a formula: `{usage}`") } else { format!("`{usage}`") }
                 };
                 let usages: Vec<_> = of_group().map(|(attribute, _)| usage(*attribute)).collect();
-                let message = format!("{title} lacks {}", group.told("or"));
+                let message = format!("{title} lacks {}", group.describe("or"));
                 self.report.add(
                     Fault::error(parsed.name.place.clone(), message)
                         .help(format!("add {}", usages.join(", or "))),

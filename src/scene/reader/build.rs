@@ -1,6 +1,6 @@
 //! Makes a [`Model`] of a scene's entities.
 
-use super::check::{Check, Chosen, Source, TOGETHER};
+use super::check::{Check, ReadOptions, Source, TOGETHER};
 use super::fault::{Fault, Places, Severity};
 use super::names::suggestion;
 use super::report::Report;
@@ -23,7 +23,7 @@ pub type Checked = (Option<Model>, Places, Duration);
 pub fn model(
     registry: &Registry,
     folder: &Path,
-    accuracy: Chosen<'_>,
+    accuracy: ReadOptions<'_>,
     source: &mut Source<'_, '_>,
     report: &mut Report<'_>,
 ) -> Checked {
@@ -69,7 +69,7 @@ impl Check<'_, '_> {
         let mut unknown: Vec<_> = take(&mut self.unknown.names).into_iter().collect();
         unknown.sort_by_key(|(_, (place, _))| place.as_ref().map(|place| place.start));
         for ((_, name), (place, count)) in unknown {
-            let is_told = self.report.tells(Severity::Error, &place);
+            let is_told = self.report.would_list(Severity::Error, &place);
             let near = if is_told { self.registry.nearest(&name) } else { None };
             camera_misspelt |=
                 near.and_then(|near| self.registry.find(near)).is_some_and(|e| e.kind() == Kind::Camera);

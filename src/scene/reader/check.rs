@@ -68,7 +68,7 @@ const TEXTURE_MEMORY: u64 = 1 << 30;
 
 /// What the caller chooses beside the text of a scene.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Chosen<'s> {
+pub struct ReadOptions<'s> {
     /// The accuracy that overrides the scene's own.
     pub above_all: Option<Accuracy>,
     /// The accuracy where the scene chooses none.
@@ -124,7 +124,7 @@ impl<'r, 't> Check<'r, 't> {
     pub fn new(
         registry: &'r Registry,
         folder: &Path,
-        accuracy: Chosen<'_>,
+        accuracy: ReadOptions<'_>,
         report: &'r mut Report<'t>,
         threads: &'r Threads,
     ) -> Self {
@@ -327,7 +327,7 @@ impl Check<'_, '_> {
         let Some((attribute, fault)) = levels::warning(args) else { return };
         let place = place_of(args.entity, parsed, Some(attribute));
         match &mut self.levels {
-            Some(first) => first.stand_for(place),
+            Some(first) => first.count_similar(place),
             None => self.levels = Some(Fault { place, ..fault }),
         }
     }

@@ -24,8 +24,10 @@ pub fn rendered(fault: &Fault, parts: &Parts<'_>, renderer: &Renderer) -> String
     let Lines { name, text, ends: newlines, .. } = lines_of;
     let title = level.primary_title(fault.message.as_str());
     let help = fault.help.as_deref().map(|help| Level::HELP.message(help));
-    let alike = alike(fault, lines_of);
-    let notes = help.into_iter().chain(alike.as_deref().map(|alike| Level::NOTE.message(alike)));
+    let similar_faults = similar_faults(fault, lines_of);
+    let notes = help
+        .into_iter()
+        .chain(similar_faults.as_deref().map(|similar_faults| Level::NOTE.message(similar_faults)));
     let Some(place) = &fault.place else {
         return renderer.render(&[title.element(Origin::path(*name)).elements(notes)]);
     };
@@ -84,8 +86,8 @@ pub fn rendered(fault: &Fault, parts: &Parts<'_>, renderer: &Renderer) -> String
 }
 
 /// Says how many similar faults this fault stands for.
-fn alike(fault: &Fault, part: &Lines<'_>) -> Option<String> {
-    let (count, places) = &fault.alike;
+fn similar_faults(fault: &Fault, part: &Lines<'_>) -> Option<String> {
+    let (count, places) = &fault.similar_faults;
     let here = places.iter().flatten().filter(|place| part.has(place.start));
     let mut lines: Vec<_> = here.map(|place| line(part.place(place).start, &part.ends)).collect();
     lines.dedup();
@@ -151,5 +153,5 @@ impl Piece {
 /// Returns the further places of a fault: those that help to understand it, and the first few of similar faults.
 pub fn others(fault: &Fault) -> impl Iterator<Item = (&Place, &str)> {
     let also = fault.also.iter().map(|(place, label)| (place, label.as_str()));
-    also.chain(fault.alike.1.iter().map(|place| (place, "and here")))
+    also.chain(fault.similar_faults.1.iter().map(|place| (place, "and here")))
 }

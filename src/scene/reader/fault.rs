@@ -61,7 +61,7 @@ pub struct Fault {
     pub meant: Option<String>,
     /// The number of other faults that differ only in their places and are not listed separately, and the first of
     /// those places.
-    pub alike: (usize, Vec<Place>),
+    pub similar_faults: (usize, Vec<Place>),
 }
 
 impl Fault {
@@ -75,7 +75,7 @@ impl Fault {
             also: Vec::new(),
             help: None,
             meant: None,
-            alike: (0, Vec::new()),
+            similar_faults: (0, Vec::new()),
         }
     }
 
@@ -114,13 +114,13 @@ impl Fault {
 
     /// Returns the number of similar faults, in brackets, or an empty string where there are none.
     pub(super) fn more(&self) -> String {
-        let (count, _) = self.alike;
+        let (count, _) = self.similar_faults;
         if count == 0 { String::new() } else { format!(" (and in {})", text::count(count, "more place")) }
     }
 
     /// Counts a similar fault, and keeps its place if it is one of the first.
-    pub(super) fn stand_for(&mut self, place: Place) {
-        let (count, places) = &mut self.alike;
+    pub(super) fn count_similar(&mut self, place: Place) {
+        let (count, places) = &mut self.similar_faults;
         *count += 1;
         if places.len() < PLACES {
             places.push(place);
@@ -146,7 +146,7 @@ impl Fault {
             *label = text::abridged(label).into_owned();
             whole(place);
         }
-        self.alike.1.iter_mut().for_each(whole);
+        self.similar_faults.1.iter_mut().for_each(whole);
         self.help = self.help.as_deref().map(|help| text::abridged(help).into_owned());
         self.message = text::visible(&text::abridged(&self.message).replace(char::is_control, "\u{fffd}"));
     }

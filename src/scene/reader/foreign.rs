@@ -82,7 +82,7 @@ impl ForeignSyntax {
             Self::Colour | Self::Quotes | Self::Brackets => format!("write `{replacement}`"),
         };
         let mut fault = Fault::error(places.first().cloned(), message).label(label).help(help);
-        places.iter().skip(1).for_each(|place| fault.stand_for(Some(place.clone())));
+        places.iter().skip(1).for_each(|place| fault.count_similar(Some(place.clone())));
         fault
     }
 }

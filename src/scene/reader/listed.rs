@@ -95,7 +95,7 @@ pub fn entities<'a, 't>(
             statement => lister.statement(&statement),
         }
     }
-    lister.sets.report_unmet(lister.report);
+    lister.sets.report_unmatched(lister.report);
     lister.entities
 }
 

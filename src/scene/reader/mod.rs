@@ -38,7 +38,7 @@ mod toml_faults;
 mod unseen;
 mod values;
 
-pub use check::Chosen;
+pub use check::ReadOptions;
 pub use fault::{Fault, Place, Places, Severity};
 pub(crate) use located::Located;
 pub use machine::Message;
@@ -87,10 +87,10 @@ pub fn read(
     bytes: &[u8],
     accuracy: Option<Accuracy>,
 ) -> Result<Loaded, Report> {
-    read_by(registry, name, folder, bytes, Chosen { above_all: accuracy, ..Chosen::default() })
+    read_by(registry, name, folder, bytes, ReadOptions { above_all: accuracy, ..ReadOptions::default() })
 }
 
-/// Reads a scene as [`read`] does, but with the choices of [`Chosen`].
+/// Reads a scene as [`read`] does, but with the choices of [`ReadOptions`].
 ///
 /// # Errors
 /// Every fault of the scene, warnings among them, in the order of the text.
@@ -99,7 +99,7 @@ pub fn read_by(
     name: &str,
     folder: &Path,
     bytes: &[u8],
-    accuracy: Chosen<'_>,
+    accuracy: ReadOptions<'_>,
 ) -> Result<Loaded, Report> {
     let text = decode(name, bytes)?;
     let syntax = match Syntax::of_name(name) {
@@ -123,7 +123,7 @@ fn read_text(
     (name, folder): (&str, &Path),
     text: &str,
     syntax: Syntax,
-    accuracy: Chosen<'_>,
+    accuracy: ReadOptions<'_>,
 ) -> Result<Loaded, Report> {
     // The memory for making a model, in bytes per byte of its text.
     let weight = if syntax == Syntax::Toml { 48 } else { 8 };
@@ -200,7 +200,7 @@ pub fn build(
     let mut report = Report::new("model", "", Syntax::Notes);
     let parsed: Vec<_> = parsed.into_iter().collect();
     let mut source = Source::List(&parsed);
-    let checked = build::model(registry, Path::new(""), Chosen::default(), &mut source, &mut report);
+    let checked = build::model(registry, Path::new(""), ReadOptions::default(), &mut source, &mut report);
     finish(checked, registry, report)
 }
 

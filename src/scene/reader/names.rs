@@ -267,7 +267,7 @@ impl Names {
             known.dedup();
         });
         for ((kind, text), (first, count)) in unresolved {
-            let is_told = report.tells(Severity::Error, first);
+            let is_told = report.would_list(Severity::Error, first);
             let fault = match self.first(store, *kind, text) {
                 Some(defined) => {
                     Fault::error(first.clone(), format!("{kind} `{text}` is used before it is defined"))

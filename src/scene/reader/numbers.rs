@@ -197,7 +197,7 @@ impl<'a> Numbers<'a> {
                 .also(place.clone(), "defined here")
                 .help("a number must be defined before it is used");
         }
-        let is_told = report.tells(Severity::Error, &told.place);
+        let is_told = report.would_list(Severity::Error, &told.place);
         if let Some(near) = nearest(&unknown, self.names().filter(|_| is_told)) {
             told = told.label(format!("did you mean `{near}`?")).meant(Some(near));
         }

@@ -4,11 +4,11 @@
 use super::guesses::Tables;
 use super::names::Names;
 use super::parsed::{Form, Parsed, Word};
-use super::values::{self, Complaint};
+use super::values::{self, ValueError};
 use crate::scene::entity::Entity;
 use crate::scene::kind::Kind;
 use crate::scene::registry::Registry;
-use crate::scene::store::{Packed, Store};
+use crate::scene::store::{Packer, Store};
 use crate::scene::value::{Datum, Type};
 use std::mem::replace;
 use std::ops::Range;
@@ -91,7 +91,7 @@ impl<'r> Quick<'r> {
                 return None;
             }
         }
-        let mut packed = Packed::begin(&mut self.bytes, number, &parsed.name.text, true);
+        let mut packed = Packer::begin(&mut self.bytes, number, &parsed.name.text, true);
         // Defaults at the end take no memory: most objects name no shader.
         let mut defaults = 0;
         for (known, given) in table.iter().zip(&self.given) {
@@ -140,7 +140,7 @@ impl<'r> Quick<'r> {
 }
 
 /// Reads numbers in place of others.
-fn read<T>(numbers: &mut Vec<T>, words: &[Word<'_>], read: fn(&str) -> Result<T, Complaint>) -> Option<()> {
+fn read<T>(numbers: &mut Vec<T>, words: &[Word<'_>], read: fn(&str) -> Result<T, ValueError>) -> Option<()> {
     numbers.clear();
     for word in words {
         let is_text = matches!(word.form, Form::Text | Form::Faulty);

@@ -92,17 +92,17 @@ impl<'t> Report<'t> {
         if self.is_again(&fault) {
             return;
         }
-        let gathered = |told: &&mut Fault| told.alike.0 > 0 && told.is_like(&fault);
+        let gathered = |told: &&mut Fault| told.similar_faults.0 > 0 && told.is_like(&fault);
         if let Some(first) = self.faults.iter_mut().find(gathered) {
-            first.stand_for(fault.place);
-        } else if self.tells(fault.severity, &fault.place) {
+            first.count_similar(fault.place);
+        } else if self.would_list(fault.severity, &fault.place) {
             self.insert(fault);
         }
     }
 
     /// Adds a fault that stands for others like it.
     pub(super) fn add_gathered(&mut self, mut fault: Fault) {
-        self.notes.counts[fault.severity as usize] += 1 + fault.alike.0;
+        self.notes.counts[fault.severity as usize] += 1 + fault.similar_faults.0;
         fault.tidy(&self.text);
         self.insert(fault);
     }
@@ -136,7 +136,7 @@ impl<'t> Report<'t> {
         if self.faults.iter().filter(|told| told.is_like(&fault)).count() == MAX_ALIKE {
             let mut like: Vec<_> = self.faults.extract_if(.., |told| told.is_like(&fault)).collect();
             let mut first = like.remove(0);
-            like.into_iter().chain([fault]).for_each(|fault| first.stand_for(fault.place));
+            like.into_iter().chain([fault]).for_each(|fault| first.count_similar(fault.place));
             self.notes.told[severity] -= MAX_ALIKE;
             return self.insert(first);
         }
@@ -152,7 +152,7 @@ impl<'t> Report<'t> {
     }
 
     /// Tells whether a fault there would be listed. If not, there is no need to find out what would be right.
-    pub(super) fn tells(&self, severity: Severity, place: &Place) -> bool {
+    pub(super) fn would_list(&self, severity: Severity, place: &Place) -> bool {
         let is_after = |told: &Fault| place.as_ref().map_or(0, |place| place.start) >= told.start();
         let last = self.faults.iter().rfind(|told| told.severity == severity);
         self.notes.told[severity as usize] < MAX_LISTED || !last.is_some_and(is_after)
@@ -199,7 +199,7 @@ impl<'t> Report<'t> {
     pub(super) fn rest(&self) -> Option<String> {
         let told = |severity| {
             let told = self.faults.iter().filter(|fault| fault.severity == severity);
-            told.map(|fault| 1 + fault.alike.0).sum::<usize>()
+            told.map(|fault| 1 + fault.similar_faults.0).sum::<usize>()
         };
         let rest =
             [(Severity::Error, "more error"), (Severity::Warning, "more warning")].map(|(severity, noun)| {

@@ -114,7 +114,7 @@ impl<'a> Sets<'a> {
     }
 
     /// Reports what is set and not in the scene.
-    pub fn report_unmet(&self, report: &mut Report<'_>) {
+    pub fn report_unmatched(&self, report: &mut Report<'_>) {
         for set in self.all.iter().filter(|set| !set.is_met) {
             let (what, known) = match set.attribute {
                 Some(_) => ("the scene has no entity", &self.names),

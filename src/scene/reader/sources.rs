@@ -42,7 +42,7 @@ pub struct Sources<'t> {
 }
 
 /// A file that is read: its path, its folder, and the index of the one that includes it.
-struct Reading {
+struct OpenSource {
     path: PathBuf,
     includer: Option<usize>,
 }
@@ -70,7 +70,7 @@ impl<'t> Sources<'t> {
         }
         sources.parts.push(Part { name: name.to_owned(), range: own });
         let own = folder.join(Path::new(name).file_name().unwrap_or_default());
-        let mut readings = vec![Reading { path: own, includer: None }];
+        let mut readings = vec![OpenSource { path: own, includer: None }];
         let mut room = room.min(LARGEST).saturating_sub(text.len() as u64);
         let mut at = 0;
         while at < readings.len() {
@@ -109,7 +109,7 @@ impl<'t> Sources<'t> {
     /// Reads a file and returns the index of its part, or what is wrong and what would be right.
     fn include(
         &mut self,
-        readings: &mut Vec<Reading>,
+        readings: &mut Vec<OpenSource>,
         includer: usize,
         file: &str,
         (syntax, open): (Syntax, &[(PathBuf, Arc<str>)]),
@@ -174,7 +174,7 @@ impl<'t> Sources<'t> {
         };
         let name = Path::new(&self.parts[includer].name).with_file_name(file).display().to_string();
         self.add(name, text.strip_prefix('\u{feff}').unwrap_or(text));
-        readings.push(Reading { path, includer: Some(includer) });
+        readings.push(OpenSource { path, includer: Some(includer) });
         Ok(self.parts.len() - 1)
     }
 }

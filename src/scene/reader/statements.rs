@@ -108,7 +108,7 @@ impl<'a> Parser<'a, '_> {
             }
         }
         if !replace(&mut self.is_over, true) {
-            self.sets.report_unmet(self.report);
+            self.sets.report_unmatched(self.report);
         }
         false
     }

@@ -35,7 +35,7 @@ impl Check<'_, '_> {
             self.texture_memory -= texture.bytes().min(self.texture_memory);
             if let Err(reason) = read {
                 let place = self.places.get(*order);
-                let is_told = self.report.tells(Severity::Error, &place);
+                let is_told = self.report.would_list(Severity::Error, &place);
                 let mut files = args.values().filter(|(_, datum)| matches!(datum, Datum::Word(_)));
                 let file = files.next();
                 let near = match file.as_ref().map(|(_, datum)| datum) {

@@ -17,7 +17,7 @@ impl Threads {
     /// Does pieces of work, and returns the results in the order of the pieces.
     pub fn map<T: Send>(&self, pieces: usize, work: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
         match if pieces > 1 { self.pool() } else { None } {
-            Some(pool) => parallel::on(pool, || parallel::map(pieces, work)),
+            Some(pool) => parallel::run_on(pool, || parallel::map(pieces, work)),
             None => (0..pieces).map(work).collect(),
         }
     }

@@ -87,7 +87,7 @@ fn in_parts(text: &str, start: usize) -> Outcome<'_> {
         let _ = parsed[index].set(outcome);
         is_broken
     };
-    if parallel::first(parts.len(), is_broken).is_some() {
+    if parallel::find_first(parts.len(), is_broken).is_some() {
         return Outcome::Broken;
     }
     let mut all = Vec::with_capacity(parsed.len());

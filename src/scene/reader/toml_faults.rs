@@ -113,7 +113,7 @@ pub fn toml_error(text: &str) -> Option<SyntaxError> {
         let place = error.span().unwrap_or(0..0);
         Some((part.start + place.start..part.start + place.end, error.message().to_owned()))
     };
-    parallel::first(parts.len(), |part| error(part).is_some()).and_then(error)
+    parallel::find_first(parts.len(), |part| error(part).is_some()).and_then(error)
 }
 
 /// Tells whether a line is the title of an entity.

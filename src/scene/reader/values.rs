@@ -81,9 +81,9 @@ fn choice(choices: Choices, word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
 }
 
 /// What is wrong with a word, and what would be right where that can be said.
-pub type Complaint = (&'static str, Option<&'static str>);
+pub type ValueError = (&'static str, Option<&'static str>);
 
-fn all<T>(words: &[Word<'_>], read: fn(&str) -> Result<T, Complaint>) -> Result<Vec<T>, Vec<Fault>> {
+fn all<T>(words: &[Word<'_>], read: fn(&str) -> Result<T, ValueError>) -> Result<Vec<T>, Vec<Fault>> {
     let mut values = Vec::with_capacity(words.len());
     let mut faults = Vec::new();
     for word in words {
@@ -124,7 +124,7 @@ fn one_for_all(mut faults: Vec<Fault>) -> Vec<Fault> {
 }
 
 /// Reads a whole number.
-pub fn whole(word: &str) -> Result<i64, Complaint> {
+pub fn whole(word: &str) -> Result<i64, ValueError> {
     word.parse().map_err(|_| {
         let digits = word.strip_prefix(['+', '-']).unwrap_or(word);
         let too_large = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
@@ -133,7 +133,7 @@ pub fn whole(word: &str) -> Result<i64, Complaint> {
 }
 
 /// Reads a finite number.
-pub fn number(word: &str) -> Result<f64, Complaint> {
+pub fn number(word: &str) -> Result<f64, ValueError> {
     match word.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
         Ok(_) if word.contains(|c: char| c.is_ascii_digit()) => Err(("too large", None)),

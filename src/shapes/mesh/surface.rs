@@ -77,14 +77,15 @@ impl Surface {
         let Model { vertices, mut faces, materials, slots, sides } = model;
         let vertices = merge(vertices, &mut faces, placement);
         let is_far = |at: DVec3| !at.is_finite() || at.abs().max_element() > MOST_LENGTH;
-        if parallel::first(vertices.len(), |vertex| is_far(vertices[vertex])).is_some() {
+        if parallel::find_first(vertices.len(), |vertex| is_far(vertices[vertex])).is_some() {
             return Err(SurfaceError::TooLarge);
         }
         let mut order: Vec<u32> = (0..faces.len() as u32).collect();
         let has_area =
             |face: &u32| face::has_area(faces[*face as usize].map(|corner| vertices[corner as usize]));
         let total = order.len();
-        order = parallel::ranges(total, 2, &|range| order[range].iter().copied().filter(has_area).collect());
+        order =
+            parallel::map_ranges(total, 2, &|range| order[range].iter().copied().filter(has_area).collect());
         let degenerate = total - order.len();
         if order.is_empty() {
             return Err(SurfaceError::NoArea);
@@ -233,7 +234,8 @@ fn open_edges(faces: &[[u32; 3]]) -> usize {
         (u64::from(from.min(to)) << 32) | (u64::from(from.max(to)) << 1) | u64::from(from > to)
     };
     let edges = |[a, b, c]: &[u32; 3]| [edge(*a, *b), edge(*b, *c), edge(*c, *a)];
-    let mut edges = parallel::ranges(faces.len(), 2, &|range| faces[range].iter().flat_map(edges).collect());
+    let mut edges =
+        parallel::map_ranges(faces.len(), 2, &|range| faces[range].iter().flat_map(edges).collect());
     edges.par_sort_unstable();
     edges
         .chunk_by(|one, other| one >> 1 == other >> 1)

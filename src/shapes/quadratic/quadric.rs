@@ -1,7 +1,7 @@
 //! A quadric in a box: its equation in the numbers of the scene, for the course notes' formula and for proofs, and the
 //! same surface scaled for the solver.
 
-use super::quick::Quick;
+use super::quick::QuickHit;
 use super::surface::{OwnRay, Quadratic};
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::clearance;
@@ -194,7 +194,7 @@ impl<A: Marker> Quadric<A> {
     /// Returns bounds of the distances at which all rays within a drift of this one first hit the quadric in a range.
     #[inline(always)]
     pub fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
-        let Quick { is_missed, is_unknown, distance, error } =
+        let QuickHit { is_missed, is_unknown, distance, error } =
             self.own.quick_hit(&self.own_ray(ray), range.near, drift);
         let (near, far) = if is_unknown { (range.near, MISS) } else { (distance - error, distance + error) };
         if is_missed { Bracket::MISS } else { Bracket { near, far } }

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 /// A ray's first hit in plain arithmetic.
 #[derive(Clone, Copy, Debug)]
-pub struct Quick {
+pub struct QuickHit {
     /// Whether there certainly is no hit.
     pub is_missed: bool,
     /// Whether rounding could decide the hit, unless it is missed.
@@ -84,7 +84,7 @@ impl Quadratic {
     /// Computes the first hit beyond `near` in plain arithmetic without branches, for a ray whose origin and direction
     /// may be off by as much as a drift in each component.
     #[inline(always)]
-    pub fn quick_hit(&self, ray: &OwnRay, near: f64, drift: Drift) -> Quick {
+    pub fn quick_hit(&self, ray: &OwnRay, near: f64, drift: Drift) -> QuickHit {
         let along = self.along(ray, drift.origin * self.scale, drift.dir);
         let RayPolynomial { a, b, c, a_error, b_error, c_error, .. } = along;
         let (square, product) = (b * b, a * c);
@@ -106,7 +106,7 @@ impl Quadratic {
         let (first, second) =
             (self.judge(&along, ray, near, nearer, root), self.judge(&along, ray, near, farther, root));
         let is_first = !first.is_missed;
-        Quick {
+        QuickHit {
             is_missed: (discriminant < -error) | (is_clear & first.is_missed & second.is_missed),
             is_unknown: !is_clear | first.is_unknown | (first.is_missed & second.is_unknown),
             distance: self.unscale * if is_first { first.distance } else { second.distance },
@@ -117,7 +117,7 @@ impl Quadratic {
     /// Judges whether one of two hits counts: whether it is beyond `near` and in the box. In the quadric's own unit of
     /// length.
     #[inline(always)]
-    fn judge(&self, along: &RayPolynomial, ray: &OwnRay, near: f64, hit: f64, root: f64) -> Quick {
+    fn judge(&self, along: &RayPolynomial, ray: &OwnRay, near: f64, hit: f64, root: f64) -> QuickHit {
         let RayPolynomial { base, at, at_error, a, a_error, b_error, c_error, .. } = *along;
         // The polynomial's error divided by half its slope: twice the error of a linear function's root, as this one is
         // curved.
@@ -137,7 +137,7 @@ impl Quadratic {
         let is_missed = (distance + error < near) | (outside < 0.0);
         let is_certain =
             (4.0 * a.abs() * off < root * root) & (is_missed | ((inside > 0.0) & (distance - error > near)));
-        Quick { is_missed: is_certain & is_missed, is_unknown: !is_certain, distance, error }
+        QuickHit { is_missed: is_certain & is_missed, is_unknown: !is_certain, distance, error }
     }
 
     /// Returns a quick hit, corrected by a step of Newton's method in double-double arithmetic to half an ulp; NaN

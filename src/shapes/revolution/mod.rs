@@ -34,4 +34,4 @@ mod walk;
 
 pub use classic::ClassicRevolution;
 pub use shape::InFrame;
-pub use surface::{Finish, Revolution};
+pub use surface::{Refinement, Revolution};

@@ -31,7 +31,7 @@ pub enum NoSurface {
 
 impl NoSurface {
     /// Returns the error of the profile and its correction, for messages: "has a profile ...".
-    pub fn told(self) -> (String, &'static str) {
+    pub fn message(self) -> (String, &'static str) {
         match self {
             Self::Unbounded { near } => (
                 format!("that is unbounded near y = {near:.6}"),

@@ -1,6 +1,6 @@
 //! The first hits of rays, each in its bracket: Newton's method for one ray or for eight at a time.
 
-use super::surface::{Finish, Revolution};
+use super::surface::{Refinement, Revolution};
 use crate::geometry::frame::Frame;
 use crate::geometry::ray::Ray;
 use crate::geometry::ray_packet::RayPacket;
@@ -67,7 +67,7 @@ impl Revolution {
         (near, far): (&[f64], &[f64]),
         out: &mut [f64],
     ) {
-        if self.finish == Finish::Bracket {
+        if self.finish == Refinement::Bracket {
             for (lane, distance) in out.iter_mut().enumerate() {
                 *distance = if near[lane] < far[lane] { 0.5 * (near[lane] + far[lane]) } else { *distance };
             }
@@ -78,7 +78,7 @@ impl Revolution {
 
     /// Returns the distance of a ray's hit between two distances.
     pub(super) fn root(&self, frame: &Frame, ray: &Ray, (near, far): (f64, f64)) -> f64 {
-        if self.finish == Finish::Bracket {
+        if self.finish == Refinement::Bracket {
             return 0.5 * (near + far);
         }
         // Offset in the world before it is rotated: the rotated vector is as small as the surface.

@@ -23,12 +23,12 @@ pub struct Revolution {
     pub(super) square: Formula,
     pub(super) height: f64,
     pub(super) slabs: Slabs,
-    pub(super) finish: Finish,
+    pub(super) finish: Refinement,
 }
 
 /// The way in which the distance of a hit is refined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Finish {
+pub enum Refinement {
     /// Not refined: the midpoint of the bracket, off by about 1/1000 of a world unit.
     Bracket,
     /// Refined to full precision by Newton's method.
@@ -40,7 +40,7 @@ impl Revolution {
     ///
     /// # Errors
     /// Returns why there is no surface: the profile is unbounded, is nowhere above 0, or takes too long to analyze.
-    pub fn new(profile: &Formula, height: f64, finish: Finish) -> Result<Self, NoSurface> {
+    pub fn new(profile: &Formula, height: f64, finish: Refinement) -> Result<Self, NoSurface> {
         let square = profile.squared();
         let slabs = Slabs::new(profile, &square, height)?;
         Ok(Self { profile: profile.clone(), square, height, slabs, finish })
@@ -91,8 +91,8 @@ impl fmt::Display for Revolution {
         let error = self.slabs.coarsest();
         let count = text::count(self.slabs.count(), "slab");
         let finish = match self.finish {
-            Finish::Bracket => "left at the midpoints of their brackets",
-            Finish::Root => "finished by Newton's method",
+            Refinement::Bracket => "left at the midpoints of their brackets",
+            Refinement::Root => "finished by Newton's method",
         };
         write!(f, "{count}, the profile's square in each a parabola within {error:.1e}; hits {finish}")
     }

@@ -16,7 +16,7 @@ fn formula(profile: &str) -> Formula {
 }
 
 fn surface(profile: &str, height: f64) -> Result<Revolution, NoSurface> {
-    Revolution::new(&formula(profile), height, Finish::Root)
+    Revolution::new(&formula(profile), height, Refinement::Root)
 }
 
 struct Random(Pcg32);
@@ -146,7 +146,7 @@ fn what_cannot_be_told_is_refused_with_the_reason() {
         ("-1", 6.0, "that is nowhere above 0"),
     ] {
         let fault = surface(profile, height).err().unwrap_or_else(|| panic!("{profile} loads"));
-        assert!(fault.told().0.starts_with(told), "{profile}: {}", fault.told().0);
+        assert!(fault.message().0.starts_with(told), "{profile}: {}", fault.message().0);
     }
 }
 

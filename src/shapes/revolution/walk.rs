@@ -33,7 +33,7 @@ const RAYS_PER_PIECE: usize = 4;
 const SLABS_PER_RAY: usize = 256;
 
 /// The result of a search.
-struct Walked {
+struct SearchResult {
     /// The distance of the first hit, in world units.
     distance: f64,
     /// Whether it is certain for all rays that this one may have been rounded from.
@@ -46,7 +46,7 @@ impl Revolution {
     /// Returns the distance of a ray's first hit in a range, and whether that is certain for all rays that this one may
     /// have been rounded from.
     pub fn first_hit(&self, frame: &Frame, ray: &Ray, range: &RayRange) -> (f64, bool) {
-        let Walked { distance, is_certain, .. } = self.search(frame, ray, range);
+        let SearchResult { distance, is_certain, .. } = self.search(frame, ray, range);
         (distance, is_certain)
     }
 
@@ -68,13 +68,13 @@ impl Revolution {
     }
 
     /// Searches for a ray's first hit in a range.
-    fn search(&self, frame: &Frame, ray: &Ray, range: &RayRange) -> Walked {
+    fn search(&self, frame: &Frame, ray: &Ray, range: &RayRange) -> SearchResult {
         let rays = RayPacket { origin: view(&ray.origin), dir: view(&ray.dir), origin_error: 0.0 };
         let sides = range.origin_side.as_ref().map(from_ref);
         let mut lanes = Lanes::<1>::none();
         self.t_bounds(Cpu::best(), frame, rays, sides, &[MISS], &mut lanes);
         let (near, far) = (lanes.near[0], lanes.far[0]);
-        let known = |distance| Walked { distance, is_certain: true, pieces: 0 };
+        let known = |distance| SearchResult { distance, is_certain: true, pieces: 0 };
         if near == MISS {
             known(MISS)
         } else if far < MISS {
@@ -84,7 +84,7 @@ impl Revolution {
             local.map_or(known(MISS), |local| {
                 let mut left = MAX_PIECES;
                 let (distance, is_certain) = self.walk(&local, range.origin_side, lanes, &mut left);
-                Walked { distance: range.keep(distance), is_certain, pieces: MAX_PIECES - left }
+                SearchResult { distance: range.keep(distance), is_certain, pieces: MAX_PIECES - left }
             })
         }
     }

@@ -31,7 +31,7 @@ pub fn combined(args: &Args, objects: &Pparm<Objects>, operation: Operation) -> 
     let List(objects) = args.get(objects);
     let objects: Vec<_> = objects.iter().filter_map(|object| object.get().cloned()).collect();
     Body::combined(operation, &objects, args.material_of_all()).map_err(|fault| {
-        let (message, help) = fault.told();
+        let (message, help) = fault.message();
         Refusal { attribute: Some("objects"), message, help }
     })
 }
@@ -50,7 +50,7 @@ enum NoSolid {
 
 impl NoSolid {
     /// Returns the error and its correction, for messages: "is empty".
-    fn told(self) -> (String, &'static str) {
+    fn message(self) -> (String, &'static str) {
         match self {
             Self::Open(name, why) => (
                 format!("cannot be made of `{name}`, which is open: {why}"),

@@ -26,7 +26,7 @@ pub(super) fn read<const BIG: bool>(
                 let read = |index: usize| section.vertex::<BIG>(&elements[index * size..][..size]);
                 parallel::fill(&mut model.vertices, read);
                 if let Some(index) =
-                    parallel::first(section.count, |index| !model.vertices[index].is_finite())
+                    parallel::find_first(section.count, |index| !model.vertices[index].is_finite())
                 {
                     let message = format!("vertex {index} is not finite");
                     return Err(ReadError::byte(place(rest) + index * size, message));

@@ -35,7 +35,7 @@ pub fn read(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
     };
     let mut vertices = vec![DVec3::ZERO; 3 * count];
     parallel::fill(&mut vertices, at);
-    if let Some(corner) = parallel::first(vertices.len(), |corner| !vertices[corner].is_finite()) {
+    if let Some(corner) = parallel::find_first(vertices.len(), |corner| !vertices[corner].is_finite()) {
         let message = format!("a corner of triangle {} is not finite", corner / 3 + 1);
         return Err(ReadError::byte(byte(corner), message));
     }
