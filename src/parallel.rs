@@ -16,7 +16,7 @@ const PARTS: usize = 32;
 const FILLED: usize = 1 << 12;
 
 /// Runs work on the threads of a pool, and returns its result.
-pub fn on<T: Send>(pool: &ThreadPool, work: impl FnOnce() -> T + Send) -> T {
+pub fn run_on<T: Send>(pool: &ThreadPool, work: impl FnOnce() -> T + Send) -> T {
     let (mut work, mut result) = (Some(work), None);
     let mut once = || result = work.take().map(|work| work());
     install(pool, &mut once);
@@ -28,15 +28,15 @@ fn install(pool: &ThreadPool, work: &mut (dyn FnMut() + Send)) {
 }
 
 /// Runs work for each index below a number.
-pub fn each(count: usize, work: &(dyn Fn(usize) + Sync)) {
+pub fn for_each(count: usize, work: &(dyn Fn(usize) + Sync)) {
     (0..count).into_par_iter().with_max_len(1).for_each(work);
 }
 
 /// Runs work for each index below a number, in their order: each thread takes the next index when it is free. Each
 /// thread makes the state that the work needs once.
-pub fn turns<S: Default>(count: usize, work: &(dyn Fn(&mut S, usize) + Sync)) {
+pub fn for_each_in_order<S: Default>(count: usize, work: &(dyn Fn(&mut S, usize) + Sync)) {
     let next = AtomicUsize::new(0);
-    each(rayon::current_num_threads(), &|_| {
+    for_each(rayon::current_num_threads(), &|_| {
         let mut own = S::default();
         loop {
             let index = next.fetch_add(1, Ordering::Relaxed);
@@ -50,19 +50,23 @@ pub fn turns<S: Default>(count: usize, work: &(dyn Fn(&mut S, usize) + Sync)) {
 
 /// Runs work for each index below a number, and returns the results in their order.
 pub fn map<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
-    ranges(count, 2, &|range| range.map(&work).collect())
+    map_ranges(count, 2, &|range| range.map(&work).collect())
 }
 
 /// Runs work for ranges that cover all indices below a number, and returns the results in their order. If the indices
 /// are fewer than `many`, this thread does all of the work.
-pub fn ranges<T: Send>(count: usize, many: usize, work: &(dyn Fn(Range<usize>) -> Vec<T> + Sync)) -> Vec<T> {
+pub fn map_ranges<T: Send>(
+    count: usize,
+    many: usize,
+    work: &(dyn Fn(Range<usize>) -> Vec<T> + Sync),
+) -> Vec<T> {
     if count < many {
         return work(0..count);
     }
     let length = count.div_ceil(PARTS * rayon::current_num_threads()).max(1);
     let mut parts = Vec::new();
     parts.resize_with(count.div_ceil(length), || Mutex::new(Vec::new()));
-    each(parts.len(), &|index| {
+    for_each(parts.len(), &|index| {
         let part = work(index * length..count.min((index + 1) * length));
         *parts[index].lock().expect("no thread panicked") = part;
     });
@@ -74,8 +78,8 @@ pub fn ranges<T: Send>(count: usize, many: usize, work: &(dyn Fn(Range<usize>) -
 }
 
 /// Returns the first index below a number for which some question is answered with yes.
-pub fn first(count: usize, is: impl Fn(usize) -> bool + Sync) -> Option<usize> {
-    ranges(count, 2, &|mut range| range.find(|index| is(*index)).into_iter().collect()).first().copied()
+pub fn find_first(count: usize, is: impl Fn(usize) -> bool + Sync) -> Option<usize> {
+    map_ranges(count, 2, &|mut range| range.find(|index| is(*index)).into_iter().collect()).first().copied()
 }
 
 /// Returns what some work returns for each index below a number, in their order and in one piece of memory; on this thread
@@ -111,7 +115,7 @@ pub fn chunks<T: Send>(
 ) -> ControlFlow<()> {
     let chunks: Vec<_> = all.chunks_mut(size).map(Mutex::new).collect();
     let is_over = AtomicBool::new(false);
-    each(chunks.len(), &|index| {
+    for_each(chunks.len(), &|index| {
         if !is_over.load(Ordering::Relaxed) {
             let mut chunk = chunks[index].lock().expect("no thread panicked");
             if work(index, &mut chunk).is_break() {

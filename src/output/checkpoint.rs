@@ -172,7 +172,7 @@ fn scene(model: &Model) -> String {
     };
     let pool = (chunks.len() > 1).then(|| ThreadPoolBuilder::new().build().ok()).flatten();
     let hashes: Vec<_> = match pool {
-        Some(pool) => parallel::on(&pool, || parallel::map(chunks.len(), hash)),
+        Some(pool) => parallel::run_on(&pool, || parallel::map(chunks.len(), hash)),
         None => (0..chunks.len()).map(hash).collect(),
     };
     shown(hashes.iter().fold(Sha256::new(), |all, hash| all.chain_update(hash)))

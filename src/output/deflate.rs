@@ -46,7 +46,7 @@ pub(super) struct Piece {
 }
 
 /// A compressed piece.
-pub(super) struct Packed {
+pub(super) struct CompressedPiece {
     /// Its bytes in the zlib stream. The last piece lacks the stream's checksum.
     pub bytes: Vec<u8>,
     /// The checksum of what was compressed.
@@ -58,7 +58,7 @@ impl Piece {
     ///
     /// # Errors
     /// None is known: memory takes all that is written.
-    pub fn pack(&self, compression: Compression) -> io::Result<Packed> {
+    pub fn pack(&self, compression: Compression) -> io::Result<CompressedPiece> {
         match compression {
             Compression::Fast => self.pack_fast(),
             Compression::Balanced => self.pack_at(flate2::Compression::default(), Filter::Adaptive),
@@ -67,7 +67,7 @@ impl Piece {
     }
 
     /// Compresses the rows with the one Huffman code of `fdeflate`, which was made for PNGs.
-    fn pack_fast(&self) -> io::Result<Packed> {
+    fn pack_fast(&self) -> io::Result<CompressedPiece> {
         let mut compressor = fdeflate::Compressor::new(Vec::with_capacity(self.rows.len() / 4))?;
         self.filtered(Filter::Up, |row| compressor.write_data(row))?;
         let (mut bytes, len) = (compressor.finish()?, self.filtered_len());
@@ -83,11 +83,11 @@ impl Piece {
         if !self.above.is_empty() {
             bytes.drain(..HEADER.len());
         }
-        Ok(Packed { bytes, checksum: Checksum::new(checksum, len) })
+        Ok(CompressedPiece { bytes, checksum: Checksum::new(checksum, len) })
     }
 
     /// Compresses the rows at a level of zlib.
-    fn pack_at(&self, level: flate2::Compression, filter: Filter) -> io::Result<Packed> {
+    fn pack_at(&self, level: flate2::Compression, filter: Filter) -> io::Result<CompressedPiece> {
         let bytes = if self.above.is_empty() { HEADER.to_vec() } else { Vec::new() };
         let (mut encoder, mut adler) = (DeflateEncoder::new(bytes, level), Adler32::new());
         self.filtered(filter, |row| {
@@ -101,7 +101,7 @@ impl Piece {
             encoder.flush()?;
             take(encoder.get_mut())
         };
-        Ok(Packed { bytes, checksum: Checksum::new(adler.finish(), self.filtered_len()) })
+        Ok(CompressedPiece { bytes, checksum: Checksum::new(adler.finish(), self.filtered_len()) })
     }
 
     /// Passes each filtered row to `put`.

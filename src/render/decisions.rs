@@ -56,7 +56,7 @@ pub fn of(plan: &Plan) -> Vec<Decision> {
     all.push(decision("mirrors", mirrors(plan)));
     all.extend(plan.depth.as_ref().map(|depth| decision("depth", self::depth(model, depth))));
     all.extend(textures(plan).into_iter().map(|text| decision("texture", text)));
-    all.extend(unmet(plan).map(|text| decision("unmet", text)));
+    all.extend(unreached(plan).map(|text| decision("unmet", text)));
     all.push(decision("search", search(model, plan)));
     all.extend(plan.features.as_ref().map(|features| decision("small", small(features))));
     all.extend(plan.prover.is_some().then(|| decision("certain", certain())));
@@ -164,19 +164,19 @@ fn mirrors(plan: &Plan) -> String {
 }
 
 /// Describes the objects that are left out, if there are any.
-fn unmet(plan: &Plan) -> Option<String> {
-    let Needs { unmet, clearance, .. } = &plan.needs;
-    let names = some(unmet.iter().map(|index| plan.model.objects[*index].args.name()));
+fn unreached(plan: &Plan) -> Option<String> {
+    let Needs { unreached, clearance, .. } = &plan.needs;
+    let names = some(unreached.iter().map(|index| plan.model.objects[*index].args.name()));
     let apart = short(*clearance);
-    (!unmet.is_empty()).then(|| {
+    (!unreached.is_empty()).then(|| {
         format!("{names}: left out, as no ray from the viewer, off a mirror or to a light comes within {apart} of them")
     })
 }
 
 /// Returns the objects that are not left out, with their indices.
 fn kept<'p>(plan: &'p Plan) -> impl Iterator<Item = (usize, &'p Object)> {
-    let mut unmet = plan.needs.unmet.iter().peekable();
-    plan.model.objects.iter().enumerate().filter(move |(index, _)| unmet.next_if_eq(&index).is_none())
+    let mut unreached = plan.needs.unreached.iter().peekable();
+    plan.model.objects.iter().enumerate().filter(move |(index, _)| unreached.next_if_eq(&index).is_none())
 }
 
 fn named((_, object): (usize, &Object)) -> &str {
@@ -226,9 +226,9 @@ fn textures<'m>(plan: &Plan<'m>) -> Vec<String> {
             *is_any_needed |= is_needed;
         }
     };
-    let mut unmet = plan.needs.unmet.iter().peekable();
+    let mut unreached = plan.needs.unreached.iter().peekable();
     for (index, object) in model.objects.iter().enumerate() {
-        add(&object.args, unmet.next_if_eq(&&index).is_none());
+        add(&object.args, unreached.next_if_eq(&&index).is_none());
     }
     let mut lit = plan.needs.lights.iter().peekable();
     for (index, light) in model.lights.iter().enumerate() {
@@ -249,7 +249,7 @@ fn textures<'m>(plan: &Plan<'m>) -> Vec<String> {
 }
 
 fn search(model: &Model, plan: &Plan) -> String {
-    let bounded = model.objects.len() - plan.needs.unmet.len() - plan.unbounded.len();
+    let bounded = model.objects.len() - plan.needs.unreached.len() - plan.unbounded.len();
     let listed = plan.unbounded.len() + plan.bounded.len();
     let by_one = match model.camera.value.accuracy {
         Accuracy::Classic => "every ray is tested against each object",

@@ -94,7 +94,7 @@ pub fn divide(
     parts: usize,
 ) -> Vec<usize> {
     let grid = Grid { size: [columns.len(), rows.len()] };
-    let look = Look::new(renderer, plan, [columns, rows], parts);
+    let look = WorkSamples::new(renderer, plan, [columns, rows], parts);
     let all: u128 = (0..grid.len()).map(|index| u128::from(look.work(grid, index))).sum();
     let (mut ends, mut done) = (vec![0], 0);
     for index in 0..grid.len() {
@@ -111,14 +111,14 @@ pub fn divide(
 }
 
 /// The work of an image, as counted at the middle of each cell of a coarse grid.
-struct Look {
+struct WorkSamples {
     /// The numbers of cells across and down.
     cells: [usize; 2],
     /// The work of one pixel of each cell, in rows from the top.
     work: Vec<u64>,
 }
 
-impl Look {
+impl WorkSamples {
     fn new(renderer: &Renderer, plan: &Plan, [columns, rows]: [&Range<usize>; 2], parts: usize) -> Self {
         let size = [columns.len(), rows.len()];
         let pixels = size[0] * size[1];

@@ -22,7 +22,7 @@ pub(crate) struct Features {
     squares: [usize; 2],
     /// For each square, from the lower left one in rows, the index of its first entry in `small`; and the end.
     starts: Vec<u32>,
-    small: Vec<Small>,
+    small: Vec<SmallObject>,
     /// The number of small objects, of which some may be in several squares; `None` where the camera does not say where
     /// objects are seen, so that there may be a small one in each pixel.
     count: Option<usize>,
@@ -30,7 +30,7 @@ pub(crate) struct Features {
 
 /// The bounds of a small object as they are seen.
 #[derive(Clone)]
-struct Small {
+struct SmallObject {
     /// The columns and rows of the pixels on which it is projected.
     columns: RangeInclusive<u32>,
     rows: RangeInclusive<u32>,
@@ -43,8 +43,8 @@ impl Features {
     pub fn new(camera: &Film, objects: &[Object]) -> Self {
         let squares = camera.pixels.map(|side| side.div_ceil(TILE));
         let is_unknown = camera.project(camera.origins().middle) == Projected::Unknown;
-        let small = objects.iter().filter_map(|object| Small::of(camera, &object.shape.bounds()?));
-        let mut each: Vec<(u32, Small)> = Vec::new();
+        let small = objects.iter().filter_map(|object| SmallObject::of(camera, &object.shape.bounds()?));
+        let mut each: Vec<(u32, SmallObject)> = Vec::new();
         let mut count = 0;
         for small in small {
             count += 1;
@@ -89,7 +89,7 @@ impl Features {
     }
 }
 
-impl Small {
+impl SmallObject {
     /// Projects bounds; `None` where they are not small, or not in the image.
     fn of(camera: &Film, bounds: &Aabb) -> Option<Self> {
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);

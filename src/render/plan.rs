@@ -43,7 +43,7 @@ pub struct Plan<'m> {
     /// How deep rays are followed; `None` where no object reflects or transmits rays.
     pub(crate) depth: Option<Depth>,
     /// The objects whose hits may take long to find, where rays continue.
-    pub(crate) costly: Option<Costly>,
+    pub(crate) costly: Option<CostlyObjects>,
     /// The maximum number of reflections and transmissions on a path.
     pub(crate) bounces: usize,
     /// The lights that are sampled, and what is left out.
@@ -51,14 +51,14 @@ pub struct Plan<'m> {
 }
 
 /// Objects whose hits may take long to find.
-pub(crate) struct Costly {
+pub(crate) struct CostlyObjects {
     /// The objects, by their indices in the scene.
     pub tree: Bvh,
     /// The number of them, at least 1.
     pub count: u32,
 }
 
-impl Costly {
+impl CostlyObjects {
     fn of(objects: &[Object]) -> Option<Self> {
         let costly = objects.iter().enumerate().filter(|(_, object)| object.shape.may_be_costly());
         let boxed = |(index, object): (usize, &Object)| Some((index as u32, object.shape.bounds()?));
@@ -86,8 +86,8 @@ impl<'m> Plan<'m> {
         let bounds = parallel::filled(objects.len(), MANY, |index| culling::bounds(&objects[index]));
         let depth = Depth::new(model);
         let needs = needs(&bounds, depth.as_ref());
-        let mut unmet = needs.unmet.iter().peekable();
-        let met = (0..objects.len()).filter(|index| unmet.next_if_eq(&index).is_none());
+        let mut unreached = needs.unreached.iter().peekable();
+        let met = (0..objects.len()).filter(|index| unreached.next_if_eq(&index).is_none());
         let (boxed, unbounded): (Vec<_>, Vec<_>) = met.partition(|index| bounds[*index].is_some());
         let box_of = |index: usize| bounds[index].unwrap_or(Aabb::EMPTY);
         let tree = (boxed.len() >= TREE).then(|| {
@@ -100,10 +100,10 @@ impl<'m> Plan<'m> {
         let camera = model.camera.value.clone();
         let features = camera.adaptive.map(|_| Features::new(&camera, objects));
         let prover = camera.certain.then(|| Prover::new(model));
-        let mut unmet = needs.unmet.iter().peekable();
-        let mut met = objects.iter().enumerate().filter(|(index, _)| unmet.next_if_eq(&index).is_none());
+        let mut unreached = needs.unreached.iter().peekable();
+        let mut met = objects.iter().enumerate().filter(|(index, _)| unreached.next_if_eq(&index).is_none());
         let has_glass = met.any(|(_, object)| object.material.transparency != 0.0);
-        let costly = depth.as_ref().and_then(|_| Costly::of(objects));
+        let costly = depth.as_ref().and_then(|_| CostlyObjects::of(objects));
         let bounces = usize::MAX;
         Self {
             model,

@@ -111,7 +111,7 @@ pub fn render(
                 part(area, colours);
             }
         };
-        renderer.run(|| parallel::turns(areas.len(), &work));
+        renderer.run(|| parallel::for_each_in_order(areas.len(), &work));
         if check().is_break() {
             return ControlFlow::Break(());
         }

@@ -22,7 +22,7 @@ const STACK: usize = 128 << 20;
 
 /// Callbacks that stop a renderer and report its progress.
 #[derive(Clone, Copy)]
-pub struct Overseer<'o> {
+pub struct RenderCallbacks<'o> {
     /// Called before each tile, on any thread: returns whether this tile and all further ones are skipped. Once it has
     /// returned true, it must keep doing so.
     pub stops: &'o (dyn Fn() -> bool + Sync),
@@ -70,7 +70,7 @@ impl Renderer {
     ) -> impl Iterator<Item = Band> + 'r {
         Band::split(&columns, &rows, BAND).map(move |rows| {
             let band = Band::blank(columns.clone(), rows);
-            self.fill(plan, &band, Overseer { stops: &|| false, row: &|| () }, watched);
+            self.fill(plan, &band, RenderCallbacks { stops: &|| false, row: &|| () }, watched);
             band
         })
     }
@@ -79,7 +79,7 @@ impl Renderer {
     pub fn picture(&self, plan: &Plan) -> Vec<u8> {
         let [width, height] = plan.camera.pixels;
         let band = Band::blank(0..width, 0..height);
-        self.fill(plan, &band, Overseer { stops: &|| false, row: &|| () }, &|_: Cuts| {});
+        self.fill(plan, &band, RenderCallbacks { stops: &|| false, row: &|| () }, &|_: Cuts| {});
         band.bytes(usize::MAX).concat()
     }
 
@@ -89,7 +89,7 @@ impl Renderer {
         &self,
         plan: &Plan,
         band: &Band,
-        overseer: Overseer,
+        overseer: RenderCallbacks,
         watched: &(dyn Fn(W) + Sync),
     ) {
         let strip = |scratch: &mut Scratch, index: usize| {
@@ -102,7 +102,7 @@ impl Renderer {
             rows.for_each(|_| (overseer.row)());
         };
         // With strips assigned beforehand, threads would wait for the slowest one.
-        self.run(|| parallel::turns(band.strips.len(), &strip));
+        self.run(|| parallel::for_each_in_order(band.strips.len(), &strip));
     }
 
     /// Renders the tiles of one strip. `rows` count from the top.
@@ -111,7 +111,7 @@ impl Renderer {
         mut tracer: Tracer<W>,
         strip: &Mutex<Strip>,
         [columns, rows]: [&Range<usize>; 2],
-        overseer: Overseer,
+        overseer: RenderCallbacks,
     ) {
         let (width, height) = (columns.len(), tracer.height());
         let (top, below) = (height - 1 - rows.start, height - rows.end);
@@ -153,7 +153,7 @@ impl Renderer {
         &self,
         plan: &Plan,
         [columns, rows]: [&Range<usize>; 2],
-        overseer: Overseer,
+        overseer: RenderCallbacks,
         watched: &(dyn Fn(W) + Sync),
     ) -> Option<Vec<f32>> {
         let (width, end) = (columns.len(), plan.camera.pixels[1]);
@@ -214,7 +214,7 @@ impl Renderer {
 
     /// Runs other work on one of the threads, whose stacks are large enough for deep reflections.
     pub fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
-        parallel::on(&self.pool, work)
+        parallel::run_on(&self.pool, work)
     }
 }
 
@@ -238,7 +238,7 @@ impl<'s> Unfinished<'_, 's> {
         &self,
         plan: &'s Plan,
         band: &mut Band,
-        overseer: Overseer<'s>,
+        overseer: RenderCallbacks<'s>,
         watched: &'s (dyn Fn(W) + Sync),
     ) {
         if (overseer.stops)() {

@@ -13,11 +13,11 @@
 
 use super::arrays::VectorList;
 use super::context::Tracer;
-use super::estimate::{AdaptiveScratch, Estimate, RayResults, RaySummary, Run};
+use super::estimate::{AdaptiveScratch, Estimate, RayResults, RaySummary, SampleRun};
 use super::ray_group::RayGroup;
 use super::sampled;
 use super::scratch::{PrimaryScratch, Scratch};
-use super::trail::Trails;
+use super::trail::PathHashes;
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::render::features::FEATURE_SAMPLES;
 use crate::render::observer::{Count, TraceObserver};
@@ -132,7 +132,7 @@ struct Rays<'r, 'm, 'w, W> {
     /// Whether nothing bounds the light that rays may return.
     is_unbounded: bool,
     /// The samples that wait.
-    runs: Vec<Run>,
+    runs: Vec<SampleRun>,
 }
 
 impl<W: TraceObserver> Rays<'_, '_, '_, W> {
@@ -202,7 +202,7 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
     /// Returns the results of the rays of some lanes.
     #[inline]
     fn found(&self, lanes: Range<usize>) -> RayResults<'_> {
-        let Trails { is_on, marks, distances, .. } = &self.tracer.scratch.trails;
+        let PathHashes { is_on, marks, distances, .. } = &self.tracer.scratch.trails;
         let recorded = if *is_on { lanes.clone() } else { 0..0 };
         RayResults {
             colours: self.seen.view(lanes.end).part(lanes),
@@ -254,7 +254,7 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
             let count = samples.len().min(PACKET_SIZE - first);
             let middle = samples.start + count as u32;
             let (samples_here, lanes) = (samples.start..middle, first..first + count);
-            self.runs.push(Run { of, pixel, samples: samples_here, lanes, ray_budget });
+            self.runs.push(SampleRun { of, pixel, samples: samples_here, lanes, ray_budget });
             samples.start = middle;
             if self.waiting() == PACKET_SIZE {
                 self.trace(estimates);
@@ -279,24 +279,24 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
         let Scratch { places, samples: drawn, .. } = &mut *tracer.scratch;
         let sampler = camera.sampler;
         drawn.clear();
-        for Run { pixel: [x, y], samples, .. } in &*runs {
+        for SampleRun { pixel: [x, y], samples, .. } in &*runs {
             let pixel = camera.seed(*x as i64, *y as i64);
             drawn.extend(samples.clone().map(|index| Sample { sampler, index, pixel }));
         }
         let [x, y] = &mut *places;
         sample::jitters(tracer.cpu, drawn, &mut x[..len], &mut y[..len]);
-        for Run { pixel: [column, row], lanes, .. } in &*runs {
+        for SampleRun { pixel: [column, row], lanes, .. } in &*runs {
             x[lanes.clone()].iter_mut().for_each(|x| *x += *column as f64);
             y[lanes.clone()].iter_mut().for_each(|y| *y += *row as f64);
         }
         tracer.look(group, len);
-        for Run { lanes, ray_budget, .. } in &*runs {
+        for SampleRun { lanes, ray_budget, .. } in &*runs {
             if let Some(budget) = ray_budget {
                 group.ray_budget[lanes.clone()].fill(*budget);
             }
         }
         tracer.colours(group, seen);
-        for Run { of, lanes, .. } in &self.runs {
+        for SampleRun { of, lanes, .. } in &self.runs {
             let estimate = &mut estimates[*of as usize];
             estimate.add(&self.found(lanes.clone()));
             if self.tracer.scratch.any_missing {

@@ -5,7 +5,7 @@ use crate::geometry::ray::Side;
 use crate::geometry::ray_packet::RayPacket;
 use crate::render::limits::MAX_RAYS;
 use crate::render::observer::TraceObserver;
-use crate::render::plan::Costly;
+use crate::render::plan::CostlyObjects;
 
 /// The number of rays of a pixel from which on searches are charged where a scene has one costly shape, as searches are
 /// made again to be counted. Of several shapes, each has its share, since a ray may be searched for in all of them.
@@ -23,7 +23,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         lanes: impl Iterator<Item = usize>,
         ray_budget: &mut [u32],
     ) {
-        let Some(Costly { tree, count }) = &self.plan.costly else { return };
+        let Some(CostlyObjects { tree, count }) = &self.plan.costly else { return };
         let counted = 0..=MAX_RAYS as u32 - UNCOUNTED / count;
         for lane in lanes {
             let budget = &mut ray_budget[lane];

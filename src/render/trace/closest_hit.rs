@@ -3,7 +3,7 @@
 use super::arrays::resized;
 use super::context::Tracer;
 use super::hit_record::HitRecord;
-use super::one_ray::{Start, exact, located};
+use super::one_ray::{RoundedRay, exact, located};
 use super::order;
 use super::ray_group::RayGroup;
 use crate::geometry::bvh::{self, PacketVisitor, Stack};
@@ -40,7 +40,7 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
         }
         let (mut stack, mut ends) = (take(&mut self.scratch.stack), take(&mut self.scratch.ends));
         let part = 0..group.padded();
-        Closest { tracer: self, group, hits, part, single: None }.run(&mut stack, &mut ends);
+        ClosestHitSearch { tracer: self, group, hits, part, single: None }.run(&mut stack, &mut ends);
         (self.scratch.stack, self.scratch.ends) = (stack, ends);
     }
 
@@ -75,12 +75,12 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
     }
 
     /// Returns one ray of a group, with the bounds of its errors.
-    fn start(&self, group: &RayGroup, lane: usize) -> Start {
+    fn start(&self, group: &RayGroup, lane: usize) -> RoundedRay {
         let [x, y] = &self.scratch.places;
         let lens = |side: usize| self.scratch.lens[side].get(lane).copied().unwrap_or_default();
         let look = || self.plan.camera.sight_through(x[lane], y[lane], DVec2::new(lens(0), lens(1)));
         let sight = group.looks.then(look).or_else(|| group.sight.clone());
-        Start { ray: group.rays().get(lane), error: group.error(lane), sight }
+        RoundedRay { ray: group.rays().get(lane), error: group.error(lane), sight }
     }
 
     /// Tells whether any ray may hit an object at all: most shapes cannot be hit by rays that leave them.
@@ -96,7 +96,7 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
 
     /// Tells whether a ray hits an object before its closest hit so far, given by the object's index plus 1 (0 for
     /// none) and the distance. Of coincident objects, the earlier one in the scene is first.
-    fn is_first(&self, start: &Start, (index, distance): (usize, f64), (met, far): (u64, f64)) -> bool {
+    fn is_first(&self, start: &RoundedRay, (index, distance): (usize, f64), (met, far): (u64, f64)) -> bool {
         let Some(rival) = (met as usize).checked_sub(1) else { return distance < far };
         if distance == MISS {
             return false;
@@ -172,24 +172,24 @@ kernels! {
 }
 
 /// The search for the closest hits of a packet.
-struct Closest<'s, 'm, 'w, W> {
+struct ClosestHitSearch<'s, 'm, 'w, W> {
     tracer: &'s mut Tracer<'m, 'w, W>,
     group: &'s RayGroup,
     hits: &'s mut HitRecord,
     /// The lanes of the current sub-packets.
     part: Range<usize>,
     /// The ray that was last tested alone.
-    single: Option<Single>,
+    single: Option<RepeatedRay>,
 }
 
 /// Copies of one ray, which fill the lanes that shapes take at a time.
-struct Single {
+struct RepeatedRay {
     lane: usize,
     origin: Vectors<LANES>,
     dir: Vectors<LANES>,
 }
 
-impl<W: TraceObserver> Closest<'_, '_, '_, W> {
+impl<W: TraceObserver> ClosestHitSearch<'_, '_, '_, W> {
     /// Tests all objects. `ends` is scratch space.
     fn run(mut self, stack: &mut Stack, ends: &mut Vec<f64>) {
         let plan = self.tracer.plan;
@@ -301,7 +301,7 @@ impl<W: TraceObserver> Closest<'_, '_, '_, W> {
     }
 }
 
-impl<W: TraceObserver> PacketVisitor for Closest<'_, '_, '_, W> {
+impl<W: TraceObserver> PacketVisitor for ClosestHitSearch<'_, '_, '_, W> {
     fn test(&mut self, index: usize, lanes: Range<usize>, t_max: &mut [f64]) {
         if self.tracer.may_meet(self.group.left(), index) {
             self.part = lanes.clone();
@@ -317,7 +317,7 @@ impl<W: TraceObserver> PacketVisitor for Closest<'_, '_, '_, W> {
         let (group, id) = (self.group, index as u64 + 1);
         let single = match &mut self.single {
             Some(single) if single.lane == lane => single,
-            single => single.insert(Single::new(group, lane)),
+            single => single.insert(RepeatedRay::new(group, lane)),
         };
         let shape = &self.tracer.model.objects[index].shape;
         let side = group.sides_of(index).map(|sides| sides[lane]);
@@ -337,7 +337,7 @@ impl<W: TraceObserver> PacketVisitor for Closest<'_, '_, '_, W> {
     }
 }
 
-impl Single {
+impl RepeatedRay {
     /// Copies the ray in a lane of a group.
     fn new(group: &RayGroup, lane: usize) -> Self {
         let Ray { origin, dir } = group.rays().get(lane);

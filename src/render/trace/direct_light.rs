@@ -2,7 +2,7 @@
 
 use super::arrays::{VectorList, resized};
 use super::context::Tracer;
-use super::light::{self, Colours, Lit, Reflectivities};
+use super::light::{self, Colours, LitPoints, Reflectivities};
 use super::ray_group::RayGroup;
 use super::scratch::{LightDraws, LightScratch};
 use super::shadow_rays::LightPaths;
@@ -126,7 +126,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         } else {
             self.shadow(group, surface, &paths, t_max, shadows, blocked);
         }
-        let lit = Lit {
+        let lit = LitPoints {
             toward: toward.view(count),
             seen: group.dir.view(count),
             normals,

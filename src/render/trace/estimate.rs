@@ -31,7 +31,7 @@ pub(super) struct AdaptiveScratch {
     /// The indices of the pixels that take more samples.
     pub active: Vec<u32>,
     /// The samples to be traced next.
-    pub runs: Vec<Run>,
+    pub runs: Vec<SampleRun>,
 }
 
 impl AdaptiveScratch {
@@ -42,7 +42,7 @@ impl AdaptiveScratch {
 }
 
 /// Samples of a pixel that follow each other and are to be traced.
-pub(super) struct Run {
+pub(super) struct SampleRun {
     /// The index of the pixel's estimate.
     pub of: u32,
     /// The pixel's column and row.

@@ -20,7 +20,7 @@ pub(super) struct PathWeight {
 pub(super) const FEW: u32 = MAX_RAYS as u32 - MANY;
 
 /// Points on which a light shines.
-pub(super) struct Lit<'l> {
+pub(super) struct LitPoints<'l> {
     /// The unit vectors toward the light.
     pub toward: View<'l>,
     /// The directions of the rays that hit the points.
@@ -58,7 +58,7 @@ pub(super) enum Colours<'c> {
 
 kernels! {
     /// Adds the light that reaches points, where it does.
-    pub(super) fn shine(lit: &Lit, shininess: f64) => colours {
+    pub(super) fn shine(lit: &LitPoints, shininess: f64) => colours {
         let (count, whole) = (lit.shines.len(), shininess as u32);
         let colours = colours.first(count);
         if shininess == 0.0 {
@@ -169,7 +169,7 @@ fn whole_power<const BITS: u32>(of: f64, power: u32) -> f64 {
 
 /// Adds the light that reaches points. `highlight` returns the strength of a highlight from the cosine of its angle.
 #[inline(always)]
-fn shine_each(lit: &Lit, highlight: Option<impl Fn(f64) -> f64>, colours: ViewMut) {
+fn shine_each(lit: &LitPoints, highlight: Option<impl Fn(f64) -> f64>, colours: ViewMut) {
     let count = lit.shines.len();
     match lit.looks {
         Reflectivities::Uniform(Look { diffuse, specular, .. }) => {
@@ -185,7 +185,7 @@ fn shine_each(lit: &Lit, highlight: Option<impl Fn(f64) -> f64>, colours: ViewMu
 /// Adds the light that reaches points, given their reflectivities by lane.
 #[inline(always)]
 fn shine_sent(
-    lit: &Lit,
+    lit: &LitPoints,
     diffuse: impl Fn(usize) -> Rgb,
     specular: impl Fn(usize) -> Rgb,
     highlight: Option<impl Fn(f64) -> f64>,
@@ -203,7 +203,7 @@ fn shine_sent(
 /// Adds the light that reaches points, given their reflectivities and the colours that the light sends by lane.
 #[inline(always)]
 fn shine_all(
-    lit: &Lit,
+    lit: &LitPoints,
     sent: impl Fn(usize) -> Rgb,
     diffuse: impl Fn(usize) -> Rgb,
     specular: impl Fn(usize) -> Rgb,

@@ -2,7 +2,7 @@
 
 use super::arrays::resized;
 use super::context::Tracer;
-use super::one_ray::{Start, exact};
+use super::one_ray::{RoundedRay, exact};
 use super::surface::Surface;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::{self, Order, PacketVisitor, Stack};
@@ -134,7 +134,7 @@ impl<W: TraceObserver> Occlusion<'_, '_, '_, W> {
                     let error = self.shadow_rays.error(self.part.start + lane);
                     let distance = exact(
                         shape,
-                        &Start { ray: rays.get(lane), error, sight: None },
+                        &RoundedRay { ray: rays.get(lane), error, sight: None },
                         origin_side,
                         t_max[lane],
                     );

@@ -8,7 +8,7 @@ use crate::world::certify::{self, Enclosure, Precision};
 use crate::world::coincidence::CLOSE;
 
 /// A rounded ray, and the bounds of the true ray that it stands for.
-pub(super) struct Start {
+pub(super) struct RoundedRay {
     pub ray: Ray,
     /// A bound on the error of the origin, in world units.
     pub error: f64,
@@ -16,7 +16,7 @@ pub(super) struct Start {
     pub sight: Option<Sight>,
 }
 
-impl Start {
+impl RoundedRay {
     /// Returns the side of a shape that the ray leaves, if the ray starts on the shape. `own` is that side if the shape
     /// belongs to the object that the ray leaves. Another shape that passes through the same point is left, too.
     pub fn leaves(&self, shape: &AnyShape, own: Option<Side>) -> Option<Side> {
@@ -28,7 +28,7 @@ impl Start {
 
 /// Returns the exact distance of one ray's hit of a shape before `far`, in world units, or [`MISS`]. `origin_side` is
 /// the side of the shape that the ray leaves, if the shape belongs to the object that the packet leaves.
-pub(super) fn exact(shape: &AnyShape, start: &Start, origin_side: Option<Side>, far: f64) -> f64 {
+pub(super) fn exact(shape: &AnyShape, start: &RoundedRay, origin_side: Option<Side>, far: f64) -> f64 {
     located(shape, start, origin_side, far).0
 }
 
@@ -36,7 +36,7 @@ pub(super) fn exact(shape: &AnyShape, start: &Start, origin_side: Option<Side>, 
 /// before anything is rounded.
 pub(super) fn located(
     shape: &AnyShape,
-    start: &Start,
+    start: &RoundedRay,
     origin_side: Option<Side>,
     far: f64,
 ) -> (f64, Bracket) {

@@ -5,7 +5,7 @@ use super::estimate::AdaptiveScratch;
 use super::hit_record::HitRecord;
 use super::ray_group::{HitGroups, RayGroup};
 use super::surface::Surface;
-use super::trail::Trails;
+use super::trail::PathHashes;
 use crate::geometry::bvh::Stack;
 use crate::geometry::ray::Side;
 use crate::world::sample::Sample;
@@ -25,7 +25,7 @@ pub(crate) struct Scratch {
     /// the lens: the point whose number is the pixel of their sample.
     pub(super) are_probes: bool,
     /// What the current primary rays meet on their paths.
-    pub(super) trails: Trails,
+    pub(super) trails: PathHashes,
     /// The unused scratch space of packets, one for each level of recursion, the outermost one last.
     #[expect(clippy::vec_box, reason = "they come and go, and are large")]
     pub(super) levels: Vec<Box<HitScratch>>,

@@ -1,6 +1,6 @@
 //! What primary rays meet on their paths, so that rays of one pixel can be told apart by it.
 
-use super::light::{Colours, Lit, Reflectivities};
+use super::light::{Colours, LitPoints, Reflectivities};
 use crate::simd::cpu::Cpu;
 use crate::world::material::Rgb;
 use crate::world::packets::shader::{PacketShader, SurfacePoints};
@@ -9,7 +9,7 @@ use std::mem::take;
 /// For each current primary ray, a hash of the objects, tiles and lights on its path: through mirrors and glass, in
 /// the order in which they are met. It does not depend on the other rays of the packet.
 #[derive(Default)]
-pub(super) struct Trails {
+pub(super) struct PathHashes {
     /// Whether anything is recorded.
     pub is_on: bool,
     /// The hashes.
@@ -20,7 +20,7 @@ pub(super) struct Trails {
     tiles: Vec<u64>,
 }
 
-impl Trails {
+impl PathHashes {
     /// Starts the trails of new primary rays.
     #[inline]
     pub fn begin(&mut self, len: usize) {
@@ -59,7 +59,13 @@ impl Trails {
     /// Records on which of these points the light of this index shines, as far as they reflect any of it: others may
     /// not have been looked at. `has_tints` tells that its colours differ only by the glass on the way.
     #[inline]
-    pub fn see_light(&mut self, camera: &[u8], light: usize, lit: &Lit, [is_shiny, has_tints]: [bool; 2]) {
+    pub fn see_light(
+        &mut self,
+        camera: &[u8],
+        light: usize,
+        lit: &LitPoints,
+        [is_shiny, has_tints]: [bool; 2],
+    ) {
         for (lane, primary) in camera.iter().enumerate() {
             let reflects = match lit.looks {
                 Reflectivities::Uniform(_) => true,

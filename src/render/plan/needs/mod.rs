@@ -46,7 +46,7 @@ pub(crate) struct Needs {
     /// The indices of the lights that are not, each with the reason.
     pub dark: Vec<(usize, UnlitReason)>,
     /// The indices of the objects that are not needed.
-    pub unmet: Vec<usize>,
+    pub unreached: Vec<usize>,
     /// A lower bound on the distance of these objects from all rays, in world units.
     pub clearance: f64,
 }
@@ -80,7 +80,7 @@ impl Needs {
     /// Everything.
     pub fn all(model: &Model) -> Self {
         let lights = (0..model.lights.len()).collect();
-        Self { lights, dark: Vec::new(), unmet: Vec::new(), clearance: f64::INFINITY }
+        Self { lights, dark: Vec::new(), unreached: Vec::new(), clearance: f64::INFINITY }
     }
 
     /// What the image of the model's camera needs, given the objects' bounding boxes. `depth` has the mirrors that
@@ -122,7 +122,7 @@ impl Scene<'_> {
             }
         };
         let mut needs =
-            Needs { lights: Vec::new(), dark: Vec::new(), unmet: Vec::new(), clearance: f64::INFINITY };
+            Needs { lights: Vec::new(), dark: Vec::new(), unreached: Vec::new(), clearance: f64::INFINITY };
         let candidates = views.as_deref().map_or_else(Vec::new, |views| self.unseen(views));
         let mut regions: Vec<Hull> = Vec::new();
         for (index, item) in self.model.lights.iter().enumerate() {
@@ -165,12 +165,12 @@ impl Scene<'_> {
             // Stops at the first that the object may meet.
             views.chain(paths).try_fold(f64::INFINITY, |least, one| (one > 0.0).then_some(least.min(one)))
         };
-        let clear = parallel::ranges(candidates.len(), MANY, &|range| {
+        let clear = parallel::map_ranges(candidates.len(), MANY, &|range| {
             candidates[range].iter().map(clearance).collect()
         });
         for (index, clearance) in candidates.into_iter().zip(clear) {
             if let Some(clearance) = clearance {
-                needs.unmet.push(index);
+                needs.unreached.push(index);
                 needs.clearance = needs.clearance.min(clearance);
             }
         }
@@ -198,7 +198,7 @@ impl Scene<'_> {
                 view.clearance(object, bounds) == 0.0
             };
             let count = self.model.objects.len();
-            let shown = parallel::ranges(count, MANY, &|range| range.filter(shows).collect());
+            let shown = parallel::map_ranges(count, MANY, &|range| range.filter(shows).collect());
             // Where rays are bent, anything may be seen.
             if shown.iter().any(|index| self.model.objects[*index].material.interface.is_some()) {
                 return None;

@@ -50,15 +50,15 @@ fn left_out(text: &str) -> [usize; 2] {
         let colour = trace::pixel(&plan, x, y);
         assert_eq!(colour.to_array().map(f64::to_bits), all.to_array().map(f64::to_bits), "{x} {y}\n{text}");
     }
-    let Needs { unmet, dark, .. } = &plan.needs;
+    let Needs { unreached, dark, .. } = &plan.needs;
     // A light that is left out, as nothing reflects it, may be blocked by anything.
     let is_dark = |light: usize| dark.iter().any(|(index, _)| *index == light);
     met.objects.extend(met.blocked.iter().filter(|(light, _)| !is_dark(*light)).map(|(_, object)| object));
-    let wrong: Vec<_> = unmet.iter().filter(|index| met.objects.contains(index)).collect();
+    let wrong: Vec<_> = unreached.iter().filter(|index| met.objects.contains(index)).collect();
     assert!(wrong.is_empty(), "objects {wrong:?} are met\n{text}");
     let wrong: Vec<_> = dark.iter().filter(|(index, _)| met.lights.contains(index)).collect();
     assert!(wrong.is_empty(), "lights {wrong:?} shine\n{text}");
-    [unmet.len(), dark.len()]
+    [unreached.len(), dark.len()]
 }
 
 const CAMERA: &str = "camera eye { pixeldim 12 9 worlddim 8 6 viewpoint 4 3 7 }
