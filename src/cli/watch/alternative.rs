@@ -31,8 +31,8 @@ impl Override {
     }
 }
 
-/// Renders a scene with another setting: red, green and blue of each pixel, in rows from the top, as the parts of an image have
-/// them.
+/// Renders a scene with another setting: red, green and blue of each pixel, in rows from the top, as the parts of an image
+/// have them.
 ///
 /// # Errors
 /// The faults that the scene has then, and `Interrupted` if `check` breaks.

@@ -324,8 +324,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.depth -= 1;
     }
 
-    /// Does the work of [`trace_secondary`](Self::trace_secondary) if all rays of the group are reflected. The rays are not needed here
-    /// afterwards, so their arrays are swapped, not copied.
+    /// Does the work of [`trace_secondary`](Self::trace_secondary) if all rays of the group are reflected. The rays are not
+    /// needed here afterwards, so their arrays are swapped, not copied.
     fn trace_all_secondary(&mut self, group: &mut RayGroup, shading: &mut ShadingScratch, branch: Branch) {
         let ShadingScratch { surface, dir, secondary, behind, .. } = shading;
         self.observer.count(Count::Rays(RayKind::Reflected, group.len));

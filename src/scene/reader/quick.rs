@@ -1,5 +1,5 @@
-//! Checks and packs entities in which nothing is wrong; whatever else there is, [`AttributeChecker`](super::attributes::AttributeChecker)
-//! explains.
+//! Checks and packs entities in which nothing is wrong; whatever else there is,
+//! [`AttributeChecker`](super::attributes::AttributeChecker) explains.
 
 use super::guesses::Tables;
 use super::names::Names;

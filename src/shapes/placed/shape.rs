@@ -27,8 +27,8 @@ pub struct Placed {
 /// Marks a shape whose hits are proven in the coordinates of the object that it is a copy of.
 pub struct ByPlacement;
 
-/// A bound of the error of [`Placed::to_object_space`] as a map of unit vectors, times the least scale, and of the rounding of a
-/// point or a direction that it maps.
+/// A bound of the error of [`Placed::to_object_space`] as a map of unit vectors, times the least scale, and of the
+/// rounding of a point or a direction that it maps.
 ///
 /// Units of 2^-53: an angle of up to 2 pi is off by 3 roundings, 19 units, and its sine and cosine by 20; a component of
 /// the product of three rotations by 3 * 20 * sqrt(2) and by the rounding of the products, together less than 100. A

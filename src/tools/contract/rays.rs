@@ -92,7 +92,7 @@ fn try_ray(tried: &RayTrial, draw: &mut Draw) -> Result<Option<DVec3>, Fault> {
         return Ok(None);
     }
     let met = tried.hit_at(distance)?;
-    tried.check_touches(met.at)?;
+    tried.check_bounds(met.at)?;
     if !tried.is_exact {
         tried.check_from_elsewhere(&met, draw)?;
     }

@@ -31,7 +31,7 @@ impl RayTrial<'_> {
         Err(Promise::NormalIsUnit.fault(found))
     }
 
-    pub fn check_touches(&self, at: DVec3) -> Result<(), Fault> {
+    pub fn check_bounds(&self, at: DVec3) -> Result<(), Fault> {
         let around = Aabb { low: at - STRIDE, high: at + STRIDE };
         let (up, down) =
             (Aabb { high: DVec3::INFINITY, ..around }, Aabb { low: DVec3::NEG_INFINITY, ..around });
