@@ -34,7 +34,7 @@ impl<A: Marker> Hittable for Ellipsoid<A> {
     #[inline(always)]
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         if A::IS_CLASSIC {
-            let (from, dir) = self.squeezed(ray);
+            let (from, dir) = self.scaled(ray);
             return range.keep(sphere::classic(from, dir, self.radius));
         }
         range.keep(sphere::distance::<A>(&self.line(ray), self.radius, range.origin_side))
@@ -42,7 +42,7 @@ impl<A: Marker> Hittable for Ellipsoid<A> {
 
     #[inline]
     fn normal(&self, at: DVec3) -> DVec3 {
-        self.upright(at)
+        self.unit_normal(at)
     }
 
     fn uv(&self, at: DVec3) -> Option<DVec2> {

@@ -81,7 +81,7 @@ impl<A: Marker> Hittable for Plane<A> {
 impl<A: Bounded> Bracketed for Plane<A> {
     #[inline(always)]
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
-        Plane::t_bounds(self, &self.rough(ray, range.origin_error), ray, range)
+        Plane::t_bounds(self, &self.rough_crossing(ray, range.origin_error), ray, range)
     }
 
     #[inline(always)]

@@ -65,7 +65,7 @@ impl<A: Marker> Hittable for Quadric<A> {
 
     #[inline]
     fn normal(&self, at: DVec3) -> DVec3 {
-        self.upright(at)
+        self.unit_normal(at)
     }
 
     fn bounds(&self) -> Option<Aabb> {

@@ -121,7 +121,7 @@ impl<A> Equation for Triangle<A> {
 
     fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         let corner = self.corners[0].to_array();
-        dot(self.upright(), per_axis(|axis| at[axis] - N::constant(corner[axis])))
+        dot(self.area_normal(), per_axis(|axis| at[axis] - N::constant(corner[axis])))
     }
 
     fn kept<N: Scalar>(&self, at: [N; 3]) -> N {

@@ -3,7 +3,7 @@
 use super::course::Differences;
 use crate::cli::files::input::Source;
 use crate::cli::files::output::{Output, format_by_name};
-use crate::cli::files::{input, made, output, several};
+use crate::cli::files::{input, output, provenance, several};
 use crate::cli::options::number::whole;
 use crate::cli::options::size::Part;
 use crate::cli::options::stop::{self, Stop};
@@ -169,7 +169,7 @@ fn one(
     args.samples.apply(camera)?;
     camera.exposure = args.exposure;
     let part = args.size.apply(camera)?;
-    let made = made::texts(&source, &args.set, &model.camera.value, &part);
+    let made = provenance::texts(&source, &args.set, &model.camera.value, &part);
     let differences = Differences::of(registry, &source, &model);
     output::refuse_source(&path, scene, &model)?;
     if let Some(number) = args.part.part {
@@ -182,7 +182,7 @@ fn one(
             (number, &made),
         );
     }
-    if args.skips(&path, &model)? && made::is_up_to_date(&path, &made, warnings.files()) {
+    if args.skips(&path, &model)? && provenance::is_up_to_date(&path, &made, warnings.files()) {
         messages::note(&format!("{} exists already", path.display()));
         return Ok(());
     }

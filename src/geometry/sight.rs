@@ -16,20 +16,20 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct Sight {
     origin: DVec3,
-    toward: Toward,
+    toward: SightTarget,
     /// The placement in whose coordinates the line is, if it is not in the world's.
-    within: Option<Arc<Within>>,
+    within: Option<Arc<PlacementChain>>,
 }
 
 /// A placement, which may lie in the coordinates of another one.
 #[derive(Debug)]
-struct Within {
+struct PlacementChain {
     placement: Placement,
-    outer: Option<Arc<Within>>,
+    outer: Option<Arc<PlacementChain>>,
 }
 
 #[derive(Clone, Debug)]
-enum Toward {
+enum SightTarget {
     /// A direction, of any length.
     Direction(DVec3),
     /// A point on the image plane z = 0, whose x and y are each `at / last * size`: `at` and `last` in pixels, `size`
@@ -77,30 +77,34 @@ impl Sight {
     /// height from its lower left corner.
     #[inline(always)]
     pub fn through(viewpoint: DVec3, at: DVec2, last: DVec2, size: DVec2) -> Self {
-        Self { origin: viewpoint, toward: Toward::ImagePoint { at, last, size }, within: None }
+        Self { origin: viewpoint, toward: SightTarget::ImagePoint { at, last, size }, within: None }
     }
 
     /// Returns the ray from a point straight forward in a frame.
     pub fn forward(origin: DVec3, frame: &ViewFrame) -> Self {
-        Self { origin, toward: Toward::Forward(Arc::new(*frame)), within: None }
+        Self { origin, toward: SightTarget::Forward(Arc::new(*frame)), within: None }
     }
 
     /// Returns the ray from a frame's viewer through a point of an image whose width is seen at an angle in degrees,
     /// and whose pixels are square.
     pub fn ahead(frame: &ViewFrame, angle: f64, at: ImagePoint) -> Self {
-        Self { origin: frame.position(), toward: Toward::Ahead(Arc::new((*frame, angle, at))), within: None }
+        Self {
+            origin: frame.position(),
+            toward: SightTarget::Ahead(Arc::new((*frame, angle, at))),
+            within: None,
+        }
     }
 
     /// Returns a sight along a ray, taking all of its numbers for exact, including the length of its direction.
     pub fn along(ray: &Ray) -> Self {
-        Self { origin: ray.origin, toward: Toward::Direction(ray.dir), within: None }
+        Self { origin: ray.origin, toward: SightTarget::Direction(ray.dir), within: None }
     }
 
     /// Returns the sight whose [`line`](Self::line) is this one's in the own coordinates of a shape that is placed. What t
     /// means does not change.
     pub fn within(&self, placement: Placement) -> Self {
         let Self { origin, toward, within: outer } = self.clone();
-        Self { origin, toward, within: Some(Arc::new(Within { placement, outer })) }
+        Self { origin, toward, within: Some(Arc::new(PlacementChain { placement, outer })) }
     }
 
     /// Returns the ray, rounded.
@@ -111,10 +115,10 @@ impl Sight {
             return Ray { origin: origin.into(), dir: DVec3::from(dir).normalize() };
         }
         let dir = match &self.toward {
-            Toward::Direction(dir) => *dir,
-            Toward::ImagePoint { at, last, size } => direction(self.origin, *at, *last, *size),
-            Toward::Forward(frame) => frame.forward(),
-            Toward::Ahead(ahead) => ahead.0.direction(view_frame::half_tangent(ahead.1), &ahead.2),
+            SightTarget::Direction(dir) => *dir,
+            SightTarget::ImagePoint { at, last, size } => direction(self.origin, *at, *last, *size),
+            SightTarget::Forward(frame) => frame.forward(),
+            SightTarget::Ahead(ahead) => ahead.0.direction(view_frame::half_tangent(ahead.1), &ahead.2),
         };
         Ray { origin: self.origin, dir }
     }
@@ -123,13 +127,13 @@ impl Sight {
     pub fn line<N: Scalar>(&self) -> Line<N> {
         let n = N::constant;
         let dir = match &self.toward {
-            Toward::Direction(dir) => constants(*dir),
-            Toward::Forward(frame) => frame.exact_forward(),
-            Toward::Ahead(ahead) => {
+            SightTarget::Direction(dir) => constants(*dir),
+            SightTarget::Forward(frame) => frame.exact_forward(),
+            SightTarget::Ahead(ahead) => {
                 let (frame, angle, at) = **ahead;
                 frame.exact_direction(angle, at.exactly())
             }
-            Toward::ImagePoint { at, last, size } => {
+            SightTarget::ImagePoint { at, last, size } => {
                 let part = |side: usize| n(at[side]) / n(last[side]) * n(size[side]) - n(self.origin[side]);
                 [part(0), part(1), n(-self.origin.z)]
             }
@@ -148,7 +152,7 @@ impl Sight {
     }
 }
 
-impl Within {
+impl PlacementChain {
     /// Takes a line from the world to the placed shape's own coordinates.
     fn line<N: Scalar>(&self, line: Line<N>) -> Line<N> {
         let Line { origin, dir } = match &self.outer {

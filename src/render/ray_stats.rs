@@ -14,7 +14,7 @@ pub struct RayStats {
     /// The counts of each object, by the object's index.
     tests: Vec<TestCounts>,
     /// The pixels that have used up their ray budget.
-    pub cuts: Cuts,
+    pub cuts: BudgetCuts,
     /// The pixels with proven bounds of their colours.
     pub proofs: Proofs,
     /// The numbers of pixels that took 1, 2, 4 ... samples, where pixels differ in that.
@@ -66,14 +66,14 @@ impl Proofs {
 
 /// The pixels that have used up their ray budget. It is an observer that counts nothing else.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Cuts {
+pub struct BudgetCuts {
     /// The number of pixels that have used up their ray budget.
     pub pixels: u64,
     /// A bound on the light that any of these pixels lacks, in any channel; infinite where nothing bounds it.
     pub most: f64,
 }
 
-impl Cuts {
+impl BudgetCuts {
     /// Adds the cuts of another part of the image.
     pub fn add(&mut self, other: Self) {
         self.pixels += other.pixels;
@@ -81,7 +81,7 @@ impl Cuts {
     }
 }
 
-impl TraceObserver for Cuts {
+impl TraceObserver for BudgetCuts {
     const SEES: bool = false;
 
     fn count(&mut self, count: Count) {

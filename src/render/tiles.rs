@@ -175,7 +175,7 @@ impl Tiles {
     }
 
     /// Returns the number of rows to the end of the last row of tiles of which anything is rendered.
-    pub fn begun(&self) -> usize {
+    pub fn rows_begun(&self) -> usize {
         let strips = self.strips.iter().rposition(|strip| !matches!(strip, Done::Nothing));
         strips.map_or(0, |last| self.height.min((last + 1) * TILE))
     }

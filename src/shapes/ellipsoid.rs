@@ -18,16 +18,16 @@ pub struct Ellipsoid<A> {
     /// The scale factors along the axes.
     pub scale: DVec3,
     /// The reciprocals of `scale`, in double-double arithmetic.
-    squeeze: [DoubleDouble; 3],
+    inverse_scale: [DoubleDouble; 3],
     /// The reciprocal of the smallest component of `scale`.
-    most_squeezed: f64,
+    largest_inverse_scale: f64,
     accuracy: PhantomData<A>,
 }
 
 impl<A> Ellipsoid<A> {
     /// Returns the sphere of this radius, scaled along the axes around its centre.
     pub fn new(center: DVec3, radius: f64, scale: DVec3) -> Self {
-        let squeeze = scale.to_array().map(|part| {
+        let inverse_scale = scale.to_array().map(|part| {
             // Scaling by a power of two loses no digit that matters, and keeps products from overflowing.
             let exponent = exponent_to_one(part);
             let DoubleDouble { high, low } =
@@ -35,21 +35,21 @@ impl<A> Ellipsoid<A> {
             let [high, low] = [high, low].map(|digits| times_power_of_two(digits, exponent));
             DoubleDouble { high, low }
         });
-        let most_squeezed = 1.0 / scale.min_element();
-        Self { center, radius, scale, squeeze, most_squeezed, accuracy: PhantomData }
+        let largest_inverse_scale = 1.0 / scale.min_element();
+        Self { center, radius, scale, inverse_scale, largest_inverse_scale, accuracy: PhantomData }
     }
 
     /// Returns the origin and the direction of a ray in the divided space. The direction is no longer a unit vector, so
     /// distances along the ray are unchanged.
     #[inline(always)]
-    pub fn squeezed(&self, ray: &Ray) -> (DVec3, DVec3) {
+    pub fn scaled(&self, ray: &Ray) -> (DVec3, DVec3) {
         ((ray.origin - self.center) / self.scale, ray.dir / self.scale)
     }
 
     /// Returns a ray in the divided space, in double-double arithmetic.
     #[inline(always)]
     pub fn line(&self, ray: &Ray) -> SphereLine {
-        SphereLine::squeezed(ray, self.center, &self.squeeze)
+        SphereLine::scaled(ray, self.center, &self.inverse_scale)
     }
 
     /// Returns the bounding box.
@@ -60,7 +60,7 @@ impl<A> Ellipsoid<A> {
 
     /// Returns the unit normal at a point of the surface.
     #[inline(always)]
-    pub fn upright(&self, at: DVec3) -> DVec3 {
+    pub fn unit_normal(&self, at: DVec3) -> DVec3 {
         ((at - self.center) / (self.scale * self.scale)).normalize()
     }
 
@@ -95,19 +95,19 @@ impl<A: Bounded> Ellipsoid<A> {
     /// Returns a bracket of the distance of a ray's first hit.
     #[inline(always)]
     pub fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
-        let (from, dir) = self.squeezed(ray);
+        let (from, dir) = self.scaled(ray);
         let (inverse, error) = (1.0 / dir.dot(dir), range.origin_error / self.scale.min_element());
-        let spread = self.most_squeezed * inverse.sqrt();
+        let spread = self.largest_inverse_scale * inverse.sqrt();
         sphere::t_bounds(from, dir, inverse, spread, self.radius, range.origin_side, error)
     }
 
     /// Returns a bracket of the distance of the first hit of each ray within a drift of this one.
     #[inline(always)]
     pub fn t_bounds_within(&self, ray: &Ray, drift: Drift) -> Bracket {
-        let (from, dir) = self.squeezed(ray);
+        let (from, dir) = self.scaled(ray);
         let inverse = 1.0 / dir.dot(dir);
-        let spread = self.most_squeezed * inverse.sqrt();
-        let drift = Drift { origin: drift.origin * self.most_squeezed, dir: drift.dir * spread };
+        let spread = self.largest_inverse_scale * inverse.sqrt();
+        let drift = Drift { origin: drift.origin * self.largest_inverse_scale, dir: drift.dir * spread };
         let spread = spread + sphere::spread_within(from, self.radius, drift);
         sphere::t_bounds(from, dir, inverse, spread, self.radius, None, 0.0)
     }

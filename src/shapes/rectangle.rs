@@ -114,7 +114,7 @@ impl<A: Marker> FinitePlane<A> {
     /// Returns bounds of the distance of a hit in a range.
     #[inline(always)]
     pub fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
-        let rough = self.plane.rough(ray, range.origin_error);
+        let rough = self.plane.rough_crossing(ray, range.origin_error);
         let inside = self.inside(ray, rough.distance);
         // A camera ray's direction is off by 3 units of 2^-53 in each component, which is less than half of the slack.
         let slack = rough.error + 2.0 * self.slack(ray, rough.distance);

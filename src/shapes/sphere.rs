@@ -31,9 +31,11 @@ impl SphereLine {
 
     /// Returns a ray relative to the center, with coordinates scaled by these factors along the axes.
     #[inline(always)]
-    pub fn squeezed(ray: &Ray, center: DVec3, squeeze: &[DoubleDouble; 3]) -> Self {
+    pub fn scaled(ray: &Ray, center: DVec3, inverse_scale: &[DoubleDouble; 3]) -> Self {
         let Self { from, dir } = Self::new(ray, center);
-        let scaled = |of: [DoubleDouble; 3]| [of[0] * squeeze[0], of[1] * squeeze[1], of[2] * squeeze[2]];
+        let scaled = |of: [DoubleDouble; 3]| {
+            [of[0] * inverse_scale[0], of[1] * inverse_scale[1], of[2] * inverse_scale[2]]
+        };
         Self { from: scaled(from), dir: scaled(dir) }
     }
 }

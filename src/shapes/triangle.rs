@@ -32,12 +32,12 @@ impl Triangle<Classic> {
 impl<A: Bounded> Triangle<A> {
     /// Returns the triangle with these corners; `None` where they are collinear.
     pub fn new(corners: [DVec3; 3]) -> Option<Self> {
-        let upright = exact_normal(corners);
-        if upright.iter().all(|part| part.high == 0.0) {
+        let area_normal = exact_normal(corners);
+        if area_normal.iter().all(|part| part.high == 0.0) {
             return None;
         }
-        let normal = DVec3::from(rounded_unit(upright));
-        Some(Self { plane: Plane::new(normal, upright, corners[0]), corners })
+        let normal = DVec3::from(rounded_unit(area_normal));
+        Some(Self { plane: Plane::new(normal, area_normal, corners[0]), corners })
     }
 }
 
@@ -45,7 +45,7 @@ impl<A: Bounded> Triangle<A> {
     /// Returns a bracket of the distance at which a ray crosses the triangle.
     #[inline(always)]
     pub fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
-        let rough = self.plane.rough(ray, range.origin_error);
+        let rough = self.plane.rough_crossing(ray, range.origin_error);
         let Bracket { near, far } = self.plane.t_bounds(&rough, ray, range);
         let passed = self.passed(ray);
         Bracket {
@@ -62,7 +62,7 @@ impl<A> Triangle<A> {
     }
 
     /// Returns a normal whose length is twice the triangle's area.
-    pub fn upright<N: Scalar>(&self) -> [N; 3] {
+    pub fn area_normal<N: Scalar>(&self) -> [N; 3] {
         let [a, b, c] = self.given_corners();
         let from_a = |corner: [N; 3]| per_axis(|axis| corner[axis] - a[axis]);
         cross(from_a(b), from_a(c))
@@ -75,7 +75,7 @@ impl<A> Triangle<A> {
     /// Returns a number above 0 for a point of the plane inside the three edges, and below 0 outside; its unit differs
     /// from edge to edge.
     pub fn inside<N: Scalar>(&self, at: [N; 3]) -> N {
-        let normal = self.upright();
+        let normal = self.area_normal();
         let [a, b, c] = self.given_corners();
         let inside = |from: [N; 3], to: [N; 3]| {
             // Perpendicular to the edge, in the plane, toward the inside.
@@ -202,12 +202,12 @@ pub fn crossings<A: Bounded>(corners: &[Vectors<LANES>; 3], rays: RayPacket, dis
     }
     let plane = |lane: usize| {
         let part = |high: f64, low: f64| DoubleDouble { high, low };
-        let upright = [
+        let area_normal = [
             part(high.x[lane], low.x[lane]),
             part(high.y[lane], low.y[lane]),
             part(high.z[lane], low.z[lane]),
         ];
-        Plane::<A>::new(DVec3::ZERO, upright, corners[0].get(lane))
+        Plane::<A>::new(DVec3::ZERO, area_normal, corners[0].get(lane))
     };
     Plane::quick_crossings(plane, rays.first(LANES), distances);
 }
@@ -221,8 +221,8 @@ pub fn unit_normals(corners: &[Vectors<LANES>; 3]) -> Vectors<LANES> {
     let Vectors { x, y, z } = &mut normals;
     let corners_of = |lane: usize| [corners[0].get(lane), corners[1].get(lane), corners[2].get(lane)];
     for lane in 0..LANES {
-        let (upright, is_upright_known) = quick_normal(corners_of(lane));
-        let ([a, b, c], is_unit_known) = quick_unit(upright);
+        let (area_normal, is_upright_known) = quick_normal(corners_of(lane));
+        let ([a, b, c], is_unit_known) = quick_unit(area_normal);
         (x[lane], y[lane], z[lane]) = (a, b, c);
         is_known[lane] = u64::from(is_upright_known & is_unit_known);
     }

@@ -26,7 +26,7 @@ pub enum Verdict {
 
 /// The objects that may be hit first.
 #[derive(Debug, PartialEq)]
-enum First {
+enum FirstHits {
     /// This object, by its index, or nothing: for certain.
     Certain(Option<usize>),
     /// One of these objects, by index, or nothing.
@@ -38,17 +38,17 @@ pub fn pixel(plan: &Plan, x: usize, y: usize) -> Verdict {
     let sight = plan.camera.sight(x as f64, y as f64);
     let found = trace::first_hit(plan, &sight).map(|hit| hit.index);
     match first_of(plan.model, &sight) {
-        First::Certain(first) if first == found => Verdict::Proven,
-        First::OneOf(any) if any.contains(&found) => Verdict::Tie,
+        FirstHits::Certain(first) if first == found => Verdict::Proven,
+        FirstHits::OneOf(any) if any.contains(&found) => Verdict::Tie,
         _ => Verdict::Contradicted,
     }
 }
 
-fn first_of(model: &Model, sight: &Sight) -> First {
+fn first_of(model: &Model, sight: &Sight) -> FirstHits {
     let certify = |index: usize, precision| (index, model.objects[index].shape.certify(sight, precision));
     let all: Vec<_> = (0..model.objects.len()).map(|index| certify(index, Precision::Double)).collect();
     match first(&all) {
-        First::OneOf(any) => {
+        FirstHits::OneOf(any) => {
             let any: Vec<_> =
                 any.into_iter().flatten().map(|index| certify(index, Precision::Octuple)).collect();
             first(&any)
@@ -58,7 +58,7 @@ fn first_of(model: &Model, sight: &Sight) -> First {
 }
 
 /// Returns which of the objects may be hit first, given an enclosure of each object's distance.
-fn first(enclosures: &[(usize, Enclosure)]) -> First {
+fn first(enclosures: &[(usize, Enclosure)]) -> FirstHits {
     // Some object is certainly hit at this distance or nearer.
     let end = enclosures.iter().filter_map(|(_, enclosure)| match enclosure {
         Enclosure::Hits(at) => Some(at.high),
@@ -73,12 +73,12 @@ fn first(enclosures: &[(usize, Enclosure)]) -> First {
     });
     let is_something = end < f256::INFINITY;
     match (candidates.next(), candidates.next()) {
-        (None, _) => First::Certain(None),
-        (Some((index, Enclosure::Hits(_))), None) => First::Certain(Some(*index)),
+        (None, _) => FirstHits::Certain(None),
+        (Some((index, Enclosure::Hits(_))), None) => FirstHits::Certain(Some(*index)),
         (Some((one, _)), other) => {
             let others = other.into_iter().chain(candidates).map(|(index, _)| *index);
             let any = [*one].into_iter().chain(others).map(Some);
-            First::OneOf(any.chain((!is_something).then_some(None)).collect())
+            FirstHits::OneOf(any.chain((!is_something).then_some(None)).collect())
         }
     }
 }
@@ -113,16 +113,16 @@ mod tests {
     #[test]
     fn the_first_is_certain_only_where_nothing_may_lie_before() {
         let (near, far, between) = (hits(1.0, 2.0), hits(3.0, 4.0), hits(1.5, 3.5));
-        let one_of = |any: &[Option<usize>]| First::OneOf(any.to_vec());
+        let one_of = |any: &[Option<usize>]| FirstHits::OneOf(any.to_vec());
         for (enclosures, right) in [
-            (&[][..], First::Certain(None)),
-            (&[Enclosure::Misses], First::Certain(None)),
-            (&[far, Enclosure::Misses, near], First::Certain(Some(2))),
-            (&[near, far], First::Certain(Some(0))),
+            (&[][..], FirstHits::Certain(None)),
+            (&[Enclosure::Misses], FirstHits::Certain(None)),
+            (&[far, Enclosure::Misses, near], FirstHits::Certain(Some(2))),
+            (&[near, far], FirstHits::Certain(Some(0))),
             (&[near, between], one_of(&[Some(0), Some(1)])),
             (&[between, near], one_of(&[Some(0), Some(1)])),
             (&[far, between, near], one_of(&[Some(1), Some(2)])),
-            (&[near, doubtful(2.5)], First::Certain(Some(0))),
+            (&[near, doubtful(2.5)], FirstHits::Certain(Some(0))),
             (&[doubtful(1.5), near], one_of(&[Some(0), Some(1)])),
             (&[doubtful(1.5)], one_of(&[Some(0), None])),
         ] {

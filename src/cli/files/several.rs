@@ -71,7 +71,7 @@ pub fn for_each_scene(
             failed.push(scene.display().to_string());
         }
     }
-    progress::is_over();
+    progress::clear_overall();
     let all = scenes.len();
     if failed.is_empty() {
         let seconds = start.elapsed().as_secs_f64();

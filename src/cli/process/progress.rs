@@ -17,7 +17,7 @@ pub fn begin(done: usize, all: usize) {
 }
 
 /// Says that all scenes are over.
-pub fn is_over() {
+pub fn clear_overall() {
     *OVERALL.lock().unwrap_or_else(PoisonError::into_inner) = None;
 }
 

@@ -12,7 +12,7 @@ use crate::output::packing::PIECE;
 use crate::output::picture::Format;
 use crate::render::limits::MAX_RAYS;
 use crate::render::plan::Plan;
-use crate::render::ray_stats::{Cuts, Proofs, RayStats};
+use crate::render::ray_stats::{BudgetCuts, Proofs, RayStats};
 use crate::render::renderer::{RenderCallbacks, Renderer};
 use crate::render::tiles::{BAND, Band, Tiles};
 use crate::text::{count, short};
@@ -49,7 +49,7 @@ impl Job<'_> {
     /// ends with what is done, because threads may still be at work.
     pub fn run(&self, output: Output, begun: Option<ResumedImage>) -> Result<(), Failure> {
         let progress = Progress::new(self.part.rows.len());
-        let (cuts, proofs) = (Mutex::new(Cuts::default()), Mutex::new(Proofs::default()));
+        let (cuts, proofs) = (Mutex::new(BudgetCuts::default()), Mutex::new(Proofs::default()));
         let cut = |part| cuts.lock().unwrap_or_else(PoisonError::into_inner).add(part);
         let sum = self.stats.map(|stats| &stats.tally);
         let add = |tally: RayStats| {
@@ -121,7 +121,7 @@ impl Job<'_> {
         match (broken, written) {
             (Some(failure), _) => Err(failure),
             (None, Err(error)) if is_cut && error.kind() == io::ErrorKind::Other => {
-                self.leave(out, &tiles, tiles.begun())
+                self.leave(out, &tiles, tiles.rows_begun())
             }
             (None, Ok(())) if !tiles.is_whole() => self.leave(out, &tiles, rows.len()),
             (None, written) => {
@@ -209,7 +209,7 @@ pub fn report_proofs(proofs: Proofs, plan: &Plan) {
 }
 
 /// Warns of pixels with primary rays that used up their ray budget, if there are any.
-pub fn warn_of(cuts: Cuts) {
+pub fn warn_of(cuts: BudgetCuts) {
     if cuts.pixels == 0 {
         return;
     }

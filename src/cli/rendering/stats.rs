@@ -2,7 +2,7 @@
 
 use crate::cli::process::memory;
 use crate::render::observer::RayKind;
-use crate::render::ray_stats::{Cuts, Proofs, RayStats, TestCounts};
+use crate::render::ray_stats::{BudgetCuts, Proofs, RayStats, TestCounts};
 use crate::scene::model::Model;
 use crate::text::{json, short};
 use serde::Serialize;
@@ -73,7 +73,7 @@ impl Sum {
     }
 
     /// Returns the pixels that have used up their ray budget.
-    pub fn cuts(&self) -> Cuts {
+    pub fn cuts(&self) -> BudgetCuts {
         self.get().cuts
     }
 
@@ -123,7 +123,7 @@ impl Stats {
             let _ = writeln!(out, "{:<12} {open:>14} {most:>14} {mean:>14}", "open, within");
             let _ = writeln!(out, "{:<12} {footprints:>14}", "footprints");
         }
-        let Cuts { pixels, most } = tally.cuts;
+        let BudgetCuts { pixels, most } = tally.cuts;
         let _ = writeln!(out, "\n{:<12} {:>14} {:>14}", "cut off", "pixels", "levels");
         let _ = writeln!(out, "{:<12} {pixels:>14} {:>14}", "at most", short(255.0 * most));
         let _ = writeln!(

@@ -58,7 +58,7 @@ struct Counts {
 
 /// The first pixels of each kind, by column from the left and row from the bottom.
 #[derive(Serialize)]
-struct First {
+struct FirstPixels {
     rounded: Vec<[usize; 2]>,
     open: Vec<[usize; 2]>,
     contradicted: Vec<[usize; 2]>,
@@ -69,7 +69,7 @@ struct First {
 struct Numbers {
     pixels: Counts,
     bytes: Counts,
-    first: First,
+    first: FirstPixels,
 }
 
 /// Proves the colours of a plan's pixels.
@@ -104,7 +104,7 @@ pub fn report(args: &Args, proof: Proof, picture: Option<(PathBuf, Format, Outpu
     let numbers = Numbers {
         pixels: Counts::of(verdicts.iter().copied()),
         bytes: Counts::of(bytes),
-        first: First {
+        first: FirstPixels {
             rounded: first(Verdict::Rounded),
             open: first(Verdict::Open),
             contradicted: first(Verdict::Contradicted),
@@ -171,7 +171,7 @@ impl Numbers {
                 format!("first {kind}: {}\n", places.join(", "))
             }
         };
-        let First { rounded, open, contradicted } = &self.first;
+        let FirstPixels { rounded, open, contradicted } = &self.first;
         self.pixels.message("pixels")
             + &self.bytes.message("bytes")
             + &named("off by rounding", rounded)

@@ -36,7 +36,7 @@ use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::geometry::sight::Sight;
 use crate::render::observer::{Count, DynObserver, Event, Hit, RayKind, RayPurpose, TraceObserver};
 use crate::render::plan::Plan;
-use crate::render::ray_stats::Cuts;
+use crate::render::ray_stats::BudgetCuts;
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::View;
 use crate::world::film;
@@ -102,7 +102,7 @@ pub fn samples(plan: &Plan, x: usize, y: usize) -> (u32, Option<f64>) {
     if plan.camera.adaptive.is_none() {
         return (plan.camera.samples, None);
     }
-    let (mut scratch, mut nobody) = (Scratch::default(), Cuts::default());
+    let (mut scratch, mut nobody) = (Scratch::default(), BudgetCuts::default());
     Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody).pixels(&[[x, y]]);
     let (count, error) =
         scratch.primary.map_or((0, 0.0), |primary| primary.adaptive.first(plan.camera.gain()));
@@ -160,7 +160,7 @@ fn traced(
 
 /// Finds the first hit of a primary ray.
 pub fn first_hit<'m>(plan: &Plan<'m>, sight: &Sight) -> Option<Hit<'m>> {
-    let (mut scratch, mut nobody) = (Scratch::default(), Cuts::default());
+    let (mut scratch, mut nobody) = (Scratch::default(), BudgetCuts::default());
     let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody);
     let mut group = RayGroup::primary(sight, None);
     let (mut hits, mut distances) = (HitRecord::default(), Vec::new());
@@ -295,7 +295,7 @@ mod tests {
 
     /// Traces rays through the lowest row of pixels, each with its own ray budget.
     fn seen(plan: &Plan, pixels: &[usize], budgets: &[u32]) -> Vec<Rgb> {
-        let (mut scratch, mut nobody) = (Scratch::default(), Cuts::default());
+        let (mut scratch, mut nobody) = (Scratch::default(), BudgetCuts::default());
         scratch.places = [vec![0.0; PACKET_SIZE], vec![0.0; PACKET_SIZE]];
         for (lane, column) in pixels.iter().enumerate() {
             scratch.places[0][lane] = *column as f64;

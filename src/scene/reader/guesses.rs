@@ -19,12 +19,12 @@ pub fn find_attribute(entity: &'static Entity, name: &str) -> Option<&'static dy
 /// The attributes of an entity type, so that they are found quickly.
 pub struct Table {
     pub entity: &'static Entity,
-    attributes: Vec<Known>,
+    attributes: Vec<KnownAttribute>,
     groups: Vec<&'static OneOf>,
 }
 
 /// An attribute of an entity type.
-pub struct Known {
+pub struct KnownAttribute {
     pub attribute: &'static dyn Attribute,
     pub value_type: Type,
     /// The largest number of values that it takes.
@@ -35,7 +35,7 @@ pub struct Known {
 
 impl Table {
     fn new(entity: &'static Entity) -> Self {
-        let known = |attribute: &'static dyn Attribute| Known {
+        let known = |attribute: &'static dyn Attribute| KnownAttribute {
             attribute,
             value_type: attribute.value_type(),
             max: attribute.arity().most(),
@@ -71,9 +71,9 @@ impl Table {
 
 /// Gives direct access to the attributes, in the order of the table.
 impl Deref for Table {
-    type Target = [Known];
+    type Target = [KnownAttribute];
 
-    fn deref(&self) -> &[Known] {
+    fn deref(&self) -> &[KnownAttribute] {
         &self.attributes
     }
 }

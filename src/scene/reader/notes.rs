@@ -1,7 +1,7 @@
 //! The notes' scene language: `entity-type name { attribute values ... }`, one word after another.
 
 use super::fault::Fault;
-use super::guesses::{Guesses, Known, Table, Tables};
+use super::guesses::{Guesses, KnownAttribute, Table, Tables};
 use super::keyword::Keyword;
 use super::parsed::{Form, Parsed, Word};
 use super::report::Report;
@@ -314,7 +314,7 @@ impl<'a, 'r> Parser<'a, 'r> {
 /// Tells whether a word is a value, rather than the next attribute.
 fn is_value(
     table: Option<&Table>,
-    attribute: Option<&Known>,
+    attribute: Option<&KnownAttribute>,
     already: usize,
     word: &str,
     guesses: &mut Guesses,

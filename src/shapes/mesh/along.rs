@@ -121,7 +121,7 @@ impl Surface {
         if self.open_edges > 0 {
             return Some(true);
         }
-        let slope = dot(self.triangle::<A>(face).upright(), line.dir);
+        let slope = dot(self.triangle::<A>(face).area_normal(), line.dir);
         if slope.has_zero() { None } else { Some(slope.high < F::of(0.0)) }
     }
 }

@@ -191,7 +191,7 @@ impl<A> Equation for Face<A> {
 
     fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         let corner = self.0.corners[0].to_array();
-        dot(self.0.upright(), per_axis(|axis| at[axis] - N::constant(corner[axis])))
+        dot(self.0.area_normal(), per_axis(|axis| at[axis] - N::constant(corner[axis])))
     }
 
     fn kept<N: Scalar>(&self, at: [N; 3]) -> N {

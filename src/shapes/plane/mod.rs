@@ -12,4 +12,4 @@ mod products;
 mod surface;
 
 pub use flat::{ByPlane, Flat};
-pub use surface::{Plane, Rough};
+pub use surface::{Plane, RoughCrossing};

@@ -31,7 +31,7 @@ pub struct Plane<A> {
 
 /// A ray's intersection with a plane in plain arithmetic.
 #[derive(Clone, Copy, Debug)]
-pub struct Rough {
+pub struct RoughCrossing {
     /// The distance along the ray, in world units.
     pub distance: f64,
     /// A bound of the distance's error, in world units; infinite where the ray is parallel to within rounding.
@@ -92,7 +92,7 @@ impl<A> Plane<A> {
     /// more than 3 times its error of 9, these 9 become at most 14 in the quotient, less than the 16 here. Where the
     /// ray runs exactly along the plane, the reciprocal is infinite or NaN, and so are the results.
     #[inline(always)]
-    pub fn rough(&self, ray: &Ray, origin_error: f64) -> Rough {
+    pub fn rough_crossing(&self, ray: &Ray, origin_error: f64) -> RoughCrossing {
         let Products { away, away_size, toward, .. } = self.products(self.normal, ray);
         let inverse = reciprocal(toward);
         let distance = away * inverse;
@@ -102,7 +102,7 @@ impl<A> Plane<A> {
         // For a normal along an axis, `toward` is one component of the direction, in which nothing cancels.
         let is_parallel = (toward == 0.0) & self.is_upright;
         let error = if inverse.abs() >= MIN_TOWARD.recip() { f64::INFINITY } else { error };
-        Rough { distance, error, is_parallel }
+        RoughCrossing { distance, error, is_parallel }
     }
 
     /// Computes the dot products with a normal of any length.
@@ -126,8 +126,8 @@ impl<A> Plane<A> {
 
     /// Returns bounds of the distance of an intersection in a range.
     #[inline(always)]
-    pub fn t_bounds(&self, rough: &Rough, ray: &Ray, range: &RayRange) -> Bracket {
-        let Rough { distance, error, is_parallel } = *rough;
+    pub fn t_bounds(&self, rough: &RoughCrossing, ray: &Ray, range: &RayRange) -> Bracket {
+        let RoughCrossing { distance, error, is_parallel } = *rough;
         let (low, high) = (distance - error, distance + error);
         let z = ray.origin.z + distance * ray.dir.z;
         // The error of z: that of the distance, and of the sum. The error of the product is far less than a

@@ -201,7 +201,7 @@ impl<A: Marker> Quadric<A> {
     }
 
     /// Returns the unit normal at a point.
-    pub fn upright(&self, at: DVec3) -> DVec3 {
+    pub fn unit_normal(&self, at: DVec3) -> DVec3 {
         if !A::IS_CLASSIC {
             return self.own.normal(at, self.center);
         }

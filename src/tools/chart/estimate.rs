@@ -249,7 +249,7 @@ impl Study {
     ) -> Vec<Estimate> {
         let tiles = timed(model.camera.value.pixels, f64::INFINITY);
         let measured = needed::measure(model, &self.threads, pixels, needed::timed(&tiles), against / MORE);
-        let estimate = |one: needed::Needed| {
+        let estimate = |one: needed::MeasuredChoice| {
             let (mut errors, [samples, most]) = (Errors::new(1), one.limits);
             errors.add(&[one.colours], right);
             let [error, bound] = errors.bounds(0, most, against, all, self.goal.is_worst());

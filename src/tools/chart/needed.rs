@@ -26,7 +26,7 @@ pub(super) const RAYS: u32 = 120;
 const ROUNDS: usize = 2;
 
 /// The measured cost and colours of a choice.
-pub(super) struct Needed {
+pub(super) struct MeasuredChoice {
     /// The least and the greatest number of samples.
     pub limits: [u32; 2],
     /// The colours of the pixels as they are shown.
@@ -44,7 +44,7 @@ pub(super) fn measure(
     pixels: &Pixels,
     timed: &[Pixels],
     most: u32,
-) -> Vec<Needed> {
+) -> Vec<MeasuredChoice> {
     let mut plan = Plan::new(model);
     plan.camera.sampler = Sampler::Sobol;
     let wide: Vec<_> = timed.iter().map(|tile| widened(&plan, tile)).collect();
@@ -56,7 +56,12 @@ pub(super) fn measure(
             let (colours, samples) = colours(threads, &plan, pixels);
             // Tiles differ in their samples, and there are fewer of them than pixels.
             let (of_sample, probes) = threads.run(|| (of_sample(&plan, &wide), probes(&plan, &wide)));
-            Needed { limits: [least, most], colours, rays: samples + probes, seconds: samples * of_sample }
+            MeasuredChoice {
+                limits: [least, most],
+                colours,
+                rays: samples + probes,
+                seconds: samples * of_sample,
+            }
         })
         .collect()
 }

@@ -1,7 +1,7 @@
 //! The colours that rays return, in intervals.
 
 use super::light;
-use super::scene::{Colour, First, Number, Path, Place, Scene};
+use super::scene::{Colour, FirstHit, Number, Path, Place, Scene};
 use super::surface::{Surface, is_black, tint};
 use crate::geometry::sight::Line;
 use crate::numeric::interval::Interval;
@@ -70,9 +70,9 @@ impl<'s, 'p, 'm> Tracer<'s, 'p, 'm> {
             return None;
         }
         match self.scene.first(&ray.path) {
-            First::Nothing => Some(self.background(ray)),
-            First::Hit(t, place) => self.seen(ray, t, place),
-            First::OneOf(places, may_be_nothing) => {
+            FirstHit::Nothing => Some(self.background(ray)),
+            FirstHit::Hit(t, place) => self.seen(ray, t, place),
+            FirstHit::OneOf(places, may_be_nothing) => {
                 let hull = |one: Colour<F>, other: Colour<F>| per_axis(|at| one[at].hull(other[at]));
                 let mut any = may_be_nothing.then(|| self.background(ray));
                 for (t, place) in places {
@@ -81,7 +81,7 @@ impl<'s, 'p, 'm> Tracer<'s, 'p, 'm> {
                 }
                 any
             }
-            First::Open => None,
+            FirstHit::Open => None,
         }
     }
 

@@ -58,7 +58,7 @@ pub(super) struct Scene<'p, 'm> {
 }
 
 /// The first hit of a line.
-pub(super) enum First<F> {
+pub(super) enum FirstHit<F> {
     /// Nothing, for certain.
     Nothing,
     /// This place, at a t in this interval, for certain.
@@ -131,7 +131,7 @@ impl<'p, 'm> Scene<'p, 'm> {
     }
 
     /// Returns the first hit of a line.
-    pub fn first<F: Precise>(&self, path: &Path<F>) -> First<F> {
+    pub fn first<F: Precise>(&self, path: &Path<F>) -> FirstHit<F> {
         let coarse = coarse(&path.line);
         let mut found = Vec::new();
         let mut end = F::INFINITY;
@@ -161,13 +161,13 @@ impl<'p, 'm> Scene<'p, 'm> {
         }
         let mut nearest = found.iter().filter(|(low, ..)| *low <= end);
         match (nearest.next(), nearest.next()) {
-            (None, _) => First::Nothing,
-            (Some((_, HitEnclosure::Hits(at), place)), None) => First::Hit(*at, *place),
+            (None, _) => FirstHit::Nothing,
+            (Some((_, HitEnclosure::Hits(at), place)), None) => FirstHit::Hit(*at, *place),
             // Of several at exactly the same distance, the first in the file is seen.
             (Some((_, first @ HitEnclosure::Hits(at), place)), Some((_, second, _)))
                 if at.low == at.high && first == second && nearest.all(|(_, other, _)| other == first) =>
             {
-                First::Hit(*at, *place)
+                FirstHit::Hit(*at, *place)
             }
             _ => {
                 let at = |hit: &HitEnclosure<F>| match hit {
@@ -176,7 +176,7 @@ impl<'p, 'm> Scene<'p, 'm> {
                 };
                 let among = found.iter().filter(|(low, ..)| *low <= end);
                 let among = among.map(|(_, hit, place)| Some((at(hit)?, *place))).collect::<Option<Vec<_>>>();
-                among.map_or(First::Open, |among| First::OneOf(among, !end.is_finite()))
+                among.map_or(FirstHit::Open, |among| FirstHit::OneOf(among, !end.is_finite()))
             }
         }
     }
