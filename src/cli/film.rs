@@ -11,6 +11,7 @@ use crate::output::deflate::Compression;
 use crate::output::picture::Format;
 use crate::text;
 use image::imageops;
+use std::ffi::OsStr;
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -30,7 +31,7 @@ pub struct Args {
     /// The name of the frames, as given to `render --frames` with -o: film.png for film-0001.png, film-0002.png ...
     frames: PathBuf,
     /// Write small images of the frames, evenly chosen if there are more than 100, in rows on one image
-    #[arg(long, value_name = "FILE", required_unless_present = "animation")]
+    #[arg(long, value_name = "FILE")]
     sheet: Option<PathBuf>,
     /// Write an animated PNG, which browsers and image viewers play
     #[arg(long, value_name = "FILE")]
@@ -46,6 +47,15 @@ Examples:
   tabray film film.png --animation film.apng --rate 30";
 
 pub fn run(args: &Args) -> Result<(), Failure> {
+    if args.sheet.is_none() && args.animation.is_none() {
+        return Err(Failure::Usage(
+            "nothing says what to put the frames together to".to_owned(),
+            Some("name a file with `--sheet` or `--animation`, or with both".to_owned()),
+        ));
+    }
+    if let Some(path) = &args.animation {
+        refuse_name(path)?;
+    }
     let frames = frames(&args.frames)?;
     let outputs: Vec<_> = [&args.sheet, &args.animation].into_iter().flatten().collect();
     for path in &outputs {
@@ -71,6 +81,20 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         animation(path, &frames, args.rate)?;
     }
     Ok(())
+}
+
+/// Refuses a name that is not that of an animated PNG.
+fn refuse_name(animation: &Path) -> Result<(), Failure> {
+    let extension = animation.extension().and_then(OsStr::to_str).unwrap_or_default();
+    if animation == Path::new("-")
+        || ["png", "apng"].iter().any(|known| extension.eq_ignore_ascii_case(known))
+    {
+        return Ok(());
+    }
+    Err(Failure::Usage(
+        format!("an animation is an animated PNG, and `{}` is not named like one", animation.display()),
+        Some("end the name in .apng or .png".to_owned()),
+    ))
 }
 
 /// Lists the frames in the order of their numbers.

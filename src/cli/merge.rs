@@ -55,6 +55,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let renderer = Renderer::new(args.threads.unwrap_or(0).into())?;
     let is_main = |what: PixelFormat| !matches!(what, PixelFormat::Beside(..));
     let main = Parts::gather(&args.image, &args.parts, is_main)?;
+    main.refuse_name(&args.image)?;
     if !main.label.identity.is_of_this_program()? {
         messages::warning(
             "the parts were made by another build of this program",
@@ -87,6 +88,29 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 impl Parts {
+    /// Refuses to write the image to a file whose name belongs to something else, unless the parts are named like it.
+    fn refuse_name(&self, image: &Path) -> Result<(), Failure> {
+        let (format, full_range) = (Format::of(image), FullRange::of(image));
+        let (extension, is_right) = match self.label.what {
+            PixelFormat::Ppm => ("ppm", matches!(format, Some(Format::Ppm))),
+            PixelFormat::Png(_) => ("png", matches!(format, Some(Format::Png(_)))),
+            PixelFormat::Exr => ("exr", matches!(full_range, Some(FullRange::Exr))),
+            PixelFormat::Pfm => ("pfm", matches!(full_range, Some(FullRange::Pfm))),
+            PixelFormat::Beside(..) => return Ok(()),
+        };
+        let name = image.file_name().unwrap_or_default().to_string_lossy();
+        let is_named_like_it = |path: &PathBuf| {
+            path.file_name().is_some_and(|part| part.to_string_lossy().starts_with(&format!("{name}.part-")))
+        };
+        if is_right || image == Path::new("-") || self.paths.iter().all(is_named_like_it) {
+            return Ok(());
+        }
+        Err(refuse(
+            format!("the parts are those of a .{extension} image, not of `{}`", image.display()),
+            &format!("end the name in .{extension}"),
+        ))
+    }
+
     /// Writes the image.
     fn write(&self, path: &Path, renderer: &Renderer) -> Result<(), Failure> {
         let start = Instant::now();

@@ -217,9 +217,9 @@ fn parts_that_do_not_belong_together_are_refused_with_the_reason() {
     refused(&["gone"], "cannot read `gone`");
     let size = ["--size", "80"];
     render(&folder, "a.png", &size, [1, 2, 6, 8], 8);
-    refused(&[], "parts 3 to 5, 7 are missing of `a.png`, of 8");
+    refused(&[], "`a.png` lacks parts 3 to 5, 7 of 8");
     render(&folder, "a.png", &size, [3, 4, 5], 8);
-    refused(&[], "part 7 is missing of `a.png`, of 8");
+    refused(&[], "`a.png` lacks part 7 of 8");
     let seventh = place("a.png.part-7-of-8");
     render(&folder, "a.png", &["--size", "81"], [7], 8);
     refused(&[], "the size was 80 x 60 and is 81 x 61");
@@ -256,6 +256,12 @@ fn parts_that_do_not_belong_together_are_refused_with_the_reason() {
     let all: Vec<_> = all.iter().map(String::as_str).chain(["other"]).collect();
     refused(&all, "are two versions of part 7");
     fs::write(place("other"), &good).expect("a part");
+    for name in ["scene.ray", "a.ppm", "a.exr"] {
+        fs::write(place(name), "precious").expect("a file");
+        let (status, said) = run(&folder, &[&["merge", name], &all[..8]].concat());
+        assert!(status == 2 && said.contains(&format!("of a .png image, not of `{name}`")), "{said}");
+        assert_eq!(fs::read_to_string(place(name)).expect("still there"), "precious");
+    }
     succeeds(&folder, &[&["merge", "a.png"], &all[..]].concat());
     whole(&folder, "a.png", &size);
     is_the_same(&folder);
@@ -327,6 +333,14 @@ fn frames_have_values_that_change_and_names_by_their_numbers() {
         );
     }
     assert_eq!(fs::read(folder.path().join("film-0008.png")).expect("still there"), frame);
+    for args in [&["--animation", "a.ray"][..], &["--animation", "b.ppm"], &["--sheet", "a.ray"]] {
+        let scene = fs::read(folder.path().join("a.ray")).expect("the scene");
+        let (status, said) = run(&folder, &[&["film", "film.png"], args].concat());
+        assert!(status == 2 && said.contains(" = help: end "), "{said}");
+        assert_eq!(fs::read(folder.path().join("a.ray")).expect("still there"), scene);
+    }
+    let (status, said) = run(&folder, &["film", "film.png"]);
+    assert!(status == 2 && said.contains("with `--sheet` or `--animation`"), "{said}");
     let (status, said) = run(&folder, &["film", "film.png", "--sheet", "a.png", "--animation", "a.png"]);
     assert!(status == 2 && said.contains("cannot both be `a.png`"), "{said}");
     fs::remove_file(folder.path().join("film-0010.png")).expect("a frame");

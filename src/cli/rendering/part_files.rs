@@ -84,7 +84,7 @@ impl Parts {
             let begun =
                 missing.iter().find(|number| resume::beside(&part::beside(image, [**number, of])).exists());
             return Err(Failure::Usage(
-                format!("{} missing of `{}`, of {of}", are(&missing), image.display()),
+                format!("`{}` lacks {} of {of}", image.display(), named(&missing)),
                 Some(match begun {
                     Some(number) => format!(
                         "part {number} is begun: `tabray render --part {number}/{of} --resume` renders the rest"
@@ -127,8 +127,8 @@ impl Parts {
     }
 }
 
-/// Names parts by their numbers, and says that they are.
-fn are(numbers: &[usize]) -> String {
+/// Names parts by their numbers.
+fn named(numbers: &[usize]) -> String {
     let mut runs: Vec<[usize; 2]> = Vec::new();
     for number in numbers {
         match runs.last_mut() {
@@ -142,8 +142,8 @@ fn are(numbers: &[usize]) -> String {
     };
     let shown: Vec<_> = runs.iter().take(RUNS).map(run).collect();
     let more = if runs.len() > RUNS { ", and more" } else { "" };
-    let (noun, verb) = if numbers.len() == 1 { ("part", "is") } else { ("parts", "are") };
-    format!("{noun} {}{more} {verb}", shown.join(", "))
+    let noun = if numbers.len() == 1 { "part" } else { "parts" };
+    format!("{noun} {}{more}", shown.join(", "))
 }
 
 /// Refuses two parts that are not of one image.

@@ -130,6 +130,8 @@ impl<A: Bounded> Hittable for Mesh<A> {
             Some("some of its edges belong to one face only")
         } else if self.surface.is_inside_out() {
             Some("its faces are turned inside out")
+        } else if self.surface.has_doubled_faces() {
+            Some("two of its faces are in one place")
         } else {
             None
         }

@@ -53,9 +53,9 @@ impl NoSolid {
     fn message(self) -> (String, &'static str) {
         match self {
             Self::Open(name, why) => (
-                format!("cannot be made of `{name}`, which is open: {why}"),
+                format!("cannot be made of `{name}`, which is not a closed shape: {why}"),
                 "only closed shapes can be combined: a sphere, a box, a cylinder with its ends, a lathe that begins and ends \
-                 on its axis, a mesh without holes; for a cut along a plane, use a large box",
+                 on its axis, a mesh without holes and without doubled faces; for a cut along a plane, use a large box",
             ),
             Self::TooMany => (
                 format!("has more than {MOST_PARTS} parts"),

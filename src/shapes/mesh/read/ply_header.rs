@@ -152,8 +152,10 @@ pub(super) fn may_fit(header: &Header, size: usize) -> Result<(), ReadError> {
     for (name, element) in &header.elements {
         let has = |names: &[&str]| names.iter().any(|name| element.properties.contains_key(*name));
         if element.count > left {
-            let message =
-                format!("the header promises {} of `{name}`, and the file ends before", element.count);
+            let message = format!(
+                "the header announces {} elements `{name}`, more than the file has room for",
+                element.count
+            );
             return Err(ReadError::file(message));
         }
         if element.properties.is_empty() && element.count > 0 {
