@@ -10,6 +10,7 @@ use crate::files::are_same;
 use crate::output::deflate::Compression;
 use crate::output::picture::Format;
 use crate::text;
+use clap::ArgGroup;
 use image::imageops;
 use std::ffi::OsStr;
 use std::fs;
@@ -27,6 +28,7 @@ const WIDTH: u32 = 192;
 /// The frames are those that `tabray render --frames A..B -o IMAGE` wrote.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
+#[command(group = ArgGroup::new("outputs").args(["sheet", "animation"]).required(true).multiple(true))]
 pub struct Args {
     /// The name of the frames, as given to `render --frames` with -o: film.png for film-0001.png, film-0002.png ...
     frames: PathBuf,
@@ -47,12 +49,6 @@ Examples:
   tabray film film.png --animation film.apng --rate 30";
 
 pub fn run(args: &Args) -> Result<(), Failure> {
-    if args.sheet.is_none() && args.animation.is_none() {
-        return Err(Failure::Usage(
-            "nothing says what to put the frames together to".to_owned(),
-            Some("name a file with `--sheet` or `--animation`, or with both".to_owned()),
-        ));
-    }
     if let Some(path) = &args.animation {
         refuse_name(path)?;
     }
@@ -85,10 +81,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
 /// Refuses a name that is not that of an animated PNG.
 fn refuse_name(animation: &Path) -> Result<(), Failure> {
-    let extension = animation.extension().and_then(OsStr::to_str).unwrap_or_default();
-    if animation == Path::new("-")
-        || ["png", "apng"].iter().any(|known| extension.eq_ignore_ascii_case(known))
-    {
+    let is_png =
+        |extension: &OsStr| ["png", "apng"].iter().any(|known| extension.eq_ignore_ascii_case(known));
+    if animation == Path::new("-") || animation.extension().is_some_and(is_png) {
         return Ok(());
     }
     Err(Failure::Usage(

@@ -6,7 +6,7 @@ use crate::cli::process::failure::Failure;
 use crate::cli::process::progress::Progress;
 use crate::cli::process::{memory, messages};
 use crate::cli::rendering::part_files::{Parts, open, refuse};
-use crate::cli::rendering::{aov, full_range};
+use crate::cli::rendering::{aov, full_range, part};
 use crate::files::are_same;
 use crate::output::aov::Aov;
 use crate::output::aov_values::Values;
@@ -98,11 +98,11 @@ impl Parts {
             PixelFormat::Pfm => ("pfm", matches!(full_range, Some(FullRange::Pfm))),
             PixelFormat::Beside(..) => return Ok(()),
         };
-        let name = image.file_name().unwrap_or_default().to_string_lossy();
-        let is_named_like_it = |path: &PathBuf| {
-            path.file_name().is_some_and(|part| part.to_string_lossy().starts_with(&format!("{name}.part-")))
+        let of = self.paths.len();
+        let is_named_like_it = |(index, path): (usize, &PathBuf)| {
+            path.file_name() == part::beside(image, [index + 1, of]).file_name()
         };
-        if is_right || image == Path::new("-") || self.paths.iter().all(is_named_like_it) {
+        if is_right || image == Path::new("-") || self.paths.iter().enumerate().all(is_named_like_it) {
             return Ok(());
         }
         Err(refuse(

@@ -8,9 +8,9 @@ use std::ops::Range;
 /// The namespaces: names in different ones do not clash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Namespace {
-    /// Of the entities of a kind.
+    /// The names of the entities of a kind.
     Entity(Kind),
-    /// Of numbers, of a `let` or of a `repeat`.
+    /// The names of the numbers of `let` and `repeat`.
     Number,
 }
 

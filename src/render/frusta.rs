@@ -142,7 +142,7 @@ mod tests {
 
     /// Generates coordinates like those of scenes, 0 among them.
     fn number() -> impl Strategy<Value = f64> {
-        // A tenth of the time of `prop_oneof`, which seeds a generator of random numbers for each alternative.
+        // `prop_oneof` would seed a generator of random numbers for each alternative, which takes far longer.
         (0..4, -1.0..1.0).prop_map(|(kind, part)| match kind {
             0 => 0.0,
             1 => -0.0,

@@ -260,7 +260,7 @@ mod tests {
 
     /// Generates coordinates of all sizes, some with few digits.
     fn coordinate() -> impl Strategy<Value = f64> {
-        // A tenth of the time of `prop_oneof`, which seeds a generator of random numbers for each alternative.
+        // `prop_oneof` would seed a generator of random numbers for each alternative, which takes far longer.
         (0..16, -1.0..1.0, -490..490).prop_map(|(kind, part, exponent)| match kind {
             0..4 => 10.0 * part,
             4..8 => f64::from((10.0 * part) as f32),

@@ -340,7 +340,7 @@ fn frames_have_values_that_change_and_names_by_their_numbers() {
         assert_eq!(fs::read(folder.path().join("a.ray")).expect("still there"), scene);
     }
     let (status, said) = run(&folder, &["film", "film.png"]);
-    assert!(status == 2 && said.contains("with `--sheet` or `--animation`"), "{said}");
+    assert!(status == 2 && said.contains("--sheet <FILE>|--animation <FILE>"), "{said}");
     let (status, said) = run(&folder, &["film", "film.png", "--sheet", "a.png", "--animation", "a.png"]);
     assert!(status == 2 && said.contains("cannot both be `a.png`"), "{said}");
     fs::remove_file(folder.path().join("film-0010.png")).expect("a frame");

@@ -230,8 +230,8 @@ mod tests {
     use proptest::prelude::*;
     use std::ops::Range;
 
-    /// Generates coordinates like those of scenes, 0 among them. This takes a tenth of the time of `prop_oneof`, which
-    /// seeds a generator of random numbers for each alternative.
+    /// Generates coordinates like those of scenes, 0 among them. `prop_oneof` would seed a generator of random numbers for
+    /// each alternative, which takes far longer.
     fn number() -> impl Strategy<Value = f64> {
         (0..17, -1.0..1.0).prop_map(|(kind, part)| match kind {
             0..4 => 0.0,
