@@ -109,7 +109,9 @@ impl<A> Triangle<A> {
     /// Computes [`is_passed_by`](Self::is_passed_by), or `None` where rounding could have changed a sign.
     #[inline(always)]
     pub fn passed(&self, ray: &Ray) -> Option<bool> {
-        let [a, b, c] = self.corners.map(|corner| corner - ray.origin);
+        // Written out, as a call of `map` would not be inlined, and lanes not be taken eight at a time.
+        let [a, b, c] = self.corners;
+        let [a, b, c] = [a - ray.origin, b - ray.origin, c - ray.origin];
         let side = |from: DVec3, to: DVec3| {
             let side = from.cross(to).dot(ray.dir);
             // Units of 2^-53 of the product of the largest components: a component of the cross product is off by 4 of

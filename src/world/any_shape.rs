@@ -17,6 +17,7 @@ pub struct AnyShape(Box<dyn PacketShape>);
 
 impl AnyShape {
     /// Returns the shape's interface for packets of rays.
+    #[inline]
     pub(crate) fn packets(&self) -> &dyn PacketShape {
         &*self.0
     }
@@ -62,6 +63,7 @@ impl AnyShape {
     /// Merges the hits of a packet's rays with this shape into the nearest hits so far, and tells whether the order of
     /// any two hits is in doubt. `sides` is the side of this shape that each ray leaves, if the rays leave this shape;
     /// `id` is the object's index in the scene plus 1.
+    #[inline]
     pub fn closest_hits(
         &self,
         cpu: Cpu,

@@ -26,6 +26,7 @@ pub trait Hittable: Send + Sync {
 
     /// Returns the unit normal for shading at a point of the surface, where it differs from the surface's own: a mesh
     /// may look smooth. `normal` is that of the surface, flipped to face the ray where both sides are lit.
+    #[inline]
     fn shading_normal(&self, _at: DVec3, normal: DVec3) -> DVec3 {
         normal
     }
@@ -51,6 +52,7 @@ pub trait Hittable: Send + Sync {
 
     /// Tells whether both sides of the surface are lit. If so, the normal is flipped to face the ray. A plane is lit on
     /// one side.
+    #[inline]
     fn is_two_sided(&self) -> bool {
         false
     }
@@ -103,6 +105,7 @@ pub trait Hittable: Send + Sync {
 
     /// Tells whether the search for a ray's hit may take as long as several plain rays. Shapes without bounds are not
     /// asked.
+    #[inline]
     fn may_be_costly(&self) -> bool {
         false
     }

@@ -93,9 +93,9 @@ impl Beam {
         let (mut near, mut is_mixed) = ([LOW; 3], [false; 3]);
         for axis in 0..3 {
             // Signs, not comparisons, as -0 has a negative reciprocal.
-            let falls = [least[axis], greatest[axis]].map(f64::is_sign_negative);
-            near[axis] = usize::from(falls == [true, true]);
-            is_mixed[axis] = falls == [true, false];
+            let (falls, all_fall) = (least[axis].is_sign_negative(), greatest[axis].is_sign_negative());
+            near[axis] = usize::from(falls & all_fall);
+            is_mixed[axis] = falls & !all_fall;
         }
         let from = [(high + slack).to_array(), (low - slack).to_array()];
         let inverse = [greatest.recip().to_array(), least.recip().to_array()];
@@ -157,15 +157,11 @@ impl Eight {
     /// Becomes the rays of a packet of eight.
     #[inline(always)]
     pub fn set(&mut self, rays: RayPacket) {
-        let RayPacket { origin, dir, .. } = rays.first(LANES);
-        let Self { origin: own, inverse } = self;
-        for (own, of) in [(&mut own.x, origin.x), (&mut own.y, origin.y), (&mut own.z, origin.z)] {
-            own.copy_from_slice(&of[..LANES]);
-        }
-        for (inverse, of) in [(&mut inverse.x, dir.x), (&mut inverse.y, dir.y), (&mut inverse.z, dir.z)] {
-            for lane in 0..LANES {
-                inverse[lane] = 1.0 / of[lane];
-            }
+        let rays = rays.first(LANES);
+        for lane in 0..LANES {
+            let Ray { origin, dir } = rays.get(lane);
+            self.origin.set(lane, origin);
+            self.inverse.set(lane, dir.recip());
         }
     }
 }
@@ -174,7 +170,8 @@ impl Eight {
 #[inline(always)]
 fn limits(of: &[f64], t_max: &[f64], some: f64) -> [f64; 2] {
     let (mut low, mut high) = ([some; LANES], [some; LANES]);
-    for (of, t_max) in of.chunks_exact(LANES).zip(t_max.chunks_exact(LANES)) {
+    for first in (0..t_max.len()).step_by(LANES) {
+        let (of, t_max) = (&of[first..][..LANES], &t_max[first..][..LANES]);
         for lane in 0..LANES {
             let number = if t_max[lane] > 0.0 { of[lane] } else { some };
             low[lane] = smaller(number, low[lane]);

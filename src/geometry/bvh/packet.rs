@@ -232,7 +232,8 @@ impl Search<'_, '_> {
     #[inline(always)]
     fn most(&self, lanes: Range<usize>) -> f64 {
         let mut most = [0.0; LANES];
-        for t_max in self.t_max[lanes].chunks_exact(LANES) {
+        for first in lanes.step_by(LANES) {
+            let t_max = &self.t_max[first..][..LANES];
             for lane in 0..LANES {
                 most[lane] = larger(t_max[lane], most[lane]);
             }
