@@ -1,12 +1,17 @@
 //! Natural cubic splines.
 
+use std::array;
+
+/// The factorials of 0 to 3.
+const FACTORIALS: [f64; 4] = [1.0, 1.0, 2.0, 6.0];
+
 /// A curve of cubics, one between each two neighbouring points, with two continuous derivatives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spline {
     /// The y of each point, rising.
     knots: Vec<f64>,
-    /// The value and the first three derivatives of each cubic at its lower point.
-    derivatives: Vec<[f64; 4]>,
+    /// The coefficients of each cubic and of its first three derivatives, the constant first.
+    cubics: Vec<[[f64; 4]; 4]>,
 }
 
 impl Spline {
@@ -14,17 +19,24 @@ impl Spline {
     /// has no curvature at its ends.
     pub fn new(points: &[[f64; 2]]) -> Self {
         let curvature = curvatures(points);
-        let derivatives = points.windows(2).zip(curvature.windows(2)).map(|(ends, curvatures)| {
+        let cubics = points.windows(2).zip(curvature.windows(2)).map(|(ends, curvatures)| {
             let (&[[y, value], [next, after]], &[bend, last]) = (ends, curvatures) else { unreachable!() };
             let width = next - y;
             let slope = (after - value) / width - width * (2.0 * bend + last) / 6.0;
-            [value, slope, bend, (last - bend) / width]
+            // The value and the first three derivatives at the lower point.
+            let derivatives = [value, slope, bend, (last - bend) / width];
+            array::from_fn(|order| {
+                array::from_fn(|power| {
+                    derivatives.get(order + power).map_or(0.0, |of| of / FACTORIALS[power])
+                })
+            })
         });
-        let derivatives = derivatives.collect();
-        Self { knots: points.iter().map(|[y, _]| *y).collect(), derivatives }
+        let cubics = cubics.collect();
+        Self { knots: points.iter().map(|[y, _]| *y).collect(), cubics }
     }
 
     /// Returns the index of the cubic at y. The first and the last go on beyond the ends.
+    #[inline]
     pub fn piece(&self, y: f64) -> usize {
         let inner = &self.knots[1..self.knots.len() - 1];
         inner.partition_point(|knot| *knot <= y)
@@ -32,7 +44,7 @@ impl Spline {
 
     /// Returns where a cubic ends: its lower and its upper point's y, infinite for those that go on.
     pub fn ends(&self, piece: usize) -> [f64; 2] {
-        let last = self.derivatives.len() - 1;
+        let last = self.cubics.len() - 1;
         [
             if piece == 0 { f64::NEG_INFINITY } else { self.knots[piece] },
             if piece == last { f64::INFINITY } else { self.knots[piece + 1] },
@@ -41,13 +53,9 @@ impl Spline {
 
     /// Returns the y from which a cubic, or its derivative of an order from 0, is measured, and its coefficients, the
     /// constant first.
+    #[inline]
     pub fn cubic(&self, piece: usize, order: usize) -> (f64, [f64; 4]) {
-        let mut coefficients = [0.0; 4];
-        let of_order = self.derivatives[piece].get(order..).unwrap_or_default();
-        for ((to, of), factorial) in coefficients.iter_mut().zip(of_order).zip([1.0, 1.0, 2.0, 6.0]) {
-            *to = of / factorial;
-        }
-        (self.knots[piece], coefficients)
+        (self.knots[piece], self.cubics[piece].get(order).copied().unwrap_or_default())
     }
 }
 

@@ -78,8 +78,9 @@ kernels! {
         let (mut least, mut greatest) = ([[0.0; PARTS]; 3], [[0.0; PARTS]; 3]);
         for (part, lanes) in split(count, PART).enumerate() {
             let RayPacket { origin, dir, .. } = rays.part(lanes);
-            for (axis, (from, to)) in [(origin.x, dir.x), (origin.y, dir.y), (origin.z, dir.z)].into_iter().enumerate() {
-                let from = if is_from_one { &from[..1] } else { from };
+            let (from, to) = ([origin.x, origin.y, origin.z], [dir.x, dir.y, dir.z]);
+            for axis in 0..3 {
+                let (from, to) = (if is_from_one { &from[axis][..1] } else { from[axis] }, to[axis]);
                 (frusta.low[axis][part], frusta.high[axis][part]) = range(from);
                 (least[axis][part], greatest[axis][part]) = range(to);
             }
@@ -106,8 +107,8 @@ kernels! {
     /// Tests boxes against the sub-packets. Sets in `parts`, for each box, a bit for each sub-packet of which a ray may
     /// enter the box; where a bit is 0, no ray of the sub-packet does.
     pub fn meet(frusta: &Frusta, boxes: &[(usize, Aabb)], parts: &mut [u32]) {
-        for ((_, bounds), parts) in boxes.iter().zip(parts) {
-            let bounds = bounds.with_slack(frusta.reach);
+        for index in 0..boxes.len() {
+            let (bounds, parts) = (boxes[index].1.with_slack(frusta.reach), &mut parts[index]);
             let (mut enters, mut leaves) = ([0.0; PARTS], [f64::INFINITY; PARTS]);
             for axis in 0..3 {
                 let (low, high) = (bounds.low[axis], bounds.high[axis]);

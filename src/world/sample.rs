@@ -103,7 +103,10 @@ fn on_disc(numbers: DVec2) -> DVec2 {
 /// Writes the [`jitter`](Sample::jitter) of each sample, in pixels, to `x` and `y`.
 pub(crate) fn jitters(cpu: Cpu, samples: &[Sample], x: &mut [f64], y: &mut [f64]) {
     draw(cpu, samples, JITTER, x, y);
-    [x, y].into_iter().flatten().for_each(|offset| *offset -= 0.5);
+    for (x, y) in x.iter_mut().zip(y) {
+        *x -= 0.5;
+        *y -= 0.5;
+    }
 }
 
 /// Writes what [`on_light`](Sample::on_light) returns for each sample to `x` and `y`.
