@@ -110,13 +110,16 @@ macro_rules! kernels {
     ($(
         $(#[$attribute:meta])*
         $visible:vis fn $name:ident$([$T:ident: $Bound:path])?$(<const $N:ident>)?($($argument:ident: $type:ty),* $(,)?)
-            $(=> $out:ident $(, $second:ident)?)? $(-> $result:ty)? $body:block
+            $(=> $out:ident $(, $second:ident $(, $third:ident)?)?)? $(-> $result:ty)? $body:block
     )*) => {$(
         $(#[$attribute])*
         #[allow(clippy::too_many_arguments, reason = "they are arrays")]
         $visible fn $name$(<$T: $Bound>)?$(<const $N: usize>)?(
             cpu: $crate::simd::cpu::Cpu, $($argument: $type,)*
-            $($out: $crate::simd::soa::ViewMut, $($second: $crate::simd::soa::ViewMut)?)?
+            $(
+                $out: $crate::simd::soa::ViewMut,
+                $($second: $crate::simd::soa::ViewMut, $($third: $crate::simd::soa::ViewMut)?)?
+            )?
         ) $(-> $result)? {
             $crate::simd::cpu::levels! {
                 ($(<$T: $Bound>)?$(<const $N: usize>)?) (
@@ -129,29 +132,46 @@ macro_rules! kernels {
                             u: $crate::simd::cpu::beside!($second, &mut [f64]),
                             v: $crate::simd::cpu::beside!($second, &mut [f64]),
                             w: $crate::simd::cpu::beside!($second, &mut [f64]),
+                            $(
+                                p: $crate::simd::cpu::beside!($third, &mut [f64]),
+                                q: $crate::simd::cpu::beside!($third, &mut [f64]),
+                                r: $crate::simd::cpu::beside!($third, &mut [f64]),
+                            )?
                         )?
                     )?
                 ) ($(-> $result)?)
                 {
                     $(
                         let mut $out = $crate::simd::soa::ViewMut { x, y, z };
-                        $(let mut $second = $crate::simd::soa::ViewMut { x: u, y: v, z: w };)?
+                        $(
+                            let mut $second = $crate::simd::soa::ViewMut { x: u, y: v, z: w };
+                            $(let mut $third = $crate::simd::soa::ViewMut { x: p, y: q, z: r };)?
+                        )?
                     )?
                     $body
                 }
                 {
-                    body($($argument,)* $($crate::simd::cpu::beside!($out, x), y, z, $($crate::simd::cpu::beside!($second, u), v, w)?)?)
+                    body(
+                        $($argument,)*
+                        $(
+                            $crate::simd::cpu::beside!($out, x), y, z,
+                            $(
+                                $crate::simd::cpu::beside!($second, u), v, w,
+                                $($crate::simd::cpu::beside!($third, p), q, r)?
+                            )?
+                        )?
+                    )
                 }
             }
             match cpu.level() {
                 // SAFETY: a `Cpu` exists only for levels that the machine has.
                 #[cfg(target_arch = "x86_64")]
                 #[allow(unsafe_code)]
-                $crate::simd::cpu::Level::Avx512 => unsafe { avx512($($argument,)* $($out.x, $out.y, $out.z, $($second.x, $second.y, $second.z)?)?) },
+                $crate::simd::cpu::Level::Avx512 => unsafe { avx512($($argument,)* $($out.x, $out.y, $out.z, $($second.x, $second.y, $second.z, $($third.x, $third.y, $third.z)?)?)?) },
                 #[cfg(target_arch = "x86_64")]
                 #[allow(unsafe_code)]
-                $crate::simd::cpu::Level::Avx2 => unsafe { avx2($($argument,)* $($out.x, $out.y, $out.z, $($second.x, $second.y, $second.z)?)?) },
-                _ => body($($argument,)* $($out.x, $out.y, $out.z, $($second.x, $second.y, $second.z)?)?),
+                $crate::simd::cpu::Level::Avx2 => unsafe { avx2($($argument,)* $($out.x, $out.y, $out.z, $($second.x, $second.y, $second.z, $($third.x, $third.y, $third.z)?)?)?) },
+                _ => body($($argument,)* $($out.x, $out.y, $out.z, $($second.x, $second.y, $second.z, $($third.x, $third.y, $third.z)?)?)?),
             }
         }
     )*};

@@ -10,6 +10,8 @@ pub struct SurfaceInteraction<'l> {
     pub points: ViewMut<'l>,
     /// The unit normals with which the hit points are shaded, flipped to face the rays where both sides are lit.
     pub normals: ViewMut<'l>,
+    /// The unit normals of the surface itself, flipped likewise: others where a mesh is shaded as if it were smooth.
+    pub unbent: ViewMut<'l>,
     /// The side that each ray hits.
     pub sides: &'l mut [Side],
     /// The cosines of the angles between the rays and the unflipped normals, from -1 to 1.

@@ -4,7 +4,9 @@ use crate::common::{model_in, registry, render};
 use std::fmt::Write;
 use std::fs;
 use tabray::geometry::RayRange;
+use tabray::render::Plan;
 use tabray::scene;
+use tabray::tools::colours::{Prover, Verdict};
 use tempfile::TempDir;
 
 const WORLD: &str = "camera eye { pixeldim 61 45 worlddim 8 6 viewpoint 4 3 6 }
@@ -123,4 +125,62 @@ fn a_probe_names_the_face() {
         let distance = shape.distance(&ray, &RayRange::ALL);
         assert_eq!(shape.part(&ray, distance).as_deref(), Some(face));
     }
+}
+
+const OCTAHEDRON: &str = "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1
+    f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6";
+
+/// Two faces that rise from an edge along x to both sides, lit from above.
+const VALLEY: &str = "v -1 0 0\nv 1 0 0\nv 0 1 1\nv 0 1 -1\nf 1 3 2\nf 4 1 2";
+
+/// Tells for each pixel whether it is black, and asserts that no proof says otherwise.
+fn is_black(obj: &str, text: &str) -> Vec<bool> {
+    let folder = TempDir::new().expect("a folder");
+    fs::write(folder.path().join("mesh.obj"), obj).expect("a file");
+    let model = model_in(folder.path(), text);
+    let plan = Plan::new(&model);
+    let prover = Prover::new(&plan);
+    let [width, height] = plan.camera.pixels;
+    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+        assert_ne!(prover.traced(x, y).verdict(), Verdict::Contradicted, "{x} {y}: {text}");
+    }
+    render(&model).pixels().map(|pixel| pixel.0 == [0; 3]).collect()
+}
+
+#[test]
+fn a_smooth_mesh_keeps_light_out() {
+    let inside =
+        "look_at eye { pixeldim 30 30 position 0 0 0 target 1 0 0 angle 120 } material m { diffuse 1 1 1 }
+        bumps flat { height \"0\" } light lamp { location 9 9 9 emissivity 100 100 100 } ";
+    for mesh in [
+        "mesh o { material m file mesh.obj smooth 1 }",
+        "mesh o { material m file mesh.obj smooth 1 shader flat }",
+        "mesh p { material m file mesh.obj smooth 1 } place o { object p rotation 10 20 30 scale 1 1.5 2 }",
+    ] {
+        let black = is_black(OCTAHEDRON, &format!("{inside}{mesh}"));
+        assert!(black.iter().all(|is_black| *is_black), "{mesh}");
+    }
+}
+
+#[test]
+fn a_smooth_mesh_is_lit_only_where_the_light_is_before_its_faces() {
+    let valley = |smooth| {
+        let text = "look_at eye { pixeldim 60 60 position 0 5 -9 target 0 0.5 0 angle 30 }
+            material m { diffuse 1 1 1 } light lamp { location 0 5 9 emissivity 100 100 100 }";
+        is_black(VALLEY, &format!("{text} mesh o {{ material m file mesh.obj smooth {smooth} }}"))
+    };
+    let (flat, smooth) = (valley(0), valley(1));
+    assert!(flat.iter().zip(&smooth).all(|(flat, smooth)| !flat || *smooth));
+    assert!(smooth.contains(&false));
+}
+
+#[test]
+fn a_smooth_mirror_shows_only_what_is_before_its_faces() {
+    let black = is_black(
+        OCTAHEDRON,
+        "look_at eye { pixeldim 12 12 position 0.6 0 -0.39 target 0.97 0.015 0.015 angle 120 }
+         material mirror { specular 1 1 1 } background pale { colour 1 1 1 }
+         mesh o { material mirror file mesh.obj smooth 1 }",
+    );
+    assert!(black.iter().all(|is_black| *is_black));
 }

@@ -34,7 +34,9 @@ pub(super) fn shine(
     let toward = toward(light, surface.at);
     let distance = dot(toward, toward).sqrt();
     let cosine = dot(toward, surface.normal) / distance;
-    if cosine.range().high <= 0.0 {
+    // Light from behind the surface may face the shading normals only.
+    let above = surface.unbent.map_or(cosine, |unbent| cosine.min(dot(toward, unbent)));
+    if above.range().high <= 0.0 {
         return black;
     }
     let Some(sent) = EncloseLight::<f64>::sent(light, surface.at.map(|axis| axis.range())) else {
@@ -64,7 +66,7 @@ pub(super) fn shine(
             Passes::Open if scene.passes_fractions => full.hull(black[channel]),
             Passes::Open => Affine::WHOLE,
         };
-        let lit = if cosine.range().low > 0.0 { lit } else { lit.hull(black[channel]) };
+        let lit = if above.range().low > 0.0 { lit } else { lit.hull(black[channel]) };
         // From here on it is the mean over the light.
         ON_LIGHT.iter().fold(lit, |lit, index| lit.without(*index))
     })

@@ -116,9 +116,7 @@ impl<'s> Tracer<'s> {
             colour = [0, 1, 2].map(|channel| kept * colour[channel] + tint[channel] * behind[channel]);
         }
         if !is_black(&surface.specular) {
-            let across = dot(dir, surface.normal);
-            let twice = across + across;
-            let dir = [0, 1, 2].map(|axis| dir[axis] - twice * surface.normal[axis]);
+            let Some(dir) = surface.mirrored(dir) else { return [Affine::WHOLE; 3] };
             let seen = self.secondary(ray, surface, travelled, dir, &surface.specular);
             colour = [0, 1, 2].map(|channel| colour[channel] + surface.specular[channel] * seen[channel]);
         }

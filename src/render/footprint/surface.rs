@@ -13,8 +13,10 @@ use crate::world::shader::PointBounds;
 pub(super) struct Surface {
     pub place: Place,
     pub at: [Affine; 3],
-    /// The unit normals, turned to face the lines where both sides are lit.
+    /// The unit normals with which the points are shaded, turned to face the lines where both sides are lit.
     pub normal: [Affine; 3],
+    /// The unit normals of the surface itself, turned likewise, where the points are shaded with others.
+    pub unbent: Option<[Affine; 3]>,
     pub ambient: Colour,
     pub diffuse: Colour,
     pub specular: Colour,
@@ -42,12 +44,13 @@ impl Surface {
         } else {
             Interval::constant(-1.0)
         };
-        // What is lit of a surface whose normals are bent also depends on those that it has.
+        // What a shader bends normals to is not enclosed.
         if object.shader.bends() {
             return None;
         }
-        let shaded = |normal: [Affine; 3], is_turned: bool| {
-            let normal = shading_normals(shape, at, place.part, normal)?;
+        let shaded = |own: [Affine; 3], is_turned: bool| {
+            let normal = shading_normals(shape, at, place.part, own)?;
+            let unbent = (normal != own).then_some(own);
             let range = |vector: [Affine; 3]| vector.map(|axis| axis.range());
             let outward = if is_turned { normal.map(|part| -part) } else { normal };
             let sees = object.shader.sees();
@@ -55,7 +58,7 @@ impl Surface {
             let look = EncloseLook::<f64>::look(&*object.shader, &object.material, &point)?;
             let [ambient, diffuse, specular] =
                 [look.ambient, look.diffuse, look.specular].map(|colour| colour.map(Affine::from));
-            Some(Self { place, at, normal, ambient, diffuse, specular })
+            Some(Self { place, at, normal, unbent, ambient, diffuse, specular })
         };
         let mut all = Vec::with_capacity(2);
         if toward.low <= 0.0 {
@@ -66,6 +69,25 @@ impl Surface {
         }
         Some(all)
     }
+
+    /// Returns the directions in which rays along `dir` are mirrored, as long as these; `None` where they are open.
+    pub fn mirrored(&self, dir: [Affine; 3]) -> Option<[Affine; 3]> {
+        let mirrored = mirrored(dir, self.normal);
+        let Some(unbent) = self.unbent else { return Some(mirrored) };
+        // What bent normals mirror through the surface is turned back.
+        let through = (dot(mirrored, unbent) * dot(dir, unbent)).range();
+        if through.low > 0.0 {
+            Some(self::mirrored(mirrored, unbent))
+        } else {
+            (through.high <= 0.0).then_some(mirrored)
+        }
+    }
+}
+
+fn mirrored(dir: [Affine; 3], normal: [Affine; 3]) -> [Affine; 3] {
+    let across = dot(dir, normal);
+    let twice = across + across;
+    [0, 1, 2].map(|axis| dir[axis] - twice * normal[axis])
 }
 
 /// Returns the fraction of light that passes through an object at points; `None` where it is open.

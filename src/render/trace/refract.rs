@@ -16,11 +16,8 @@ pub(super) fn crossings(interface: &dyn Interface, dir: View, surface: &Surface)
         let (dir, side) = (dir.get(lane), surface.sides[lane]);
         let cross = |normal| interface.cross(dir, facing(normal, dir), side);
         let crossing = cross(surface.normals.get(lane));
-        if !surface.is_bent {
-            return crossing;
-        }
         // Bent normals may lead a ray back to the side from which it comes.
-        let unbent = surface.unbent.get(lane);
+        let Some(unbent) = surface.bent_from(lane) else { return crossing };
         let is_through = |onward: DVec3| onward.dot(unbent) * dir.dot(unbent) > 0.0;
         if crossing.onward.is_none_or(is_through) { crossing } else { cross(unbent) }
     };

@@ -77,6 +77,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let interaction = SurfaceInteraction {
             points: surface.points.resized(count),
             normals: surface.normals.resized(count),
+            unbent: surface.unbent.resized(count),
             sides: resized(&mut surface.sides, count),
             cosines: resized(&mut surface.cosines, count),
             travelled,

@@ -9,6 +9,7 @@ use crate::world::coincidence;
 use crate::world::material::Look;
 use crate::world::packets::shader::SurfacePoints;
 use crate::world::shader::SurfacePoint;
+use glam::DVec3;
 
 /// The points where the rays of a packet hit one object.
 #[derive(Default)]
@@ -16,11 +17,11 @@ pub(super) struct Surface {
     /// The object's index.
     pub index: usize,
     pub points: VectorList,
-    /// The unit normals, flipped to face the rays where both sides are lit.
+    /// The unit normals with which the points are shaded, flipped to face the rays where both sides are lit.
     pub normals: VectorList,
-    /// The unit normals before the object's shader has bent them, if it does.
+    /// The unit normals of the surface itself, flipped likewise.
     pub unbent: VectorList,
-    /// Whether the object's shader bends normals.
+    /// Whether any of the points is shaded with another normal than that of the surface.
     pub is_bent: bool,
     /// The points as the object's shader sees them; empty where it sees their positions alone.
     pub seen: Vec<SurfacePoint>,
@@ -49,9 +50,9 @@ impl Surface {
     /// Finds what the object's shader sees of the points beside their positions, and lets it bend the normals.
     pub fn see(&mut self, Object { shape, shader, .. }: &Object, count: usize) {
         self.seen.clear();
-        self.is_bent = shader.bends();
-        let sees = shader.sees();
-        if sees.is_position() && !self.is_bent {
+        let (bends, sees) = (shader.bends(), shader.sees());
+        self.is_bent = bends || (0..count).any(|lane| self.bent_from(lane).is_some());
+        if sees.is_position() && !bends {
             return;
         }
         let is_two_sided = shape.is_two_sided();
@@ -60,8 +61,7 @@ impl Surface {
             let normal = if is_two_sided && *side == Side::Inside { -normal } else { normal };
             self.seen.push(SurfacePoint::seen(&**shape, sees, position, normal, *side));
         }
-        if self.is_bent {
-            self.unbent.copy(self.normals.view(count));
+        if bends {
             for lane in 0..count {
                 let bent = shader.bend(&self.seen[lane]);
                 let is_turned = is_two_sided && self.sides[lane] == Side::Inside;
@@ -70,13 +70,19 @@ impl Surface {
         }
     }
 
+    /// Returns the normal of the surface itself at a point that is shaded with another one.
+    #[inline(always)]
+    pub fn bent_from(&self, lane: usize) -> Option<DVec3> {
+        let unbent = self.unbent.get(lane);
+        (unbent != self.normals.get(lane)).then_some(unbent)
+    }
+
     /// Clears `shines` where a light shines on the surface from behind: there it may shine on the bent normals only.
     /// Such points need no shadow ray: `t_max` becomes 0. Returns whether it still shines on any.
     pub fn hide_from_behind(&self, toward: View, shines: &mut [u64], t_max: &mut [f64]) -> bool {
         let mut any = false;
         for lane in 0..shines.len() {
-            let faces = toward.get(lane).dot(self.unbent.get(lane)) > 0.0;
-            if !faces {
+            if self.bent_from(lane).is_some_and(|unbent| toward.get(lane).dot(unbent) <= 0.0) {
                 (shines[lane], t_max[lane]) = (0, 0.0);
             }
             any |= shines[lane] != 0;
@@ -87,7 +93,8 @@ impl Surface {
     /// Turns mirrored directions back that bent normals mirror through the surface.
     pub fn keep_before(&self, seen: View, mirrored: &mut VectorList) {
         for lane in 0..seen.len() {
-            let (normal, dir) = (self.unbent.get(lane), mirrored.get(lane));
+            let Some(normal) = self.bent_from(lane) else { continue };
+            let dir = mirrored.get(lane);
             let height = dir.dot(normal);
             // A ray that is mirrored by a flat surface rises as it came.
             if height * seen.get(lane).dot(normal) > 0.0 {

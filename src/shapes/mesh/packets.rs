@@ -98,9 +98,21 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
     }
 
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction) {
-        let SurfaceInteraction { points, normals, sides, cosines, travelled } = interaction;
+        let SurfaceInteraction { points, normals, unbent, sides, cosines, travelled } = interaction;
         Memo::with(|memo| {
-            interact(cpu, &self.shape, rays, distances, memo, sides, cosines, travelled, points, normals);
+            interact(
+                cpu,
+                &self.shape,
+                rays,
+                distances,
+                memo,
+                sides,
+                cosines,
+                travelled,
+                points,
+                normals,
+                unbent,
+            );
         });
     }
 
@@ -198,7 +210,7 @@ kernels! {
     fn interact[A: Bounded](
         mesh: &Mesh<A>, rays: RayPacket, distances: &[f64], memo: &mut Memo, sides: &mut [Side],
         cosines: &mut [f64], travelled: &mut [f64]
-    ) => points, normals {
+    ) => points, normals, unbent {
         let (is_two_sided, surface) = (mesh.is_two_sided(), &mesh.surface);
         let mut known = ([usize::MAX; LANES], Vectors::ZERO);
         for first in (0..travelled.len()).step_by(LANES) {
@@ -222,6 +234,7 @@ kernels! {
                 (sides[lane], cosines[lane], turn) = turned(ray.dir, known.1.get(place), is_two_sided);
                 points.set(lane, point);
                 normals.set(lane, surface.smoothed(faces[place], point, turn));
+                unbent.set(lane, turn);
                 travelled[lane] += distances[lane];
             }
         }

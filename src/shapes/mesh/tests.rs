@@ -327,9 +327,11 @@ fn no_doubled_face_at_an_outline_is_seen_from_behind() {
                 let (from, along) = (Vectors::<LANES>::of(origin), Vectors::<LANES>::of(dir));
                 let rays = RayPacket { origin: from.view(LANES), dir: along.view(LANES), origin_error: 0.0 };
                 let (mut points, mut normals) = (Vectors::<LANES>::ZERO, Vectors::<LANES>::ZERO);
+                let mut unbent = Vectors::<LANES>::ZERO;
                 let interaction = SurfaceInteraction {
                     points: points.view_mut(LANES),
                     normals: normals.view_mut(LANES),
+                    unbent: unbent.view_mut(LANES),
                     sides: &mut [Side::Outside; LANES],
                     cosines: &mut [0.0; LANES],
                     travelled: &mut [0.0; LANES],

@@ -93,34 +93,26 @@ kernels! {
         }
     }
 
-    /// Takes hits to the world: `own` and `lengths` are the rays in the copy's coordinates and the lengths of a world
-    /// unit there.
+    /// Takes hits to the world.
     pub fn take_out(
-        placed: &Placed, rays: RayPacket, own: RayPacket, lengths: &[f64], distances: &[f64], cosines: &mut [f64],
-        travelled: &mut [f64]
-    ) => points, normals {
+        placed: &Placed, rays: RayPacket, distances: &[f64], cosines: &mut [f64], travelled: &mut [f64]
+    ) => points, normals, unbent {
         let (count, to_world) = (travelled.len(), placed.to_object_space.transpose());
-        let least = placed.placement.scale.min_element();
         let is_two_sided = placed.body.shape.is_two_sided();
-        let (rays, own, lengths) = (rays.first(count), own.first(count), &lengths[..count]);
-        let (distances, cosines) = (&distances[..count], &mut cosines[..count]);
+        let (rays, distances, cosines) = (rays.first(count), &distances[..count], &mut cosines[..count]);
         let (mut points, mut normals) = (points.first(count), normals.first(count));
+        let mut unbent = unbent.first(count);
         for lane in 0..count {
-            let normal = normals.get(lane);
-            // The cosine is that of the flat normal, which a smooth surface does not tell: then a lower bound.
-            let (cosine, shaded) = (cosines[lane], own.dir.get(lane).dot(normal));
+            let is_turned = is_two_sided && cosines[lane] >= 0.0;
+            let turned = |normal: DVec3| if is_turned { -normal } else { normal };
             // Turned only after it is taken to the world, as single rays do: so even zeros have the same sign.
-            let is_turned = is_two_sided && cosine >= 0.0;
-            let there = (to_world * if is_turned { -normal } else { normal }).normalize();
-            let is_flat = (cosine.abs() - shaded.abs()).abs() <= 1e-12;
-            cosines[lane] = if is_flat {
-                // As single rays compute it, to the last bit.
-                rays.dir.get(lane).dot(there)
-            } else {
-                cosine * lengths[lane] * least
-            };
+            let there = |normal: DVec3| (to_world * turned(normal)).normalize();
+            let (shaded, own) = (normals.get(lane), unbent.get(lane));
+            let normal = there(own);
+            cosines[lane] = rays.dir.get(lane).dot(normal);
             points.set(lane, rays.get(lane).at(distances[lane]));
-            normals.set(lane, if is_turned { -there } else { there });
+            normals.set(lane, turned(if shaded == own { normal } else { there(shaded) }));
+            unbent.set(lane, turned(normal));
             travelled[lane] += distances[lane];
         }
     }

@@ -132,7 +132,8 @@ impl Placed {
         distances: &[f64],
         interaction: SurfaceInteraction,
     ) {
-        let SurfaceInteraction { mut points, mut normals, sides, cosines, travelled } = interaction;
+        let SurfaceInteraction { mut points, mut normals, mut unbent, sides, cosines, travelled } =
+            interaction;
         let count = travelled.len();
         let own = ObjectSpaceRays::<N>::of(cpu, self, rays, &distances[..count]);
         let mut own_distances = [0.0; N];
@@ -142,14 +143,14 @@ impl Placed {
         let own_interaction = SurfaceInteraction {
             points: points.first(count),
             normals: normals.first(count),
-            sides: &mut *sides,
+            unbent: unbent.first(count),
+            sides,
             cosines: &mut *cosines,
             travelled: &mut [0.0; N][..count],
         };
-        let (shape, own_rays) = (self.body.shape.packets(), own.rays(count));
-        shape.interact(cpu, own_rays, &own_distances[..count], own_interaction);
-        let lengths = &own.lengths[..count];
-        take_out(cpu, self, rays, own_rays, lengths, distances, cosines, travelled, points, normals);
+        let shape = self.body.shape.packets();
+        shape.interact(cpu, own.rays(count), &own_distances[..count], own_interaction);
+        take_out(cpu, self, rays, distances, cosines, travelled, points, normals, unbent);
     }
 }
 
@@ -219,16 +220,29 @@ impl Packets for Shape<Placed, ByPackets, ByPlacement> {
     }
 
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction) {
-        let SurfaceInteraction { mut points, mut normals, sides, cosines, travelled } = interaction;
+        let SurfaceInteraction { mut points, mut normals, mut unbent, sides, cosines, travelled } =
+            interaction;
         let shape = self.shape.body.shape.packets();
         if shape.is_of_the_notes() || !shape.finds_normals_by_rays() {
-            shape::interact(cpu, &self.shape, rays, distances, sides, cosines, travelled, points, normals);
+            shape::interact(
+                cpu,
+                &self.shape,
+                rays,
+                distances,
+                sides,
+                cosines,
+                travelled,
+                points,
+                normals,
+                unbent,
+            );
             return;
         }
         for part in split(travelled.len(), PART) {
             let interaction = SurfaceInteraction {
                 points: points.part(part.clone()),
                 normals: normals.part(part.clone()),
+                unbent: unbent.part(part.clone()),
                 sides: &mut sides[part.clone()],
                 cosines: &mut cosines[part.clone()],
                 travelled: &mut travelled[part.clone()],

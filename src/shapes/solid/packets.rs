@@ -122,8 +122,19 @@ impl Packets for Shape<Trimmed, ByPackets, ByParts> {
         if !self.shape.is_outer && !own.finds_normals_by_rays() {
             return own.interact(cpu, rays, distances, interaction);
         }
-        let SurfaceInteraction { points, normals, sides, cosines, travelled } = interaction;
-        shape::interact(cpu, &self.shape, rays, distances, sides, cosines, travelled, points, normals);
+        let SurfaceInteraction { points, normals, unbent, sides, cosines, travelled } = interaction;
+        shape::interact(
+            cpu,
+            &self.shape,
+            rays,
+            distances,
+            sides,
+            cosines,
+            travelled,
+            points,
+            normals,
+            unbent,
+        );
     }
 
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {

@@ -32,7 +32,9 @@ pub(super) fn shine<F: Number>(
     let toward = toward(light, draw, surface.at)?;
     let distance = dot(toward, toward).sqrt();
     let cosine = dot(toward, surface.normal) / distance;
-    if cosine.high <= zero {
+    // Light from behind the surface may face the shading normal only.
+    let above = surface.unbent.map_or(cosine, |unbent| cosine.min(dot(toward, unbent)));
+    if above.high <= zero {
         return Some(black);
     }
     let sent = F::sent(light, surface.at)?;
@@ -59,7 +61,7 @@ pub(super) fn shine<F: Number>(
             Some(passed) => passed[channel] * full[channel],
             None => full[channel].hull(black[channel]),
         };
-        if cosine.low > zero { lit } else { lit.hull(black[channel]) }
+        if above.low > zero { lit } else { lit.hull(black[channel]) }
     }))
 }
 

@@ -116,9 +116,7 @@ impl<'s, 'p, 'm> Tracer<'s, 'p, 'm> {
             colour = per_axis(|channel| kept * colour[channel] + tint[channel] * behind[channel]);
         }
         if !is_black(&surface.specular) {
-            let across = dot(ray.path.line.dir, surface.normal);
-            let twice = across + across;
-            let dir = per_axis(|axis| ray.path.line.dir[axis] - twice * surface.normal[axis]);
+            let dir = surface.mirrored(ray.path.line.dir)?;
             let seen = self.secondary(ray, &surface, travelled, dir, &surface.specular)?;
             colour = per_axis(|channel| colour[channel] + surface.specular[channel] * seen[channel]);
         }

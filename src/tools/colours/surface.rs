@@ -11,8 +11,10 @@ use crate::world::shader::PointBounds;
 pub(super) struct Surface<F> {
     pub place: Place,
     pub at: [Interval<F>; 3],
-    /// The unit normal, turned to face the ray where both sides are lit.
+    /// The unit normal with which the point is shaded, turned to face the ray where both sides are lit.
     pub normal: [Interval<F>; 3],
+    /// The unit normal of the surface itself, turned likewise, where the point is shaded with another.
+    pub unbent: Option<[Interval<F>; 3]>,
     pub ambient: Colour<F>,
     pub diffuse: Colour<F>,
     pub specular: Colour<F>,
@@ -22,7 +24,7 @@ impl<F: Number> Surface<F> {
     /// Returns the point at t of a line; `None` where its normal or its look are open.
     pub fn new(scene: &Scene, line: &Line<Interval<F>>, t: Interval<F>, place: Place) -> Option<Self> {
         let object = &scene.objects[place.object];
-        // What is lit of a surface whose normals are bent also depends on those that it has.
+        // What a shader bends normals to is not enclosed.
         if object.shader.bends() {
             return None;
         }
@@ -47,12 +49,33 @@ impl<F: Number> Surface<F> {
         };
         let normal = turned(normal);
         // What is mirrored is mirrored by the shading normal, too.
-        let normal = shape.shading_normal(at, place.part, normal)?;
+        let own = normal;
+        let normal = shape.shading_normal(at, place.part, own)?;
+        let unbent = (normal != own).then_some(own);
         let point = PointBounds::seen(proven, object.shader.sees(), place.part, at, Some(turned(normal)));
         let look = F::look(object, &point)?;
         let [ambient, diffuse, specular] = [look.ambient, look.diffuse, look.specular];
-        Some(Self { place, at, normal, ambient, diffuse, specular })
+        Some(Self { place, at, normal, unbent, ambient, diffuse, specular })
     }
+
+    /// Returns the direction in which a ray along `dir` is mirrored, as long as that; `None` where it is open.
+    pub fn mirrored(&self, dir: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
+        let mirrored = mirrored(dir, self.normal);
+        let Some(unbent) = self.unbent else { return Some(mirrored) };
+        // What a bent normal mirrors through the surface is turned back.
+        let through = dot(mirrored, unbent) * dot(dir, unbent);
+        if through.low > F::of(0.0) {
+            Some(self::mirrored(mirrored, unbent))
+        } else {
+            (through.high <= F::of(0.0)).then_some(mirrored)
+        }
+    }
+}
+
+fn mirrored<F: Float>(dir: [Interval<F>; 3], normal: [Interval<F>; 3]) -> [Interval<F>; 3] {
+    let across = dot(dir, normal);
+    let twice = across + across;
+    per_axis(|axis| dir[axis] - twice * normal[axis])
 }
 
 /// Returns the fraction of light that passes through an object at a point; `None` where it is open.

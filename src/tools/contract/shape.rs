@@ -111,11 +111,13 @@ impl RayTrial<'_> {
             }
             if distance != MISS {
                 let (mut points, mut normals) = (Vectors::<LANES>::ZERO, Vectors::<LANES>::ZERO);
+                let mut unbent = Vectors::<LANES>::ZERO;
                 let (mut sides, mut cosines) = ([Side::Inside; LANES], [0.0; LANES]);
                 let mut travelled = [1.0; LANES];
                 let interaction = SurfaceInteraction {
                     points: points.view_mut(LANES),
                     normals: normals.view_mut(LANES),
+                    unbent: unbent.view_mut(LANES),
                     sides: &mut sides,
                     cosines: &mut cosines,
                     travelled: &mut travelled,

@@ -269,8 +269,8 @@ where
     }
 
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction) {
-        let SurfaceInteraction { points, normals, sides, cosines, travelled } = interaction;
-        interact(cpu, &self.shape, rays, distances, sides, cosines, travelled, points, normals);
+        let SurfaceInteraction { points, normals, unbent, sides, cosines, travelled } = interaction;
+        interact(cpu, &self.shape, rays, distances, sides, cosines, travelled, points, normals, unbent);
     }
 
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
@@ -343,11 +343,12 @@ kernels! {
     /// Computes the points, normals and sides that rays hit at these distances, in world units.
     pub(crate) fn interact[T: Hittable](
         shape: &T, rays: RayPacket, distances: &[f64], sides: &mut [Side], cosines: &mut [f64], travelled: &mut [f64]
-    ) => points, normals {
+    ) => points, normals, unbent {
         let (count, is_two_sided) = (travelled.len(), shape.is_two_sided());
         let (rays, distances) = (rays.first(count), &distances[..count]);
         let (sides, cosines) = (&mut sides[..count], &mut cosines[..count]);
         let (mut points, mut normals) = (points.first(count), normals.first(count));
+        let mut unbent = unbent.first(count);
         for lane in 0..count {
             let ray = rays.get(lane);
             let point = ray.at(distances[lane]);
@@ -355,6 +356,7 @@ kernels! {
             (sides[lane], cosines[lane], normal) = turned(ray.dir, shape.normal(point), is_two_sided);
             points.set(lane, point);
             normals.set(lane, shape.shading_normal(point, normal));
+            unbent.set(lane, normal);
             travelled[lane] += distances[lane];
         }
     }
