@@ -5,6 +5,7 @@ pub(crate) mod bvh;
 pub(crate) mod facet;
 pub(crate) mod frame;
 pub(crate) mod image_point;
+pub(crate) mod orientation;
 pub(crate) mod placement;
 pub(crate) mod ray;
 pub(crate) mod ray_packet;

@@ -3,8 +3,10 @@
 use crate::geometry::aabb::larger;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
 use crate::geometry::ray_packet::RayPacket;
-use crate::numeric::double_double::vectors::{self, plain_cross, quick_unit, rounded_unit, triple_product};
-use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two, two_sum};
+use crate::numeric::double_double::vectors::{
+    self, plain_cross, quick_unit, rounded_unit, scaled_to_one, triple_product,
+};
+use crate::numeric::double_double::{DoubleDouble, two_sum};
 use crate::numeric::scalar::{Scalar, constants, cross, dot, per_axis};
 use crate::shapes::plane::Plane;
 use crate::simd::soa::{LANES, Vectors};
@@ -133,7 +135,7 @@ impl<A> Triangle<A> {
 fn exact_side(from: DVec3, to: DVec3, ray: &Ray) -> f64 {
     let place =
         |of: DVec3| scaled_to_one(per_axis(|axis| DoubleDouble::difference(of[axis], ray.origin[axis])));
-    triple_product(place(from), place(to), ray.dir.to_array()).high
+    triple_product(place(from), place(to), ray.dir.to_array().map(DoubleDouble::from)).high
 }
 
 /// Returns the plane through the corners of a triangle with an area, for distances only: its unit normal, which takes
@@ -242,17 +244,6 @@ fn slow_normal([a, b, c]: [DVec3; 3]) -> [DoubleDouble; 3] {
         scaled_to_one([edge(0), edge(1), edge(2)])
     };
     scaled_to_one(vectors::cross(edge(b), edge(c)))
-}
-
-/// Returns a vector scaled by a power of two so that its largest component is between 1/2 and 1.
-#[inline]
-fn scaled_to_one(vector: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
-    let exponent = exponent_to_one(vector.iter().fold(0.0, |largest, part| part.high.abs().max(largest)));
-    let scaled = |DoubleDouble { high, low }: DoubleDouble| DoubleDouble {
-        high: times_power_of_two(high, exponent),
-        low: times_power_of_two(low, exponent),
-    };
-    [scaled(vector[0]), scaled(vector[1]), scaled(vector[2])]
 }
 
 #[cfg(test)]

@@ -184,3 +184,59 @@ fn a_smooth_mirror_shows_only_what_is_before_its_faces() {
     );
     assert!(black.iter().all(|is_black| *is_black));
 }
+
+/// Returns the text of an OBJ of tetrahedra, each with the place of a corner, a size, and whether its faces are turned
+/// inward.
+fn tetrahedra(all: &[([f64; 3], f64, bool)]) -> String {
+    let mut obj = String::new();
+    for (first, ([x, y, z], size, is_turned)) in all.iter().enumerate() {
+        for [dx, dy, dz] in [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
+            writeln!(obj, "v {} {} {}", x + size * dx, y + size * dy, z + size * dz).expect("text");
+        }
+        for [a, b, c] in
+            [[1, 3, 2], [1, 2, 4], [1, 4, 3], [2, 3, 4]].map(|face| face.map(|at| 4 * first + at))
+        {
+            let (b, c) = if *is_turned { (c, b) } else { (b, c) };
+            writeln!(obj, "f {a} {b} {c}").expect("text");
+        }
+    }
+    obj
+}
+
+#[test]
+fn a_mesh_is_a_solid_where_its_faces_meet_at_shared_corners_and_bound_it_once() {
+    let big = ([0.0; 3], 4.0, false);
+    let fault = |other| {
+        let folder = TempDir::new().expect("a folder");
+        fs::write(folder.path().join("mesh.obj"), tetrahedra(&[big, other])).expect("a file");
+        let text = format!(
+            "{WORLD} mesh m {{ material red file mesh.obj }} box b {{ material red center 0 0 0 size 9 9 9 }}
+             intersection s {{ objects m b }}"
+        );
+        let result = scene::read(registry(), "scene", folder.path(), text.as_bytes(), None);
+        result.err().map(|report| report.to_string())
+    };
+    // Apart, a cavity, and at a corner that both have.
+    for sound in [
+        ([5.0, 0.0, 0.0], 1.0, false),
+        ([0.5; 3], 1.0, true),
+        ([4.0, 0.0, 0.0], 1.0, false),
+        ([0.0, 0.0, -4.0], 4.0, false),
+        ([4.0, 0.0, -4.0], 4.0, false),
+    ] {
+        assert_eq!(fault(sound), None, "{sound:?}");
+    }
+    for (wrong, told) in [
+        // Across each other, with a corner in the middle of a face, and within a face.
+        (([1.0, 1.0, -1.0], 4.0, false), "cross, or touch other than at edges and corners that they share"),
+        (([1.0, -1.0, 1.0], 1.0, false), "cross, or touch"),
+        (([1.0, 1.0, 0.0], 1.0, false), "cross, or touch"),
+        (([0.0; 3], 1.0, false), "cross, or touch"),
+        (big, "are in one place"),
+        (([0.5; 3], 1.0, false), "lies within others, but is not turned inward as that of a cavity"),
+        (([5.0, 0.0, 0.0], 1.0, true), "is turned inside out"),
+    ] {
+        let fault = fault(wrong).unwrap_or_else(|| panic!("{wrong:?} is sound"));
+        assert!(fault.contains(told), "{wrong:?}: {fault}");
+    }
+}

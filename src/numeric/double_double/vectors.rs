@@ -1,7 +1,7 @@
 //! Vectors of double-double numbers, and their products.
 
 use super::exact::exact_sum;
-use super::{DoubleDouble, power_of_two, two_product, two_sum};
+use super::{DoubleDouble, exponent_to_one, power_of_two, times_power_of_two, two_product, two_sum};
 
 /// Returns the dot product of two vectors.
 #[inline(always)]
@@ -58,15 +58,29 @@ fn exact_cross(a: [DoubleDouble; 3], b: [DoubleDouble; 3]) -> [DoubleDouble; 3] 
 
 /// Returns the triple product of three vectors, rounded once: its sign tells their orientation, and it is 0 exactly
 /// where they are coplanar.
-pub fn triple_product(a: [DoubleDouble; 3], b: [DoubleDouble; 3], c: [f64; 3]) -> DoubleDouble {
-    let parts = |of: DoubleDouble, with: DoubleDouble, factor: f64| {
+pub fn triple_product(a: [DoubleDouble; 3], b: [DoubleDouble; 3], c: [DoubleDouble; 3]) -> DoubleDouble {
+    let parts = |of: DoubleDouble, with: DoubleDouble, factor: DoubleDouble| {
         let pairs = [(of.high, with.high), (of.high, with.low), (of.low, with.high), (of.low, with.low)];
         let products = pairs.into_iter().flat_map(|(one, other)| <[f64; 2]>::from(two_product(one, other)));
-        products.flat_map(move |product| <[f64; 2]>::from(two_product(product, factor)))
+        products.flat_map(move |product| {
+            let factors = [factor.high, factor.low].into_iter().filter(|factor| *factor != 0.0);
+            factors.flat_map(move |factor| <[f64; 2]>::from(two_product(product, factor)))
+        })
     };
     exact_sum([(1, 2, 0), (2, 0, 1), (0, 1, 2)].into_iter().flat_map(|(one, other, last)| {
         parts(a[one], b[other], c[last]).chain(parts(-a[other], b[one], c[last]))
     }))
+}
+
+/// Returns a vector scaled by a power of two so that its largest component is between 1/2 and 1.
+#[inline]
+pub fn scaled_to_one(vector: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
+    let exponent = exponent_to_one(vector.iter().fold(0.0, |largest, part| part.high.abs().max(largest)));
+    let scaled = |DoubleDouble { high, low }: DoubleDouble| DoubleDouble {
+        high: times_power_of_two(high, exponent),
+        low: times_power_of_two(low, exponent),
+    };
+    [scaled(vector[0]), scaled(vector[1]), scaled(vector[2])]
 }
 
 /// Returns the unit vector along a vector whose components have magnitudes around 1.

@@ -9,6 +9,7 @@
 mod along;
 mod face;
 mod hits;
+mod inside;
 mod known;
 mod memo;
 mod packets;

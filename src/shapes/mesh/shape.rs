@@ -125,15 +125,13 @@ impl<A: Bounded> Hittable for Mesh<A> {
         self.can_hit_itself
     }
 
-    fn openness(&self) -> Option<&'static str> {
+    fn openness(&self) -> Option<&str> {
         if self.surface.open_edges > 0 {
             Some("some of its edges belong to one face only")
         } else if self.surface.is_inside_out() {
             Some("its faces are turned inside out")
-        } else if self.surface.has_doubled_faces() {
-            Some("two of its faces are in one place")
         } else {
-            None
+            self.surface.fault(self)
         }
     }
 

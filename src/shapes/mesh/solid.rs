@@ -6,11 +6,10 @@ use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::world::accuracy::Bounded;
 use crate::world::coincidence::ROUNDING;
 use glam::DVec3;
-use rayon::slice::ParallelSliceMut;
 
 /// Directions in which it is looked for the face that tells whether a point lies inside; along none of them do the edges
 /// of made-up shapes run.
-const DIRECTIONS: [DVec3; 4] = [
+pub(super) const DIRECTIONS: [DVec3; 4] = [
     DVec3::new(0.615_947, 0.359_214, 0.701_135),
     DVec3::new(-0.271_803, 0.857_241, -0.437_365),
     DVec3::new(0.480_163, -0.692_127, -0.538_843),
@@ -112,19 +111,6 @@ impl Surface {
             planes.iter().all(|[normal, point]| normal.dot(*at - *point) <= rounding(*point, *at))
         };
         self.vertices.iter().all(is_below).then_some(planes)
-    }
-
-    /// Tells whether two faces have the same corners. A point between two bodies that share such faces lies inside or
-    /// outside depending on which of the two is met first.
-    pub(super) fn has_doubled_faces(&self) -> bool {
-        let corners = |face: usize| {
-            let mut corners = self.faces[face];
-            corners.sort_unstable();
-            corners
-        };
-        let mut faces: Vec<_> = (0..self.face_count()).map(corners).collect();
-        faces.par_sort_unstable();
-        faces.windows(2).any(|pair| pair[0] == pair[1])
     }
 
     /// Tells whether the faces of a closed mesh run clockwise as seen from the outside, so that its volume is negative.

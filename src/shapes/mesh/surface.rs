@@ -47,6 +47,8 @@ pub struct Surface {
     pub(super) bounds: Aabb,
     /// The planes of the faces, where the mesh is convex and has few; found when it is first asked for.
     pub(super) planes: OnceLock<Option<Box<[[DVec3; 2]]>>>,
+    /// Why the mesh has no inside although it is closed, if it has none; found when it is first asked for.
+    pub(super) fault: OnceLock<Option<String>>,
     /// The number of edges that do not join two faces. Where it is 0, the surface is closed.
     pub open_edges: usize,
     /// The number of faces of the file without an area, which are left out.
@@ -117,6 +119,7 @@ impl Surface {
             tree,
             bounds,
             planes: OnceLock::new(),
+            fault: OnceLock::new(),
             open_edges,
             degenerate,
             materials,

@@ -222,7 +222,7 @@ impl Hittable for Placed {
         self.bounds
     }
 
-    fn openness(&self) -> Option<&'static str> {
+    fn openness(&self) -> Option<&str> {
         self.body.shape.openness()
     }
 

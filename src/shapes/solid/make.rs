@@ -39,7 +39,7 @@ pub fn combined(args: &Args, objects: &Pparm<Objects>, operation: Operation) -> 
 /// The reason why objects cannot be combined.
 enum NoSolid {
     /// An object of this name is open, for this reason.
-    Open(Arc<str>, &'static str),
+    Open(Arc<str>, String),
     /// There are too many parts.
     TooMany,
     /// Solids are nested too deeply.
@@ -55,7 +55,7 @@ impl NoSolid {
             Self::Open(name, why) => (
                 format!("cannot be made of `{name}`, which is not a closed shape: {why}"),
                 "only closed shapes can be combined: a sphere, a box, a cylinder with its ends, a lathe that begins and ends \
-                 on its axis, a mesh without holes and without doubled faces; for a cut along a plane, use a large box",
+                 on its axis, a mesh without holes whose faces meet only at edges and corners; for a cut along a plane, use a large box",
             ),
             Self::TooMany => (
                 format!("has more than {MOST_PARTS} parts"),
@@ -86,7 +86,7 @@ impl Solid {
             return Ok(Self { parts: solid.parts.iter().map(named).collect(), tree: solid.tree.clone() });
         }
         if let Some(why) = object.shape.openness() {
-            return Err(NoSolid::Open(name, why));
+            return Err(NoSolid::Open(name, why.to_owned()));
         }
         let part = Part { name, body: object.clone(), material: object.material.clone().unwrap_or_default() };
         Ok(Self { parts: vec![part], tree: Tree::Part(0) })

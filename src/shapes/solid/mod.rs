@@ -17,4 +17,5 @@ mod packets;
 mod shader;
 mod trimmed;
 
+pub(crate) use crossings::Crossings;
 pub use make::{Objects, combined};
