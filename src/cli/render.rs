@@ -104,6 +104,7 @@ pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
             ));
         }
         let set = args.set.values.clone();
+        args.set.set_by = args.frames.set_by();
         // A sweep that ends beyond what the scene allows is told before the first frame is rendered.
         if let [_, .., last] = &frames[..] {
             args.set.values = [&set[..], &last.sets].concat();

@@ -384,7 +384,25 @@ sphere s { material m center 4 3 -2 radius 1 }\n";
     let film = ["render", "a.ray", "-o", "film.png", "--frames", "1..5", "--sweep", "s.radius=1..-1"];
     let (status, said) = run(&folder, &film);
     assert!(status == 2 && said.contains("`radius` of sphere `s` must be positive, not -1"), "{said}");
+    assert!(said.contains("--> --sweep s.radius=1..-1:1:10\n"), "{said}");
     assert_eq!(names_in(folder.path()), ["a.ray"]);
+    let film = [
+        "render",
+        "a.ray",
+        "-o",
+        "film.png",
+        "--frames",
+        "1..5",
+        "--set",
+        "s.radius=2",
+        "--set",
+        "s.center=4 3 -2",
+    ];
+    let sweeps = ["--sweep", "s.radius=1..2", "--sweep", "s.center=\"9*t\" 3 \"2*u\""];
+    let (status, said) = run(&folder, &[&film[..], &sweeps].concat());
+    assert!(status == 2 && said.contains("--> --sweep s.center=\"9*t\" 3 \"2*u\":1:"), "{said}");
+    let (status, said) = run(&folder, &[&film[..8], &["--set", "s.center=4 3 x"], &sweeps[..2]].concat());
+    assert!(status == 2 && said.contains("--> --set:2:14\n"), "{said}");
 }
 
 /// Changes when a file was changed last.

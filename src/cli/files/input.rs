@@ -60,7 +60,7 @@ pub struct Source {
     name: String,
     folder: PathBuf,
     bytes: Vec<u8>,
-    sets: Vec<String>,
+    sets: set::Args,
 }
 
 impl Source {
@@ -71,7 +71,7 @@ impl Source {
         let syntax = syntax.or_else(|| Some(Syntax::of_text(std::str::from_utf8(&bytes).ok()?)));
         let model = if syntax == Some(Syntax::Toml) { MODEL_IN_TOML } else { MODEL };
         memory::refuse_too_large(model.saturating_mul(bytes.len()), &format!("the model of `{name}`"))?;
-        Ok(Self { name, folder: path.parent().unwrap_or(path).to_owned(), bytes, sets: sets.values.clone() })
+        Ok(Self { name, folder: path.parent().unwrap_or(path).to_owned(), bytes, sets: sets.clone() })
     }
 
     /// Returns the SHA-256 of the text, as `sha256sum` prints it.
@@ -86,7 +86,7 @@ impl Source {
 
     /// Makes a model and its warnings, with the choices of [`ReadOptions`].
     pub fn load_by(&self, registry: &Registry, accuracy: ReadOptions<'_>) -> Result<Loaded, Report> {
-        let chosen = ReadOptions { sets: &self.sets, ..accuracy };
+        let chosen = ReadOptions { sets: &self.sets.values, set_by: &self.sets.set_by, ..accuracy };
         reader::read_by(registry, &self.name, &self.folder, &self.bytes, chosen)
     }
 }

@@ -71,6 +71,11 @@ impl Args {
         Ok(Some(numbers.map(|number| self.frame(picture, number)).collect()))
     }
 
+    /// Returns what messages call the values of a frame.
+    pub fn set_by(&self) -> Vec<String> {
+        self.sweeps.iter().map(|sweep| format!("--sweep {sweep}")).collect()
+    }
+
     fn frame(&self, picture: &Path, number: u32) -> Frame {
         let Some(Range(range)) = &self.frames else {
             return Frame { path: picture.to_owned(), sets: Vec::new() };

@@ -10,6 +10,9 @@ pub struct Args {
     /// of a `let`; may be given more than once
     #[arg(long = "set", value_name = "NAME=VALUES")]
     pub values: Vec<String>,
+    /// What messages call the last of these values, where they are those of a sweep.
+    #[arg(skip)]
+    pub set_by: Vec<String>,
 }
 
 impl Args {

@@ -78,6 +78,8 @@ pub struct ReadOptions<'s> {
     pub memory: Option<u64>,
     /// The values that are set beside the text, each as `NAME.ATTRIBUTE=VALUES` or `NUMBER=VALUE`.
     pub sets: &'s [String],
+    /// What messages call the last of these values, where these are not given by options `--set` of their own.
+    pub set_by: &'s [String],
     /// The texts of files that are open in an editor, by their paths: where such a file is included, they stand in place
     /// of what is stored.
     pub open: &'s [(PathBuf, Arc<str>)],

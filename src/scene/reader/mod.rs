@@ -128,7 +128,8 @@ fn read_text(
     // The memory for making a model, in bytes per byte of its text.
     let weight = if syntax == Syntax::Toml { 48 } else { 8 };
     let room = accuracy.memory.map_or(u64::MAX, |memory| memory / weight);
-    let sources = Sources::read((name, folder), text, syntax, (accuracy.sets, accuracy.open), room);
+    let sources =
+        Sources::read((name, folder), text, syntax, (accuracy.sets, accuracy.set_by), accuracy.open, room);
     let begin = || {
         let mut report = report::Report::new(name, &*sources.text, syntax).in_parts(&sources.parts);
         sources.files.iter().for_each(|file| report.add_file(file.clone()));

@@ -53,7 +53,8 @@ impl<'t> Sources<'t> {
         (name, folder): (&str, &Path),
         text: &'t str,
         syntax: Syntax,
-        (sets, open): (&[String], &[(PathBuf, Arc<str>)]),
+        (sets, set_by): (&[String], &[String]),
+        open: &[(PathBuf, Arc<str>)],
         room: u64,
     ) -> Self {
         let own = 0..text.len();
@@ -85,7 +86,15 @@ impl<'t> Sources<'t> {
             at += 1;
         }
         if !sets.is_empty() {
-            sources.options = Some(sources.add(OPTION.to_owned(), &sets.join("\n")));
+            let (own, others) = sets.split_at(sets.len() - set_by.len());
+            let start = sources.text.len() + 1;
+            if !own.is_empty() {
+                sources.add(OPTION.to_owned(), &own.join("\n"));
+            }
+            for (name, set) in set_by.iter().zip(others) {
+                sources.add(name.clone(), set);
+            }
+            sources.options = Some(start..sources.text.len());
         }
         sources
     }
