@@ -52,10 +52,12 @@ fn word(bytes: &[u8]) -> u32 {
 enum Keyword {
     Vertex,
     EndLoop,
-    /// `solid` or `endsolid`, after which a name follows.
+    /// A name follows these two.
     Solid,
-    /// `facet`, `outer` or `endfacet`.
-    Other,
+    EndSolid,
+    Facet,
+    EndFacet,
+    Outer,
 }
 
 impl Keyword {
@@ -63,11 +65,11 @@ impl Keyword {
         let all: [(&[u8], Self); 7] = [
             (b"vertex", Self::Vertex),
             (b"endloop", Self::EndLoop),
-            (b"facet", Self::Other),
-            (b"outer", Self::Other),
-            (b"endfacet", Self::Other),
+            (b"facet", Self::Facet),
+            (b"outer", Self::Outer),
+            (b"endfacet", Self::EndFacet),
             (b"solid", Self::Solid),
-            (b"endsolid", Self::Solid),
+            (b"endsolid", Self::EndSolid),
         ];
         all.into_iter().find_map(|(known, keyword)| word.eq_ignore_ascii_case(known).then_some(keyword))
     }
@@ -82,6 +84,8 @@ struct Part {
     first: Option<(usize, usize)>,
     /// The number of vertices before the last `endloop`.
     last: usize,
+    /// Whether the block ends within a facet, if it says where one begins or ends.
+    is_in_facet: Option<bool>,
     /// The first fault apart from that of the first `endloop`, with its line.
     fault: Option<(usize, String)>,
 }
@@ -89,7 +93,7 @@ struct Part {
 fn in_text(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
     let mut vertices = Vec::new();
     // The number of corners before the current facet.
-    let (mut start, mut line) = (0, 0);
+    let (mut start, mut line, mut is_in_facet) = (0, 0, false);
     let take = |part: Part| {
         if let Some((number, count)) = part.first {
             three(vertices.len() - start + count)
@@ -103,10 +107,11 @@ fn in_text(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
         budget.holds(count, count / 3).map_err(ReadError::file)?;
         vertices.extend(part.vertices);
         line += part.lines;
+        is_in_facet = part.is_in_facet.unwrap_or(is_in_facet);
         Ok(())
     };
     blocks::read(bytes, never, |_| 0, |block, _| Part::read(block, budget), take)?;
-    if vertices.len() != start {
+    if is_in_facet || vertices.len() != start {
         return Err(ReadError::line(blocks::line_ends(bytes) + 1, "the file ends within a facet"));
     }
     finish(vertices)
@@ -159,13 +164,18 @@ impl Part {
                     self.last = self.vertices.len();
                 }
                 // A name may be any words; the first facet of a file in one line follows it.
-                Keyword::Solid => {
-                    words
+                Keyword::Solid | Keyword::EndSolid => {
+                    let normal = words
                         .by_ref()
                         .skip_while(|word| !word.eq_ignore_ascii_case(b"facet"))
                         .find(|word| word.eq_ignore_ascii_case(b"normal"));
+                    if normal.is_some() && matches!(current, Keyword::Solid) {
+                        self.is_in_facet = Some(true);
+                    }
                 }
-                Keyword::Other => {}
+                Keyword::Facet => self.is_in_facet = Some(true),
+                Keyword::EndFacet => self.is_in_facet = Some(false),
+                Keyword::Outer => {}
             }
             keyword = words.find_map(Keyword::of);
         }

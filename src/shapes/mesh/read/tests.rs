@@ -180,6 +180,31 @@ fn a_file_that_ends_too_early_is_told() {
 }
 
 #[test]
+fn an_stl_that_is_cut_off_within_a_facet_is_told() {
+    let facet = [
+        "facet normal 0 0 0",
+        "outer loop",
+        "vertex 0 0 0",
+        "vertex 1 0 0",
+        "vertex 0 1 0",
+        "endloop",
+        "endfacet",
+    ];
+    for before in [&[][..], &facet] {
+        let lines = [&["solid part"], before, &facet].concat();
+        let whole = 1 + before.len();
+        for count in whole + 1..lines.len() {
+            let message = "the file ends within a facet".to_owned();
+            let told = Err(ReadError { at: Some(FilePosition::Line(count + 1)), message: message.clone() });
+            assert_eq!(stl::read((lines[..count].join("\n") + "\n").as_bytes()), told, "{count} lines");
+            let told = Err(ReadError { at: Some(FilePosition::Line(1)), message });
+            assert_eq!(stl::read(lines[..count].join(" ").as_bytes()), told, "{count} lines in one");
+        }
+        stl::read(lines[..whole].join("\n").as_bytes()).expect("whole facets");
+    }
+}
+
+#[test]
 fn a_header_that_promises_too_much_takes_no_memory() {
     for count in ["4000000000", "18446744073709551615", "99999999999999999999999"] {
         for text in [ply_text(), String::from_utf8_lossy(&ply_bytes(false)).into_owned()] {
