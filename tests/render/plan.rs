@@ -314,8 +314,11 @@ fn statistics_go_to_standard_error_and_change_nothing_else() {
         assert!((160 * 120 * 3..1 << 34).contains(&stats["peak_memory"].as_u64().expect("bytes")), "{err}");
     }
 
-    let (status, _, err) = outcome(&["render", &scene, "-o", "a.png", "--stats"]);
-    assert_eq!(status, 0);
+    let (status, _, err) = outcome(&["render", "--stats=json", &scene, "-o", "-"]);
+    assert!(status == 0 && serde_json::from_str::<Value>(&err).is_ok(), "{err}");
+
+    let (status, _, err) = outcome(&["render", "-o", "a.png", "--stats", &scene]);
+    assert_eq!(status, 0, "{err}");
     for word in
         ["primary", "shadow", "reflected", "transmitted", "tested", "culled", "rendering", "wrote a.png"]
     {

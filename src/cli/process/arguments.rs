@@ -67,13 +67,18 @@ pub fn matches(mut command: Command) -> Result<ArgMatches, Failure> {
 }
 
 /// Joins an option and a value that begins with a minus and a digit, as in `--samples -1`, to one word: otherwise clap
-/// takes the value for an option, and does not say what would be right.
+/// takes the value for an option, and does not say what would be right. So are options that can do without a value, as in
+/// `--stats json`: by themselves they take none, so that in `--stats ball.ray` the scene is one.
 fn joined(command: &Command, words: Vec<OsString>) -> Vec<OsString> {
     let chosen = chosen(command, &words);
-    let takes_value = |word: &OsString| {
-        let name = word.to_str().and_then(|word| word.strip_prefix("--"));
+    let named = |word: &OsString| {
+        let name = word.to_str()?.strip_prefix("--")?;
         let mut known = chosen.get_arguments().filter(|arg| arg.get_action().takes_values());
-        name.is_some_and(|name| known.any(|arg| arg.get_long() == Some(name)))
+        known.find(|arg| arg.get_long() == Some(name))
+    };
+    let is_optional = |arg: &Arg, word: &OsString| {
+        let mut values = arg.get_possible_values().into_iter();
+        arg.is_require_equals_set() && values.any(|value| word.to_str() == Some(value.get_name()))
     };
     let is_negative = |word: &OsString| {
         let bytes = word.as_encoded_bytes();
@@ -82,7 +87,9 @@ fn joined(command: &Command, words: Vec<OsString>) -> Vec<OsString> {
     let mut joined: Vec<OsString> = Vec::new();
     for word in words {
         match joined.last_mut() {
-            Some(option) if takes_value(option) && is_negative(&word) => {
+            Some(option)
+                if named(option).is_some_and(|arg| is_negative(&word) || is_optional(arg, &word)) =>
+            {
                 option.push("=");
                 option.push(word);
             }

@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 pub struct Args {
     /// Print statistics of the render to standard error, as a table or as JSON: rays by kind, pixels that used up their
     /// ray budget, tests by entity type, the time of each stage and the peak memory
-    #[arg(long, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "table")]
+    #[arg(long, value_name = "FORMAT", num_args = 0..=1, require_equals = true, default_missing_value = "table")]
     stats: Option<Format>,
 }
 
