@@ -105,11 +105,15 @@ pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
         }
         let set = args.set.values.clone();
         args.set.set_by = args.frames.set_by();
-        // A sweep that ends beyond what the scene allows is told before the first frame is rendered.
+        // A sweep that ends beyond what the scene allows, and a frame that would replace a file of the scene, are told
+        // before the first frame is rendered.
         if let [_, .., last] = &frames[..] {
             args.set.values = [&set[..], &last.sets].concat();
             let last = Source::read(&scene, &args.set)?.load(registry, args.method.accuracy()?);
-            last.map_err(Failure::Scene)?;
+            let model = last.map_err(Failure::Scene)?.model;
+            for frame in frames.iter().filter(|frame| frame.path.exists()) {
+                output::refuse_source(&frame.path, &scene, &model)?;
+            }
         }
         for frame in frames {
             stop.exit_on_interrupt()?;

@@ -405,6 +405,19 @@ sphere s { material m center 4 3 -2 radius 1 }\n";
     assert!(status == 2 && said.contains("--> --set:2:14\n"), "{said}");
 }
 
+#[test]
+fn a_film_of_which_a_frame_would_replace_a_texture_is_not_begun() {
+    let folder = folder();
+    let text = "camera eye { pixeldim 4 3 worlddim 8 6 viewpoint 4 3 6 }\nmaterial m { ambient 1 1 1 }
+texture t { filename film-0003.ppm }
+texplane p { material m normal 0 0 1 point 0 0 -1 dimensions 3 3 texname t xdir 1 0 0 mode 0 }\n";
+    fs::write(folder.path().join("a.ray"), text).expect("a scene");
+    fs::write(folder.path().join("film-0003.ppm"), b"P6 1 1 255\n\xff\x80\x40").expect("a picture");
+    let (status, said) = run(&folder, &["render", "a.ray", "-o", "film.ppm", "--frames", "1..5"]);
+    assert!(status == 2 && said.contains("`film-0003.ppm` is the image of texture `t`"), "{said}");
+    assert_eq!(names_in(folder.path()), ["a.ray", "film-0003.ppm"]);
+}
+
 /// Changes when a file was changed last.
 fn date(path: &Path, seconds_ago: u64) {
     let file = fs::File::options().write(true).open(path).expect("a file");
