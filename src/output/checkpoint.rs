@@ -125,7 +125,10 @@ impl Identity {
             crop.map_or("none".to_owned(), |crop| crop.map(|number| number.to_string()).join(","))
         };
         let more = |of: &Self| of.more_samples.clone().unwrap_or_else(|| "none".to_owned());
-        let exposure = |of: &Self| format!("{} stops", of.exposure.unwrap_or(0.0));
+        let exposure = |of: &Self| {
+            let stops = of.exposure.unwrap_or(0.0);
+            format!("{stops} {}", if stops.abs() == 1.0 { "stop" } else { "stops" })
+        };
         let values = [
             ("size", size(old.size), size(self.size)),
             ("crop", crop(old.crop), crop(self.crop)),
@@ -344,6 +347,13 @@ mod tests {
         checkpoint.fill(&band)?;
         let tiles = (0..band.strips.len()).flat_map(|index| band.strip(index).tiles.clone()).collect();
         Ok((band.bytes(usize::MAX).concat(), tiles))
+    }
+
+    #[test]
+    fn a_difference_of_one_stop_is_told_in_the_singular() {
+        let of = |exposure| Identity { exposure, ..Identity::default() };
+        let told = of(Some(1.0)).differences(&of(None));
+        assert_eq!(told, ["the exposure was 0 stops and is 1 stop"]);
     }
 
     #[test]
