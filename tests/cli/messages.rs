@@ -171,7 +171,7 @@ fn a_value_below_0_is_told_what_would_be_right() {
     for (option, value, help) in [
         ("--samples", "-1", "give a whole number from 1 to 65536, or two as `4..64`"),
         ("--part", "-1/4", "give a part as `3/16`: its number, from 1, and of how many parts, up to 100000"),
-        ("--time-limit", "-1s", "give a time as `90s`, `5m` or `1.5h`"),
+        ("--time-limit", "-1s", "give a time above 0 and its unit, as `90s`, `5m` or `1.5h`"),
         ("--size", "-5", "give a width as `800`, or both as `800x600`, each from 1 to 100000"),
     ] {
         let (status, _, err) = outcome(tabray(&folder()).args(["render", "ball.ray", option, value]));

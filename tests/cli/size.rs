@@ -60,7 +60,7 @@ fn what_a_picture_does_not_have_is_refused_and_nothing_is_written() {
         (&["--crop", "0,0,0,1"], "has no part of 0 x 1 at 0 0"),
         (
             &["--crop", "-1,0,2,2"],
-            "X counts from the left and Y from the bottom, both from 0; X + W can be at most 160, and Y + H 120",
+            "X counts from the left and Y from the bottom, both from 0; W and H are at least 1, X + W at most 160, and Y + H at most 120",
         ),
         (&["--crop", "9223372036854775807,0,9223372036854775807,1"], "has no part"),
         (&["--crop", "1,2,3"], "give the part as `X,Y,W,H`, whole numbers"),

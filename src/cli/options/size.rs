@@ -92,7 +92,7 @@ fn part(camera: &Film, [x, y, wide, high]: [i64; 4]) -> Result<Part, Failure> {
         _ => Err(Failure::Usage(
             format!("the image of {width} x {height} pixels has no part of {wide} x {high} at {x} {y}"),
             Some(format!(
-                "X counts from the left and Y from the bottom, both from 0; X + W can be at most {width}, and Y + H {height}"
+                "X counts from the left and Y from the bottom, both from 0; W and H are at least 1, X + W at most {width}, and Y + H at most {height}"
             )),
         )),
     }

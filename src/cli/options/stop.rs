@@ -214,7 +214,7 @@ impl Args {
 
 pub fn time(text: &str) -> Result<Duration, String> {
     let time = humantime::parse_duration(text).ok().filter(|time| !time.is_zero());
-    time.ok_or_else(|| "give a time as `90s`, `5m` or `1.5h`".to_owned())
+    time.ok_or_else(|| "give a time above 0 and its unit, as `90s`, `5m` or `1.5h`".to_owned())
 }
 
 fn size(text: &str) -> Result<ByteSize, String> {

@@ -29,7 +29,7 @@ fn too_little_memory_is_refused_and_reached_memory_stops() {
 fn limits_that_make_no_sense_are_refused() {
     let folder = workplace();
     for (option, values, says) in [
-        ("--time-limit", ["90", "0s", "soon"], "give a time as `90s`, `5m` or `1.5h`"),
+        ("--time-limit", ["90", "0s", "soon"], "give a time above 0 and its unit, as `90s`, `5m` or `1.5h`"),
         ("--max-memory", ["much", "-5", "5 apples"], "give a size as `200MiB` or `1.5GiB`"),
     ] {
         for value in values {
