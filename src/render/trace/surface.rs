@@ -51,7 +51,13 @@ impl Surface {
     pub fn see(&mut self, Object { shape, shader, .. }: &Object, count: usize) {
         self.seen.clear();
         let (bends, sees) = (shader.bends(), shader.sees());
-        self.is_bent = bends || (0..count).any(|lane| self.bent_from(lane).is_some());
+        let (normals, unbent) = (self.normals.view(count), self.unbent.view(count));
+        // Without a branch for each lane: most surfaces are not bent.
+        let differ = |one: &[f64], other: &[f64]| {
+            one.iter().zip(other).fold(false, |any, (one, other)| any | (one != other))
+        };
+        let pairs = [(normals.x, unbent.x), (normals.y, unbent.y), (normals.z, unbent.z)];
+        self.is_bent = bends || pairs.into_iter().any(|(one, other)| differ(one, other));
         if sees.is_position() && !bends {
             return;
         }
