@@ -31,6 +31,12 @@ pub trait Hittable: Send + Sync {
         normal
     }
 
+    /// Tells whether [`shading_normal`](Self::shading_normal) differs from the surface's own normal anywhere.
+    #[inline]
+    fn is_smooth(&self) -> bool {
+        false
+    }
+
     /// Returns a bounding box of the shape, or `None` for an unbounded shape.
     fn bounds(&self) -> Option<Aabb> {
         None

@@ -10,7 +10,8 @@ pub struct SurfaceInteraction<'l> {
     pub points: ViewMut<'l>,
     /// The unit normals with which the hit points are shaded, flipped to face the rays where both sides are lit.
     pub normals: ViewMut<'l>,
-    /// The unit normals of the surface itself, flipped likewise: others where a mesh is shaded as if it were smooth.
+    /// The unit normals of the surface itself, flipped likewise; not written unless the shape
+    /// [is shaded with others](crate::world::hittable::Hittable::is_smooth).
     pub unbent: ViewMut<'l>,
     /// The side that each ray hits.
     pub sides: &'l mut [Side],

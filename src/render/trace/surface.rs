@@ -19,9 +19,9 @@ pub(super) struct Surface {
     pub points: VectorList,
     /// The unit normals with which the points are shaded, flipped to face the rays where both sides are lit.
     pub normals: VectorList,
-    /// The unit normals of the surface itself, flipped likewise.
+    /// The unit normals of the surface itself, flipped likewise, where `is_bent`.
     pub unbent: VectorList,
-    /// Whether any of the points is shaded with another normal than that of the surface.
+    /// Whether points may be shaded with other normals than those of the surface.
     pub is_bent: bool,
     /// The points as the object's shader sees them; empty where it sees their positions alone.
     pub seen: Vec<SurfacePoint>,
@@ -51,13 +51,7 @@ impl Surface {
     pub fn see(&mut self, Object { shape, shader, .. }: &Object, count: usize) {
         self.seen.clear();
         let (bends, sees) = (shader.bends(), shader.sees());
-        let (normals, unbent) = (self.normals.view(count), self.unbent.view(count));
-        // Without a branch for each lane: most surfaces are not bent.
-        let differ = |one: &[f64], other: &[f64]| {
-            one.iter().zip(other).fold(false, |any, (one, other)| any | (one != other))
-        };
-        let pairs = [(normals.x, unbent.x), (normals.y, unbent.y), (normals.z, unbent.z)];
-        self.is_bent = bends || pairs.into_iter().any(|(one, other)| differ(one, other));
+        self.is_bent = bends || shape.is_smooth();
         if sees.is_position() && !bends {
             return;
         }
@@ -68,6 +62,9 @@ impl Surface {
             self.seen.push(SurfacePoint::seen(&**shape, sees, position, normal, *side));
         }
         if bends {
+            if !shape.is_smooth() {
+                self.unbent.copy(self.normals.view(count));
+            }
             for lane in 0..count {
                 let bent = shader.bend(&self.seen[lane]);
                 let is_turned = is_two_sided && self.sides[lane] == Side::Inside;
@@ -80,7 +77,7 @@ impl Surface {
     #[inline(always)]
     pub fn bent_from(&self, lane: usize) -> Option<DVec3> {
         let unbent = self.unbent.get(lane);
-        (unbent != self.normals.get(lane)).then_some(unbent)
+        (self.is_bent && unbent != self.normals.get(lane)).then_some(unbent)
     }
 
     /// Clears `shines` where a light shines on the surface from behind: there it may shine on the bent normals only.

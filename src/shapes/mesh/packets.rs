@@ -211,7 +211,7 @@ kernels! {
         mesh: &Mesh<A>, rays: RayPacket, distances: &[f64], memo: &mut Memo, sides: &mut [Side],
         cosines: &mut [f64], travelled: &mut [f64]
     ) => points, normals, unbent {
-        let (is_two_sided, surface) = (mesh.is_two_sided(), &mesh.surface);
+        let (is_two_sided, is_smooth, surface) = (mesh.is_two_sided(), mesh.is_smooth(), &mesh.surface);
         let mut known = ([usize::MAX; LANES], Vectors::ZERO);
         for first in (0..travelled.len()).step_by(LANES) {
             let mut faces = [usize::MAX; LANES];
@@ -234,7 +234,9 @@ kernels! {
                 (sides[lane], cosines[lane], turn) = turned(ray.dir, known.1.get(place), is_two_sided);
                 points.set(lane, point);
                 normals.set(lane, surface.smoothed(faces[place], point, turn));
-                unbent.set(lane, turn);
+                if is_smooth {
+                    unbent.set(lane, turn);
+                }
                 travelled[lane] += distances[lane];
             }
         }

@@ -94,6 +94,10 @@ impl<A: Bounded> Hittable for Mesh<A> {
         self.surface.triangle::<A>(self.surface.face_at(at)).plane.normal
     }
 
+    fn is_smooth(&self) -> bool {
+        !self.surface.normals.is_empty()
+    }
+
     fn shading_normal(&self, at: DVec3, normal: DVec3) -> DVec3 {
         self.surface.smoothed(self.surface.face_at(at), at, normal)
     }

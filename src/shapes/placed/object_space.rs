@@ -98,7 +98,7 @@ kernels! {
         placed: &Placed, rays: RayPacket, distances: &[f64], cosines: &mut [f64], travelled: &mut [f64]
     ) => points, normals, unbent {
         let (count, to_world) = (travelled.len(), placed.to_object_space.transpose());
-        let is_two_sided = placed.body.shape.is_two_sided();
+        let (is_two_sided, is_smooth) = (placed.body.shape.is_two_sided(), placed.body.shape.is_smooth());
         let (rays, distances, cosines) = (rays.first(count), &distances[..count], &mut cosines[..count]);
         let (mut points, mut normals) = (points.first(count), normals.first(count));
         let mut unbent = unbent.first(count);
@@ -107,12 +107,14 @@ kernels! {
             let turned = |normal: DVec3| if is_turned { -normal } else { normal };
             // Turned only after it is taken to the world, as single rays do: so even zeros have the same sign.
             let there = |normal: DVec3| (to_world * turned(normal)).normalize();
-            let (shaded, own) = (normals.get(lane), unbent.get(lane));
-            let normal = there(own);
+            let shaded = normals.get(lane);
+            let normal = there(if is_smooth { unbent.get(lane) } else { shaded });
             cosines[lane] = rays.dir.get(lane).dot(normal);
             points.set(lane, rays.get(lane).at(distances[lane]));
-            normals.set(lane, turned(if shaded == own { normal } else { there(shaded) }));
-            unbent.set(lane, turned(normal));
+            normals.set(lane, turned(if is_smooth { there(shaded) } else { normal }));
+            if is_smooth {
+                unbent.set(lane, turned(normal));
+            }
             travelled[lane] += distances[lane];
         }
     }

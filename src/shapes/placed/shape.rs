@@ -197,6 +197,10 @@ impl Hittable for Placed {
         (self.to_object_space.transpose() * self.body.shape.normal(self.object_point(at))).normalize()
     }
 
+    fn is_smooth(&self) -> bool {
+        self.body.shape.is_smooth()
+    }
+
     fn shading_normal(&self, at: DVec3, normal: DVec3) -> DVec3 {
         let (at, to_world) = (self.object_point(at), self.to_object_space.transpose());
         let own = self.body.shape.normal(at);

@@ -80,13 +80,12 @@ kernels! {
         sides: &mut [Side],
         cosines: &mut [f64],
         travelled: &mut [f64],
-    ) => points, normals, unbent {
+    ) => points, normals {
         let is_smooth = surface.slabs.is_smooth();
         for first in (0..travelled.len()).step_by(LANES) {
             let eight = first..first + LANES;
             let (rays, distances) = (rays.part(eight.clone()), &distances[eight.clone()]);
             let (mut points, mut normals) = (points.part(eight.clone()), normals.part(eight.clone()));
-            let mut unbent = unbent.part(eight.clone());
             let (sides, cosines) = (&mut sides[eight.clone()], &mut cosines[eight.clone()]);
             let travelled = &mut travelled[eight];
             let (mut at, mut normal) = (Vectors::<LANES>::ZERO, Vectors::<LANES>::ZERO);
@@ -113,7 +112,6 @@ kernels! {
                 (sides[lane], cosines[lane], turned) =
                     interaction::turned(rays.dir.get(lane), normal.get(lane), true);
                 normals.set(lane, turned);
-                unbent.set(lane, turned);
             }
         }
     }

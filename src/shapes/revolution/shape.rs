@@ -198,11 +198,9 @@ where
     }
 
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction) {
-        let SurfaceInteraction { points, normals, unbent, sides, cosines, travelled } = interaction;
+        let SurfaceInteraction { points, normals, sides, cosines, travelled, .. } = interaction;
         let InFrame { surface, frame } = &self.shape;
-        normal::interact(
-            cpu, surface, frame, rays, distances, sides, cosines, travelled, points, normals, unbent,
-        );
+        normal::interact(cpu, surface, frame, rays, distances, sides, cosines, travelled, points, normals);
     }
 
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {

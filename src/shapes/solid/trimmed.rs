@@ -252,6 +252,10 @@ impl Hittable for Trimmed {
         if self.is_outer { -normal } else { normal }
     }
 
+    fn is_smooth(&self) -> bool {
+        self.own().is_smooth()
+    }
+
     fn shading_normal(&self, at: DVec3, normal: DVec3) -> DVec3 {
         self.own().shading_normal(at, normal)
     }

@@ -344,7 +344,7 @@ kernels! {
     pub(crate) fn interact[T: Hittable](
         shape: &T, rays: RayPacket, distances: &[f64], sides: &mut [Side], cosines: &mut [f64], travelled: &mut [f64]
     ) => points, normals, unbent {
-        let (count, is_two_sided) = (travelled.len(), shape.is_two_sided());
+        let (count, is_two_sided, is_smooth) = (travelled.len(), shape.is_two_sided(), shape.is_smooth());
         let (rays, distances) = (rays.first(count), &distances[..count]);
         let (sides, cosines) = (&mut sides[..count], &mut cosines[..count]);
         let (mut points, mut normals) = (points.first(count), normals.first(count));
@@ -355,8 +355,10 @@ kernels! {
             let normal;
             (sides[lane], cosines[lane], normal) = turned(ray.dir, shape.normal(point), is_two_sided);
             points.set(lane, point);
-            normals.set(lane, shape.shading_normal(point, normal));
-            unbent.set(lane, normal);
+            normals.set(lane, if is_smooth { shape.shading_normal(point, normal) } else { normal });
+            if is_smooth {
+                unbent.set(lane, normal);
+            }
             travelled[lane] += distances[lane];
         }
     }
