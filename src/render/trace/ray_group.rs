@@ -12,7 +12,6 @@ use crate::simd::cpu::Cpu;
 use crate::simd::soa::LANES;
 use crate::world::film::Film;
 use glam::DVec3;
-use std::array;
 use std::mem::swap;
 use std::ops::Range;
 
@@ -298,8 +297,10 @@ impl HitGroups {
         for (other, run) in &mut self.runs[self.next..] {
             if *other == id {
                 for first in run.clone().step_by(LANES) {
-                    let eight: [u8; LANES] = array::from_fn(|lane| (first + lane) as u8);
-                    self.lanes[count + first - run.start..][..LANES].copy_from_slice(&eight);
+                    let eight = &mut self.lanes[count + first - run.start..][..LANES];
+                    for lane in 0..LANES {
+                        eight[lane] = (first + lane) as u8;
+                    }
                 }
                 count += run.len();
                 run.end = run.start;
