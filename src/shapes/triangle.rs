@@ -199,8 +199,9 @@ pub fn crossings<A: Bounded>(corners: &[Vectors<LANES>; 3], rays: RayPacket, dis
         low.set(lane, DVec3::new(x.low, y.low, z.low));
         is_known[lane] = u64::from(is_its);
     }
+    let mut last = None;
     for lane in (0..LANES).filter(|lane| is_known[*lane] == 0) {
-        let [x, y, z] = slow_normal(corners_of(lane));
+        let [x, y, z] = unless_last(&mut last, corners_of(lane), slow_normal);
         high.set(lane, DVec3::new(x.high, y.high, z.high));
         low.set(lane, DVec3::new(x.low, y.low, z.low));
     }
@@ -230,10 +231,26 @@ pub fn unit_normals(corners: &[Vectors<LANES>; 3]) -> Vectors<LANES> {
         (x[lane], y[lane], z[lane]) = (a, b, c);
         is_known[lane] = u64::from(is_upright_known & is_unit_known);
     }
+    let mut last = None;
     for lane in (0..LANES).filter(|lane| is_known[*lane] == 0) {
-        normals.set(lane, DVec3::from(rounded_unit(exact_normal(corners_of(lane)))));
+        let unit = |corners| DVec3::from(rounded_unit(exact_normal(corners)));
+        normals.set(lane, unless_last(&mut last, corners_of(lane), unit));
     }
     normals
+}
+
+/// Computes what follows from the corners of a triangle, unless they are those of the last one: neighbouring rays often
+/// hit the same triangle.
+#[inline(always)]
+fn unless_last<T: Copy>(
+    last: &mut Option<([DVec3; 3], T)>,
+    corners: [DVec3; 3],
+    compute: impl FnOnce([DVec3; 3]) -> T,
+) -> T {
+    match last {
+        Some((of, known)) if *of == corners => *known,
+        _ => last.insert((corners, compute(corners))).1,
+    }
 }
 
 /// Computes [`exact_normal`] in all cases.

@@ -205,8 +205,8 @@ impl<A> Equation for Face<A> {
 /// from the nearest edge. Coordinates are relative to the point, and the normal is that of the two shortest edges, so that a
 /// triangle that is far longer than it is wide costs few digits.
 pub(super) fn distance_to(corners: [DVec3; 3], at: DVec3) -> f64 {
-    let corners = corners.map(|corner| corner - at);
-    let size = corners.iter().fold(0.0, |size: f64, corner| size.max(corner.abs().max_element()));
+    let corners = [corners[0] - at, corners[1] - at, corners[2] - at];
+    let size = larger(larger(largest(corners[0]), largest(corners[1])), largest(corners[2]));
     if !(1e-70..1e70).contains(&size) && size > 0.0 && size < MISS {
         // Its fourth power would underflow or overflow.
         let scale = times_power_of_two(1.0, exponent_to_one(size));
@@ -216,8 +216,8 @@ pub(super) fn distance_to(corners: [DVec3; 3], at: DVec3) -> f64 {
     let mut edges = [b - a, c - b, a - c];
     edges.sort_by(|one, other| one.length_squared().total_cmp(&other.length_squared()));
     let normal = edges[0].cross(edges[1]);
-    let sides = [(a, b), (b, c), (c, a)].map(|(from, to)| from.cross(to).dot(normal));
-    let is_inside = sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0);
+    let [one, two, three] = [a.cross(b).dot(normal), b.cross(c).dot(normal), c.cross(a).dot(normal)];
+    let is_inside = one >= 0.0 && two >= 0.0 && three >= 0.0 || one <= 0.0 && two <= 0.0 && three <= 0.0;
     if is_inside && normal != DVec3::ZERO {
         let nearer = |one: DVec3, other: DVec3| {
             if other.length_squared() < one.length_squared() { other } else { one }
