@@ -23,32 +23,26 @@ pub struct ObjectSpaceRays<const N: usize> {
 }
 
 impl<const N: usize> ObjectSpaceRays<N> {
-    /// Takes at most `N` rays to a copy's coordinates, which end at these distances in world units.
+    /// Rays that are yet to be set.
+    pub const NONE: Self = Self {
+        origin: Vectors::ZERO,
+        dir: Vectors::ZERO,
+        lengths: [0.0; N],
+        ends: [0.0; N],
+        origin_error: 0.0,
+    };
+
+    /// Becomes at most `N` rays in a copy's coordinates, which end at these distances in world units. What is large is not
+    /// returned, as that may copy it.
     #[inline(always)]
-    pub fn of(cpu: Cpu, placed: &Placed, rays: RayPacket, ends: &[f64]) -> Self {
+    pub fn set(&mut self, cpu: Cpu, placed: &Placed, rays: RayPacket, ends: &[f64]) {
         let count = ends.len();
-        let mut own = Self {
-            origin: Vectors::ZERO,
-            dir: Vectors::ZERO,
-            lengths: [0.0; N],
-            ends: [0.0; N],
-            origin_error: 0.0,
-        };
-        let (lengths, own_ends) = (&mut own.lengths[..count], &mut own.ends[..count]);
-        let largest = take_in(
-            cpu,
-            placed,
-            rays,
-            ends,
-            lengths,
-            own_ends,
-            own.origin.view_mut(count),
-            own.dir.view_mut(count),
-        );
+        let (lengths, own_ends) = (&mut self.lengths[..count], &mut self.ends[..count]);
+        let (origins, dirs) = (self.origin.view_mut(count), self.dir.view_mut(count));
+        let largest = take_in(cpu, placed, rays, ends, lengths, own_ends, origins, dirs);
         if rays.origin_error > 0.0 {
-            own.origin_error = placed.object_error(DVec3::splat(largest), rays.origin_error);
+            self.origin_error = placed.object_error(DVec3::splat(largest), rays.origin_error);
         }
-        own
     }
 
     /// Returns the first `count` rays.

@@ -59,7 +59,8 @@ impl Placed {
             }
             return;
         }
-        let own = ObjectSpaceRays::<N>::of(cpu, self, rays, &ends[..count]);
+        let mut own = ObjectSpaceRays::<N>::NONE;
+        own.set(cpu, self, rays, &ends[..count]);
         let mut error = 0.0;
         if is_from_camera {
             let origins = (0..count).map(|lane| rays.origin.get(lane));
@@ -105,7 +106,8 @@ impl Placed {
         doubt: &mut [u64],
     ) -> bool {
         let (count, shape) = (t_max.len(), self.body.shape.packets());
-        let mut own = ObjectSpaceRays::<N>::of(cpu, self, rays, t_max);
+        let mut own = ObjectSpaceRays::<N>::NONE;
+        own.set(cpu, self, rays, t_max);
         let mut ends_within = false;
         for lane in 0..count {
             // Where a ray ends in the copy's box, rounding may decide whether it is blocked before that.
@@ -135,7 +137,8 @@ impl Placed {
         let SurfaceInteraction { mut points, mut normals, mut unbent, sides, cosines, travelled } =
             interaction;
         let count = travelled.len();
-        let own = ObjectSpaceRays::<N>::of(cpu, self, rays, &distances[..count]);
+        let mut own = ObjectSpaceRays::<N>::NONE;
+        own.set(cpu, self, rays, &distances[..count]);
         let mut own_distances = [0.0; N];
         for lane in 0..count {
             own_distances[lane] = distances[lane] * own.lengths[lane];
