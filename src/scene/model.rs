@@ -11,6 +11,7 @@ use crate::world::material::{Material, Rgb};
 use crate::world::shader::SurfacePoint;
 use crate::world::texture::Texture;
 use glam::DVec3;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// All that an image depends on.
@@ -31,6 +32,8 @@ pub struct Model {
     pub lights: Vec<Item<AnyLight>>,
     /// The colour of rays that hit nothing; black without a background.
     pub background: Option<Item<AnyBackground>>,
+    /// The files that the scene names: those that it includes, and those of its entities.
+    pub files: Vec<PathBuf>,
 }
 
 impl Model {

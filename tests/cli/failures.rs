@@ -95,10 +95,11 @@ fn an_image_does_not_replace_what_it_is_made_from() {
     let folder = workplace();
     let at = |name: &str| folder.path().join(name);
     let textured = "camera eye { pixeldim 4 3 worlddim 8 6 viewpoint 4 3 6 }
-        material white { ambient 2 2 2 }
+        include white.ray
         texture bricks { filename bricks.png }
         texplane wall { material white normal 0 0 1 point 0 0 -8 xdir 1 0 0 dimensions 8 6 texname bricks mode 0 }";
     fs::write(at("wall.ray"), textured).expect("a file");
+    fs::write(at("white.ray"), "material white { ambient 2 2 2 }").expect("a file");
     fs::copy(scene("textures/bricks.png"), at("bricks.png")).expect("a copy");
     fs::hard_link(at("bricks.png"), at("other.png")).expect("a name");
     symlink("wall.ray", at("link.png")).expect("a link");
@@ -111,6 +112,7 @@ fn an_image_does_not_replace_what_it_is_made_from() {
         ("bricks.png", &[], "`bricks.png` is the image of texture `bricks`"),
         ("other.png", &[], "`other.png` is the image of texture `bricks`"),
         ("wall.png", &["--aov", "depth"], "`wall-depth.png` is the image of texture `bricks`"),
+        ("white.ray", &[], "`white.ray` is a file that the scene includes"),
     ] {
         let args = [&["render", "wall.ray", "--format", "png", "-o", output], more].concat();
         let said = format!(

@@ -145,8 +145,11 @@ pub fn source(path: &Path, scene: &Path, model: &Model) -> Option<String> {
     if let Some(texture) = model.textures.iter().find(|texture| is_source(texture)) {
         return Some(format!("the image of texture `{}`", texture.args.name()));
     }
-    let record = model.from_files().into_iter().find(is_read)?;
-    Some(format!("the file of {} `{}`", record.entity().name, record.name()))
+    if let Some(record) = model.from_files().into_iter().find(is_read) {
+        return Some(format!("the file of {} `{}`", record.entity().name, record.name()));
+    }
+    let is_included = model.files.iter().any(|file| are_same(file, path));
+    is_included.then(|| "a file that the scene includes".to_owned())
 }
 
 impl Output {

@@ -102,6 +102,7 @@ impl Check<'_, '_> {
         if let Some(levels) = self.levels.take().filter(|_| !self.report.is_fatal()) {
             self.report.add_gathered(levels);
         }
+        let files = self.report.files().to_vec();
         let Self {
             camera, materials, textures, shaders, objects, patterns, lights, background, places, ..
         } = self;
@@ -114,6 +115,7 @@ impl Check<'_, '_> {
             patterns,
             lights,
             background: background.map(|background| item(store, background)),
+            files,
         });
         (model, places)
     }

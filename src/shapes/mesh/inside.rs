@@ -24,6 +24,9 @@ impl Surface {
     /// the mesh as a shape.
     pub(super) fn fault(&self, shape: &(dyn Proven + Sync)) -> Option<&str> {
         let fault = || {
+            if self.is_star(shape) {
+                return None;
+            }
             let name = |face: usize| self.order[face] + 1;
             if let Some([one, other]) = self.overlap() {
                 let how = match self.faces[one].iter().all(|corner| self.faces[other].contains(corner)) {
@@ -53,27 +56,32 @@ impl Surface {
     /// Returns how many bodies of a closed mesh the outer side of a face lies in, where those turned inside out count as
     /// less than none; `None` where no direction tells.
     fn depth<F: Precise>(&self, shape: &dyn Proven, face: usize) -> Option<i32> {
-        let (zero, third) = (F::of(0.0), Interval::constant(1.0) / Interval::constant(3.0));
+        let third = Interval::constant(1.0) / Interval::constant(3.0);
         let triangle = self.triangle::<Exact>(face);
         let normal = triangle.area_normal::<Interval<F>>();
         let [a, b, c]: [[Interval<F>; 3]; 3] = triangle.corners.map(constants);
         let origin = per_axis(|axis| third * (a[axis] + b[axis] + c[axis]));
-        DIRECTIONS.into_iter().flat_map(|dir| [dir, -dir]).find_map(|dir| {
-            let dir = constants(dir);
-            if dot(dir, normal).low <= zero {
-                return None;
-            }
-            let line = Line { origin, dir };
-            let mut crossings = Crossings::new(shape, &line, Some(face));
-            let mut depth = 0;
-            for index in 0.. {
-                match crossings.get(index) {
-                    Ok(crossing) => depth += if crossing.enters { -1 } else { 1 },
-                    Err(end) => return (end == F::INFINITY).then_some(depth),
-                }
-            }
-            None
-        })
+        let outward = |dir: &DVec3| dot(constants(*dir), normal).low > F::of(0.0);
+        let mut lines =
+            directions().filter(outward).map(|dir| Line { origin, dir: constants::<Interval<F>>(dir) });
+        lines.find_map(|line| exits(shape, &line, Some(face)))
+    }
+
+    /// Tells whether a closed mesh is certainly the surface of a star-shaped body: whether all faces turn their inner sides
+    /// to one point, and a ray from there meets one face only.
+    ///
+    /// Then its faces meet only at edges and corners that they share, and it has an inside. Around an edge, a ray from the
+    /// point meets as many faces on the one side as on the other, as the mesh is closed and all faces are turned alike. So
+    /// all rays that meet no edge meet one face each; but where faces met elsewhere, some ray nearby would meet two.
+    fn is_star(&self, shape: &dyn Proven) -> bool {
+        let middle = self.vertices.iter().sum::<DVec3>() / self.vertices.len() as f64;
+        let is_behind = |face: usize| side_of_plane(self.corners(face), middle) == Ordering::Greater;
+        if parallel::find_first(self.face_count(), |face| !is_behind(face)).is_some() {
+            return false;
+        }
+        let mut lines =
+            directions().map(|dir| Line { origin: constants::<Interval<f64>>(middle), dir: constants(dir) });
+        lines.find_map(|line| exits(shape, &line, None)) == Some(1)
     }
 
     /// Returns two faces that have other points in common than edges and corners that they share, if there are any.
@@ -103,6 +111,14 @@ impl Surface {
             ([self.faces[face], self.faces[other]], [self.corners(face), self.corners(other)]);
         let is_loose = |of: usize, corner: usize| !pair[1 - of].contains(&pair[of][corner]);
         let loose = |of: usize| (0..3).filter(move |corner| is_loose(of, *corner));
+        // Faces with one corner in common. With another point they have all between it and that corner in common, up to
+        // where it leaves one of them: through the edge across from the corner. Many faces may meet at a corner.
+        let across =
+            |of: usize| Aabb::around(&[0, 1].map(|edge| corners[of][loose(of).nth(edge).unwrap_or(0)]));
+        let misses = |of: usize| !across(of).overlaps(&Aabb::around(&corners[1 - of]));
+        if loose(0).count() == 2 && loose(1).count() == 2 && misses(0) && misses(1) {
+            return false;
+        }
         let side = |of: usize, corner: usize| side_of_plane(corners[1 - of], corners[of][corner]);
         // Most pairs: one lies on one side of the other.
         let is_apart = |of: usize| {
@@ -143,6 +159,25 @@ impl Surface {
         }
         (0..self.face_count()).filter(|face| above[*face] == *face).collect()
     }
+}
+
+/// The directions in which crossings are counted.
+fn directions() -> impl Iterator<Item = DVec3> {
+    DIRECTIONS.into_iter().flat_map(|dir| [dir, -dir])
+}
+
+/// Counts how often a line leaves a shape, less how often it enters it; `None` where that is not certain. Its start may lie
+/// on one part of the shape, which does not count.
+fn exits<F: Precise>(shape: &dyn Proven, line: &Line<Interval<F>>, leaves: Option<usize>) -> Option<i32> {
+    let mut crossings = Crossings::new(shape, line, leaves);
+    let mut exits = 0;
+    for index in 0.. {
+        match crossings.get(index) {
+            Ok(crossing) => exits += if crossing.enters { -1 } else { 1 },
+            Err(end) => return (end == F::INFINITY).then_some(exits),
+        }
+    }
+    None
 }
 
 /// Returns the face that stands for the part that a face belongs to, and halves the way to it.

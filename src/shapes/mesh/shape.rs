@@ -132,8 +132,6 @@ impl<A: Bounded> Hittable for Mesh<A> {
     fn openness(&self) -> Option<&str> {
         if self.surface.open_edges > 0 {
             Some("some of its edges belong to one face only")
-        } else if self.surface.is_inside_out() {
-            Some("its faces are turned inside out")
         } else {
             self.surface.fault(self)
         }

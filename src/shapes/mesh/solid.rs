@@ -112,14 +112,4 @@ impl Surface {
         };
         self.vertices.iter().all(is_below).then_some(planes)
     }
-
-    /// Tells whether the faces of a closed mesh run clockwise as seen from the outside, so that its volume is negative.
-    pub(super) fn is_inside_out(&self) -> bool {
-        let middle = self.bounds.middle();
-        let volume = |face: usize| {
-            let [a, b, c] = self.corners(face).map(|corner| corner - middle);
-            a.dot(b.cross(c))
-        };
-        (0..self.face_count()).map(volume).sum::<f64>() < 0.0
-    }
 }
