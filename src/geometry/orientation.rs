@@ -1,4 +1,5 @@
-//! On which side of a plane, or of a line in it, a point lies: decided exactly, for points as they are.
+//! On which side of a plane, or of a line in it, a point lies: decided exactly, as long as no product of the coordinates'
+//! differences, brought to sizes around 1, underflows.
 
 use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::double_double::vectors::{cross, product, scaled_to_one, triple_product};
@@ -9,7 +10,8 @@ use std::cmp::Ordering;
 /// product of their largest components. Units of 2^-53: 2 * (3 + 1), less than 16.
 const CROSS_ERROR: f64 = 8.0 * f64::EPSILON;
 
-/// Likewise of the triple product of three: 3 * (8 + 2 * 2) + 2 * 6 = 48, less than 64.
+/// A bound on the rounding error of the triple product of three such vectors, as a fraction of the product of their largest
+/// components. Units of 2^-53: 3 * (8 + 2 * 2) + 2 * 6 = 48, less than 64.
 const TRIPLE_ERROR: f64 = 32.0 * f64::EPSILON;
 
 /// Far more than what products lose that are too small for all digits.
@@ -20,7 +22,7 @@ const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 #[inline]
 pub fn side_of_plane(plane: [DVec3; 3], at: DVec3) -> Ordering {
     let [a, b, c] = plane.map(|corner| corner - at);
-    // As of sides across an axis.
+    // All four are in one plane across an axis, as the corners of a box's side are.
     if (0..3).any(|axis| a[axis] == 0.0 && b[axis] == 0.0 && c[axis] == 0.0) {
         return Ordering::Equal;
     }

@@ -98,6 +98,7 @@ enum Flaw {
     Leaning,
     Flipping,
     Inward,
+    Smooth,
     Shell,
     MeetsItsStart,
     MeetsNothingAgain,
@@ -168,6 +169,11 @@ impl Hittable for Ball {
             Flaw::Inward => -out.normalize(),
             _ => out.normalize(),
         }
+    }
+
+    // Without `is_smooth`, packets do not ask for it.
+    fn shading_normal(&self, _at: DVec3, normal: DVec3) -> DVec3 {
+        if self.flaw == Flaw::Smooth { (normal + DVec3::Y).normalize() } else { normal }
     }
 
     fn bounds(&self) -> Option<Aabb> {
@@ -275,7 +281,7 @@ const fn shape(name: &'static str, construct: fn(&Args) -> Result<Body, Refusal>
 
 static SOUND: Entity = shape("sound", |args| ball(args, Flaw::None));
 
-static BROKEN: [(Promise, Entity); 31] = [
+static BROKEN: [(Promise, Entity); 32] = [
     (Promise::DistanceIsInItsSpan, shape("nan", |args| ball(args, Flaw::Nan))),
     (Promise::DistanceIsInItsSpan, shape("no_span", |args| ball(args, Flaw::NoSpan))),
     (Promise::DistanceIsTheSameAgain, shape("restless", |args| ball(args, Flaw::Restless))),
@@ -292,6 +298,7 @@ static BROKEN: [(Promise, Entity); 31] = [
     (Promise::NormalIsUpright, shape("leaning", |args| ball(args, Flaw::Leaning))),
     (Promise::NormalsAgree, shape("flipping", |args| ball(args, Flaw::Flipping))),
     (Promise::NormalsPointOut, shape("inward", |args| ball(args, Flaw::Inward))),
+    (Promise::PacketsAgree, shape("smooth", |args| ball(args, Flaw::Smooth))),
     (Promise::IsNotMetAgain, shape("shell", |args| ball(args, Flaw::Shell))),
     (Promise::StartIsNoHit, shape("meets_its_start", |args| ball(args, Flaw::MeetsItsStart))),
     (Promise::StartIsNoHit, shape("meets_nothing_again", |args| ball(args, Flaw::MeetsNothingAgain))),

@@ -12,6 +12,7 @@ mod hits;
 mod inside;
 mod known;
 mod memo;
+mod overlap;
 mod packets;
 mod painted;
 mod points;

@@ -223,24 +223,12 @@ impl Packets for Shape<Placed, ByPackets, ByPlacement> {
     }
 
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction) {
-        let SurfaceInteraction { mut points, mut normals, mut unbent, sides, cosines, travelled } =
-            interaction;
         let shape = self.shape.body.shape.packets();
         if shape.is_of_the_notes() || !shape.finds_normals_by_rays() {
-            shape::interact(
-                cpu,
-                &self.shape,
-                rays,
-                distances,
-                sides,
-                cosines,
-                travelled,
-                points,
-                normals,
-                unbent,
-            );
-            return;
+            return shape::interact_each(cpu, &self.shape, rays, distances, interaction);
         }
+        let SurfaceInteraction { mut points, mut normals, mut unbent, sides, cosines, travelled } =
+            interaction;
         for part in split(travelled.len(), PART) {
             let interaction = SurfaceInteraction {
                 points: points.part(part.clone()),

@@ -122,19 +122,7 @@ impl Packets for Shape<Trimmed, ByPackets, ByParts> {
         if !self.shape.is_outer && !own.finds_normals_by_rays() {
             return own.interact(cpu, rays, distances, interaction);
         }
-        let SurfaceInteraction { points, normals, unbent, sides, cosines, travelled } = interaction;
-        shape::interact(
-            cpu,
-            &self.shape,
-            rays,
-            distances,
-            sides,
-            cosines,
-            travelled,
-            points,
-            normals,
-            unbent,
-        );
+        shape::interact_each(cpu, &self.shape, rays, distances, interaction);
     }
 
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {

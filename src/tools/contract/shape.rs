@@ -128,11 +128,6 @@ impl RayTrial<'_> {
                 let turned = shape.is_two_sided() && side == Side::Inside;
                 let (one, many) =
                     (shape.shading_normal(at, if turned { -normal } else { normal }), normals.get(0));
-                if !shape.is_smooth() && !same_bits(one, if turned { -normal } else { normal }) {
-                    return fault(format!(
-                        "the normal for shading is {one} at {at}, though `is_smooth` is false"
-                    ));
-                }
                 // At an edge the surface has two normals, and packets may take that of the face that the ray comes to.
                 if shape.packets().finds_normals_by_rays() && is_beside(shape, at, [normal, many]) {
                     continue;

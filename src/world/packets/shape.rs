@@ -269,8 +269,7 @@ where
     }
 
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction) {
-        let SurfaceInteraction { points, normals, unbent, sides, cosines, travelled } = interaction;
-        interact(cpu, &self.shape, rays, distances, sides, cosines, travelled, points, normals, unbent);
+        interact_each(cpu, &self.shape, rays, distances, interaction);
     }
 
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
@@ -296,6 +295,18 @@ where
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
         OneRay::refine(self, ray, origin_side)
     }
+}
+
+/// Computes the points, normals and sides that rays hit at these distances, in world units, one ray after the other.
+pub(crate) fn interact_each<T: Hittable>(
+    cpu: Cpu,
+    shape: &T,
+    rays: RayPacket,
+    distances: &[f64],
+    interaction: SurfaceInteraction,
+) {
+    let SurfaceInteraction { points, normals, unbent, sides, cosines, travelled } = interaction;
+    interact(cpu, shape, rays, distances, sides, cosines, travelled, points, normals, unbent);
 }
 
 kernels! {
@@ -340,8 +351,8 @@ kernels! {
         shape.refine_each(rays, sides, out);
     }
 
-    /// Computes the points, normals and sides that rays hit at these distances, in world units.
-    pub(crate) fn interact[T: Hittable](
+    /// Computes the arrays of [`interact_each`].
+    fn interact[T: Hittable](
         shape: &T, rays: RayPacket, distances: &[f64], sides: &mut [Side], cosines: &mut [f64], travelled: &mut [f64]
     ) => points, normals, unbent {
         let (count, is_two_sided, is_smooth) = (travelled.len(), shape.is_two_sided(), shape.is_smooth());
