@@ -3,12 +3,14 @@
 use super::chart::all_accuracies;
 use super::measuring::{Work, wait};
 use crate::cli::files::input::{self, Source};
+use crate::cli::options::max_error::{LEVELS, MaxError, levels};
 use crate::cli::options::{set, stop};
 use crate::cli::process::failure::{self, Failure, print};
 use crate::cli::process::interrupt::{self, InterruptAction};
 use crate::cli::process::program;
 use crate::scene::choice::Choice;
 use crate::scene::registry::Registry;
+use crate::text::short;
 use crate::tools::chart::{self, Estimate, Estimates, Goal};
 use crate::world::accuracy::Accuracy;
 use clap::ArgGroup;
@@ -35,11 +37,11 @@ pub struct Args {
     scene: PathBuf,
     #[command(flatten)]
     set: set::Args,
-    /// Maximum error: the root mean square error of the colours, where 1 is white
-    #[arg(long, value_name = "E", value_parser = positive)]
-    max_error: Option<f64>,
+    /// Maximum error: the root mean square error of the colours, such as `2` (levels of 255) or `0.5%` (of white)
+    #[arg(long, value_name = "LEVELS|PERCENT%", allow_negative_numbers = true)]
+    max_error: Option<MaxError>,
     /// Maximum time for the image on all cores, in seconds
-    #[arg(long, value_name = "T", value_parser = positive)]
+    #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
     max_time: Option<f64>,
     /// Measure the error that one of a thousand pixels exceeds, instead of the root mean square of all: a few jagged edges
     /// count
@@ -52,7 +54,7 @@ pub struct Args {
 
 const EXAMPLES: &str = "\
 Examples:
-  tabray choose ball.ray --max-error 0.01
+  tabray choose ball.ray --max-error 2       # levels of 255
   tabray choose ball.ray --max-time 2 --worst";
 
 /// The time that choosing may take if no time limit is given.
@@ -77,10 +79,11 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let load = all_accuracies(registry, &source)?;
     interrupt::catch(InterruptAction::Exit("nothing has been chosen"))?;
     let worst = args.worst;
-    let goal = match (args.max_error, args.max_time) {
-        (Some(most), _) => Goal::Error { most, worst },
-        // Either the error or the time is given.
-        (None, most) => Goal::Time { most: most.unwrap_or(f64::INFINITY), worst },
+    // Either the error or the time is given.
+    let time = args.max_time.unwrap_or(f64::INFINITY);
+    let (goal, asked) = match args.max_error {
+        Some(error) => (Goal::Error { most: error.of_white(), worst }, error.to_string()),
+        None => (Goal::Time { most: time, worst }, format!("{time} s")),
     };
     let too_long = || {
         let limit = humantime::format_duration(limit);
@@ -106,7 +109,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             Err(RecvTimeoutError::Disconnected) => panic::resume_unwind(Box::new(())),
         };
         let cores = thread::available_parallelism().map_or(1, usize::from);
-        let choice = Selection { estimates: &estimates, cores, goal };
+        let choice = Selection { estimates: &estimates, cores, goal, asked };
         print(&choice.words(choice.chosen()?, &args.scene, &args.set))
     })
 }
@@ -116,6 +119,8 @@ struct Selection<'e> {
     estimates: &'e Estimates,
     cores: usize,
     goal: Goal,
+    /// The maximum error or time in words.
+    asked: String,
 }
 
 impl<'e> Selection<'e> {
@@ -154,18 +159,19 @@ impl<'e> Selection<'e> {
             let least = |of: &dyn Fn(&Estimate) -> f64| {
                 self.estimates.all.iter().map(of).fold(f64::INFINITY, f64::min)
             };
+            let asked = &self.asked;
             Failure::Failed(match self.goal {
-                Goal::Error { most, .. } => {
+                Goal::Error { .. } => {
                     let least = least(&|one| one.bound);
-                    let least = if least.is_finite() { format!("{least:.2e}") } else { "unknown".to_owned() };
+                    let least = if least.is_finite() { levels(least) } else { "unknown".to_owned() };
                     format!(
-                        "no choice is certain to have an error of at most {most:e}; the least bound is {least}"
+                        "no choice is certain to have an error of at most {asked}; the least bound is {least}"
                     )
                 }
-                Goal::Time { most, .. } => {
+                Goal::Time { .. } => {
                     let least = Duration::from_secs_f64(least(&|one| self.time(one)));
                     format!(
-                        "no choice is estimated to take at most {most} s; the fastest takes about {least:.2?}"
+                        "no choice is estimated to take at most {asked}; the fastest takes about {least:.2?}"
                     )
                 }
             })
@@ -191,7 +197,7 @@ impl<'e> Selection<'e> {
             let mark = if is_chosen(estimate) { '>' } else { ' ' };
             let name = estimate.accuracy.option().name;
             let error =
-                |error: f64| if error.is_finite() { format!("{error:.2e}") } else { "unknown".to_owned() };
+                |error: f64| if error.is_finite() { short(LEVELS * error) } else { "unknown".to_owned() };
             let [measured, bound] = [error(estimate.error), error(estimate.bound)];
             let time = format!("{:.3} s", self.time(estimate));
             let _ = writeln!(
@@ -206,9 +212,9 @@ impl<'e> Selection<'e> {
             accuracy => format!("--accuracy {}", accuracy.option().name),
         };
         let why = match self.goal {
-            Goal::Error { most, .. } => format!("the fastest with an error of at most {most}"),
-            Goal::Time { most, .. } => {
-                format!("the one with the least error within {most} s on {} threads", self.cores)
+            Goal::Error { .. } => format!("the fastest with an error of at most {}", self.asked),
+            Goal::Time { .. } => {
+                format!("the one with the least error within {} on {} threads", self.asked, self.cores)
             }
         };
         let Estimates { pixels: [measured, all], against, is_short, .. } = *self.estimates;
@@ -216,8 +222,8 @@ impl<'e> Selection<'e> {
         let short = if is_short { "; there was no time for more" } else { "" };
         let _ = write!(
             text,
-            "\nThe marked choice is {why}{sure}. Errors were measured on {measured} of {all} pixels, against {against} \
-             samples in each{short}; those of the whole image are at most what the table says. Choices of one \
+            "\nThe marked choice is {why}{sure}. Errors are in levels of 255. They were measured on {measured} of {all} pixels, against \
+             {against} samples in each{short}; those of the whole image are at most what the table says. Choices of one \
              accuracy are compared by their rays per pixel, those of several by their times, which are estimates.\n\n\
              {} render {}{} {how} --samples {}\n",
             program::name(),

@@ -91,6 +91,7 @@ Examples:
   tabray render ball.ray -o big.png --part 1/4             # then 2/4 to 4/4, and `merge`";
 
 pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
+    args.samples.tell_max_error();
     let output = args.output.as_deref();
     if let ([scene], false) = (&args.scenes[..], several::is_folder(output, args.scenes.len())) {
         let (scene, path) = (scene.clone(), target(&args, scene)?);

@@ -147,6 +147,9 @@ refusals! {
     bench_of_no_time: "bench ball.ray --seconds -1",
     choose_without_a_limit: "choose ball.ray",
     choose_without_an_error: "choose ball.ray --max-error 0",
+    choose_with_the_error_of_white: "choose ball.ray --max-error 100%",
+    choose_with_a_part_of_white: "choose ball.ray --max-error 0.01",
+    render_with_a_part_of_white: "render ball.ray --max-error 0.01",
     chart_not_there: "chart bell.ray",
 }
 

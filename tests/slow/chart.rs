@@ -165,7 +165,7 @@ fn choices_for_an_image_of_few_pixels_are_measured_on_all_of_them() {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("few.ray"), EDGE.replace("40 30", "8 6")).expect("a file");
     let mut choose = cargo_bin_cmd!("tabray");
-    let chosen = choose.current_dir(folder.path()).args(["choose", "few.ray", "--max-error", "0.1"]).output();
+    let chosen = choose.current_dir(folder.path()).args(["choose", "few.ray", "--max-error", "10%"]).output();
     let chosen = chosen.expect("it runs");
     let text = String::from_utf8_lossy(&chosen.stdout);
     assert!(
@@ -185,11 +185,11 @@ fn what_is_chosen_is_a_command_line_that_renders() {
         let always = ["choose", "edge.ray", "--time-limit", "1h"];
         choose.current_dir(folder.path()).args(always).args(limit).output().expect("it runs")
     };
-    let chosen = choose(&["--max-error", "0.01"]);
+    let chosen = choose(&["--max-error", "1%"]);
     let text = String::from_utf8(chosen.stdout).expect("UTF-8");
     // All pixels of a small image are measured, so that nothing is left to confidence.
-    let said = "\nThe marked choice is the fastest with an error of at most 0.01. Errors were measured on 1200 of 1200 \
-                pixels, against 256 samples in each; those of the whole image are at most what the table says. ";
+    let said = "\nThe marked choice is the fastest with an error of at most 1 % of white (2.55 levels of 255). Errors are in \
+                levels of 255. They were measured on 1200 of 1200 pixels, against 256 samples in each; those of the whole image are at most what the table says. ";
     assert!(text.contains(said), "{text}");
     let line = text.lines().last().expect("a command line");
     let mut words = line.split(' ');
@@ -203,25 +203,25 @@ fn what_is_chosen_is_a_command_line_that_renders() {
     // The greatest number, where pixels take different ones.
     let most = |cell: &str| cell.rsplit("..").next()?.parse::<u32>().ok();
     assert!(most(cells[2]).is_some_and(|samples| samples > 1), "{text}");
-    assert!(cells[3..5].iter().all(|error| error.parse::<f64>().is_ok_and(|error| error <= 0.01)), "{text}");
+    assert!(cells[3..5].iter().all(|error| error.parse::<f64>().is_ok_and(|error| error <= 2.55)), "{text}");
     // What is chosen rests on counts, not on times.
     let samples = |text: &str| {
         let marked = text.lines().find(|line| line.starts_with('>')).map(str::to_owned);
         marked.and_then(|line| line.rsplit_once("  ").map(|(row, _)| row.to_owned()))
     };
     for _ in 0..3 {
-        let again = String::from_utf8(choose(&["--max-error", "0.01"]).stdout).expect("UTF-8");
+        let again = String::from_utf8(choose(&["--max-error", "1%"]).stdout).expect("UTF-8");
         assert_eq!(samples(&again), samples(&text), "{again}");
     }
-    let worst = String::from_utf8(choose(&["--max-error", "0.01", "--worst"]).stdout).expect("UTF-8");
+    let worst = String::from_utf8(choose(&["--max-error", "1%", "--worst"]).stdout).expect("UTF-8");
     let number = |text: &str| most(samples(text)?.split_whitespace().nth(2)?);
     assert!(number(&worst) > number(&text), "the worst pixels are worse than the mean: {worst}");
 
-    let never = choose(&["--max-error", "1e-12"]);
+    let never = choose(&["--max-error", "1e-10%"]);
     assert_eq!(never.status.code(), Some(1));
     assert!(
         String::from_utf8_lossy(&never.stderr).starts_with(
-            "error: no choice is certain to have an error of at most 1e-12; the least bound is "
+            "error: no choice is certain to have an error of at most 0.0000000001 % of white (2.55e-10 levels of 255); the least bound is "
         ),
     );
     let text = String::from_utf8(choose(&["--max-time", "1000"]).stdout).expect("UTF-8");
@@ -233,7 +233,9 @@ fn what_is_chosen_is_a_command_line_that_renders() {
         "error: no choice is estimated to take at most 0.000000001 s; the fastest takes about ",
     );
     assert!(least.is_some_and(|least| least.ends_with("s\n") && !least.starts_with("0.00")), "{said}");
-    for wrong in [&["--max-error", "0"][..], &[], &["--max-time", "1", "--max-error", "1"]] {
+    for wrong in
+        [&["--max-error", "0"][..], &["--max-error", "0.01"], &[], &["--max-time", "1", "--max-error", "1"]]
+    {
         assert_eq!(choose(wrong).status.code(), Some(2), "{wrong:?}");
     }
 }
@@ -268,8 +270,7 @@ fn choosing_ends_in_time_on_a_mesh_of_2048_triangles() {
     net(folder.path());
     let mut choose = cargo_bin_cmd!("tabray");
     let start = Instant::now();
-    let output =
-        choose.current_dir(folder.path()).args(["choose", "net.ray", "--max-error", "0.02"]).output();
+    let output = choose.current_dir(folder.path()).args(["choose", "net.ray", "--max-error", "5"]).output();
     let output = output.expect("it runs");
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));

@@ -225,7 +225,7 @@ The classic method loses hits at every ripple; what remains with the exact metho
 
 ## Choosing
 
-`tabray choose SCENE --max-error 0.01` quickly measures the effect of accuracy and samples on a scene, shows the choices
+`tabray choose SCENE --max-error 2` quickly measures the effect of accuracy and samples on a scene, shows the choices
 that it considered, and prints the command line to use; `--max-time 2` chooses the best within two seconds on all cores.
 With `--worst`, the error is that which one of a thousand pixels exceeds, instead of the root mean square.
 

@@ -2,8 +2,8 @@
 //! texts, an existing frame is recognized.
 
 use crate::cli::files::input::Source;
-use crate::cli::options::set;
 use crate::cli::options::size::Part;
+use crate::cli::options::{max_error, set};
 use crate::files;
 use crate::scene::choice::Choice;
 use crate::text;
@@ -70,7 +70,7 @@ fn options(camera: &Film, part: &Part) -> String {
         Some(Adaptive { most, error }) => {
             words += &format!(" --samples {}..{most}", camera.samples);
             words +=
-                &error.map_or(String::new(), |error| format!(" --max-error {}", text::short(255.0 * error)));
+                &error.map_or(String::new(), |error| format!(" --max-error {}", max_error::option(error)));
         }
     }
     if camera.certain {

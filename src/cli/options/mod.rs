@@ -3,6 +3,7 @@
 pub mod cpu;
 pub mod frames;
 pub mod keep;
+pub mod max_error;
 pub mod method;
 pub mod number;
 pub mod samples;

@@ -1,15 +1,14 @@
 //! `--samples`, `--max-error` and `--sampler`: how many samples the pixels of an image take, and where.
 
+use super::max_error::MaxError;
 use crate::cli::process::failure::Failure;
+use crate::cli::process::messages;
 use crate::world::accuracy::Accuracy;
 use crate::world::film::{Adaptive, Film};
 use crate::world::sample::Sampler;
 
 /// The numbers of samples per pixel that `--max-error` chooses from, where `--samples` does not say.
 const BY_ERROR: [u32; 2] = [4, 4096];
-
-/// The number of levels from black to white.
-const LEVELS: f64 = 255.0;
 
 #[derive(clap::Args)]
 #[group(id = "how many samples")]
@@ -23,8 +22,8 @@ pub struct Args {
     /// Take as many samples in each pixel as it needs for this error of its colour, such as `2` (levels of 255) or
     /// `0.5%` (of white): an estimate, which held for 98 to 100 of 100 pixels in the scenes of docs/adaptive.md; 4 to
     /// 4096 samples unless --samples gives other limits
-    #[arg(long, value_name = "LEVELS|PERCENT%", value_parser = error, allow_negative_numbers = true)]
-    max_error: Option<f64>,
+    #[arg(long, value_name = "LEVELS|PERCENT%", allow_negative_numbers = true)]
+    max_error: Option<MaxError>,
     /// Prove the error of --max-error where that is possible: the colour of a pixel is enclosed for all rays through it
     /// at once, and if the enclosure is narrow enough, the pixel takes no samples. Other pixels take samples as without
     /// this option. The share of proven pixels is printed, with a bound on the error of the others
@@ -45,6 +44,13 @@ enum Samples {
 }
 
 impl Args {
+    /// Says which error `--max-error` was taken to be.
+    pub fn tell_max_error(&self) {
+        if let Some(error) = self.max_error {
+            messages::note(&format!("each pixel takes samples for an estimated error of at most {error}"));
+        }
+    }
+
     /// Gives the camera the requested samples.
     pub fn apply(&self, camera: &mut Film) -> Result<(), Failure> {
         camera.sampler = self.sampler;
@@ -66,7 +72,7 @@ impl Args {
             (None, Some(_)) => BY_ERROR,
         };
         camera.samples = limits[0];
-        camera.adaptive = Some(Adaptive { most: limits[1], error: self.max_error });
+        camera.adaptive = Some(Adaptive { most: limits[1], error: self.max_error.map(MaxError::of_white) });
         camera.certain = self.certain;
         if camera.certain && camera.accuracy == Accuracy::Classic {
             return Err(Failure::Usage(
@@ -108,31 +114,9 @@ fn samples(text: &str) -> Result<Samples, String> {
     }
 }
 
-/// Returns an error where 1 is white.
-fn error(text: &str) -> Result<f64, String> {
-    let (number, white) = match text.strip_suffix('%') {
-        Some(percent) => (percent, 100.0),
-        None => (text, LEVELS),
-    };
-    let error = number.trim_end().parse().ok().map(|number: f64| number / white);
-    error.filter(|error| *error > 0.0 && *error <= 1.0).ok_or_else(|| {
-        "give levels as `2` or `0.5`, up to 255, or a part of white as `0.5%`, up to 100%".to_owned()
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn an_error_is_in_levels_or_a_part_of_white() {
-        assert_eq!(error("51"), Ok(0.2));
-        assert_eq!(error("20%"), Ok(0.2));
-        assert_eq!(error("20 %"), Ok(0.2));
-        for wrong in ["", "%", "0", "-1", "256", "101%", "nan", "inf", "2 levels"] {
-            assert!(error(wrong).is_err(), "{wrong}");
-        }
-    }
 
     #[test]
     fn limits_of_samples_are_two_powers_of_two() {

@@ -139,7 +139,7 @@ fn an_interruption_ends_every_command_soon() {
         &["render", "mirrors.ray", "-o", "a.pfm"],
         &["render", "mirrors.ray", "--debug", "find", "--at", "3,3"],
         &["verify", "large.ray"],
-        &["choose", "mirrors.ray", "--max-error", "1e-9"],
+        &["choose", "mirrors.ray", "--max-error", "1e-7%"],
         &["chart", "mirrors.ray"],
         &["bench", "mirrors.ray"],
         &["check", "-"],

@@ -31,7 +31,7 @@ const EDGE: &str = "camera eye { pixeldim 16 12 worlddim 8 6 viewpoint 4 3 6 }
 fn what_was_begun_and_is_not_there_is_told() {
     for (args, said) in [
         (&["verify", "hall.ray", "-o", "a.png"][..], "the image was not finished"),
-        (&["choose", "hall.ray", "--max-error", "0.001"], "nothing has been chosen"),
+        (&["choose", "hall.ray", "--max-error", "0.1%"], "nothing has been chosen"),
         (&["chart", "hall.ray"], "nothing has been measured yet"),
         (&["render", "hall.ray", "-o", "-", "--debug", "find"], "the image was not finished"),
     ] {

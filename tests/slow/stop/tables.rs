@@ -90,7 +90,7 @@ fn limits_table() {
         &["render", "mirrors.ray", "-o", "a.png"][..],
         &["render", "1e6.ray", "-o", "a.png"],
         &["verify", "large.ray"],
-        &["choose", "mirrors.ray", "--max-error", "1e-9"],
+        &["choose", "mirrors.ray", "--max-error", "1e-7%"],
         &["chart", "mirrors.ray"],
         &["bench", "mirrors.ray"],
     ] {
