@@ -21,11 +21,16 @@ const TABLE: Table = &[&POINTS, &BASE, &HEIGHT, &OPEN];
 
 inventory::submit! {
     Entity::shape("prism", "a polygon extended upward", &[TABLE], |args| {
-        let base = args.get(&BASE);
-        let corners: Vec<_> =
-            args.get(&POINTS).0.iter().map(|point| *point + DVec2::new(base.x, base.z)).collect();
-        let solid = outline::prism(&corners, [base.y, base.y + args.get(&HEIGHT)], args.get(&OPEN));
-        let body = solid.and_then(|solid| outline::body(solid, args.accuracy()).ok());
+        let (base, mut are_rounded) = (args.get(&BASE), false);
+        let mut from_base = |x: f64, y: f64, z: f64| outline::sum(base, DVec3::new(x, y, z), &mut are_rounded);
+        let corner = |point: &DVec2| {
+            let DVec3 { x, z, .. } = from_base(point.x, 0.0, point.y);
+            DVec2::new(x, z)
+        };
+        let corners: Vec<_> = args.get(&POINTS).0.iter().map(corner).collect();
+        let top = from_base(0.0, args.get(&HEIGHT), 0.0).y;
+        let solid = outline::prism(&corners, [base.y, top], args.get(&OPEN));
+        let body = solid.and_then(|solid| outline::body(solid, are_rounded, args.accuracy()).ok());
         body.ok_or(Refusal {
             attribute: Some("points"),
             message: "is too small at its position: some of its edges meet, or are too far away".to_owned(),

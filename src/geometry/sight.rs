@@ -41,6 +41,17 @@ enum SightTarget {
     Ahead(Arc<(ViewFrame, f64, ImagePoint)>),
 }
 
+/// The numbers of a ray that are not those of the scene, but were computed from them and rounded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rounded {
+    /// None.
+    Nothing,
+    /// Those of its start.
+    Start,
+    /// All of them.
+    Ray,
+}
+
 /// A line in any number type: the points `origin + t dir`.
 #[derive(Clone, Copy, Debug)]
 pub struct Line<N> {
@@ -80,7 +91,7 @@ impl Sight {
         Self { origin: viewpoint, toward: SightTarget::ImagePoint { at, last, size }, within: None }
     }
 
-    /// Returns the ray from a point straight forward in a frame.
+    /// Returns the ray from a point, which was rounded, straight forward in a frame.
     pub fn forward(origin: DVec3, frame: &ViewFrame) -> Self {
         Self { origin, toward: SightTarget::Forward(Arc::new(*frame)), within: None }
     }
@@ -98,6 +109,15 @@ impl Sight {
     /// Returns a sight along a ray, taking all of its numbers for exact, including the length of its direction.
     pub fn along(ray: &Ray) -> Self {
         Self { origin: ray.origin, toward: SightTarget::Direction(ray.dir), within: None }
+    }
+
+    /// Tells which of the ray's numbers were rounded before they were given.
+    pub fn rounded(&self) -> Rounded {
+        match self.toward {
+            SightTarget::Direction(_) => Rounded::Ray,
+            SightTarget::Forward(_) => Rounded::Start,
+            SightTarget::ImagePoint { .. } | SightTarget::Ahead(_) => Rounded::Nothing,
+        }
     }
 
     /// Returns the sight whose [`line`](Self::line) is this one's in the own coordinates of a shape that is placed. What t

@@ -117,13 +117,21 @@ pub fn polygon(vertices: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Model {
     Model { sides: vec![0; faces.len()], vertices, faces, ..Model::default() }
 }
 
-/// Makes an object of triangles.
+/// Adds two vectors, and notes if that rounds a component.
+pub fn sum(one: DVec3, other: DVec3, is_rounded: &mut bool) -> DVec3 {
+    *is_rounded |= (0..3).any(|axis| DoubleDouble::difference(one[axis], -other[axis]).low != 0.0);
+    one + other
+}
+
+/// Makes an object of triangles, whose vertices may have been rounded.
 ///
 /// # Errors
 /// The reason why the triangles make none.
-pub fn body(model: Model, accuracy: Accuracy) -> Result<Body, SurfaceError> {
-    let surface =
-        Arc::new(Surface::new(model, &ToWorld::new(DVec3::ONE, Rotation::NONE, DVec3::ZERO), false)?);
+pub fn body(model: Model, are_rounded: bool, accuracy: Accuracy) -> Result<Body, SurfaceError> {
+    let in_place = ToWorld::new(DVec3::ONE, Rotation::NONE, DVec3::ZERO);
+    let mut surface = Surface::new(model, &in_place, false)?;
+    surface.are_rounded = are_rounded;
+    let surface = Arc::new(surface);
     Ok(match accuracy {
         Accuracy::Strict => Body::plain(Mesh::<Strict>::shape(surface, accuracy)),
         _ => Body::plain(Mesh::<Exact>::shape(surface, accuracy)),

@@ -1,5 +1,6 @@
 //! Tools that work on a model beside rendering it: charts, benchmarks, contracts, proofs, movements of the camera.
 
+pub mod assumptions;
 pub mod bench;
 pub mod certain;
 pub mod chart;

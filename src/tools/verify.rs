@@ -20,6 +20,9 @@ pub enum Verdict {
     /// two surfaces coincide. The tracer finds one of the objects in question.
     #[default]
     Tie,
+    /// A shape without an equation may be hit first, since the ray meets its bounds before any proven hit. The tracer finds
+    /// one of the objects in question.
+    Uncertified,
     /// The tracer finds another object.
     Contradicted,
 }
@@ -39,7 +42,10 @@ pub fn pixel(plan: &Plan, x: usize, y: usize) -> Verdict {
     let found = trace::first_hit(plan, &sight).map(|hit| hit.index);
     match first_of(plan.model, &sight) {
         FirstHits::Certain(first) if first == found => Verdict::Proven,
-        FirstHits::OneOf(any) if any.contains(&found) => Verdict::Tie,
+        FirstHits::OneOf(any) if any.contains(&found) => {
+            let is_certified = |index: usize| plan.model.objects[index].shape.is_certified();
+            if any.into_iter().flatten().all(is_certified) { Verdict::Tie } else { Verdict::Uncertified }
+        }
         _ => Verdict::Contradicted,
     }
 }

@@ -5,7 +5,7 @@ use crate::geometry::ray::{Bracket, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{Nearest, RayPacket};
 use crate::geometry::sight::Sight;
 use crate::simd::cpu::Cpu;
-use crate::world::certify::{Enclosure, Precision, Proven};
+use crate::world::certify::{Enclosure, Precision, Premise, Proven};
 use crate::world::hittable::Hittable;
 use crate::world::packets::shape::{PacketShape, Packets, Proofs};
 use crate::world::shape::Shape;
@@ -50,7 +50,21 @@ impl AnyShape {
         self.0.facet(at, error)
     }
 
-    /// Returns what is proven about a ray's first hit. For a shape without an equation, that is nothing.
+    /// Passes on what proofs about the shape start from, each with the name of the entity type that it is about: `of`, or
+    /// where the shape is made of others, as a copy and a solid are, the type of these.
+    pub fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
+        self.0.premises(of, each);
+    }
+
+    /// Tells whether the shape, and each of those that it is made of, has an equation. About the hits of others nothing
+    /// is proven but that they lie in their bounds.
+    pub fn is_certified(&self) -> bool {
+        let mut is_certified = true;
+        self.premises("", &mut |_, premise| is_certified &= premise != Premise::NoEquation);
+        is_certified
+    }
+
+    /// Returns what is proven about a ray's first hit.
     pub fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
         self.0.certify(sight, precision)
     }

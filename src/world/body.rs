@@ -104,6 +104,8 @@ pub struct Body {
     pub depth: u32,
     /// The name that the scene gives the object, if others refer to it.
     pub name: Option<Arc<str>>,
+    /// The name of its entity type, if others refer to it.
+    pub entity: Option<&'static str>,
     /// The material, if it differs from that of the entity that the body is made for.
     pub material: Option<Arc<Material>>,
     /// The parts of a solid, if the object is one.
@@ -172,6 +174,7 @@ impl Body {
             bytes: 0,
             depth: 0,
             name: None,
+            entity: None,
             material: None,
             solid: None,
             more: Vec::new(),

@@ -8,7 +8,7 @@ use crate::geometry::facet::Facet;
 use crate::geometry::ray::{Bracket, Drift, Ray, RayRange, Side};
 use crate::geometry::roots::Method;
 use crate::numeric::double_double::DoubleDouble;
-use crate::world::certify::Equation;
+use crate::world::certify::{Assumption, Equation};
 use crate::world::coincidence;
 use glam::{DMat3, DVec2, DVec3};
 
@@ -91,6 +91,10 @@ pub trait Hittable: Send + Sync {
     fn face(&self, _at: DVec3) -> Option<u32> {
         None
     }
+
+    /// Passes to a function what proofs about the shape take for exact, although it was rounded on its way from the numbers
+    /// of the scene.
+    fn assumes(&self, _each: &mut dyn FnMut(Assumption)) {}
 
     /// Passes the bytes that the shape has read from files beside the scene to a function: a part of an image can only
     /// be continued with the same bytes.

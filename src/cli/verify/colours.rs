@@ -1,5 +1,6 @@
 //! `tabray verify --colours`: proves the bytes of an image.
 
+use super::form::{Form, Premises};
 use crate::cli::files::output::{self, Output};
 use crate::cli::options::number::whole;
 use crate::cli::options::stop;
@@ -18,9 +19,6 @@ use std::iter;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// The number of pixels of each kind that are named.
-const NAMED: usize = 5;
-
 #[derive(clap::Args)]
 #[group(id = "proofs of colours")]
 pub struct Args {
@@ -33,17 +31,10 @@ pub struct Args {
     /// With --colours, stop after this time, such as 90s, 5m or 1.5h, and report the pixels proven so far
     #[arg(long, value_name = "TIME", requires = "colours", value_parser = stop::time)]
     time_limit: Option<Duration>,
-    /// With --colours, print the counts and the first pixels of each kind as JSON
-    #[arg(long, requires = "colours")]
-    json: bool,
 }
 
-/// The result of a proof.
-pub struct Proof {
-    size: [usize; 2],
-    /// The pixels in rows from the top; `None` where the time was up.
-    pixels: Vec<Option<Pixel>>,
-}
+/// The verdicts on pixels in rows from the top; `None` where the time was up.
+pub type Proof = Vec<Option<Pixel>>;
 
 /// The numbers of pixels or bytes.
 #[derive(Serialize)]
@@ -52,6 +43,7 @@ struct Counts {
     proven: usize,
     rounded: usize,
     open: usize,
+    not_certified: usize,
     contradicted: usize,
     not_reached: usize,
 }
@@ -61,15 +53,18 @@ struct Counts {
 struct FirstPixels {
     rounded: Vec<[usize; 2]>,
     open: Vec<[usize; 2]>,
+    not_certified: Vec<[usize; 2]>,
     contradicted: Vec<[usize; 2]>,
 }
 
 /// The numbers that are printed as JSON.
 #[derive(Serialize)]
-struct Numbers {
+struct Numbers<'a> {
     pixels: Counts,
     bytes: Counts,
     first: FirstPixels,
+    #[serde(flatten)]
+    premises: &'a Premises,
 }
 
 /// Proves the colours of a plan's pixels.
@@ -88,38 +83,44 @@ pub fn prove(
     plan.camera.samples = args.samples.unwrap_or(plan.camera.samples);
     let end = args.time_limit.map(|limit| Instant::now() + limit);
     let stops = || end.is_some_and(|end| Instant::now() >= end);
-    let pixels = Prover::new(&plan).picture(renderer, &|| progress.step(), &stops);
-    Ok(Proof { size: plan.camera.pixels, pixels })
+    Ok(Prover::new(&plan).picture(renderer, &|| progress.step(), &stops))
 }
 
 /// Reports what was found, and writes the image of it.
-pub fn report(args: &Args, proof: Proof, picture: Option<(PathBuf, Format, Output)>) -> Result<(), Failure> {
-    let Proof { size, pixels } = &proof;
+pub fn report(
+    args: &Args,
+    pixels: Proof,
+    form: &Form,
+    picture: Option<(PathBuf, Format, Output)>,
+) -> Result<(), Failure> {
     let verdicts: Vec<_> = pixels.iter().map(|pixel| pixel.map(|pixel| pixel.verdict())).collect();
     let bytes = pixels.iter().flat_map(|pixel| match pixel {
         Some(pixel) => pixel.channels.map(Some),
         None => [None; 3],
     });
-    let first = |verdict| first(&verdicts, *size, verdict);
+    let first = |verdict| form.first(&verdicts, &Some(verdict));
     let numbers = Numbers {
         pixels: Counts::of(verdicts.iter().copied()),
         bytes: Counts::of(bytes),
         first: FirstPixels {
             rounded: first(Verdict::Rounded),
             open: first(Verdict::Open),
+            not_certified: first(Verdict::Uncertified),
             contradicted: first(Verdict::Contradicted),
         },
+        premises: &form.premises,
     };
-    print(&if args.json { text::json_in_lines(&numbers) } else { numbers.message() })?;
+    print(&if form.is_json { text::json_in_lines(&numbers) } else { numbers.message() })?;
     if let Some((path, format, output)) = picture {
         let colour = |verdict: &Option<Verdict>| match verdict {
             Some(Verdict::Proven) => [0; 3],
             Some(Verdict::Rounded) => [128; 3],
             Some(Verdict::Open) | None => [255; 3],
+            Some(Verdict::Uncertified) => [0, 0, 255],
             Some(Verdict::Contradicted) => [255, 0, 0],
         };
         let bytes = verdicts.iter().flat_map(colour).collect();
-        output::write_image(&path, output, |out| format.write(out, *size, iter::once(Ok(bytes))))?;
+        output::write_image(&path, output, |out| format.write(out, form.size, iter::once(Ok(bytes))))?;
     }
     let contradicted = numbers.pixels.contradicted;
     if contradicted > 0 {
@@ -133,12 +134,6 @@ pub fn report(args: &Args, proof: Proof, picture: Option<(PathBuf, Format, Outpu
     Ok(())
 }
 
-/// Returns the first pixels with a verdict.
-fn first(verdicts: &[Option<Verdict>], [width, height]: [usize; 2], wanted: Verdict) -> Vec<[usize; 2]> {
-    let found = verdicts.iter().enumerate().filter(|(_, verdict)| **verdict == Some(wanted));
-    found.map(|(index, _)| [index % width, height - 1 - index / width]).take(NAMED).collect()
-}
-
 impl Counts {
     fn of(verdicts: impl Iterator<Item = Option<Verdict>> + Clone) -> Self {
         let count = |wanted| verdicts.clone().filter(|verdict| *verdict == wanted).count();
@@ -147,22 +142,24 @@ impl Counts {
             proven: count(Some(Verdict::Proven)),
             rounded: count(Some(Verdict::Rounded)),
             open: count(Some(Verdict::Open)),
+            not_certified: count(Some(Verdict::Uncertified)),
             contradicted: count(Some(Verdict::Contradicted)),
             not_reached: count(None),
         }
     }
 
-    fn message(&self, what: &str) -> String {
-        let Self { all, proven, rounded, open, contradicted, not_reached } = self;
+    fn message(&self, what: &str, premises: &Premises) -> String {
+        let Self { all, proven, rounded, open, not_certified, contradicted, not_reached } = self;
+        let not_certified = premises.counted(*not_certified);
         let percent = 100.0 * *proven as f64 / *all as f64;
         let rest = if *not_reached > 0 { format!(", {not_reached} not reached") } else { String::new() };
         format!(
-            "{proven} of {all} {what} proven ({percent:.4} %), {rounded} off by rounding, {open} open, {contradicted} contradicted{rest}\n"
+            "{proven} of {all} {what} proven ({percent:.4} %), {rounded} off by rounding, {open} open, {not_certified}{contradicted} contradicted{rest}\n"
         )
     }
 }
 
-impl Numbers {
+impl Numbers<'_> {
     fn message(&self) -> String {
         let named = |kind: &str, pixels: &[[usize; 2]]| match pixels {
             [] => String::new(),
@@ -171,11 +168,13 @@ impl Numbers {
                 format!("first {kind}: {}\n", places.join(", "))
             }
         };
-        let FirstPixels { rounded, open, contradicted } = &self.first;
-        self.pixels.message("pixels")
-            + &self.bytes.message("bytes")
+        let FirstPixels { rounded, open, not_certified, contradicted } = &self.first;
+        self.pixels.message("pixels", self.premises)
+            + &self.bytes.message("bytes", self.premises)
             + &named("off by rounding", rounded)
             + &named("open", open)
+            + &named("not certified", not_certified)
             + &named("contradicted", contradicted)
+            + &self.premises.lines()
     }
 }

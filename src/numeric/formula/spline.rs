@@ -13,6 +13,11 @@ impl Formula {
         // Eight y at a time may lie on eight pieces.
         Self { spline: Some(Arc::new(Spline::new(points))), is_plain: false, ..formula }
     }
+
+    /// Tells whether this is a spline, or its square: its coefficients were computed from the points, and rounded.
+    pub fn is_spline(&self) -> bool {
+        self.spline.is_some()
+    }
 }
 
 #[cfg(test)]

@@ -41,7 +41,8 @@ impl Check<'_, '_> {
             {
                 let material =
                     constructed.material.clone().or_else(|| Record::new(&store, *order).material());
-                body.set(Body { name: Some(store.name(*order).into()), material, ..constructed });
+                let entity = Some(store.args(*order).entity.name);
+                body.set(Body { name: Some(store.name(*order).into()), entity, material, ..constructed });
             }
             self.patterns.push(Item { args: Record::new(&store, *order), value: body.clone() });
         }

@@ -16,7 +16,8 @@ use crate::simd::cpu::Cpu;
 use crate::text;
 use crate::world::accuracy::{Accuracy, Bounded};
 use crate::world::certify::{
-    Enclosure, FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precise, Precision, Proven,
+    Assumption, Enclosure, FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precise, Precision, Premise,
+    Proven,
 };
 use crate::world::coincidence::{CLOSE, ROUNDING};
 use crate::world::hittable::Hittable;
@@ -170,6 +171,15 @@ impl<A: Bounded> Hittable for Mesh<A> {
         Some(format!("face {}", self.surface.order[face] + 1))
     }
 
+    fn assumes(&self, each: &mut dyn FnMut(Assumption)) {
+        if self.surface.are_rounded {
+            each(Assumption::Vertices);
+        }
+        if !self.surface.normals.is_empty() {
+            each(Assumption::Normals);
+        }
+    }
+
     fn read_from_files(&self, each: &mut dyn FnMut(&[u8])) {
         self.surface.bytes_of(each);
     }
@@ -195,6 +205,10 @@ impl<A: Bounded> Proofs for Shape<Mesh<A>, ByPackets, ByFaces> {
         // At an edge, the ray may hit the plane of a neighbouring face far from the edge.
         let size = distance + ray.origin.abs().max_element();
         ((fine.high - distance).abs() <= CLOSE * size).then_some(fine)
+    }
+
+    fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
+        self.shape.assumes(&mut |assumption| each(of, Premise::Assumed(assumption)));
     }
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {

@@ -34,6 +34,8 @@ pub struct Surface {
     pub(super) id: u64,
     /// The vertices in world coordinates, each once.
     pub(super) vertices: Vec<DVec3>,
+    /// Whether the vertices are not those of a file or of the scene, but were computed from them and rounded.
+    pub are_rounded: bool,
     /// The corners of each face, in the order of the tree, counterclockwise as seen from the outside.
     pub(super) faces: Vec<[u32; 3]>,
     /// For each face, its index in the file, or that of the flat side of which it is a part.
@@ -112,6 +114,7 @@ impl Surface {
         Ok(Self {
             id,
             vertices,
+            are_rounded: !placement.is_identity(),
             faces,
             order,
             slots,

@@ -27,6 +27,11 @@ impl ToWorld {
         turned + self.translation + 0.0
     }
 
+    /// Tells whether points stay where they are.
+    pub fn is_identity(&self) -> bool {
+        self.is_plain && self.translation == DVec3::ZERO
+    }
+
     /// Tells whether the mesh is mirrored, so that its faces turn the other way.
     pub fn is_mirrored(&self) -> bool {
         self.linear.determinant() < 0.0

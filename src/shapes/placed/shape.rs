@@ -7,7 +7,7 @@ use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::geometry::sight::Sight;
 use crate::numeric::double_double::DoubleDouble;
 use crate::world::body::Body;
-use crate::world::certify::{Enclosure, Precision, Proven};
+use crate::world::certify::{Enclosure, Precision, Premise, Proven};
 use crate::world::coincidence::{CLOSE, ROUNDING};
 use crate::world::hittable::Hittable;
 use crate::world::packets::shape::Proofs;
@@ -285,6 +285,11 @@ impl Proofs for Shape<Placed, ByPackets, ByPlacement> {
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
         self.shape.body.shape.certify(&sight.within(self.shape.placement), precision)
+    }
+
+    fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
+        let Body { shape, entity, .. } = &*self.shape.body;
+        shape.premises(entity.unwrap_or(of), each);
     }
 
     fn proven(&self) -> Option<&dyn Proven> {

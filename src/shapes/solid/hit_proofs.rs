@@ -41,9 +41,11 @@ impl Trimmed {
             let mut is_known = true;
             self.tree.holds(&mut |part| {
                 if part != self.index {
-                    let shape = self.proven(part)?;
-                    let other = others[part].get_or_insert_with(|| Crossings::new(shape, line, None));
-                    match other.around(crossing.at) {
+                    let beside = self.proven(part).and_then(|shape| {
+                        let other = others[part].get_or_insert_with(|| Crossings::new(shape, line, None));
+                        other.around(crossing.at)
+                    });
+                    match beside {
                         Some([before, after]) => {
                             (around[0][part], around[1][part]) = (before, after);
                         }

@@ -6,7 +6,7 @@ use crate::geometry::sight::Sight;
 use crate::numeric::double_double::DoubleDouble;
 use crate::world::any_shape::AnyShape;
 use crate::world::body::Part;
-use crate::world::certify::{Enclosure, HitEnclosure, HitProofs, Precision, Proven};
+use crate::world::certify::{Enclosure, HitProofs, Precision, Premise, Proven};
 use crate::world::coincidence::{self, CLOSE, LEAST_COSINE, ROUNDING};
 use crate::world::hittable::Hittable;
 use crate::world::packets::shape::{Proofs, by_distance};
@@ -334,18 +334,14 @@ impl Proofs for Shape<Trimmed, ByPackets, ByParts> {
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
         match precision {
-            Precision::Double => match HitProofs::<f64>::first_hit(&self.shape, &sight.line(), None).0 {
-                HitEnclosure::Misses => Enclosure::Misses,
-                HitEnclosure::Hits(at) => Enclosure::Hits(at.into()),
-                HitEnclosure::Edge(at) => Enclosure::Edge(at.into()),
-                HitEnclosure::Doubtful(from) => Enclosure::Doubtful(from.into()),
-            },
-            Precision::Octuple => match HitProofs::<f256>::first_hit(&self.shape, &sight.line(), None).0 {
-                HitEnclosure::Misses => Enclosure::Misses,
-                HitEnclosure::Hits(at) => Enclosure::Hits(at),
-                HitEnclosure::Edge(at) => Enclosure::Edge(at),
-                HitEnclosure::Doubtful(from) => Enclosure::Doubtful(from),
-            },
+            Precision::Double => HitProofs::<f64>::first_hit(&self.shape, &sight.line(), None).0.into(),
+            Precision::Octuple => HitProofs::<f256>::first_hit(&self.shape, &sight.line(), None).0.into(),
+        }
+    }
+
+    fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
+        for Part { body, .. } in &*self.shape.parts {
+            body.shape.premises(body.entity.unwrap_or(of), each);
         }
     }
 

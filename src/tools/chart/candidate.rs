@@ -10,7 +10,7 @@ use crate::scene::choice::Choice;
 use crate::scene::model::{Model, Object};
 use crate::world::accuracy::Accuracy;
 use crate::world::any_shape::AnyShape;
-use crate::world::certify::{Enclosure, Precision};
+use crate::world::certify::{Enclosure, Precision, Premise};
 use crate::world::hittable::Hittable;
 use crate::world::packets::shape::{Coincidence, Proofs};
 use crate::world::shape::{ByDistance, Shape};
@@ -131,6 +131,10 @@ impl Proofs for Shape<WithMethod, ByDistance, OriginalProofs> {
 
     fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
         None
+    }
+
+    fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
+        self.shape.shape.premises(of, each);
     }
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {

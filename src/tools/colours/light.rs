@@ -123,16 +123,18 @@ fn passed<F: Number>(scene: &Scene, path: &Path<F>) -> Option<Colour<F>> {
     }
     let is_at_pane =
         |at: &Interval<F>| panes.at.iter().any(|pane| pane.low <= at.high && at.low <= pane.high);
-    let mut is_open = false;
+    let mut open = Vec::new();
     for index in (0..scene.objects.len()).filter(|index| !is_glass(index)) {
         match scene.hit(path, &coarse, index).0 {
             HitEnclosure::Misses => {}
             HitEnclosure::Hits(at) if at.high < one && !is_at_pane(&at) => return Some(black),
-            HitEnclosure::Hits(at) | HitEnclosure::Edge(at) => is_open |= at.low < one,
-            HitEnclosure::Doubtful(low) => is_open |= low < one,
+            HitEnclosure::Hits(Interval { low, .. })
+            | HitEnclosure::Edge(Interval { low, .. })
+            | HitEnclosure::Doubtful(low) => open.extend((low < one).then_some(index)),
         }
     }
-    (!is_open).then_some(panes.passed)
+    open.iter().for_each(|index| scene.note_open(*index));
+    open.is_empty().then_some(panes.passed)
 }
 
 /// The panes of glass on a line.
@@ -154,7 +156,11 @@ impl<F: Number> Panes<F> {
                 HitEnclosure::Misses => return Some(()),
                 HitEnclosure::Hits(at) => start + at,
                 HitEnclosure::Edge(Interval { low, .. }) | HitEnclosure::Doubtful(low) => {
-                    return ((start + Interval::point(low)).low >= one).then_some(());
+                    let is_beyond = (start + Interval::point(low)).low >= one;
+                    if !is_beyond {
+                        scene.note_open(object);
+                    }
+                    return is_beyond.then_some(());
                 }
             };
             if at.low >= one {

@@ -1,7 +1,7 @@
 //! Proves the colours of pixels: encloses each channel in an interval, and compares the bytes with those of the image.
 //!
-//! This is a second evaluation of the rules by which a scene is rendered, in intervals from the scene's numbers on. It
-//! shares no arithmetic with the tracer: only the equations of shapes, and what shaders and lights enclose. It follows all
+//! This is a second evaluation of the rules by which a scene is rendered, in intervals from the scene's numbers on. With the
+//! tracer it shares the equations of shapes, and the plugins in which shaders and lights enclose what they send. It follows all
 //! that a pixel's colour depends on: each hit, shadow ray, mirror and pane, and the tile or texel that is met. What an
 //! interval leaves open widens the colour, or opens the pixel.
 
@@ -20,7 +20,8 @@ use crate::render::renderer::Renderer;
 use crate::render::trace;
 use f256::f256;
 use rays::Tracer;
-use scene::{Colour, Number, Scene};
+use scene::{Boxes, Colour, Number, Scene};
+use std::cell::Cell;
 use std::ops::ControlFlow;
 
 /// The verdict on a byte, or on a pixel: the last in this order of those of its bytes.
@@ -34,13 +35,16 @@ pub enum Verdict {
     /// The enclosure of the true colour holds several bytes, or the colour is not known.
     #[default]
     Open,
+    /// The byte is open because a ray may meet a shape without an equation.
+    Uncertified,
     /// No enclosure of the true colour holds the byte.
     Contradicted,
 }
 
 impl Verdict {
     /// All verdicts, in their order.
-    pub const ALL: [Self; 4] = [Self::Proven, Self::Rounded, Self::Open, Self::Contradicted];
+    pub const ALL: [Self; 5] =
+        [Self::Proven, Self::Rounded, Self::Open, Self::Uncertified, Self::Contradicted];
 }
 
 /// The verdicts on the three bytes of a pixel.
@@ -64,18 +68,29 @@ struct Attempt {
     is_enclosed: bool,
     /// Whether a higher precision would tell no more.
     is_final: bool,
+    /// Whether a ray may meet a shape without an equation.
+    meets_uncertified: bool,
+}
+
+impl Attempt {
+    /// Returns a verdict that says what it is open for.
+    fn named(&self, verdict: Verdict) -> Verdict {
+        if verdict == Verdict::Open && self.meets_uncertified { Verdict::Uncertified } else { verdict }
+    }
 }
 
 /// Proves the colours of an image.
 pub struct Prover<'p, 'm> {
     plan: &'p Plan<'m>,
-    scene: Scene<'p, 'm>,
+    boxes: Boxes,
+    passes_fractions: bool,
 }
 
 impl<'p, 'm> Prover<'p, 'm> {
     /// Prepares the proofs of a plan.
     pub fn new(plan: &'p Plan<'m>) -> Self {
-        Self { plan, scene: Scene::new(plan) }
+        let passes_fractions = plan.model.tints_are_fractions();
+        Self { plan, boxes: Boxes::around(&plan.model.objects), passes_fractions }
     }
 
     /// Returns the verdict on a pixel as the tracer renders it: `x` counts from the left, `y` from the bottom.
@@ -87,7 +102,7 @@ impl<'p, 'm> Prover<'p, 'm> {
     pub fn pixel(&self, x: usize, y: usize, bytes: [u8; 3]) -> Pixel {
         let quick = self.verdicts::<f64>(x, y, bytes);
         if quick.is_final {
-            return quick.pixel;
+            return Pixel { channels: quick.pixel.channels.map(|verdict| quick.named(verdict)) };
         }
         let wide = self.verdicts::<f256>(x, y, bytes);
         let last = if wide.is_final { wide } else { self.verdicts::<Fraction>(x, y, bytes) };
@@ -96,40 +111,36 @@ impl<'p, 'm> Prover<'p, 'm> {
             Verdict::Contradicted if may_round && quick.pixel.channels[channel] == Verdict::Open => {
                 Verdict::Rounded
             }
-            verdict => verdict,
+            verdict => last.named(verdict),
         });
         Pixel { channels }
     }
 
+    /// Returns the plan as the proof of one pixel looks at it.
+    fn scene(&self) -> Scene<'_, 'm> {
+        Scene {
+            plan: self.plan,
+            objects: &self.plan.model.objects,
+            boxes: &self.boxes,
+            passes_fractions: self.passes_fractions,
+            meets_uncertified: Cell::new(false),
+        }
+    }
+
     /// Tries a proof in one precision.
     fn verdicts<F: Number>(&self, x: usize, y: usize, bytes: [u8; 3]) -> Attempt {
-        let (colour, is_spent) = self.mean::<F>(x, y);
+        let scene = self.scene();
+        let (colour, is_spent) = mean::<F>(&scene, x, y);
+        let meets_uncertified = scene.meets_uncertified.get();
         let Some(colour) = colour else {
-            return Attempt { pixel: Pixel::default(), is_enclosed: false, is_final: is_spent };
+            let pixel = Pixel::default();
+            return Attempt { pixel, is_enclosed: false, is_final: is_spent, meets_uncertified };
         };
         // Rays may be left out that add less than this to a pixel.
         let missing = if self.plan.depth.is_some() { FAINT } else { 0.0 };
         let channels = per_axis(|channel| verdict(colour[channel], bytes[channel], missing));
         let is_final = is_spent || !channels.contains(&Verdict::Open);
-        Attempt { pixel: Pixel { channels }, is_enclosed: true, is_final }
-    }
-
-    /// Encloses a pixel's colour, the mean of its samples, and tells whether a limit on the number of rays was reached.
-    fn mean<F: Number>(&self, x: usize, y: usize) -> (Option<Colour<F>>, bool) {
-        let camera = &self.plan.camera;
-        let mut sum = [Interval::constant(0.0); 3];
-        let mut is_spent = false;
-        for (place, sample) in camera.places(x, y, camera.samples) {
-            let sight: Sight = camera.sight_of(place, sample.as_ref());
-            let mut tracer = Tracer::new(&self.scene, sample);
-            let colour = tracer.primary::<F>(&sight.line());
-            is_spent |= tracer.is_spent();
-            let Some(colour) = colour else { return (None, is_spent) };
-            sum = per_axis(|channel| sum[channel] + colour[channel]);
-        }
-        let count = Interval::constant(f64::from(camera.samples));
-        let mean = if camera.samples == 1 { sum } else { per_axis(|channel| sum[channel] / count) };
-        (Some(mean), is_spent)
+        Attempt { pixel: Pixel { channels }, is_enclosed: true, is_final, meets_uncertified }
     }
 
     /// Returns the verdicts on all pixels of the image that is rendered here, row by row from the top. `done` is called
@@ -152,6 +163,24 @@ impl<'p, 'm> Prover<'p, 'm> {
         };
         renderer.pixels(self.plan, 0..height, &done, verdict).unwrap_or_default()
     }
+}
+
+/// Encloses a pixel's colour, the mean of its samples, and tells whether a limit on the number of rays was reached.
+fn mean<F: Number>(scene: &Scene, x: usize, y: usize) -> (Option<Colour<F>>, bool) {
+    let camera = &scene.plan.camera;
+    let mut sum = [Interval::constant(0.0); 3];
+    let mut is_spent = false;
+    for (place, sample) in camera.places(x, y, camera.samples) {
+        let sight: Sight = camera.sight_of(place, sample.as_ref());
+        let mut tracer = Tracer::new(scene, sample);
+        let colour = tracer.primary::<F>(&sight.line());
+        is_spent |= tracer.is_spent();
+        let Some(colour) = colour else { return (None, is_spent) };
+        sum = per_axis(|channel| sum[channel] + colour[channel]);
+    }
+    let count = Interval::constant(f64::from(camera.samples));
+    let mean = if camera.samples == 1 { sum } else { per_axis(|channel| sum[channel] / count) };
+    (Some(mean), is_spent)
 }
 
 /// Returns the verdict on the byte of a channel. `missing` is the most that the image may lack.
@@ -191,7 +220,7 @@ mod tests {
     #[track_caller]
     fn is_red(objects: &str, [numerator, denominator]: [f64; 2]) {
         fn red<F: Number>(prover: &Prover) -> Interval<F> {
-            prover.mean::<F>(1, 1).0.expect("a known colour")[0]
+            mean::<F>(&prover.scene(), 1, 1).0.expect("a known colour")[0]
         }
         fn is_enclosed<F: Float>(red: Interval<F>, [numerator, denominator]: [f64; 2], within: f64) {
             let off = red * Interval::constant(denominator) - Interval::constant(numerator);
@@ -278,7 +307,7 @@ mod tests {
         );
         let plan = Plan::new(&model);
         let prover = Prover::new(&plan);
-        let red = prover.mean::<f64>(1, 1).0.expect("a known colour")[0];
+        let red = mean::<f64>(&prover.scene(), 1, 1).0.expect("a known colour")[0];
         assert!((red * Interval::constant(9.0) - Interval::constant(6.0)).has_zero(), "{red:?}");
         assert_eq!(prover.pixel(1, 1, [170; 3]).verdict(), Verdict::Proven);
         assert_ne!(prover.pixel(1, 1, [218; 3]).verdict(), Verdict::Proven);

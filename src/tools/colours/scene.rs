@@ -9,6 +9,7 @@ use crate::world::certify::{HitEnclosure, Precise};
 use crate::world::packets::light::{EncloseLight, PacketLight};
 use crate::world::packets::shader::{EncloseLook, PacketShader};
 use crate::world::shader::{LookBounds, PointBounds};
+use std::cell::Cell;
 
 /// The number of edges of one object on a line after which its hits are in doubt.
 const MAX_EDGES: usize = 4;
@@ -48,13 +49,29 @@ where
     }
 }
 
-/// A plan, and a box around each object that has bounds.
+/// A box around each object that has bounds.
+pub(super) struct Boxes(Vec<Option<Aabb>>);
+
+impl Boxes {
+    pub fn around(objects: &[Object]) -> Self {
+        let around = |object: &Object| {
+            let Aabb { low, high } = object.shape.bounds()?;
+            let slack = SLACK * low.abs().max(high.abs()).max_element();
+            Some(Aabb { low: low - slack, high: high + slack })
+        };
+        Self(objects.iter().map(around).collect())
+    }
+}
+
+/// A plan as the proof of one pixel looks at it.
 pub(super) struct Scene<'p, 'm> {
     pub plan: &'p Plan<'m>,
     pub objects: &'m [Object],
-    boxes: Vec<Option<Aabb>>,
+    pub boxes: &'p Boxes,
     /// Whether what glass lets pass of a channel is known to lie between none of it and all.
     pub passes_fractions: bool,
+    /// Whether a ray may have met a shape without an equation first.
+    pub meets_uncertified: Cell<bool>,
 }
 
 /// The first hit of a line.
@@ -81,15 +98,11 @@ pub(super) struct Path<F> {
 }
 
 impl<'p, 'm> Scene<'p, 'm> {
-    pub fn new(plan: &'p Plan<'m>) -> Self {
-        let objects = &plan.model.objects;
-        let around = |object: &Object| {
-            let Aabb { low, high } = object.shape.bounds()?;
-            let slack = SLACK * low.abs().max(high.abs()).max_element();
-            Some(Aabb { low: low - slack, high: high + slack })
-        };
-        let boxes = objects.iter().map(around).collect();
-        Self { plan, objects, boxes, passes_fractions: plan.model.tints_are_fractions() }
+    /// Notes that the hits of the object of this index are open; of a shape without an equation, they always are.
+    pub fn note_open(&self, object: usize) {
+        if !self.objects[object].shape.is_certified() {
+            self.meets_uncertified.set(true);
+        }
     }
 
     /// Returns what is proven about the first hit of a line with the object of this index.
@@ -99,15 +112,15 @@ impl<'p, 'm> Scene<'p, 'm> {
         coarse: &Line<Interval>,
         index: usize,
     ) -> (HitEnclosure<F>, usize) {
-        if let Some(Aabb { low, high }) = self.boxes[index]
-            && coarse.clip(low, high).is_none()
-        {
-            return (HitEnclosure::Misses, 0);
+        let mut from = 0.0;
+        if let Some(Aabb { low, high }) = self.boxes.0[index] {
+            let Some((start, _)) = coarse.clip(low, high) else { return (HitEnclosure::Misses, 0) };
+            from = start;
         }
         let leaves = path.leaves.filter(|place| place.object == index).map(|place| place.part);
         match self.objects[index].shape.proven() {
             Some(proven) => F::proofs(proven).first_hit(&path.line, leaves),
-            None => (HitEnclosure::Doubtful(F::of(0.0)), 0),
+            None => (HitEnclosure::Doubtful(F::of(from)), 0),
         }
     }
 
@@ -175,6 +188,7 @@ impl<'p, 'm> Scene<'p, 'm> {
                     HitEnclosure::Misses | HitEnclosure::Doubtful(_) => None,
                 };
                 let among = found.iter().filter(|(low, ..)| *low <= end);
+                among.clone().for_each(|(_, _, place)| self.note_open(place.object));
                 let among = among.map(|(_, hit, place)| Some((at(hit)?, *place))).collect::<Option<Vec<_>>>();
                 among.map_or(FirstHit::Open, |among| FirstHit::OneOf(among, !end.is_finite()))
             }

@@ -10,12 +10,15 @@ mod closed;
 mod equation;
 mod footprint;
 mod hit_proofs;
+mod premise;
 mod search;
 
 pub use equation::{Equation, HitEnclosure};
 pub use footprint::{FootprintHit, OverFootprint, coarse, gradient_over};
 pub use hit_proofs::{HitProofs, Precise, Proven, gradient, shading_normals};
+pub use premise::{Assumption, Premise};
 
+use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::sight::{Line, Sight};
 use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::interval::{Float, Interval, Wide};
@@ -39,9 +42,26 @@ pub enum Enclosure {
     Doubtful(f256),
 }
 
-impl Enclosure {
-    /// The enclosure for a shape without an equation: there may be a hit at any distance.
-    pub const UNKNOWN: Self = Self::Doubtful(f256::ZERO);
+impl From<HitEnclosure<f64>> for Enclosure {
+    fn from(of: HitEnclosure<f64>) -> Self {
+        match of {
+            HitEnclosure::Misses => Self::Misses,
+            HitEnclosure::Hits(at) => Self::Hits(at.into()),
+            HitEnclosure::Edge(at) => Self::Edge(at.into()),
+            HitEnclosure::Doubtful(from) => Self::Doubtful(from.into()),
+        }
+    }
+}
+
+impl From<HitEnclosure<f256>> for Enclosure {
+    fn from(of: HitEnclosure<f256>) -> Self {
+        match of {
+            HitEnclosure::Misses => Self::Misses,
+            HitEnclosure::Hits(at) => Self::Hits(at),
+            HitEnclosure::Edge(at) => Self::Edge(at),
+            HitEnclosure::Doubtful(from) => Self::Doubtful(from),
+        }
+    }
 }
 
 /// Converts the midpoint of an enclosed distance from lengths of a sight's direction to world units.
@@ -94,18 +114,19 @@ pub enum Precision {
 /// Returns what is proven about a ray's first hit of a shape.
 pub fn first_hit(shape: &impl Equation, sight: &Sight, precision: Precision) -> Enclosure {
     match precision {
-        Precision::Double => match solve::<f64>(shape, sight, PIECES) {
-            HitEnclosure::Misses => Enclosure::Misses,
-            HitEnclosure::Hits(at) => Enclosure::Hits(at.into()),
-            HitEnclosure::Edge(at) => Enclosure::Edge(at.into()),
-            HitEnclosure::Doubtful(from) => Enclosure::Doubtful(from.into()),
-        },
-        Precision::Octuple => match solve::<f256>(shape, sight, most_pieces(shape)) {
-            HitEnclosure::Misses => Enclosure::Misses,
-            HitEnclosure::Hits(at) => Enclosure::Hits(at),
-            HitEnclosure::Edge(at) => Enclosure::Edge(at),
-            HitEnclosure::Doubtful(from) => Enclosure::Doubtful(from),
-        },
+        Precision::Double => solve::<f64>(shape, sight, PIECES).into(),
+        Precision::Octuple => solve::<f256>(shape, sight, most_pieces(shape)).into(),
+    }
+}
+
+/// Returns what a bounding box says about a line's first hit of a shape without an equation: nothing nearer than the box,
+/// and nothing where the line misses it. The box is rounded, and so widened a little.
+pub fn first_hit_in(bounds: Option<Aabb>, line: &Line<Interval>) -> HitEnclosure<f64> {
+    let Some(Aabb { low, high }) = bounds else { return HitEnclosure::Doubtful(0.0) };
+    let slack = SLACK * low.abs().max(high.abs()).max_element();
+    match line.clip(low - slack, high + slack) {
+        Some((from, _)) => HitEnclosure::Doubtful(from),
+        None => HitEnclosure::Misses,
     }
 }
 

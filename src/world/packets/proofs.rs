@@ -5,7 +5,7 @@ use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::geometry::roots::Method;
 use crate::geometry::sight::Sight;
 use crate::numeric::double_double::DoubleDouble;
-use crate::world::certify::{self, Enclosure, Equation, Precision, Proven};
+use crate::world::certify::{self, Assumption, Enclosure, Equation, Precision, Premise, Proven};
 use crate::world::coincidence::ROUNDING;
 use crate::world::hittable::{Certified, Hittable, Searched};
 use crate::world::shape::{ByEquation, ByFormula, ByRoots, Shape, Unproven};
@@ -31,6 +31,10 @@ pub trait Proofs: Send + Sync {
     /// Returns the distance of the hit near `distance` in double-double arithmetic, or `None` where no such distance
     /// can be computed.
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble>;
+
+    /// Passes on what proofs about the shape start from, each with the name of the entity type that it is about: `of`, or
+    /// where the shape is made of others, as a copy and a solid are, the type of these.
+    fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise));
 
     /// Returns what is proven about a ray's first hit.
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure;
@@ -61,8 +65,15 @@ impl<T: Hittable, S> Proofs for Shape<T, S, Unproven> {
         None
     }
 
-    fn certify(&self, _sight: &Sight, _precision: Precision) -> Enclosure {
-        Enclosure::UNKNOWN
+    fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
+        each(of, Premise::NoEquation);
+        if self.shape.bounds().is_some() {
+            each(of, Premise::Assumed(Assumption::Bounds));
+        }
+    }
+
+    fn certify(&self, sight: &Sight, _precision: Precision) -> Enclosure {
+        certify::first_hit_in(self.shape.bounds(), &sight.line()).into()
     }
 }
 
@@ -77,6 +88,10 @@ impl<T: Hittable + Equation, S> Proofs for Shape<T, S, ByFormula> {
 
     fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
         None
+    }
+
+    fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
+        assumed(&self.shape, of, each);
     }
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
@@ -99,6 +114,10 @@ impl<T: Certified, S> Proofs for Shape<T, S, ByEquation> {
 
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
         self.shape.fine_distance(ray, distance)
+    }
+
+    fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
+        assumed(&self.shape, of, each);
     }
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
@@ -127,6 +146,10 @@ impl<T: Searched, S> Proofs for Shape<T, S, ByRoots> {
         self.shape.fine_distance(ray, distance)
     }
 
+    fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
+        assumed(&self.shape, of, each);
+    }
+
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
         certify::first_hit(&self.shape, sight, precision)
     }
@@ -138,6 +161,11 @@ impl<T: Searched, S> Proofs for Shape<T, S, ByRoots> {
     fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> Option<f64> {
         Some(self.shape.distance_by(method, ray, range))
     }
+}
+
+/// Passes on what proofs by the equation of a shape assume.
+fn assumed(shape: &impl Hittable, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
+    shape.assumes(&mut |assumption| each(of, Premise::Assumed(assumption)));
 }
 
 /// Tells whether a short ray through a point, perpendicular to a shape, hits the shape within an error in world units.

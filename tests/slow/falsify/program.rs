@@ -62,7 +62,7 @@ impl Program {
         match verify::pixel(&Plan::new(&self.0), x, y) {
             Verdict::Proven => Claim::Right,
             Verdict::Contradicted => Claim::Wrong,
-            Verdict::Tie => Claim::Unknown,
+            Verdict::Tie | Verdict::Uncertified => Claim::Unknown,
         }
     }
 

@@ -1,0 +1,43 @@
+//! What proofs start from, where that is not the numbers of the scene.
+
+use std::fmt;
+
+/// What is known of the proofs about a shape before any ray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Premise {
+    /// They take this for exact.
+    Assumed(Assumption),
+    /// There is no equation to prove hits by: that a hit lies in the bounds of the shape is all that is known.
+    NoEquation,
+}
+
+/// Numbers that a proof starts from, and that are not those of the scene: they follow from these, and were rounded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Assumption {
+    /// The camera rays.
+    Rays,
+    /// The points where camera rays start; their directions are exact.
+    Starts,
+    /// The coefficients of a spline through points of the scene.
+    Spline,
+    /// The vertices of triangles, which were moved, scaled or turned.
+    Vertices,
+    /// The normals at the vertices of a mesh that looks smooth. Only proofs of colours ask for them.
+    Normals,
+    /// The bounding box of a shape without an equation, which its plugin promises to lie inside of it.
+    Bounds,
+}
+
+/// Displays what is taken as it is, phrased to follow "assumed: ".
+impl fmt::Display for Assumption {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Rays => "rays as computed, rounded to f64",
+            Self::Starts => "starts of rays as computed, rounded to f64",
+            Self::Spline => "spline coefficients as computed, rounded to f64",
+            Self::Vertices => "vertices as placed, rounded to f64",
+            Self::Normals => "normals at vertices as computed, rounded to f32",
+            Self::Bounds => "the bounding box as the plugin gives it",
+        })
+    }
+}
