@@ -1,10 +1,12 @@
 //! First hits of rays with a mesh: brackets in plain arithmetic, distances, and proofs.
 
+use super::approach::{Approach, FAR};
 use super::face::{Face, Leaving, t_bounds};
 use super::known::{Known, Nearest};
 use super::points::touches;
 use super::search::Scratch;
 use super::surface::Surface;
+use crate::geometry::aabb::{Aabb, larger};
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange};
 use crate::geometry::sight::Sight;
 use crate::numeric::interval::{Float, Interval, Wide};
@@ -128,17 +130,23 @@ impl Surface {
 
     /// Calls a function with each face that a ray may hit in a range, and with the bracket of its distance. The
     /// function returns the distance beyond which no more faces matter.
-    fn each(
+    pub(super) fn each(
         &self,
         ray: &Ray,
         range: &RayRange,
         leaving: Leaving,
         mut call: impl FnMut(usize, Bracket) -> f64,
     ) {
+        let approach =
+            if leaving.most < 0.0 { Approach::new(ray, &self.bounds) } else { Approach::none(ray) };
+        let Approach { ray, drift, travelled, slack } = &approach;
+        let after = |distance: f64| distance - travelled + slack;
+        let far = after(range.far);
         Scratch::with(|Scratch { stack, .. }| {
-            self.tree.closest(Cpu::best(), stack, ray, range.far, |face, end| {
-                let bracket = t_bounds(self.corners(face), ray, range.far, leaving, Drift::NONE);
-                if bracket.near < MISS { call(face, bracket) } else { end }
+            self.tree.closest_within(Cpu::best(), stack, ray, *drift, far, |face, end| {
+                let Bracket { near, far } = t_bounds(self.corners(face), ray, far, leaving, *drift);
+                let bracket = Bracket { near: near + travelled - slack, far: far + travelled + slack };
+                if near < MISS { after(call(face, bracket)) } else { end }
             });
         });
     }
@@ -196,6 +204,11 @@ impl Surface {
 
     /// Tells whether the part of a face of a closed mesh beside a point of it is certainly hidden from where a ray starts.
     fn is_hidden(&self, face: usize, ray: &Ray, at: DVec3) -> bool {
+        let farthest = 64.0 * f64::EPSILON * (ray.origin.abs().max_element() + (at - ray.origin).length());
+        // From so far away, no face of the mesh is certainly nearer than another.
+        if self.open_edges > 0 || 4.0 * (self.bounds.high - self.bounds.low).length() < farthest {
+            return false;
+        }
         let [a, b, c] = self.corners(face);
         let way = at + BESIDE * ((a + b + c) / 3.0 - at) - ray.origin;
         let distance = way.length();
@@ -203,19 +216,31 @@ impl Surface {
         let (toward, range) = (Ray { dir: way / distance, ..*ray }, RayRange { far, ..RayRange::ALL });
         let first = || self.first(Cpu::best(), &toward, &range, NOTHING, Drift::NONE, false);
         // The upper end of a bracket may lie beyond the range.
-        self.open_edges == 0
-            && matches!(first(), Known::Bracket(bracket) | Known::Face { bracket, .. } if bracket.far < far)
+        matches!(first(), Known::Bracket(bracket) | Known::Face { bracket, .. } if bracket.far < far)
     }
 
     /// Returns what is certain about a ray's first hit.
     pub(super) fn certify<A: Bounded>(&self, sight: &Sight, precision: Precision) -> Enclosure {
         let line = sight.line::<Interval>();
+        let Aabb { low, high } = self.bounds;
+        let reach = line.origin.iter().fold(0.0, |reach, at| larger(reach, at.magnitude()));
+        let fine = (reach > FAR * (high - low).max_element()).then(|| sight.line::<Wide>());
+        if let Some(fine) = &fine {
+            let Some((entry, _)) = fine.clip(low, high) else { return Enclosure::Misses };
+            let at = fine.at(Wide::point(entry));
+            // The mesh is smaller than what is known of the line there.
+            if (0..3).all(|axis| at[axis].width() > f256::from(high[axis] - low[axis])) {
+                return Enclosure::Doubtful(entry);
+            }
+        }
+        let entry = |Aabb { low, high }: &Aabb| match &fine {
+            Some(fine) => fine.clip(*low, *high).map(|(entry, _)| entry),
+            None => line.clip(*low, *high).map(|(entry, _)| f256::from(entry)),
+        };
         let end = std::cell::Cell::new(f256::INFINITY);
         let mut met = Vec::new();
         self.tree.within(
-            |bounds| {
-                line.clip(bounds.low, bounds.high).is_some_and(|(entry, _)| f256::from(entry) <= end.get())
-            },
+            |bounds| entry(bounds).is_some_and(|entry| entry <= end.get()),
             |face| {
                 let enclosure = certify::first_hit(&Face(self.triangle::<A>(face)), sight, precision);
                 let low = match enclosure {

@@ -7,6 +7,7 @@
 //! in the file is hit.
 
 mod along;
+mod approach;
 mod face;
 mod hits;
 mod inside;

@@ -22,11 +22,14 @@ impl Surface {
         let rounding = 8.0 * f64::EPSILON * (at.abs().max_element() + self.reach());
         let (distance, face) = self.nearest(at);
         let within = distance + rounding;
-        let mut first = face;
+        let place = |face: usize| (rank(face), self.order[face]);
+        let (mut first, mut least) = (face, None);
         self.near(at, within, |face, distance| {
-            let place = |face: usize| (rank(face), self.order[face]);
-            if distance <= within && face != first && place(face) < place(first) {
-                first = face;
+            if distance <= within && face != first {
+                let (own, other) = (place(face), *least.get_or_insert_with(|| place(first)));
+                if own < other {
+                    (first, least) = (face, Some(own));
+                }
             }
             within
         });

@@ -21,10 +21,10 @@ use glam::DVec3;
 use proptest::prelude::*;
 use std::sync::Arc;
 
-const PLAIN: DVec3 = DVec3::ONE;
+pub(super) const PLAIN: DVec3 = DVec3::ONE;
 
 /// Returns a closed surface around the origin: a sphere of latitudes and longitudes with bumps.
-fn closed(bumps: &[f64], rows: u32) -> Model {
+pub(super) fn closed(bumps: &[f64], rows: u32) -> Model {
     let columns = 2 * rows;
     let mut vertices = vec![DVec3::Y, -DVec3::Y];
     for row in 1..rows {
@@ -51,7 +51,7 @@ fn closed(bumps: &[f64], rows: u32) -> Model {
     Model { vertices, faces, ..Model::default() }
 }
 
-fn surface(model: Model, placement: &ToWorld) -> Surface {
+pub(super) fn surface(model: Model, placement: &ToWorld) -> Surface {
     Surface::new(model, placement, false).unwrap_or_else(|_| panic!("a surface"))
 }
 

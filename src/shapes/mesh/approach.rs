@@ -1,0 +1,116 @@
+//! Rays that come from so far away that plain arithmetic cannot tell the faces of a mesh apart.
+
+use crate::geometry::aabb::Aabb;
+use crate::geometry::ray::{Drift, Ray};
+use crate::numeric::double_double::exact::exact_sum;
+use crate::numeric::double_double::two_product;
+use crate::numeric::scalar::per_axis;
+use glam::DVec3;
+use std::iter;
+
+/// How many times farther than its size a mesh may be, up to which plain arithmetic finds its faces quickly.
+pub(super) const FAR: f64 = (1_u64 << 30) as f64;
+
+/// A ray that starts nearer to a mesh than the one that it stands for: plain arithmetic cannot tell faces apart that are far
+/// away for their size.
+pub(super) struct Approach {
+    pub ray: Ray,
+    /// A bound on the error of its origin.
+    pub drift: Drift,
+    /// The distance of the new origin from the old one, in world units, and a bound on its error.
+    pub travelled: f64,
+    pub slack: f64,
+}
+
+impl Approach {
+    /// Leaves a ray as it is.
+    pub(super) fn none(ray: &Ray) -> Self {
+        Self { ray: *ray, drift: Drift::NONE, travelled: 0.0, slack: 0.0 }
+    }
+
+    /// Starts a ray before a box that is far away for its size.
+    pub(super) fn new(ray: &Ray, bounds: &Aabb) -> Self {
+        let middle = 0.5 * bounds.low + 0.5 * bounds.high;
+        let size = (bounds.high - bounds.low).length();
+        let mut left = (middle - ray.origin).length();
+        if left <= FAR * size {
+            return Self::none(ray);
+        }
+        let (mut steps, mut at) = (Vec::new(), ray.origin);
+        // Each step leaves a rounding error of the one before it. A ray that misses the box by far comes no nearer.
+        loop {
+            steps.push(ray.dir.dot(middle - at) - 2.0 * size);
+            at = DVec3::from(per_axis(|axis| {
+                let products =
+                    steps.iter().flat_map(|step| <[f64; 2]>::from(two_product(*step, ray.dir[axis])));
+                exact_sum(iter::once(ray.origin[axis]).chain(products)).high
+            }));
+            let before = left;
+            left = (middle - at).length();
+            if before <= FAR * size || left > 0.5 * before {
+                break;
+            }
+        }
+        let slack = 4.0 * f64::EPSILON * steps.iter().map(|step| step.abs()).sum::<f64>();
+        let drift =
+            Drift { origin: 2.0 * f64::EPSILON * at.abs().max_element() + f64::MIN_POSITIVE, dir: 0.0 };
+        Self { ray: Ray { origin: at, dir: ray.dir }, drift, travelled: steps.iter().sum(), slack }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::geometry::placement::Rotation;
+    use crate::geometry::ray::{MISS, Ray, RayRange};
+    use crate::shapes::mesh::ToWorld;
+    use crate::shapes::mesh::hits::NOTHING;
+    use crate::shapes::mesh::tests::{PLAIN, closed, surface};
+    use crate::world::accuracy::Exact;
+    use glam::DVec3;
+
+    /// From 1e13 times the size of a mesh on, rounding hides which of its faces a ray may hit; all of them were candidates, and
+    /// each was compared with all others.
+    #[test]
+    fn few_faces_are_candidates_from_far_away() {
+        let surface = surface(closed(&[1.0], 20), &ToWorld::new(PLAIN, Rotation::NONE, DVec3::ZERO));
+        for (far, side) in
+            [1e3, 1e10, 1e13, 1e16, 1e30, 1e77, 1e150].into_iter().flat_map(|far| [(far, 1.0), (far, -1.0)])
+        {
+            for (x, y) in (0..40).map(|at| f64::from(at) / 41.0 - 0.47).map(|x| (x, 0.3 - x * x)) {
+                let ray_from =
+                    |far: f64| Ray { origin: DVec3::new(x, y, side * far), dir: DVec3::new(0.0, 0.0, -side) };
+                let (ray, near) = (ray_from(far), ray_from(2.0));
+                let mut candidates = Vec::new();
+                surface.each(&ray, &RayRange::ALL, NOTHING, |face, _| {
+                    candidates.push(face);
+                    MISS
+                });
+                assert!(
+                    candidates.len() <= 8,
+                    "{} candidates of {} from {far}",
+                    candidates.len(),
+                    surface.face_count()
+                );
+                let [distance, from_near] =
+                    [ray, near].map(|ray| surface.distance::<Exact>(&ray, &RayRange::ALL, -1.0));
+                assert!((distance - (far - 2.0 + from_near)).abs() <= 2.0 * f64::EPSILON * far, "from {far}");
+                let first = surface.face_along(&near, from_near);
+                assert!(candidates.contains(&first), "from {far}");
+                // Beyond, the hit point may be nearer to another face, as it is off by more than the size of one.
+                if far <= 1e13 {
+                    assert_eq!(surface.face_along(&ray, distance), first, "from {far}");
+                }
+            }
+        }
+    }
+
+    /// A ray that passes by at a distance far larger than the mesh, and that comes from far larger ones, meets nothing.
+    #[test]
+    fn rays_that_pass_by_from_far_away_have_no_candidates() {
+        let surface = surface(closed(&[1.0], 20), &ToWorld::new(PLAIN, Rotation::NONE, DVec3::ZERO));
+        for (far, beside) in [(1e150, 1e134), (1e150, 10.0), (1e20, 1.5), (1e40, 1e25)] {
+            let ray = Ray { origin: DVec3::new(beside, 0.0, far), dir: DVec3::NEG_Z };
+            surface.each(&ray, &RayRange::ALL, NOTHING, |face, _| panic!("face {face} from {far} {beside}"));
+        }
+    }
+}
