@@ -1,6 +1,7 @@
 //! Number types that formulas are evaluated with, and formulas.
 
 pub(crate) mod affine;
+pub(crate) mod decimal;
 pub mod double_double;
 pub(crate) mod dual;
 pub(crate) mod f64x8;

@@ -385,6 +385,14 @@ sphere s { material m center 4 3 -2 radius 1 }\n";
     let (status, said) = run(&folder, &film);
     assert!(status == 2 && said.contains("`radius` of sphere `s` must be positive, not -1"), "{said}");
     assert!(said.contains("--> --sweep s.radius=1..-1:1:10\n"), "{said}");
+    for (range, says) in [("1e-400..1", "`1e-400` is too small"), ("1..2e400", "`2e400` is too large")] {
+        let sweep = format!("s.radius={range}");
+        let (status, said) = run(&folder, &[&film[..6], &["--sweep", &sweep]].concat());
+        assert!(
+            status == 2 && said.contains(says) && said.contains(&format!("--> --sweep {sweep}:1:10")),
+            "{said}"
+        );
+    }
     assert_eq!(names_in(folder.path()), ["a.ray"]);
     let film = [
         "render",
@@ -406,7 +414,7 @@ sphere s { material m center 4 3 -2 radius 1 }\n";
 }
 
 #[test]
-fn a_film_of_which_a_frame_would_replace_a_texture_is_not_begun() {
+fn a_film_of_which_a_file_would_replace_a_texture_is_not_begun() {
     let folder = folder();
     let text = "camera eye { pixeldim 4 3 worlddim 8 6 viewpoint 4 3 6 }\nmaterial m { ambient 1 1 1 }
 texture t { filename film-0003.ppm }
@@ -416,6 +424,19 @@ texplane p { material m normal 0 0 1 point 0 0 -1 dimensions 3 3 texname t xdir 
     let (status, said) = run(&folder, &["render", "a.ray", "-o", "film.ppm", "--frames", "1..5"]);
     assert!(status == 2 && said.contains("`film-0003.ppm` is the image of texture `t`"), "{said}");
     assert_eq!(names_in(folder.path()), ["a.ray", "film-0003.ppm"]);
+    for (name, options) in [
+        ("film-0004-depth.ppm", &["--aov", "depth"][..]),
+        ("film-0002.ppm.checkpoint", &[]),
+        ("film-0004.ppm.checkpoint", &["--part", "1/3"]),
+    ] {
+        let folder = self::folder();
+        fs::write(folder.path().join("a.ray"), text.replace("film-0003.ppm", name)).expect("a scene");
+        fs::write(folder.path().join(name), b"P6 1 1 255\n\xff\x80\x40").expect("a picture");
+        let film = ["render", "a.ray", "-o", "film.ppm", "--frames", "1..5"];
+        let (status, said) = run(&folder, &[&film[..], options].concat());
+        assert!(status == 2 && said.contains(&format!("`{name}` is the image of texture `t`")), "{said}");
+        assert_eq!(names_in(folder.path()), ["a.ray", name]);
+    }
 }
 
 /// Changes when a file was changed last.

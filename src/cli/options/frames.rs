@@ -2,6 +2,7 @@
 
 use crate::cli::options::number::whole;
 use crate::cli::process::failure::Failure;
+use crate::numeric::decimal::{self, DecimalFault};
 use crate::text;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -111,15 +112,23 @@ fn at(sweep: &str, t: f64) -> String {
     if sweep.contains('=') { format!("{name}={values}") } else { name.to_owned() }
 }
 
-/// Replaces each range as `4..6` by the number at a time.
+/// Replaces each range as `4..6` by the number at a time, or by an end of it that is no finite number, for the message
+/// about that.
 fn between(values: &str, t: f64) -> String {
     let number = |word: &str| {
         let (from, to) = word.split_once("..")?;
-        let (from, to): (f64, f64) = (from.parse().ok()?, to.parse().ok()?);
-        // What is no range of numbers is left as it stands, for the message about it.
-        (to - from).is_finite().then_some(())?;
-        let at = if t == 1.0 { to } else { from + t * (to - from) };
-        Some(text::shortest(at))
+        match [from, to].map(decimal::read) {
+            [Err(DecimalFault::NotANumber), _] | [_, Err(DecimalFault::NotANumber)] => None,
+            [Err(_), _] => Some(from.to_owned()),
+            [_, Err(_)] => Some(to.to_owned()),
+            [Ok(_), Ok(to)] if t == 1.0 => Some(text::shortest(to)),
+            [Ok(from), Ok(to)] => {
+                let distance = to - from;
+                // The distance may be infinite where all numbers between are not.
+                let at = if distance.is_finite() { from + t * distance } else { (1.0 - t) * from + t * to };
+                Some(text::shortest(at))
+            }
+        }
     };
     let words = values.split(' ').map(|word| number(word).unwrap_or_else(|| word.to_owned()));
     words.collect::<Vec<_>>().join(" ")
@@ -157,9 +166,22 @@ mod tests {
         );
         assert_eq!(at("a.b=file..other", 0.5), "a.b=file..other");
         assert_eq!(at("nothing", 0.5), "nothing");
-        for range in ["1e400..1", "nan..1", "0..inf", "-1e308..1e308"] {
-            assert_eq!(at(&format!("a.b={range}"), 0.5), format!("a.b={range}"), "what was typed is shown");
+        for (range, wrong) in
+            [("1e400..1", "1e400"), ("nan..1", "nan"), ("0..inf", "inf"), ("1..-1e-400", "-1e-400")]
+        {
+            for t in [0.0, 0.5, 1.0] {
+                assert_eq!(at(&format!("a.b={range}"), t), format!("a.b={wrong}"), "{range} at {t}");
+            }
         }
+    }
+
+    #[test]
+    fn a_sweep_over_all_numbers_passes_those_between() {
+        let values = |range: &str| [0.0, 0.25, 0.5, 1.0].map(|t| at(&format!("a.b={range}"), t));
+        assert_eq!(values("-1e308..1e308"), ["a.b=-1e308", "a.b=-5e307", "a.b=0", "a.b=1e308"]);
+        let all = format!("{}..{}", f64::MAX, f64::MIN);
+        assert_eq!(values(&all)[2], "a.b=0");
+        assert_eq!(values("5e-324..1e-323")[0], "a.b=5e-324");
     }
 
     #[test]

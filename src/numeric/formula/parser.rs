@@ -1,6 +1,7 @@
 //! The parser: from the text of a formula to its operations in postfix order.
 
 use super::step::{Function, MAX_DEPTH, Step};
+use crate::numeric::decimal;
 use crate::text;
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -200,13 +201,12 @@ impl<'t> Parser<'t> {
             self.at += 1;
         }
         let word = &self.text[start..self.at];
-        match word.parse::<f64>() {
-            Ok(number) if number.is_finite() => {
-                self.steps.push(Step::Number(number));
-                Ok(())
-            }
-            _ => Err(self.fault(start..self.at, format!("`{word}` is not a number"))),
-        }
+        let number = decimal::read(word).map_err(|fault| {
+            let told = self.fault(start..self.at, format!("`{word}` is {}", fault.what()));
+            FormulaFault { help: fault.help().map_or(told.help, str::to_owned), ..told }
+        })?;
+        self.steps.push(Step::Number(number));
+        Ok(())
     }
 
     fn name(&mut self) -> Parsed {

@@ -2,6 +2,7 @@
 
 use super::fault::Fault;
 use super::parsed::{Form, Word};
+use crate::numeric::decimal::{self, DecimalFault};
 use crate::numeric::formula::Formula;
 use crate::scene::choice::Choices;
 use crate::scene::value::{Datum, Type};
@@ -134,41 +135,16 @@ pub fn whole(word: &str) -> Result<i64, ValueError> {
 
 /// Reads a finite number.
 pub fn number(word: &str) -> Result<f64, ValueError> {
-    match word.parse::<f64>() {
-        Ok(0.0) if underflows(word) => Err(("too small", Some(TOO_SMALL))),
-        Ok(number) if number.is_finite() => Ok(number),
-        Ok(_) if word.contains(|c: char| c.is_ascii_digit()) => Err(("too large", None)),
-        Ok(_) => Err(("not a finite number", None)),
-        Err(_) if word.contains(',') => {
-            Err(("not a number", Some("separate values by white space, and write decimals with a point")))
-        }
-        Err(_) if word.contains('#') => {
-            Err(("not a number", Some("put white space before the `#` of a comment")))
-        }
-        Err(_) => Err(("not a number", None)),
-    }
-}
-
-const TOO_SMALL: &str = "numbers nearer to 0 than 5e-324 underflow to 0: write 0 if that is meant";
-
-/// Tells whether a number that is read as 0 is written as another one.
-fn underflows(word: &str) -> bool {
-    let mut digits = word.bytes().take_while(|byte| !byte.eq_ignore_ascii_case(&b'e'));
-    digits.any(|byte| matches!(byte, b'1'..=b'9'))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_number_that_underflows_is_not_read_as_0() {
-        for word in ["1e-400", "-2.5E-330", "0.001e-9999"] {
-            assert_eq!(number(word), Err(("too small", Some(TOO_SMALL))), "{word}");
-        }
-        for word in ["0", "-0.0", "0e-400", ".0e5", "0.000E+9"] {
-            assert_eq!(number(word), Ok(0.0), "{word}");
-        }
-        assert_eq!(number("5e-324"), Ok(5e-324));
-    }
+    decimal::read(word).map_err(|fault| {
+        let help = match fault {
+            DecimalFault::NotANumber if word.contains(',') => {
+                Some("separate values by white space, and write decimals with a point")
+            }
+            DecimalFault::NotANumber if word.contains('#') => {
+                Some("put white space before the `#` of a comment")
+            }
+            fault => fault.help(),
+        };
+        (fault.what(), help)
+    })
 }

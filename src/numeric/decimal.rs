@@ -1,0 +1,69 @@
+//! Decimal numbers, as people write them.
+
+/// The reason why a word is not a finite number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DecimalFault {
+    /// It is another number than 0, and would be rounded to 0.
+    TooSmall,
+    /// It would be rounded to infinity.
+    TooLarge,
+    /// It is a word for infinity or for no number.
+    NotFinite,
+    /// It is another word.
+    NotANumber,
+}
+
+impl DecimalFault {
+    /// Says what the word is.
+    pub fn what(self) -> &'static str {
+        match self {
+            Self::TooSmall => "too small",
+            Self::TooLarge => "too large",
+            Self::NotFinite => "not a finite number",
+            Self::NotANumber => "not a number",
+        }
+    }
+
+    /// Says what would be right, where that is known.
+    pub fn help(self) -> Option<&'static str> {
+        let help = "numbers nearer to 0 than 5e-324 underflow to 0: write 0 if that is meant";
+        (self == Self::TooSmall).then_some(help)
+    }
+}
+
+/// Reads a finite number.
+///
+/// # Errors
+/// The reason why the word is not one.
+#[inline]
+pub fn read(word: &str) -> Result<f64, DecimalFault> {
+    match word.parse::<f64>() {
+        Ok(0.0) if underflows(word) => Err(DecimalFault::TooSmall),
+        Ok(number) if number.is_finite() => Ok(number),
+        Ok(_) if word.contains(|c: char| c.is_ascii_digit()) => Err(DecimalFault::TooLarge),
+        Ok(_) => Err(DecimalFault::NotFinite),
+        Err(_) => Err(DecimalFault::NotANumber),
+    }
+}
+
+/// Tells whether a number that is read as 0 is written as another one.
+fn underflows(word: &str) -> bool {
+    let mut digits = word.bytes().take_while(|byte| !byte.eq_ignore_ascii_case(&b'e'));
+    digits.any(|byte| matches!(byte, b'1'..=b'9'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_that_underflows_is_not_read_as_0() {
+        for word in ["1e-400", "-2.5E-330", "0.001e-9999"] {
+            assert_eq!(read(word), Err(DecimalFault::TooSmall), "{word}");
+        }
+        for word in ["0", "-0.0", "0e-400", ".0e5", "0.000E+9"] {
+            assert_eq!(read(word), Ok(0.0), "{word}");
+        }
+        assert_eq!(read("5e-324"), Ok(5e-324));
+    }
+}
