@@ -106,14 +106,14 @@ pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
         }
         let set = args.set.values.clone();
         args.set.set_by = args.frames.set_by();
-        // A sweep that ends beyond what the scene allows, and a frame that would replace a file of the scene, are told
-        // before the first frame is rendered.
+        // A sweep that ends beyond what the scene allows, and a frame whose files would replace one of the scene, are
+        // told before the first frame is rendered.
         if let [_, .., last] = &frames[..] {
             args.set.values = [&set[..], &last.sets].concat();
             let last = Source::read(&scene, &args.set)?.load(registry, args.method.accuracy()?);
             let model = last.map_err(Failure::Scene)?.model;
-            for frame in frames.iter().filter(|frame| frame.path.exists()) {
-                output::refuse_source(&frame.path, &scene, &model)?;
+            for frame in &frames {
+                args.refuse_sources(&frame.path, &scene, &model)?;
             }
         }
         for frame in frames {
@@ -139,6 +139,44 @@ pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
 }
 
 impl Args {
+    /// Returns the format of an image of full range.
+    fn full_range(&self, path: &Path) -> Option<FullRange> {
+        FullRange::of(path).filter(|_| self.format.is_none())
+    }
+
+    /// Returns the name that those of the images beside an image are derived from: beside one of full range, they are
+    /// PNGs.
+    fn main(&self, path: &Path) -> PathBuf {
+        if self.full_range(path).is_some() { path.with_extension("png") } else { path.to_owned() }
+    }
+
+    /// Refuses to render an image if one of the files that are written for it would replace a file of which the model was
+    /// read: the image, those beside it, a checkpoint where the render is stopped, and the parts of all these.
+    fn refuse_sources(&self, path: &Path, scene: &Path, model: &Model) -> Result<(), Failure> {
+        let refuse = |path: &Path, what| output::refuse_source_by(path, what, scene, model);
+        let mut images = vec![path.to_owned()];
+        for (aov, picture) in aov::pictures(&self.aov, &self.main(path)) {
+            if aov.is_exact() {
+                refuse(&aov::exact(&picture), "the image")?;
+            }
+            images.push(picture);
+        }
+        for image in &images {
+            refuse(image, "the image")?;
+        }
+        let mut begun = path.to_owned();
+        if let Some(number) = self.part.part {
+            for image in &images {
+                refuse(&part::beside(image, number), "a part of the image")?;
+            }
+            begun = part::beside(path, number);
+        }
+        match self.full_range(path) {
+            Some(_) => Ok(()),
+            None => refuse(&resume::beside(&begun), "a checkpoint"),
+        }
+    }
+
     /// Tells whether an image is rendered from its checkpoint on. Most frames of a film have none: they are complete or
     /// not begun.
     fn continues(&self, path: &Path) -> bool {
@@ -159,8 +197,7 @@ fn one(
     (scene, path): (&Path, PathBuf),
     stop: &Stop,
 ) -> Result<(), Failure> {
-    let full_range = FullRange::of(&path).filter(|_| args.format.is_none());
-    // Images beside one of full range are PNGs.
+    let full_range = args.full_range(&path);
     let format = if full_range.is_some() { Format::Png(args.compress) } else { format(args, &path)? };
     let cpu = args.cpu.cpu()?;
     let start = Instant::now();
@@ -177,7 +214,7 @@ fn one(
     let part = args.size.apply(camera)?;
     let made = provenance::texts(&source, &args.set, &model.camera.value, &part);
     let differences = Differences::of(registry, &source, &model);
-    output::refuse_source(&path, scene, &model)?;
+    args.refuse_sources(&path, scene, &model)?;
     if let Some(number) = args.part.part {
         return share(
             registry,
@@ -193,8 +230,7 @@ fn one(
         return Ok(());
     }
     let output = Output::open(&path)?;
-    let main = if full_range.is_some() { path.with_extension("png") } else { path.clone() };
-    let beside = aov::open((scene, &model), &args.aov, &main, &output)?;
+    let beside = aov::open(&model, &args.aov, &args.main(&path), &output)?;
     // The text of a large scene takes as much memory as its model.
     let source = (!beside.is_empty()).then_some(source);
     if full_range.is_some() && args.stop.resume {
@@ -266,7 +302,7 @@ fn share(
     let start = Instant::now();
     let plan = args.keep.plan(model);
     stats.building += start.elapsed();
-    let main = if full_range.is_some() { path.with_extension("png") } else { path.to_owned() };
+    let main = args.main(path);
     let share = part::Share {
         part: number,
         made,

@@ -104,8 +104,21 @@ fn an_image_does_not_replace_what_it_is_made_from() {
     fs::hard_link(at("bricks.png"), at("other.png")).expect("a name");
     symlink("wall.ray", at("link.png")).expect("a link");
     symlink("bricks.png", at("wall-depth.png")).expect("a link");
+    for name in
+        ["a.png.checkpoint", "b.png.part-1-of-2", "c.png.part-2-of-2.checkpoint", "d-depth.png.part-1-of-2"]
+    {
+        fs::hard_link(at("bricks.png"), at(name)).expect("a name");
+    }
+    fs::hard_link(at("white.ray"), at("e-normal.exr")).expect("a name");
     let before = |name: &str| fs::read(at(name)).expect("it is there");
     let (wall, bricks) = (before("wall.ray"), before("bricks.png"));
+    let refused = |args: &[&str], what: &str, by: &str| {
+        let args = [&["render", "wall.ray"], args].concat();
+        let said = format!(
+            "error: {what}, which {by} would replace\n |\n = help: name another file with `-o FILE`\n"
+        );
+        assert_eq!(outcome(&mut after("", &folder, &args)), (2, said), "{args:?}");
+    };
     for (output, more, what) in [
         ("wall.ray", &[][..], "`wall.ray` is the scene"),
         ("./link.png", &[], "`./link.png` is the scene"),
@@ -113,12 +126,29 @@ fn an_image_does_not_replace_what_it_is_made_from() {
         ("other.png", &[], "`other.png` is the image of texture `bricks`"),
         ("wall.png", &["--aov", "depth"], "`wall-depth.png` is the image of texture `bricks`"),
         ("white.ray", &[], "`white.ray` is a file that the scene includes"),
+        ("e.png", &["--aov", "depth,normal"], "`e-normal.exr` is a file that the scene includes"),
     ] {
-        let args = [&["render", "wall.ray", "--format", "png", "-o", output], more].concat();
-        let said = format!(
-            "error: {what}, which the image would replace\n |\n = help: name another file with `-o FILE`\n"
-        );
-        assert_eq!(outcome(&mut after("", &folder, &args)), (2, said), "{output}");
+        refused(&[&["--format", "png", "-o", output], more].concat(), what, "the image");
+    }
+    refused(
+        &["-o", "e.exr", "--aov", "normal"],
+        "`e-normal.exr` is a file that the scene includes",
+        "the image",
+    );
+    for (output, more, name, by) in [
+        ("a.png", &[][..], "a.png.checkpoint", "a checkpoint"),
+        ("b.png", &["--part", "1/2"], "b.png.part-1-of-2", "a part of the image"),
+        ("c.png", &["--part", "2/2"], "c.png.part-2-of-2.checkpoint", "a checkpoint"),
+        ("d.png", &["--part", "1/2", "--aov", "depth"], "d-depth.png.part-1-of-2", "a part of the image"),
+    ] {
+        let what = format!("`{name}` is the image of texture `bricks`");
+        refused(&[&["-o", output], more].concat(), &what, by);
+    }
+    // What belongs to another part or to another way of rendering is not written.
+    for args in [&["-o", "b.png"][..], &["-o", "b.png", "--part", "2/2"], &["-o", "d.png", "--aov", "depth"]]
+    {
+        let args = [&["render", "wall.ray", "--size", "64"], args].concat();
+        assert_eq!(outcome(&mut after("", &folder, &args)).0, 0, "{args:?}");
     }
     for (args, what) in [
         (&["verify", "wall.ray", "-o", "bricks.png"][..], "`bricks.png` is the image of texture `bricks`"),

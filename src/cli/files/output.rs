@@ -115,9 +115,14 @@ fn target(path: &Path) -> io::Result<PathBuf> {
 
 /// Refuses to write an image to a file that the model was read from, whatever its name here.
 pub fn refuse_source(path: &Path, scene: &Path, model: &Model) -> Result<(), Failure> {
-    let refused = |what| {
+    refuse_source_by(path, "the image", scene, model)
+}
+
+/// Refuses to replace a file that the model was read from, whatever its name here. `what` is what would replace it.
+pub fn refuse_source_by(path: &Path, what: &str, scene: &Path, model: &Model) -> Result<(), Failure> {
+    let refused = |source| {
         Err(Failure::Usage(
-            format!("`{}` is {what}, which the image would replace", path.display()),
+            format!("`{}` is {source}, which {what} would replace", path.display()),
             Some("name another file with `-o FILE`".to_owned()),
         ))
     };
@@ -126,6 +131,9 @@ pub fn refuse_source(path: &Path, scene: &Path, model: &Model) -> Result<(), Fai
 
 /// Says what a file is of which the model was read, whatever its name here; `None` for another file.
 pub fn source(path: &Path, scene: &Path, model: &Model) -> Option<String> {
+    if !path.exists() {
+        return None;
+    }
     let is_scene = || {
         if input::is_standard(scene) {
             let is_stdin = || Ok::<_, io::Error>(Handle::from_path(path)? == Handle::stdin()?);

@@ -39,12 +39,7 @@ pub struct Files {
 }
 
 /// Opens all files that are asked for; their names are derived from the main image's.
-pub fn open(
-    (scene, model): (&Path, &Model),
-    args: &Args,
-    main: &Path,
-    output: &Output,
-) -> Result<Vec<Files>, Failure> {
+pub fn open(model: &Model, args: &Args, main: &Path, output: &Output) -> Result<Vec<Files>, Failure> {
     if args.aov.is_empty() {
         return Ok(Vec::new());
     }
@@ -55,10 +50,7 @@ pub fn open(
         ));
     }
     let aovs = requested(args, model)?;
-    let opened = |path: PathBuf| {
-        output::refuse_source(&path, scene, model)?;
-        Output::open(&path).map(|output| (path, output))
-    };
+    let opened = |path: PathBuf| Output::open(&path).map(|output| (path, output));
     aovs.into_iter()
         .map(|aov| {
             let picture = picture(main, aov);
@@ -85,6 +77,11 @@ pub fn requested(args: &Args, model: &Model) -> Result<Vec<Aov>, Failure> {
         }
     }
     Ok(aovs)
+}
+
+/// Returns the paths of the images that are asked for, beside a main image of this name.
+pub fn pictures(args: &Args, main: &Path) -> impl Iterator<Item = (Aov, PathBuf)> {
+    args.aov.iter().map(move |aov| (*aov, picture(main, *aov)))
 }
 
 /// Returns the path of an image beside the main one.
