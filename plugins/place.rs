@@ -44,6 +44,6 @@ inventory::submit! {
                 help: "rounding grows with each copy: place the first object instead",
             });
         }
-        Ok(Body::placed(&object, placement, args.material_of_all()))
+        Ok(Body::placed(&object, (placement, args.planes_end_at()), args.material_of_all()))
     })
 }

@@ -65,6 +65,10 @@ impl<A: Marker> Hittable for Plane<A> {
         Some((self.normal.dot(from - self.point).abs() - rounding).max(0.0))
     }
 
+    fn ends_as_planes(&self) -> bool {
+        true
+    }
+
     fn plane(&self) -> Option<[DVec3; 2]> {
         Some([self.point, self.normal])
     }

@@ -75,6 +75,10 @@ impl<A: Marker> Hittable for Triangle<A> {
         self.plane.is_clear_of(region) || !Aabb::around(&self.corners).overlaps(region)
     }
 
+    fn ends_as_planes(&self) -> bool {
+        true
+    }
+
     fn plane(&self) -> Option<[DVec3; 2]> {
         Some([self.plane.point, self.plane.normal])
     }

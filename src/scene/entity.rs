@@ -276,6 +276,8 @@ pub struct Args {
     pub order: usize,
     /// The scene around the entity.
     pub setting: Arc<Setting>,
+    /// Whether the entity is an object that others are made of, which is not seen itself.
+    pub is_pattern: bool,
     attributes: Attributes,
 }
 
@@ -290,7 +292,7 @@ impl Args {
         setting: Arc<Setting>,
     ) -> Self {
         let attributes = Attributes::new((entity.name, entity.place), entity.attributes(), values);
-        Self { entity, name, order, setting, attributes }
+        Self { entity, name, order, setting, is_pattern: false, attributes }
     }
 
     /// Makes the arguments of an entity whose attributes all have their defaults, as far as they have any.
@@ -312,9 +314,10 @@ impl Args {
         self.setting.camera.accuracy
     }
 
-    /// Returns the z, in world units, beyond which the scene's camera cuts off planes, if it does.
+    /// Returns the z, in world units, beyond which the scene's camera cuts off planes, if it does. `None` for an object
+    /// that others are made of: its coordinates are not the world's, and what is seen of it ends elsewhere.
     pub fn planes_end_at(&self) -> Option<f64> {
-        self.setting.camera.camera.planes_end_at()
+        if self.is_pattern { None } else { self.setting.camera.camera.planes_end_at() }
     }
 
     /// Returns the film of a camera with this entity's attributes.

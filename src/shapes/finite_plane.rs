@@ -41,6 +41,10 @@ impl<A: Marker> Hittable for FinitePlane<A> {
         self.plane.is_clear_of(region) || !self.rectangle.around().overlaps(region)
     }
 
+    fn ends_as_planes(&self) -> bool {
+        true
+    }
+
     fn plane(&self) -> Option<[DVec3; 2]> {
         Some([self.plane.point, self.plane.normal])
     }

@@ -113,6 +113,13 @@ pub trait Hittable: Send + Sync {
         None
     }
 
+    /// Tells whether the shape ends where the camera cuts off planes
+    /// ([`planes_end_at`](crate::world::camera::Camera::planes_end_at)). Its copies end at the same z of the world.
+    #[inline]
+    fn ends_as_planes(&self) -> bool {
+        false
+    }
+
     /// Tells whether the search for a ray's hit may take as long as several plain rays. Shapes without bounds are not
     /// asked.
     #[inline]

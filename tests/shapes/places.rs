@@ -58,6 +58,47 @@ fn few_hits_of_copies_of_implicit_surfaces_take_a_proof() {
 }
 
 #[test]
+fn copies_of_planes_end_where_planes_end_in_the_world() {
+    let rectangle = |name: &str, corner: &str| {
+        format!("fplane {name} {{ material red normal 0 1 0 point {corner} xdir 1 0 0 dimensions 4 8 }}\n")
+    };
+    let triangle = |name: &str, z: [f64; 2]| {
+        let [near, far] = z;
+        format!(
+            "triangle {name} {{ material red vertex1 1 2 {near} vertex2 6 1 {near} vertex3 3 1 {far} }}\n"
+        )
+    };
+    let copy = |of: &str, z: f64| format!("place {of}p {{ object {of} translation 0 0 {z} }}\n");
+    for (copied, written) in [
+        // In front of the pattern's own z = 0.01, but not of the world's; and the other way round.
+        (rectangle("o", "2 1 4") + &copy("o", -4.0), rectangle("o", "2 1 0")),
+        (rectangle("o", "2 1 0") + &copy("o", 4.0), rectangle("o", "2 1 4")),
+        (rectangle("o", "2 1 9") + &copy("o", -4.0) + &copy("op", -1.0), rectangle("o", "2 1 4")),
+        (triangle("o", [6.0, 0.0]) + &copy("o", -4.0), triangle("o", [2.0, -4.0])),
+        (
+            "plane o { material red normal 0 1 0.1 point 0 0 0 } place p { object o translation 0 -0.5 -6 }".into(),
+            "plane p { material red normal 0 1 0.1 point 0 -0.5 -6 }".into(),
+        ),
+        (
+            "plane o { material red normal 0 0 1 point 0 0 -0.01 } place p { object o translation 0 0 0.021 }".into(),
+            String::new(),
+        ),
+    ] {
+        for method in ["exact", "strict", "classic"] {
+            let camera = format!("8 accuracy {method} }}");
+            let scenes = [&copied, &written].map(|scene| format!("{BEFORE}{scene}").replacen("8 }", &camera, 1));
+            let [copied, written] = scenes.map(|scene| model(&scene));
+            assert_eq!(render(&copied), render(&written), "{method}: {:?}", copied.objects[1].args.name());
+            let plan = Plan::new(&copied);
+            for (x, y) in (0..12).flat_map(|y| (0..16).map(move |x| (10 * x, 10 * y))) {
+                let is_open = method == "classic" && verify::pixel(&plan, x, y) == Verdict::Tie;
+                assert!(is_open || verify::pixel(&plan, x, y) == Verdict::Proven, "{method} {x} {y}");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_placed_object_looks_as_the_same_object_written_out() {
     for (pattern, placed, written) in [
         (

@@ -34,7 +34,8 @@ impl Check<'_, '_> {
         }
         for (order, datum) in &patterns {
             let Datum::Object { body, .. } = datum else { continue };
-            let args = store.args(*order);
+            let mut args = store.args(*order);
+            args.is_pattern = true;
             if store.sound(*order).is_some()
                 && !args.refers_to_nothing()
                 && let Some(constructed) = self.body(args, source)

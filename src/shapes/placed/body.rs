@@ -13,9 +13,10 @@ use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
 
 impl Placed {
-    /// Makes a copy of an object with this material.
-    pub fn body(body: &Arc<Body>, placement: Placement, material: &Material) -> Body {
-        let shape = Shape::new(Self::new(body, placement)).by::<ByPackets, ByPlacement>();
+    /// Makes a copy of an object with this material, which ends at a z of the world if the object is cut off as planes are.
+    pub fn body(body: &Arc<Body>, (placement, max_z): (Placement, Option<f64>), material: &Material) -> Body {
+        let shape = Self::new(body, placement).up_to(max_z);
+        let shape = Shape::new(shape).by::<ByPackets, ByPlacement>();
         let is_plain = body.shader.uniform(material) == Plain.uniform(material) && !body.shader.bends();
         let shaded = |shape| Body::shaded(shape, PlacedShader::new(body, placement, None));
         let copy = if is_plain { Body::plain(shape) } else { shaded(shape) };

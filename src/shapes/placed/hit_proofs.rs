@@ -13,7 +13,10 @@ impl<F: Precise> HitProofs<F> for Placed {
     fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (HitEnclosure<F>, usize) {
         let own = Line { origin: self.placement.point(line.origin), dir: self.placement.vector(line.dir) };
         match self.body.shape.proven() {
-            Some(proven) => F::proofs(proven).first_hit(&own, leaves),
+            Some(proven) => {
+                let (found, part) = F::proofs(proven).first_hit(&own, leaves);
+                (self.max_z.kept_hit(line, found), part)
+            }
             None => (HitEnclosure::Doubtful(F::of(0.0)), 0),
         }
     }
@@ -61,7 +64,9 @@ impl OverFootprint for Placed {
     fn hits(&self, line: &Line<Affine>, leaves: Option<usize>, met: &mut dyn FnMut(FootprintHit, usize)) {
         let own = Line { origin: self.placement.point(line.origin), dir: self.placement.vector(line.dir) };
         match self.body.shape.proven() {
-            Some(proven) => proven.hits(&own, leaves, met),
+            Some(proven) => proven.hits(&own, leaves, &mut |found, part| {
+                self.max_z.kept_footprint(line, found).into_iter().for_each(|found| met(found, part));
+            }),
             None => met(FootprintHit::Doubtful(0.0), 0),
         }
     }

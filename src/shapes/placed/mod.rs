@@ -6,6 +6,7 @@
 
 mod body;
 mod hit_proofs;
+mod image_plane;
 mod object_space;
 mod packets;
 mod shape;

@@ -86,6 +86,13 @@ impl Placed {
             }
         }
         to_world(cpu, error, &own.lengths[..count], ends, near, far);
+        if self.max_z.0.is_some() {
+            for lane in 0..count {
+                let bracket = Bracket { near: near[lane], far: far[lane] };
+                Bracket { near: near[lane], far: far[lane] } =
+                    self.max_z.kept_bracket(&rays.get(lane), bracket, rays.origin_error);
+            }
+        }
         if is_from_camera && drift.is_none() {
             let mut bounds = None;
             for lane in 0..count {
@@ -189,8 +196,9 @@ impl Packets for Shape<Placed, ByPackets, ByPlacement> {
         doubt: &mut [u64],
     ) -> bool {
         let (placed, count) = (&self.shape, t_max.len());
-        let is_of_the_notes = placed.body.shape.packets().is_of_the_notes();
-        let Some(bounds) = placed.bounds().filter(|_| !is_of_the_notes) else {
+        // The shape does not know where its copy ends.
+        let is_whole = placed.max_z.0.is_none() && !placed.body.shape.packets().is_of_the_notes();
+        let Some(bounds) = placed.bounds().filter(|_| is_whole) else {
             let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
             let (near, far) = (&mut near[..count], &mut far[..count]);
             placed.brackets(cpu, rays, sides, None, t_max, (&mut *near, &mut *far));

@@ -1,5 +1,6 @@
 //! The shape of a copy: rays and hits of single rays in the coordinates of its object.
 
+use super::image_plane::MaxZ;
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::facet::Facet;
 use crate::geometry::placement::Placement;
@@ -22,6 +23,8 @@ pub struct Placed {
     pub(super) to_object_space: DMat3,
     /// A bounding box in world coordinates.
     bounds: Option<Aabb>,
+    /// Where a copy of a plane ends.
+    pub(super) max_z: MaxZ,
 }
 
 /// Marks a shape whose hits are proven in the coordinates of the object that it is a copy of.
@@ -53,7 +56,14 @@ impl Placed {
             placement,
             to_object_space,
             bounds: bounds(body, placement, to_object_space),
+            max_z: MaxZ(None),
         }
+    }
+
+    /// Returns the copy without what lies beyond a z, in world units, if one is given and the object is cut off as planes
+    /// are.
+    pub(super) fn up_to(self, max_z: Option<f64>) -> Self {
+        Self { max_z: MaxZ(max_z.filter(|_| self.ends_as_planes())), ..self }
     }
 
     /// Takes a point from the world to the object's own coordinates.
@@ -129,7 +139,7 @@ impl Placed {
         }
         let (own, length) = self.object_ray(ray);
         let bracket = self.body.shape.t_bounds(&own, &self.object_range(ray, range, length));
-        in_world(bracket, length, 0.0, range)
+        self.max_z.kept_bracket(ray, in_world(bracket, length, 0.0, range), range.origin_error)
     }
 
     /// Returns a bracket of the first hits of all rays within a drift of a camera ray.
@@ -138,7 +148,7 @@ impl Placed {
         let (own, length) = self.object_ray(ray);
         let object_range = RayRange { origin_error: 0.0, ..self.object_range(ray, range, length) };
         let bracket = self.body.shape.packets().t_bounds_within(&own, &object_range, drift);
-        in_world(bracket, length, drift.dir, range)
+        self.max_z.kept_bracket(ray, in_world(bracket, length, drift.dir, range), 0.0)
     }
 }
 
@@ -190,7 +200,8 @@ impl Hittable for Placed {
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         let (own, length) = self.object_ray(ray);
         let range_there = self.object_range(ray, range, length);
-        range.keep(self.body.shape.distance(&own, &range_there) / length)
+        let distance = range.keep(self.body.shape.distance(&own, &range_there) / length);
+        if self.max_z.cuts_off(ray, distance) { MISS } else { distance }
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
@@ -236,6 +247,10 @@ impl Hittable for Placed {
 
     fn is_two_sided(&self) -> bool {
         self.body.shape.is_two_sided()
+    }
+
+    fn ends_as_planes(&self) -> bool {
+        self.body.shape.ends_as_planes()
     }
 
     fn may_be_costly(&self) -> bool {
@@ -284,7 +299,8 @@ impl Proofs for Shape<Placed, ByPackets, ByPlacement> {
     }
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        self.shape.body.shape.certify(&sight.within(self.shape.placement), precision)
+        let found = self.shape.body.shape.certify(&sight.within(self.shape.placement), precision);
+        self.shape.max_z.kept_enclosure(sight, found)
     }
 
     fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {

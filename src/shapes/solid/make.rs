@@ -96,7 +96,7 @@ impl Solid {
     fn placed(&self, placement: Placement) -> Self {
         let place = |Part { name, body, material }: &Part| Part {
             name: name.clone(),
-            body: Arc::new(Placed::body(body, placement, material)),
+            body: Arc::new(Placed::body(body, (placement, None), material)),
             material: material.clone(),
         };
         Self { parts: self.parts.iter().map(place).collect(), tree: self.tree.clone() }
@@ -117,15 +117,20 @@ impl Body {
         Self::of_solid(Solid::combined(operation, solids?), material)
     }
 
-    /// Makes a copy of an object, which may be a solid, with this material or its own.
-    pub fn placed(object: &Arc<Self>, placement: Placement, material: Option<Arc<Material>>) -> Self {
+    /// Makes a copy of an object, which may be a solid, with this material or its own. A copy of a plane ends at a z of the
+    /// world, if one is given.
+    pub fn placed(
+        object: &Arc<Self>,
+        (placement, max_z): (Placement, Option<f64>),
+        material: Option<Arc<Material>>,
+    ) -> Self {
         if let Some(solid) = &object.solid
             && let Ok(copy) = Self::of_solid(solid.placed(placement), material.clone())
         {
             return copy;
         }
         let material = material.or_else(|| object.material.clone()).unwrap_or_default();
-        let copy = Placed::body(object, placement, &material);
+        let copy = Placed::body(object, (placement, max_z), &material);
         Self { material: Some(material), ..copy }
     }
 

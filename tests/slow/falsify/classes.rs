@@ -1,5 +1,6 @@
 //! Classes of scenes: shapes, and rays aimed where the arithmetic is hard.
 
+mod far;
 mod flat;
 mod formulas;
 mod meshes;
@@ -31,7 +32,7 @@ const fn closed(name: &'static str, rays: [usize; 2], ask: fn(&mut Random) -> Qu
 }
 
 /// All classes.
-pub const CLASSES: [Class; 49] = [
+pub const CLASSES: [Class; 51] = [
     class("sphere", [600_000, 4000], round::spheres),
     class("sphere, tangents", [400_000, 4000], round::sphere_tangents),
     class("sphere, from inside", [100_000, 1000], round::inside),
@@ -60,6 +61,7 @@ pub const CLASSES: [Class; 49] = [
     class("place, spheres", [1_000_000, 1500], meshes::placed_spheres),
     class("place, meshes", [1_000_000, 1500], meshes::placed_meshes),
     class("place, places", [1_000_000, 1500], meshes::placed_places),
+    class("place, planes", [1_000_000, 1500], flat::placed),
     closed("place, from inside", [1_000_000, 3000], meshes::placed_inside),
     class("revsurf, surfers", [900_000, 800], revolved::surfers),
     class("revsurf, formulas", [80_000, 600], revolved::formulas),
@@ -81,4 +83,5 @@ pub const CLASSES: [Class; 49] = [
     class("solid, sides that coincide", [1_000_000, 800], solids::flush),
     class("solid, ends that coincide", [1_000_000, 600], solids::ends),
     class("solid, from inside", [1_000_000, 600], solids::inside),
+    class("far away, edges", [1_000_000, 1200], far::edges),
 ];

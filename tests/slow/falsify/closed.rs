@@ -38,8 +38,9 @@ fn crossing(ray: &Ray, normal: &Vector, point: &Vector) -> Result<Crossing, Hit>
         return Err(Hit::Miss);
     }
     // Planes are not hit on the viewer's side of the image plane, where z > 1/100. Between 1/100 and its nearest f64 it
-    // is a tie.
-    let z = ray.origin[2].mul(&bottom).add(&ray.dir[2].mul(&top));
+    // is a tie. A copy is a plane in another place: its z is that in the world.
+    let Some([origin, dir]) = &ray.world_z else { return Ok(Crossing { top, bottom }) };
+    let z = origin.mul(&bottom).add(&dir.mul(&top));
     let real = z.mul(&Dyadic::int(100)).compare(&bottom);
     let nearest = z.compare(&Dyadic::from(0.01).mul(&bottom));
     match (real == Greater, nearest == Greater) {

@@ -124,7 +124,7 @@ fn hits_and_proofs_of_given_scenes_are_right() {
         let mesh = fs::read_to_string(mesh).unwrap_or_default();
         let [width, height] = text::Scene::read(&text, &mesh).pixels.map(|side| side as usize);
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y])).collect();
-        let question = scenes::Question { text, mesh, pixels, is_picture: false };
+        let question = scenes::Question { text, mesh, pixels, is_picture: true };
         let (start, mut tally) = (Instant::now(), Tally::default());
         tally.judge(&CLASSES[0], &question, 0, &renderer, 1);
         println!("{}", tally.row(path, start.elapsed()));

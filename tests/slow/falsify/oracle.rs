@@ -17,6 +17,8 @@ use std::cmp::Ordering;
 pub struct Truth {
     /// The index of the first object in the scene among those that are hit at the least distance.
     pub first: Option<usize>,
+    /// The index of the material that is seen, if all objects and all parts of a solid have one of their own.
+    pub material: Option<usize>,
     /// The place of the hit, as a multiple of the ray's direction.
     pub place: Option<Wide>,
     /// Whether other objects are hit at the same distance, to within 2^-200 of it.
@@ -26,7 +28,7 @@ pub struct Truth {
 }
 
 pub fn first(scene: &Scene, ray: &Ray) -> Truth {
-    let mut truth = Truth { first: None, place: None, is_shared: false, is_touch: false };
+    let mut truth = Truth { first: None, material: None, place: None, is_shared: false, is_touch: false };
     for (index, shape) in scene.objects.iter().enumerate() {
         let place = match hit(shape, ray) {
             Hit::Miss => continue,
@@ -45,6 +47,12 @@ pub fn first(scene: &Scene, ray: &Ray) -> Truth {
             None => truth.is_shared = true,
         }
     }
+    truth.material = truth.first.and_then(|first| match (&*scene.objects[first], &truth.place) {
+        (Shape::Combined { shapes, is_one: false, .. }, Some(place)) => {
+            shapes.iter().position(|part| solid::crossed(part, ray, place).is_some())
+        }
+        _ => Some(first),
+    });
     truth
 }
 

@@ -6,9 +6,9 @@ use super::ray::{Ray, minus};
 use super::text::Vector;
 use super::wide::Wide;
 
-/// The significant bits of sines, cosines and quotients. Of a rotation by other than right angles, nothing is exact, and
-/// a ray that meets an edge to within 2^-300 is taken to pass on one side.
-const BITS: i64 = 400;
+/// The significant bits of sines, cosines, roots and quotients. Of a rotation by other than right angles, nothing is exact,
+/// and a ray that meets an edge to within 2^-300 is taken to pass on one side.
+pub const BITS: i64 = 400;
 
 /// A scaling along the axes, then rotations around x, y and z, then a translation.
 pub struct Place {
@@ -27,7 +27,7 @@ impl Place {
     /// Returns a ray in the shape's own coordinates. Its places are those of the ray in the world.
     pub fn own(&self, ray: &Ray) -> Ray {
         let origin = self.own_vector(minus(&ray.origin, &self.translation));
-        Ray { origin, dir: self.own_vector(ray.dir.clone()), length: Wide::int(1) }
+        Ray { origin, dir: self.own_vector(ray.dir.clone()), length: Wide::int(1), ..ray.clone() }
     }
 
     fn own_vector(&self, mut of: Vector) -> Vector {
@@ -53,7 +53,7 @@ impl Place {
 }
 
 /// Returns the sine and the cosine of an angle in degrees.
-fn sin_cos(degrees: &Dyadic) -> [Dyadic; 2] {
+pub fn sin_cos(degrees: &Dyadic) -> [Dyadic; 2] {
     let quarters = degrees.to_f64(false) / 90.0;
     let exact = |sin, cos| [Dyadic::int(sin), Dyadic::int(cos)];
     if quarters.fract() == 0.0 {

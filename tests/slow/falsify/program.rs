@@ -1,5 +1,6 @@
 //! The program under test. All questions to it go through this file.
 
+use super::tally;
 use crate::common::registry;
 use std::fs;
 use std::path::Path;
@@ -24,6 +25,8 @@ pub enum Claim {
 /// The first hit that the program finds for a ray.
 pub struct ProgramHit {
     pub first: Option<usize>,
+    /// The index of the material that is hit.
+    pub material: Option<usize>,
     pub distance: f64,
     /// The origin and the direction of the ray as the program rounds them.
     pub origin: [f64; 3],
@@ -46,6 +49,10 @@ impl Program {
         let hit = trace::first_hit(&Plan::new(&self.0), &self.0.camera.value.sight(x as f64, y as f64));
         ProgramHit {
             first: hit.as_ref().map(|hit| self.entity(hit.index)),
+            material: hit.as_ref().and_then(|hit| {
+                let ambient = hit.object.material.ambient.to_array();
+                tally::material_of(ambient.map(|channel| if channel > 0.0 { 255 } else { 0 }))
+            }),
             distance: hit.map_or(f64::INFINITY, |hit| hit.distance),
             origin: ray.origin.to_array(),
             dir: ray.dir.to_array(),

@@ -2,7 +2,7 @@
 
 use super::dyadic::Dyadic;
 use super::number::Number;
-use super::text::{Scene, Vector};
+use super::text::{Scene, Vector, View};
 use super::wide::Wide;
 
 /// The ray `origin + s * dir`, and the length of `dir`.
@@ -11,28 +11,47 @@ pub struct Ray {
     pub origin: Vector,
     pub dir: Vector,
     pub length: Wide,
+    /// The z of `origin` and of `dir` in the world, also where the ray is in a copy's own coordinates; `None` where the
+    /// camera does not cut planes off.
+    pub world_z: Option<[Dyadic; 2]>,
 }
 
 impl Ray {
     /// Returns the exact ray from the eye through a pixel, whose coordinates count from the left and from the bottom.
     pub fn of_pixel(scene: &Scene, x: i64, y: i64) -> Self {
-        // x / (width - 1) of the image plane's width, or the middle of a single pixel, times both denominators.
-        let part = |at: i64, pixels: i64| if pixels > 1 { (at, pixels - 1) } else { (1, 2) };
-        let [(x, of_x), (y, of_y)] = [part(x, scene.pixels[0]), part(y, scene.pixels[1])];
-        let place = [
-            scene.screen[0].mul(&Dyadic::int(x * of_y)),
-            scene.screen[1].mul(&Dyadic::int(y * of_x)),
-            Dyadic::zero(),
-        ];
-        let both = Dyadic::int(of_x * of_y);
-        let dir = [0, 1, 2].map(|axis| place[axis].sub(&scene.eye[axis].mul(&both)));
-        let length = Wide::root_of(&dot(&dir, &dir));
-        Self { origin: scene.eye.clone(), dir, length }
+        let [width, height] = scene.pixels;
+        let dir = match &scene.view {
+            View::Screen(screen) => {
+                // x / (width - 1) of the image plane's width, or the middle of a single pixel, times both denominators.
+                let part = |at: i64, pixels: i64| if pixels > 1 { (at, pixels - 1) } else { (1, 2) };
+                let [(x, of_x), (y, of_y)] = [part(x, width), part(y, height)];
+                let place = [
+                    screen[0].mul(&Dyadic::int(x * of_y)),
+                    screen[1].mul(&Dyadic::int(y * of_x)),
+                    Dyadic::zero(),
+                ];
+                let both = Dyadic::int(of_x * of_y);
+                [0, 1, 2].map(|axis| place[axis].sub(&scene.eye[axis].mul(&both)))
+            }
+            View::Ahead([forward, right, up]) => {
+                // The image's edges are half a pixel beyond the outermost pixels; all times its width in pixels.
+                let [x, y] = [2 * x + 1 - width, 2 * y + 1 - height].map(Dyadic::int);
+                let part = |axis: usize| right[axis].mul(&x).add(&up[axis].mul(&y));
+                [0, 1, 2].map(|axis| forward[axis].mul(&Dyadic::int(width)).add(&part(axis)))
+            }
+        };
+        Self { length: Wide::root_of(&dot(&dir, &dir)), ..Self::new(scene, scene.eye.clone(), dir) }
     }
 
     /// Returns a ray of `f64` numbers as they are. Distances along it are in units of its direction's length.
-    pub fn as_is(origin: [f64; 3], dir: [f64; 3]) -> Self {
-        Self { origin: origin.map(Dyadic::from), dir: dir.map(Dyadic::from), length: Wide::int(1) }
+    pub fn as_is(scene: &Scene, origin: [f64; 3], dir: [f64; 3]) -> Self {
+        Self::new(scene, origin.map(Dyadic::from), dir.map(Dyadic::from))
+    }
+
+    fn new(scene: &Scene, origin: Vector, dir: Vector) -> Self {
+        let does_cut = matches!(scene.view, View::Screen(_));
+        let world_z = does_cut.then(|| [origin[2].clone(), dir[2].clone()]);
+        Self { origin, dir, length: Wide::int(1), world_z }
     }
 
     /// Returns the distance of a place along the ray.

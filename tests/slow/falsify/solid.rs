@@ -18,7 +18,7 @@ const MOST: usize = 1000;
 /// Returns the places ahead of a ray's origin where it crosses the surface of a closed shape; `None` if it touches
 /// something exactly.
 pub fn crossings(shape: &Shape, ray: &Ray) -> Option<Vec<Wide>> {
-    let Shape::Combined { operation, shapes } = shape else { return of_one(shape, ray) };
+    let Shape::Combined { operation, shapes, .. } = shape else { return of_one(shape, ray) };
     let (mut inside, mut all) = (Vec::new(), Vec::new());
     for (index, shape) in shapes.iter().enumerate() {
         let places = crossings(shape, ray)?;
@@ -87,8 +87,10 @@ pub fn crossed<'s>(shape: &'s Shape, ray: &Ray, at: &Wide) -> Option<(&'s Shape,
 
 /// Returns a ray from one of its places on.
 fn from(ray: &Ray, place: &Dyadic) -> Ray {
-    let origin = [0, 1, 2].map(|axis| ray.origin[axis].add(&ray.dir[axis].mul(place)));
-    Ray { origin, ..ray.clone() }
+    let ahead = |origin: &Dyadic, dir: &Dyadic| origin.add(&dir.mul(place));
+    let origin = [0, 1, 2].map(|axis| ahead(&ray.origin[axis], &ray.dir[axis]));
+    let world_z = ray.world_z.as_ref().map(|[z, dir]| [ahead(z, dir), dir.clone()]);
+    Ray { origin, world_z, ..ray.clone() }
 }
 
 impl Operation {

@@ -82,7 +82,7 @@ impl Tally {
             if let Some(picture) = &picture {
                 let [width, height] = program.size();
                 let seen = picture[(height - 1 - pixel[1]) * width + pixel[0]];
-                if object_of(seen) != found.first {
+                if material_of(seen) != found.material {
                     self.differ += 1;
                     self.keep("packets", number, question, *pixel);
                 }
@@ -101,7 +101,7 @@ impl Tally {
         self.rays += 1;
         let real = Ray::of_pixel(scene, pixel[0] as i64, pixel[1] as i64);
         let truth = oracle::first(scene, &real);
-        let rounded = Ray::as_is(found.origin, found.dir);
+        let rounded = Ray::as_is(scene, found.origin, found.dir);
         let of_rounded = oracle::first(scene, &rounded);
         // The smaller of the two errors of the distance counts, since the rounded ray itself has an error.
         let by_real = Off::of(scene, &real, &truth, found);
@@ -252,8 +252,8 @@ impl Tally {
     }
 }
 
-/// Returns the index of the object that a pixel shows, by the channels that are 255.
-fn object_of(seen: [u8; 3]) -> Option<usize> {
+/// Returns the index of the material that a pixel shows, by the channels that are 255.
+pub fn material_of(seen: [u8; 3]) -> Option<usize> {
     match seen.map(|channel| channel == 255) {
         [true, true, _] => Some(3),
         [true, _, _] => Some(0),
@@ -275,7 +275,11 @@ struct Off {
 
 impl Off {
     fn of(scene: &Scene, ray: &Ray, truth: &Truth, found: &ProgramHit) -> Self {
-        let mut off = Self { is_hit: truth.first == found.first, error: 0.0, off: 0.0 };
+        let mut off = Self {
+            is_hit: truth.first == found.first && truth.material == found.material,
+            error: 0.0,
+            off: 0.0,
+        };
         if let (true, Some(first), Some(place)) = (off.is_hit, truth.first, &truth.place) {
             if !found.distance.is_finite() {
                 off.is_hit = false;

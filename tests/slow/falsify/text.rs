@@ -2,7 +2,8 @@
 
 use super::dyadic::Dyadic;
 use super::formula::Formula;
-use super::place::Place;
+use super::place::{self, BITS, Place};
+use super::ray::{cross, dot, minus, times};
 use super::spline::Spline;
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -13,10 +14,19 @@ pub type Vector = [Dyadic; 3];
 /// The part of a scene that first hits depend on.
 pub struct Scene {
     pub pixels: [i64; 2],
-    pub screen: [Dyadic; 2],
+    pub view: View,
     pub eye: Vector,
     /// The objects that are seen where they are, not only where they are placed.
     pub objects: Vec<Rc<Shape>>,
+}
+
+/// What the viewer looks through.
+pub enum View {
+    /// The rectangle at z = 0 of this width and height, from the world's origin on. It cuts planes off.
+    Screen([Dyadic; 2]),
+    /// An image around the line of sight: the vector to its middle, and from there to the middle of its right edge and as
+    /// far up.
+    Ahead([Vector; 3]),
 }
 
 /// An object, with its numbers as the text has them.
@@ -78,16 +88,30 @@ pub enum Shape {
         shape: Rc<Shape>,
         place: Place,
     },
-    /// Closed shapes, combined.
+    /// Closed shapes, combined. Each has its own material, unless all have one.
     Combined {
         operation: Operation,
         shapes: Vec<Rc<Shape>>,
+        is_one: bool,
     },
 }
 
 impl Shape {
     fn revolved(profile: Formula, direction: Vector, base: Vector, height: Dyadic) -> Self {
         Self::Revolved { widest: profile.most_up_to(height.to_f64(true)), profile, direction, base, height }
+    }
+}
+
+impl View {
+    /// `degrees` is the angle at which the width of the image is seen.
+    fn ahead(forward: Vector, up: &Vector, degrees: &Dyadic) -> Self {
+        let right = cross(&forward, up);
+        let [far, wide] = [&forward, &right].map(|of| dot(of, of).root(BITS, false));
+        let [sin, cos] = place::sin_cos(&degrees.shifted(-1));
+        let half = sin.divided(&cos, BITS, false);
+        let up = times(&cross(&right, &forward), &half.divided(&wide, BITS, false));
+        let right = times(&right, &half.mul(&far).divided(&wide, BITS, false));
+        Self::Ahead([forward, right, up])
     }
 }
 
@@ -154,7 +178,7 @@ fn words(text: &str) -> Vec<&str> {
 /// The notes' profiles, in the order of their numbers.
 const SURFERS: [&str; 4] = ["2 + sin(y)", "-4/6 * (y - 6)", "1 + 0.5 * cos(y)", "1 + 0.5 * sin(y)"];
 
-const ATTRIBUTES: [&str; 39] = [
+const ATTRIBUTES: [&str; 43] = [
     "objects",
     "formula",
     "points",
@@ -162,6 +186,10 @@ const ATTRIBUTES: [&str; 39] = [
     "pixeldim",
     "worlddim",
     "viewpoint",
+    "position",
+    "target",
+    "up",
+    "angle",
     "samples",
     "ambient",
     "diffuse",
@@ -242,7 +270,7 @@ impl Scene {
         let mut order = Vec::new();
         let mut scene = Self {
             pixels: [1, 1],
-            screen: [Dyadic::int(8), Dyadic::int(6)],
+            view: View::Screen([8, 6].map(Dyadic::int)),
             eye: [4, 3, 6].map(Dyadic::int),
             objects: Vec::new(),
         };
@@ -283,7 +311,8 @@ impl Scene {
                     "intersection" => Operation::Intersection,
                     _ => Operation::Difference,
                 };
-                named.insert(name, (Rc::new(Shape::Combined { operation, shapes }), true));
+                let is_one = attributes.0.contains_key("material");
+                named.insert(name, (Rc::new(Shape::Combined { operation, shapes, is_one }), true));
                 order.push(name);
             } else if let Some(shape) = scene.shape(kind, &attributes, mesh, object) {
                 named.insert(name, (Rc::new(shape), true));
@@ -300,8 +329,15 @@ impl Scene {
         Some(match kind {
             "camera" => {
                 self.pixels = a.pair("pixeldim").map(|side| side.to_f64(false) as i64);
-                self.screen = a.pair("worlddim");
+                self.view = View::Screen(a.pair("worlddim"));
                 self.eye = a.vector("viewpoint");
+                return None;
+            }
+            "look_at" => {
+                self.pixels = a.pair("pixeldim").map(|side| side.to_f64(false) as i64);
+                self.eye = a.vector("position");
+                let forward = minus(&a.vector("target"), &self.eye);
+                self.view = View::ahead(forward, &a.vector_or("up", [0, 1, 0]), &a.number("angle"));
                 return None;
             }
             "material" | "light" => return None,

@@ -1,7 +1,9 @@
 //! Planes, rectangles and triangles.
 
+use super::meshes::{Copy, PATTERN};
 use crate::falsify::random::{Point, Random, cross, dot, moved, turned, unit};
 use crate::falsify::scenes::{Aim, Question, numbers};
+use std::fmt::Write;
 
 fn plane(normal: Point, point: Point) -> String {
     format!("plane normal {} point {}", numbers(normal), numbers(point))
@@ -185,4 +187,45 @@ pub fn rugs(random: &mut Random) -> Question {
     };
     let objects = [object(), object(), object()];
     if random.once_in(2) { aim.many(random, &objects) } else { aim.picture(&objects) }
+}
+
+/// Returns a scene of copies, and copies of copies, of planes and of parts of planes, hit where copies of planes end or
+/// anywhere else: at z = 0.01 in the world, whatever their own z is.
+pub fn placed(random: &mut Random) -> Question {
+    let (mut aim, is_at_end) = (Aim::plain(random, 3.0), random.once_in(2));
+    if is_at_end {
+        let by = (0.01 * (1.0 + random.offset()) - aim.target[2]) / aim.u[2];
+        aim.target = moved(aim.target, by, aim.u);
+    }
+    let mut patterns = PATTERN.to_owned();
+    let mut objects = Vec::new();
+    for index in 0..random.whole(1, 3) as usize {
+        let (n, point) = (normal(random), [0; 3].map(|_| random.between(-8.0, 8.0)));
+        let one = turned(n, random.between(0.0, 6.0));
+        let other = unit(cross(n, one));
+        let corner = moved(moved(point, -4.0, one), -3.0, other);
+        let of = match random.below(3) {
+            0 => plane(n, point),
+            1 => rectangle(n, one, corner, [8.0, 6.0]),
+            _ => triangle([corner, moved(corner, 12.0, one), moved(corner, 12.0, other)]),
+        };
+        let (kind, rest) = of.split_once(' ').expect("a type and attributes");
+        writeln!(patterns, "{kind} own{index} {{ material own {rest} }}").expect("room");
+        let (mut name, mut spot) = (format!("own{index}"), point);
+        if random.once_in(3) {
+            let at = [0; 3].map(|_| random.between(-9.0, 9.0));
+            let attributes = Copy::new(random, 1.0).attributes(&name, spot, at);
+            name += "copy";
+            writeln!(patterns, "place {name} {{ material own {attributes} }}").expect("room");
+            spot = at;
+        }
+        let at = moved(aim.target, random.between(0.0, 0.5) * index as f64, random.direction());
+        objects.push(format!("place {}", Copy::new(random, 1.0).attributes(&name, spot, at)));
+    }
+    let question = match random.below(4) {
+        _ if is_at_end => aim.question(&objects),
+        0 => aim.picture(&objects),
+        _ => aim.many(random, &objects),
+    };
+    question.with_patterns(&patterns)
 }

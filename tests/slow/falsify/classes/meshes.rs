@@ -267,13 +267,13 @@ impl Turn {
 }
 
 /// A copy's rotation, its scale and the attributes that say so.
-struct Copy {
+pub struct Copy {
     turn: Turn,
     scale: Point,
 }
 
 impl Copy {
-    fn new(random: &mut Random, far: f64) -> Self {
+    pub fn new(random: &mut Random, far: f64) -> Self {
         let turn = Turn::new(random);
         let scale = match random.below(4) {
             0 => [1.0; 3],
@@ -289,7 +289,7 @@ impl Copy {
     }
 
     /// Returns the attributes of a copy of an object that puts a point of it somewhere.
-    fn attributes(&self, object: &str, point: Point, at: Point) -> String {
+    pub fn attributes(&self, object: &str, point: Point, at: Point) -> String {
         let translation = moved(at, -1.0, self.vector(point));
         format!(
             "object {object} scale {} rotation {} translation {}",
@@ -300,7 +300,7 @@ impl Copy {
     }
 }
 
-const PATTERN: &str = "material own { ambient 1 1 1 }\n";
+pub const PATTERN: &str = "material own { ambient 1 1 1 }\n";
 
 /// Returns a scene of copies of a sphere or an ellipsoid, to one of which the ray is tangent up to a small offset.
 pub fn placed_spheres(random: &mut Random) -> Question {

@@ -8,12 +8,12 @@ use crate::falsify::text::Scene;
 use std::fmt::Write;
 
 /// Returns a multiple of 1/64 near a number.
-fn even(number: f64) -> f64 {
+pub fn even(number: f64) -> f64 {
     (64.0 * number).round() / 64.0
 }
 
 /// Returns the type and the attributes of a closed shape around a point, about as large as `size`.
-fn shape(random: &mut Random, at: Point, size: f64) -> String {
+pub fn shape(random: &mut Random, at: Point, size: f64) -> String {
     let radius = size * random.between(0.4, 1.0);
     match random.below(7) {
         0 | 1 => format!("sphere center {} radius {radius:?}", numbers(at)),
@@ -70,7 +70,7 @@ impl Patterns {
     }
 }
 
-const OPERATIONS: [&str; 3] = ["union", "intersection", "difference"];
+pub const OPERATIONS: [&str; 3] = ["union", "intersection", "difference"];
 
 /// Returns a random solid around a point.
 fn solid(random: &mut Random, patterns: &mut Patterns, at: Point, size: f64, depth: u64) -> String {

@@ -1,0 +1,89 @@
+//! Where copies of planes end: at the z of the world beyond which the camera cuts off planes.
+//!
+//! The object itself does not end there, as its coordinates are not the world's. A ray hits a plane at most once, so what is
+//! cut off has no other hit behind it.
+
+use crate::geometry::ray::{Bracket, MISS, Ray};
+use crate::geometry::sight::{Line, Sight};
+use crate::numeric::affine::Affine;
+use crate::numeric::interval::{Float, Interval, Wide};
+use crate::numeric::scalar::Scalar;
+use crate::world::certify::{Enclosure, FootprintHit, HitEnclosure};
+
+/// The z, in world units, beyond which a copy is not there, if there is one.
+#[derive(Clone, Copy)]
+pub struct MaxZ(pub Option<f64>);
+
+impl MaxZ {
+    /// Tells whether a hit of a ray is beyond, as far as `f64` tells.
+    pub fn cuts_off(self, ray: &Ray, distance: f64) -> bool {
+        self.0.is_some_and(|max_z| ray.at(distance).z > max_z)
+    }
+
+    /// Returns the bracket of a ray's hit where the copy is kept. The ray's origin may be off by `origin_error` world units.
+    pub fn kept_bracket(self, ray: &Ray, bracket: Bracket, origin_error: f64) -> Bracket {
+        let Some(max_z) = self.0.filter(|_| bracket.near < MISS) else { return bracket };
+        let Bracket { near, far } = bracket;
+        let z = |distance: f64| ray.origin.z + distance * ray.dir.z;
+        // Units of 2^-53: a component of a camera ray's direction is off by 3, the product and the sum by 1 each; these 5 are
+        // less than the 8 here.
+        let error = |distance: f64| origin_error + 4.0 * f64::EPSILON * (ray.origin.z.abs() + distance);
+        let is_beyond = |distance: f64| z(distance) - error(distance) > max_z;
+        let is_before = |distance: f64| z(distance) + error(distance) < max_z;
+        let ends_beyond = if far == MISS { ray.dir.z > 0.0 } else { is_beyond(far) };
+        if is_beyond(near) && ends_beyond {
+            Bracket::MISS
+        } else if far == MISS || is_before(near) && is_before(far) {
+            bracket
+        } else {
+            Bracket { near, far: MISS }
+        }
+    }
+
+    /// Returns what is proven about a line's hit where the copy is kept.
+    pub fn kept_hit<F: Float>(self, line: &Line<Interval<F>>, found: HitEnclosure<F>) -> HitEnclosure<F> {
+        let (HitEnclosure::Hits(at) | HitEnclosure::Edge(at)) = found else { return found };
+        match self.is_kept(|| line.origin[2] + at * line.dir[2]) {
+            Some(true) => found,
+            Some(false) => HitEnclosure::Misses,
+            None => HitEnclosure::Edge(at),
+        }
+    }
+
+    /// Returns what is proven about the hit of a ray in the world where the copy is kept.
+    pub fn kept_enclosure(self, sight: &Sight, found: Enclosure) -> Enclosure {
+        let (Enclosure::Hits(at) | Enclosure::Edge(at)) = found else { return found };
+        let z = || {
+            let Line { origin, dir } = sight.line::<Wide>();
+            origin[2] + at * dir[2]
+        };
+        match self.is_kept(z) {
+            Some(true) => found,
+            Some(false) => Enclosure::Misses,
+            None => Enclosure::Edge(at),
+        }
+    }
+
+    /// Returns what is proven about the hits of the lines of a footprint where the copy is kept; `None` where it is not.
+    pub fn kept_footprint(self, line: &Line<Affine>, found: FootprintHit) -> Option<FootprintHit> {
+        let (FootprintHit::Hits(at) | FootprintHit::Perhaps(at)) = found else { return Some(found) };
+        match self.is_kept(|| (line.origin[2] + at * line.dir[2]).range()) {
+            Some(true) => Some(found),
+            Some(false) => None,
+            None => Some(FootprintHit::Perhaps(at)),
+        }
+    }
+
+    /// Tells whether the copy is kept at a z of the world; `None` where the enclosure leaves that open.
+    fn is_kept<F: Float>(self, z: impl FnOnce() -> Interval<F>) -> Option<bool> {
+        let Some(max_z) = self.0 else { return Some(true) };
+        let left = Interval::<F>::constant(max_z) - z();
+        if left.low >= F::of(0.0) {
+            Some(true)
+        } else if left.high < F::of(0.0) {
+            Some(false)
+        } else {
+            None
+        }
+    }
+}
