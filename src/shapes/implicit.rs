@@ -123,7 +123,7 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
 impl<T: Implicit> Bracketed for ImplicitShape<T> {
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
         let touches = || self.touches(ray.origin, range.origin_error);
-        by_distance(range, touches, |range| {
+        by_distance(ray, range, touches, |range| {
             let line = FormulaOnRay { by_proof: true, ..FormulaOnRay::new(self, ray) };
             let FirstRoot { root, is_certain } = line.first_hit(range);
             is_certain.then(|| line.distance(root, range))

@@ -28,6 +28,14 @@ pub(crate) const LEAST_COSINE: f64 = 1.0 / (1 << 26) as f64;
 /// 2^-18. `a_rug_on_a_floor_of_any_tilt_looks_as_the_floor_does` in `tests/shapes` holds it.
 pub(crate) const CLOSE: f64 = 1.0 / (1 << 30) as f64;
 
+/// Returns the difference up to which two distances along a ray may be equal up to rounding, in world units: [`CLOSE`] of
+/// the numbers that they are computed from.
+#[inline(always)]
+pub(crate) fn close(ray: &Ray, distance: f64) -> f64 {
+    let origin = ray.origin.abs();
+    CLOSE * (larger(larger(origin.x, origin.y), origin.z) + distance)
+}
+
 /// A bound on the computed difference of two equal distances in double-double arithmetic, as a fraction of the
 /// coordinates: about 8000 times its unit of rounding, 2^-106. The test named at [`CLOSE`] holds it.
 pub(crate) const SAME: f64 = 1e-28;

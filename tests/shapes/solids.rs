@@ -156,6 +156,35 @@ fn shapes_that_share_a_side_are_one_where_they_are_joined() {
 }
 
 #[test]
+fn edges_far_from_the_origin_are_seen_as_they_are_proven() {
+    for (camera, parts) in [
+        (
+            "look_at eye { pixeldim 15 11 position -274877906945.5 274877906946.5 5.5
+             target -274877906944.87396 274877906944.3796 0.41095676146983073 angle 0.001 up 0.1 1 0.05 }",
+            "box cube { material m center -274877906944 274877906944 0 size 2 1.25 1 }
+             cylinder post { material m base -274877906944.5 274877906944 0 height 1.25 radius 0.6875 }",
+        ),
+        (
+            "look_at eye { pixeldim 13 9 position -1073741823.5 -4 3.5
+             target -1073741823.35751 -0.6180236109118605 0.6066903026304885 angle 0.01 up 0.1 1 0.05 }",
+            "prism cube { material m points 0.9620990257688207 0.013337537323191642 0.15039130056863928
+             0.569488624852849 -0.9191781339199149 0.3929640479885439 -0.4891509354731841 0.11306928766691687
+             -0.5125431029429288 0.03793912934967618 -0.002596526606314956 -0.47063994820736843
+             0.4125424781207544 -0.6772561047337311 base -1073741824 0 0 height 1.6428333041442553 }
+             capsule post { material m base -1073741824 0 0 height 0.2683207577139294 radius 0.9005934949970809
+             direction -0.7999044120444354 0.6000722917428035 0.008134880108868203 }",
+        ),
+    ] {
+        let material = "material m { ambient 1 1 1 }";
+        let model = model(&format!("{camera} {material} {parts} difference s {{ objects cube post }}"));
+        let (plan, [width, height]) = (Plan::new(&model), model.camera.value.pixels);
+        for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+            assert_eq!(verify::pixel(&plan, x, y), Verdict::Proven, "{x} {y}: {parts}");
+        }
+    }
+}
+
+#[test]
 fn surfaces_that_coincide_are_those_of_the_first_part() {
     let balls = "sphere one { center 4 3 -2 radius 1 } sphere other { center 4 3 -2 radius 1 }";
     for operation in ["union", "intersection"] {

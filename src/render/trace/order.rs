@@ -5,7 +5,7 @@ use crate::geometry::ray::Ray;
 use crate::geometry::sight::Sight;
 use crate::world::any_shape::AnyShape;
 use crate::world::certify::{Enclosure, Precision};
-use crate::world::coincidence::{CLOSE, LEAST_COSINE, SAME};
+use crate::world::coincidence::{LEAST_COSINE, SAME, close};
 use std::cmp::Ordering;
 
 /// Tells whether a ray hits one shape before another, given their approximate distances in world units. Returns `None`
@@ -20,7 +20,7 @@ pub(super) fn is_before(
     (other, far): (&AnyShape, f64),
 ) -> Option<bool> {
     let size = ray.origin.abs().max_element() + distance;
-    if (distance - far).abs() <= CLOSE * size
+    if (distance - far).abs() <= close(ray, distance)
         && let (Some(fine), Some(fine_far)) =
             (one.packets().fine_distance(ray, distance), other.packets().fine_distance(ray, far))
     {
@@ -44,9 +44,8 @@ pub(super) fn is_unclear(
     (one, distance): (&AnyShape, f64),
     (other, far): (&AnyShape, f64),
 ) -> bool {
-    let size = ray.origin.abs().max_element() + distance;
     let has_digits = |shape: &AnyShape, at: f64| shape.packets().fine_distance(ray, at).is_some();
-    (distance - far).abs() <= CLOSE * size && !(has_digits(one, distance) && has_digits(other, far))
+    (distance - far).abs() <= close(ray, distance) && !(has_digits(one, distance) && has_digits(other, far))
 }
 
 /// Returns the order in which a ray hits two shapes, by a proof with 237 bits, up to which equal distances are the same;

@@ -15,7 +15,7 @@ use crate::shapes::triangle::{Triangle, plane_for_distances};
 use crate::simd::cpu::Cpu;
 use crate::world::accuracy::Bounded;
 use crate::world::certify::{self, Enclosure, Precision};
-use crate::world::coincidence::CLOSE;
+use crate::world::coincidence::{CLOSE, close};
 use f256::f256;
 use glam::DVec3;
 
@@ -81,7 +81,7 @@ impl Surface {
             return (bracket, None);
         }
         let distance = distance.clamp(bracket.near, bracket.far);
-        let close = if range.far < MISS { CLOSE * range.far } else { 0.0 };
+        let close = if range.far < MISS { close(ray, range.far) } else { 0.0 };
         // At the distance of another surface, the bracket is widened, so that more digits decide which comes first.
         if (distance - range.far).abs() <= close {
             return (Bracket { near: distance - close, far: distance + close }, None);
@@ -175,7 +175,7 @@ impl Surface {
     /// the outline of a closed mesh, a face that others hide would show light from within.
     #[inline(always)]
     pub(super) fn face_along(&self, ray: &Ray, distance: f64) -> usize {
-        let close = CLOSE * (distance + ray.origin.abs().max_element());
+        let close = close(ray, distance);
         let (mut only, mut count) = (0, 0);
         let range = RayRange { far: distance + close, ..RayRange::ALL };
         self.each(ray, &range, NOTHING, |face, bracket| {

@@ -1,10 +1,10 @@
 //! What a search has found of a ray's first hit.
 
-use super::face::{Leaving, largest};
+use super::face::Leaving;
 use crate::geometry::aabb::smaller;
 use crate::geometry::ray::{Bracket, MISS, Ray};
 use crate::simd::soa::LANES;
-use crate::world::coincidence::CLOSE;
+use crate::world::coincidence::{self, CLOSE};
 
 /// The hits of a ray that a search has found so far.
 #[derive(Clone, Copy)]
@@ -105,7 +105,7 @@ impl Nearest {
 /// [`Surface::face_along`]: super::Surface::face_along
 #[inline(always)]
 fn close(ray: &Ray, distance: f64) -> f64 {
-    2.0 * CLOSE * (distance + largest(ray.origin))
+    2.0 * coincidence::close(ray, distance)
 }
 
 /// What a search has found of eight rays.

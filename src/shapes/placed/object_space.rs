@@ -77,12 +77,15 @@ kernels! {
     }
 
     /// Takes brackets to world units, as [`in_world`] does.
-    pub fn to_world(error: f64, lengths: &[f64], ends: &[f64], near: &mut [f64], far: &mut [f64]) {
+    pub fn to_world(
+        error: f64, lengths: &[f64], rays: RayPacket, ends: &[f64], near: &mut [f64], far: &mut [f64]
+    ) {
         let count = near.len();
+        let rays = rays.first(count);
         let (lengths, ends, far) = (&lengths[..count], &ends[..count], &mut far[..count]);
         for lane in 0..count {
             let range = RayRange { far: ends[lane], ..RayRange::ALL };
-            let bracket = in_world(Bracket { near: near[lane], far: far[lane] }, lengths[lane], error, &range);
+            let bracket = in_world(Bracket { near: near[lane], far: far[lane] }, lengths[lane], error, &rays.get(lane), &range);
             (near[lane], far[lane]) = (bracket.near, bracket.far);
         }
     }

@@ -85,7 +85,7 @@ impl Placed {
                 }
             }
         }
-        to_world(cpu, error, &own.lengths[..count], ends, near, far);
+        to_world(cpu, error, &own.lengths[..count], rays, ends, near, far);
         if self.max_z.0.is_some() {
             for lane in 0..count {
                 let bracket = Bracket { near: near[lane], far: far[lane] };

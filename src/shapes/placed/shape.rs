@@ -9,7 +9,7 @@ use crate::geometry::sight::Sight;
 use crate::numeric::double_double::DoubleDouble;
 use crate::world::body::Body;
 use crate::world::certify::{Enclosure, Precision, Premise, Proven};
-use crate::world::coincidence::{CLOSE, ROUNDING};
+use crate::world::coincidence::{CLOSE, ROUNDING, close};
 use crate::world::hittable::Hittable;
 use crate::world::packets::shape::Proofs;
 use crate::world::shape::{ByPackets, Shape};
@@ -139,7 +139,7 @@ impl Placed {
         }
         let (own, length) = self.object_ray(ray);
         let bracket = self.body.shape.t_bounds(&own, &self.object_range(ray, range, length));
-        self.max_z.kept_bracket(ray, in_world(bracket, length, 0.0, range), range.origin_error)
+        self.max_z.kept_bracket(ray, in_world(bracket, length, 0.0, ray, range), range.origin_error)
     }
 
     /// Returns a bracket of the first hits of all rays within a drift of a camera ray.
@@ -148,7 +148,7 @@ impl Placed {
         let (own, length) = self.object_ray(ray);
         let object_range = RayRange { origin_error: 0.0, ..self.object_range(ray, range, length) };
         let bracket = self.body.shape.packets().t_bounds_within(&own, &object_range, drift);
-        self.max_z.kept_bracket(ray, in_world(bracket, length, drift.dir, range), 0.0)
+        self.max_z.kept_bracket(ray, in_world(bracket, length, drift.dir, ray, range), 0.0)
     }
 }
 
@@ -171,9 +171,15 @@ fn bounds(body: &Body, placement: Placement, to_object_space: DMat3) -> Option<A
 /// Returns a bracket in world units of one in an object's own, in which a world unit has a length that may be off by
 /// `error`, as a fraction.
 #[inline(always)]
-pub(super) fn in_world(Bracket { near, far }: Bracket, length: f64, error: f64, range: &RayRange) -> Bracket {
+pub(super) fn in_world(
+    Bracket { near, far }: Bracket,
+    length: f64,
+    error: f64,
+    ray: &Ray,
+    range: &RayRange,
+) -> Bracket {
     if near == far {
-        let close = if range.far < MISS { CLOSE * range.far } else { 0.0 };
+        let close = if range.far < MISS { close(ray, range.far) } else { 0.0 };
         let distance = RayRange { far: range.far + close, ..*range }.keep(near / length);
         // At the distance of another surface, the bracket is widened, so that more digits decide which comes first.
         return if (distance - range.far).abs() <= close {

@@ -221,7 +221,7 @@ where
 
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
         let touches = || self.touches(ray.origin, range.origin_error);
-        by_distance(range, touches, |range| {
+        by_distance(ray, range, touches, |range| {
             let (distance, is_certain) = self.shape.surface.first_hit(&self.shape.frame, ray, range);
             is_certain.then_some(distance)
         })

@@ -227,7 +227,7 @@ impl Trimmed {
             return self.own().t_bounds(ray, &self.own_range(range));
         }
         let touches = || self.own().touches(ray.origin, range.origin_error);
-        by_distance(range, touches, |range| {
+        by_distance(ray, range, touches, |range| {
             let (distance, is_certain) = self.first_hit(ray, range, first);
             is_certain.then_some(distance)
         })

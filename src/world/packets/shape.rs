@@ -9,7 +9,7 @@ pub use super::proofs::Proofs;
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{Brackets, Nearest, RayPacket, mark_occluded, merge_nearest};
 use crate::simd::cpu::{Cpu, kernels};
-use crate::world::coincidence::CLOSE;
+use crate::world::coincidence::close;
 use crate::world::hittable::{Bracketed, Hittable};
 use crate::world::interaction::{SurfaceInteraction, turned};
 use crate::world::shape::{ByBracket, ByDistance, ByEquation, ByFormula, ByRoots, Shape, Unproven};
@@ -186,7 +186,7 @@ where
             return Bracket::exactly(self.shape.distance(ray, range));
         }
         let touches = || self.touches(ray.origin, range.origin_error);
-        by_distance(range, touches, |range| Some(self.shape.distance(ray, range)))
+        by_distance(ray, range, touches, |range| Some(self.shape.distance(ray, range)))
     }
 
     #[inline(always)]
@@ -199,6 +199,7 @@ where
 /// decides the distance. `touches` tells whether the shape touches the ray's origin within the range's `origin_error`.
 #[inline(always)]
 pub fn by_distance(
+    ray: &Ray,
     range: &RayRange,
     touches: impl FnOnce() -> bool,
     distance: impl FnOnce(&RayRange) -> Option<f64>,
@@ -207,7 +208,7 @@ pub fn by_distance(
     if origin_side.is_none() && origin_error > 0.0 && touches() {
         return Bracket::UNKNOWN;
     }
-    let close = if far < MISS { CLOSE * far } else { 0.0 };
+    let close = if far < MISS { close(ray, far) } else { 0.0 };
     let Some(distance) = distance(&RayRange { far: far + close, ..*range }) else { return Bracket::UNKNOWN };
     // At the distance of another surface, the bracket is widened, so that more digits decide which comes first.
     if (distance - far).abs() <= close {
