@@ -146,11 +146,17 @@ COMMAND
 
 ## How to read a chart
 
+The verdict of a chart begins with what to do. What rests on errors comes first, as other work of the machine does not
+change it; where the machine was busy, times decide nothing, and the last line says to measure them again. A method is
+advised only if it bounds the errors of its hits and has no wrong ones in any panel. `classic` and the methods that sample
+have no bounds: they lose some of the hard rays of each kind of shape, as [accuracy.md](accuracy.md) counts, even where
+they lose none in a scene. `-o a.svg` writes that file alone.
+
 Each panel answers one question. The horizontal axis is CPU time and the vertical axis the error, both logarithmic: the
-best place is the lower left. The star is the scene's own setting. A hollow point has hits that are missed, invented or
-not the first; their percentage of all rays is written beside it. The line is the Pareto front: of the choices without
-wrong hits, those that no other beats in both time and error. Times that differ by less than a tenth count as equal, and
-so do errors that differ by less than a half.
+best place is the lower left. The star is the scene's own setting. A hollow point has hits that are missed, invented,
+not the first or inaccurate; their percentage of all rays is written beside it. The line is the Pareto front: of the
+choices without such hits in any panel, those that no other beats in both time and error. Times that differ by less than
+a tenth count as equal, and so do errors that differ by less than a half.
 
 - **Camera rays**: about 20000 pairs of a ray through a pixel and an object, in evenly spread tiles of 16 by 16 pixels.
   Objects are separated by kind: those whose hits are found by a search along the ray, and those with a formula.
@@ -167,7 +173,16 @@ so do errors that differ by less than a half.
 Errors of distances are the 99th percentile of all right hits. The ground truth is that of the real ray through the
 point of the image and of the scene's numbers as they are written: a hit is isolated by intervals of 237 bits, as in
 `tabray verify`, and the error of a distance includes the effect of rounding the ray. Where the intervals do not decide,
-the pair is left out and counted as undecided. Errors of colours are root mean squares over pixels and channels, of the
+the pair is left out and counted as undecided.
+
+A found hit is judged by what it is, not by how far off it is. It is *missed* if the ray has a root and none was found,
+*invented* if it has none, and *later* only if another root lies between it and the first one. It is *inaccurate* if no
+root lies between, but its point is farther from the surface than rounding and the method's own tolerance explain. The
+distance itself would say little: on a plane that a ray nearly runs along, rounding the ray's direction moves the hit by
+thousands of units. Where a ray within rounding of the true one hits what was found, rounding decides and not the method:
+the pair is left out for that method.
+
+Errors of colours are root mean squares over pixels and channels, of the
 colours as displayed, from 0 to 1. Errors depend on the scene alone: two runs give the same errors to the last digit,
 unless the time limit, 2 minutes if `--time-limit` does not set it, leaves time for fewer pixels; the panel has their number.
 

@@ -28,8 +28,8 @@ pub struct Candidate {
     /// The accuracy, where a scene can choose it.
     pub accuracy: Option<Accuracy>,
     pub is_default: bool,
-    /// An upper bound on the error of a hit's distance, in world units, except where a grazing ray magnifies rounding
-    /// errors.
+    /// The greatest error of a hit's distance, or of its distance from the surface, that the method allows itself beside
+    /// rounding, in world units.
     pub promise: f64,
 }
 
@@ -42,7 +42,7 @@ pub fn all(load: Load) -> io::Result<Vec<Candidate>> {
         let (family, promise) = match accuracy {
             Accuracy::Classic => (Family::Notes, 1e-3),
             Accuracy::Draft => (Family::Own, 1e-3),
-            Accuracy::Exact | Accuracy::Strict => (Family::Own, 1e-9),
+            Accuracy::Exact | Accuracy::Strict => (Family::Own, 0.0),
         };
         candidates.push(Candidate {
             name: accuracy.option().name.to_owned(),

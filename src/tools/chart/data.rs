@@ -82,12 +82,28 @@ pub struct WrongHits {
     pub invented: usize,
     /// Hits found at a later crossing than the first.
     pub later: usize,
+    /// Hits that are farther from the first crossing than its conditioning explains, where no other one lies between.
+    /// They are inaccurate, and not counted among the wrong ones.
+    pub inaccurate: usize,
+}
+
+/// The numbers of wrong hits of each method on one set of rays.
+pub struct WrongHitsOf {
+    /// The title of the set.
+    pub title: String,
+    /// The methods, each with its name.
+    pub counts: Vec<(String, WrongHits)>,
 }
 
 impl WrongHits {
     /// Returns the number of all wrong hits.
     pub fn count(&self) -> usize {
         self.missed + self.invented + self.later
+    }
+
+    /// Returns the number of all hits that are wrong or inaccurate.
+    pub fn faults(&self) -> usize {
+        self.count() + self.inaccurate
     }
 }
 
@@ -165,6 +181,17 @@ impl Chart {
     /// Tells whether the machine had other work, which slows all choices alike.
     pub fn is_busy(&self) -> bool {
         self.waited() > MAX_NOISE
+    }
+
+    /// Tells whether the times are in doubt for one of these reasons.
+    pub fn is_doubtful(&self) -> bool {
+        self.is_noisy() || self.is_busy()
+    }
+
+    /// Tells whether a choice has wrong or inaccurate hits in any panel.
+    pub fn has_faults(&self, choice: &str) -> bool {
+        let mut points = self.panels.iter().flat_map(|panel| &panel.points);
+        points.any(|point| point.name == choice && point.wrong.faults() > 0)
     }
 
     fn middle(&self, of: impl Fn(&Times) -> f64) -> f64 {

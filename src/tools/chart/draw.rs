@@ -89,7 +89,7 @@ fn draw<D: DrawingBackend>(chart: &Chart, backend: D, scale: f64) -> io::Result<
     let columns = columns(chart);
     for (index, panel) in chart.panels.iter().enumerate() {
         let corner = ((index % columns) as f64 * PANEL.0, HEAD + (index / columns) as f64 * PANEL.1);
-        draw_panel(&canvas, panel, corner)?;
+        draw_panel(&canvas, chart, panel, corner)?;
     }
     legend(&canvas, chart, height - FOOT + 18.0)?;
     canvas.finish()
@@ -124,8 +124,8 @@ fn legend<D: DrawingBackend>(canvas: &Canvas<D>, chart: &Chart, y: f64) -> io::R
     }
     let second = y + 24.0;
     canvas.marker((26.0, second), Marker::Disc, GREY, true)?;
-    let text = "hollow: some hits are missed, invented or not the first (percent of all rays); line: the Pareto front, \
-                where no choice without wrong hits is both faster and more exact";
+    let text = "hollow: some hits are missed, invented, not the first or inaccurate (percent of all rays); line: the Pareto \
+                front, where no choice without them is both faster and more exact";
     canvas.text(text, (40.0, second), Align::Left, letters)?;
     let text = format!(
         "times: packets of up to {PACKET_SIZE} rays on one thread, as in a render; where a hit is searched for, all methods but \
@@ -147,7 +147,12 @@ fn look(family: Family) -> (Marker, RGBColor) {
     }
 }
 
-fn draw_panel<D: DrawingBackend>(canvas: &Canvas<D>, panel: &Panel, corner: (f64, f64)) -> io::Result<()> {
+fn draw_panel<D: DrawingBackend>(
+    canvas: &Canvas<D>,
+    chart: &Chart,
+    panel: &Panel,
+    corner: (f64, f64),
+) -> io::Result<()> {
     let plot = PlotArea {
         left: corner.0 + 92.0,
         top: corner.1 + 56.0,
@@ -203,7 +208,7 @@ fn draw_panel<D: DrawingBackend>(canvas: &Canvas<D>, panel: &Panel, corner: (f64
             canvas.line(&series.map(place).collect::<Vec<_>>(), look(family).1, 1.0)?;
         }
     }
-    let is_on_front = panel.front();
+    let is_on_front = chart.front(panel);
     let mut front: Vec<_> = panel
         .points
         .iter()
@@ -240,7 +245,7 @@ fn draw_panel<D: DrawingBackend>(canvas: &Canvas<D>, panel: &Panel, corner: (f64
     for (point, place) in points.iter().zip(&places).rev() {
         let (marker, colour) = look(point.family);
         let marker = if point.is_default { Marker::Star } else { marker };
-        canvas.marker(*place, marker, colour, point.wrong.count() > 0)?;
+        canvas.marker(*place, marker, colour, point.wrong.faults() > 0)?;
     }
     for ((label, name), point) in labels.iter().zip(&names).zip(&points) {
         if let Some(label) = label {
@@ -257,10 +262,10 @@ fn name(panel: &Panel, point: &Point) -> String {
     if panel.subject == Subject::Samples {
         return point.samples.to_string();
     }
-    if point.wrong.count() == 0 {
+    if point.wrong.faults() == 0 {
         return point.name.clone();
     }
-    let percent = 100.0 * point.wrong.count() as f64 / point.wrong.of as f64;
+    let percent = 100.0 * point.wrong.faults() as f64 / point.wrong.of as f64;
     let digits = usize::from(percent < 10.0) + 2 * usize::from(percent < 0.1);
     format!("{}: {percent:.digits$} %", point.name)
 }

@@ -8,15 +8,16 @@ use serde::Serialize;
 pub fn csv(chart: &Chart) -> String {
     let mut text =
         "panel,choice,default,front,samples,seconds,seconds_median,rounds,error,worst,known,missed,\
-                    invented,later,visible,changed,pixels\n"
+                    invented,later,inaccurate,visible,changed,pixels\n"
             .to_owned();
     for panel in &chart.panels {
-        for (point, is_on_front) in panel.points.iter().zip(panel.front()) {
+        for (point, is_on_front) in panel.points.iter().zip(chart.front(panel)) {
             let Point { times, wrong, .. } = point;
             let [changed, pixels] =
                 point.changed.map_or_else(Default::default, |counts| counts.map(|count| count.to_string()));
             let known = if panel.subject == Subject::Distances {
-                [wrong.of, wrong.missed, wrong.invented, wrong.later].map(|count| count.to_string())
+                [wrong.of, wrong.missed, wrong.invented, wrong.later, wrong.inaccurate]
+                    .map(|count| count.to_string())
             } else {
                 Default::default()
             };
@@ -48,7 +49,7 @@ pub fn json(chart: &Chart) -> String {
         build: &chart.machine.build,
         date: &chart.machine.date,
         noise: chart.noise(),
-        panels: chart.panels.iter().map(Compared::of).collect(),
+        panels: chart.panels.iter().map(|panel| Compared::of(chart, panel)).collect(),
         processor: &chart.machine.processor,
         scene: &chart.scene,
         waited: chart.waited(),
@@ -102,8 +103,11 @@ struct Measured<'c> {
     default: bool,
     /// The error: for distances the 99th percentile of their errors, for colours the root of the mean square of theirs.
     error: f64,
-    /// Whether it is on the Pareto front: no choice without wrong hits is faster and more accurate.
+    /// Whether it is on the Pareto front: it has no wrong or inaccurate hits in any panel, and no such choice is faster and
+    /// more accurate.
     front: bool,
+    /// The number of hits that are farther from the first crossing than its conditioning explains.
+    inaccurate: usize,
     /// The number of hits that were found where there are none.
     invented: usize,
     /// The number of rays that were compared and whose true hit is known.
@@ -130,8 +134,8 @@ struct Measured<'c> {
 }
 
 impl<'c> Compared<'c> {
-    fn of(panel: &'c Panel) -> Self {
-        let points = panel.points.iter().zip(panel.front());
+    fn of(chart: &'c Chart, panel: &'c Panel) -> Self {
+        let points = panel.points.iter().zip(chart.front(panel));
         Self {
             error: panel.measure(),
             note: &panel.note,
@@ -150,6 +154,7 @@ impl<'c> Measured<'c> {
             default: point.is_default,
             error: point.error,
             front,
+            inaccurate: wrong.inaccurate,
             invented: wrong.invented,
             known: wrong.of,
             later: wrong.later,

@@ -1,6 +1,6 @@
 //! The Pareto front: the choices that no other choice beats.
 
-use super::data::{Panel, Point};
+use super::data::{Chart, Panel, Point};
 
 /// The ratio up to which times count as equal.
 pub const SAME_TIME: f64 = 1.1;
@@ -8,18 +8,23 @@ pub const SAME_TIME: f64 = 1.1;
 /// The ratio up to which errors count as equal.
 const SAME_ERROR: f64 = 1.5;
 
-/// Marks the points that have no wrong hits and are beaten by none. Errors up to `negligible` count as equal.
-pub fn of(points: &[Point], negligible: f64) -> Vec<bool> {
+/// Marks the points that are beaten by none, of those that count. Errors up to `negligible` count as equal.
+fn of(points: &[Point], counts: impl Fn(&Point) -> bool, negligible: f64) -> Vec<bool> {
     let is_best =
-        |point: &Point| point.wrong.count() == 0 && fastest_dominating(points, point, negligible).is_none();
+        |point: &Point| counts(point) && fastest_dominating(points, &counts, point, negligible).is_none();
     points.iter().map(is_best).collect()
 }
 
-/// Returns the fastest choice that beats `beaten`, if any does.
-pub fn fastest_dominating<'p>(points: &'p [Point], beaten: &Point, negligible: f64) -> Option<&'p Point> {
+/// Returns the fastest choice that beats `beaten`, if any of those that count does.
+pub fn fastest_dominating<'p>(
+    points: &'p [Point],
+    counts: impl Fn(&Point) -> bool,
+    beaten: &Point,
+    negligible: f64,
+) -> Option<&'p Point> {
     points
         .iter()
-        .filter(|other| other.wrong.count() == 0 && dominates(other, beaten, negligible))
+        .filter(|other| counts(other) && dominates(other, beaten, negligible))
         .min_by(|a, b| a.times.least.total_cmp(&b.times.least))
 }
 
@@ -30,10 +35,11 @@ fn dominates(one: &Point, other: &Point, negligible: f64) -> bool {
     time <= SAME_TIME && error <= SAME_ERROR * than && (time * SAME_TIME < 1.0 || error * SAME_ERROR < than)
 }
 
-impl Panel {
-    /// Marks the points that are on the Pareto front.
-    pub fn front(&self) -> Vec<bool> {
-        of(&self.points, self.negligible())
+impl Chart {
+    /// Marks the points of a panel that are on the Pareto front: those that no other beats, of the choices that have no
+    /// wrong or inaccurate hits in any panel.
+    pub fn front(&self, panel: &Panel) -> Vec<bool> {
+        of(&panel.points, |point| !self.has_faults(&point.name), panel.negligible())
     }
 }
 
@@ -67,7 +73,8 @@ mod tests {
             point(3.0, 0.0, 0),
             point(0.1, 1e-9, 1),
         ];
-        assert_eq!(of(&points, 0.0), [true, true, true, false, true, false]);
-        assert_eq!(of(&points, 1e-5), [true, true, true, false, false, false]);
+        let is_right = |point: &Point| point.wrong.count() == 0;
+        assert_eq!(of(&points, is_right, 0.0), [true, true, true, false, true, false]);
+        assert_eq!(of(&points, is_right, 1e-5), [true, true, true, false, false, false]);
     }
 }

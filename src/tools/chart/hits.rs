@@ -3,27 +3,26 @@
 
 use super::candidate::{Candidate, is_searched};
 use super::clock;
-use super::data::{Panel, Point, Subject, WrongHits};
+use super::data::{Panel, Point, Subject, WrongHits, WrongHitsOf};
+use super::judgement::{Judgement, Known, Pair, Truth};
 use super::packets::Packet;
 use super::places::{spread, tiles};
 use super::progress::Progress;
 use super::study::Study;
-use crate::geometry::ray::{MISS, Ray, RayRange, Side};
+use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::geometry::roots::bisection::bisect;
 use crate::geometry::sight::Sight;
-use crate::numeric::double_double::DoubleDouble;
 use crate::parallel;
 use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
 use crate::world::any_shape::AnyShape;
-use crate::world::certify::{self, Enclosure, Precision};
+use crate::world::certify::{Enclosure, Precision};
 use std::hint::black_box;
 use std::ops::ControlFlow;
 
-/// The approximate numbers of pairs of a ray and an object in a set.
-const CAMERA: usize = 20_000;
-const GRAZING: usize = 4_000;
+/// The approximate numbers of pairs of a ray and an object in a set of camera rays and in one of grazing rays.
+pub const PAIRS: [usize; 2] = [20_000, 4_000];
 
 /// The approximate number of pairs that are timed.
 const TIMED: usize = 2_000;
@@ -39,17 +38,9 @@ pub struct Set {
     is_searched: bool,
 }
 
-/// The true hit of a pair of a ray and an object.
-enum Truth {
-    /// The ray hits the object at this distance, on this side of its surface.
-    Hit(DoubleDouble, Side),
-    Miss,
-    /// The proof did not decide.
-    Undecided,
-}
-
-/// Returns all sets of a scene.
-pub fn sets(model: &Model) -> Vec<Set> {
+/// Returns all sets of a scene, with about so many pairs of a ray and an object in one of camera rays and in one of grazing
+/// rays.
+pub fn sets(model: &Model, [of_camera, of_grazing]: [usize; 2]) -> Vec<Set> {
     let mut sets = Vec::new();
     for is_of_roots in [true, false] {
         let objects = model.objects.iter().enumerate();
@@ -69,8 +60,8 @@ pub fn sets(model: &Model) -> Vec<Set> {
                 sets.push(Set { title, packets, is_searched: is_of_roots });
             }
         };
-        add("camera rays", camera(model, &group));
-        add("grazing rays", grazing(model, &group));
+        add("camera rays", camera(model, &group, of_camera));
+        add("grazing rays", grazing(model, &group, of_grazing));
     }
     sets
 }
@@ -85,26 +76,24 @@ pub fn work(set: &Set, candidates: usize) -> usize {
     count(&set.packets) * (TRUTH + candidates) + clock::work(candidates)
 }
 
+/// Counts the wrong hits of all choices on a set.
+pub fn wrong(study: &Study, set: &Set, progress: &mut dyn Progress) -> ControlFlow<(), WrongHitsOf> {
+    let truths = truths(study, set, progress)?;
+    let of = |candidate: &&Candidate| {
+        (candidate.name.clone(), tally(&judge_all(study, candidate, set, &truths)).1)
+    };
+    let counts = candidates(study, set).iter().map(of).collect();
+    ControlFlow::Continue(WrongHitsOf { title: set.title.clone(), counts })
+}
+
 /// Measures all choices on a set.
 pub fn panel(study: &Study, set: &Set, progress: &mut dyn Progress) -> ControlFlow<(), Option<Panel>> {
-    let strict = &study.candidates[study.strict].model;
-    let candidates: Vec<_> =
-        study.candidates.iter().filter(|candidate| set.is_searched || candidate.accuracy.is_some()).collect();
+    let candidates = candidates(study, set);
     let (cpu, rays) = (Cpu::best(), count(&set.packets));
-    let mut truths = Vec::new();
-    for packets in set.packets.chunks(8) {
-        truths.extend(
-            study.threads.run(|| each(packets, |packet| truths_of(strict, packet))).into_iter().flatten(),
-        );
-        progress.done(count(packets) * TRUTH)?;
-        if progress.is_late() {
-            break;
-        }
-    }
-    let screen = strict.camera.value.camera.screen().map_or(1.0, |screen| screen.max_element());
+    let truths = truths(study, set, progress)?;
     let mut errors = Vec::new();
     for candidate in &candidates {
-        errors.push(tally(candidate, set, &truths, screen));
+        errors.push(tally(&judge_all(study, candidate, set, &truths)));
         progress.done(rays)?;
     }
     let step = rays.div_ceil(TIMED);
@@ -117,7 +106,8 @@ pub fn panel(study: &Study, set: &Set, progress: &mut dyn Progress) -> ControlFl
     };
     let count = timed.iter().map(|packet| packet.len()).sum();
     let times = clock::rounds(candidates.len(), count, work, progress)?;
-    let hits = truths.iter().filter(|truth| matches!(truth, Truth::Hit(..))).count();
+    let truths: Vec<_> = truths.iter().flatten().map(|known| &known.truth).collect();
+    let hits = truths.iter().filter(|truth| matches!(truth, Truth::Hit { .. })).count();
     let undecided = truths.iter().filter(|truth| matches!(truth, Truth::Undecided)).count();
     if hits == 0 {
         return ControlFlow::Continue(None);
@@ -152,54 +142,62 @@ pub fn panel(study: &Study, set: &Set, progress: &mut dyn Progress) -> ControlFl
     }))
 }
 
+/// Returns the candidates that differ on a set.
+fn candidates<'s>(study: &'s Study, set: &Set) -> Vec<&'s Candidate> {
+    study.candidates.iter().filter(|candidate| set.is_searched || candidate.accuracy.is_some()).collect()
+}
+
+/// Returns what is proven about the rays of each packet; of the first packets, if time does not suffice for all.
+fn truths(study: &Study, set: &Set, progress: &mut dyn Progress) -> ControlFlow<(), Vec<Vec<Known>>> {
+    let strict = &study.candidates[study.strict].model;
+    let mut truths = Vec::new();
+    for packets in set.packets.chunks(8) {
+        truths.extend(study.threads.run(|| each(packets, |packet| truths_of(strict, packet))));
+        progress.done(count(packets) * TRUTH)?;
+        if progress.is_late() {
+            break;
+        }
+    }
+    ControlFlow::Continue(truths)
+}
+
 /// Maps items on all threads of the current pool.
 fn each<T: Sync, U: Send>(of: &[T], work: impl Fn(&T) -> U + Sync + Send) -> Vec<U> {
     parallel::map(of.len(), |index| work(&of[index]))
 }
 
-fn truths_of(model: &Model, packet: &Packet) -> Vec<Truth> {
+/// Returns what is proven about each ray of a packet.
+fn truths_of(model: &Model, packet: &Packet) -> Vec<Known> {
     let shape = &model.objects[packet.object].shape;
-    let truth = |(ray, sight): (Ray, &Sight)| match shape.certify(sight, Precision::Octuple) {
-        Enclosure::Hits(at) => {
-            let at = certify::in_world_units(at, sight);
-            Truth::Hit(at, side(shape, &ray, at.high))
-        }
-        Enclosure::Misses => Truth::Miss,
-        Enclosure::Edge(_) | Enclosure::Doubtful(_) => Truth::Undecided,
-    };
-    packet.sights().map(truth).collect()
+    packet.sights().map(|(_, sight)| Known::of(shape, sight)).collect()
 }
 
-/// Returns the side of its surface on which a ray hits a shape.
-fn side(shape: &AnyShape, ray: &Ray, distance: f64) -> Side {
-    Side::seen_along(ray.dir, shape.normal(ray.at(distance)))
+/// Judges the hits that a candidate finds in the packets of which the truth is known.
+fn judge_all(study: &Study, candidate: &Candidate, set: &Set, truths: &[Vec<Known>]) -> Vec<Judgement> {
+    let strict = &study.candidates[study.strict].model;
+    let packets: Vec<_> = set.packets.iter().zip(truths).collect();
+    let judge = |(packet, truths): &(&Packet, &Vec<Known>)| -> Vec<Judgement> {
+        let shape = &strict.objects[packet.object].shape;
+        let found = packet.hits(&candidate.model.objects[packet.object].shape, Cpu::best());
+        let one = |(((ray, sight), truth), found): (((Ray, &Sight), &Known), f64)| {
+            Pair { shape, ray, sight }.judge(truth, found, candidate.promise)
+        };
+        packet.sights().zip(*truths).zip(found).map(one).collect()
+    };
+    study.threads.run(|| each(&packets, judge)).concat()
 }
 
 /// Returns the errors of the right hits, sorted, and the numbers of the wrong ones.
-fn tally(candidate: &Candidate, set: &Set, truths: &[Truth], screen: f64) -> (Vec<f64>, WrongHits) {
+fn tally(judged: &[Judgement]) -> (Vec<f64>, WrongHits) {
     let (mut errors, mut wrong) = (Vec::new(), WrongHits::default());
-    let cpu = Cpu::best();
-    let found = set.packets.iter().flat_map(|packet| {
-        let shape = &candidate.model.objects[packet.object].shape;
-        let hits = packet.hits(shape, cpu);
-        packet.rays().zip(hits).map(move |(ray, found)| (shape, ray, found))
-    });
-    for ((shape, ray, found), truth) in found.zip(truths) {
-        match truth {
-            Truth::Undecided => continue,
-            Truth::Miss => wrong.invented += usize::from(found != MISS),
-            Truth::Hit(..) if found == MISS => wrong.missed += 1,
-            Truth::Hit(right, on) => {
-                let error = (DoubleDouble::from(found) - *right).high.abs();
-                // A hit on the other side of the surface is another crossing, unless its error is within ten times the
-                // bound; a hit with a large error is another crossing on either side.
-                let is_off = error > 10.0 * candidate.promise && side(shape, &ray, found) != *on;
-                if is_off || error > 0.01 * screen {
-                    wrong.later += 1;
-                } else {
-                    errors.push(error);
-                }
-            }
+    for judgement in judged {
+        match judgement {
+            Judgement::Undecided => continue,
+            Judgement::Right(error) => errors.extend(error),
+            Judgement::Missed => wrong.missed += 1,
+            Judgement::Invented => wrong.invented += 1,
+            Judgement::Later => wrong.later += 1,
+            Judgement::Inaccurate => wrong.inaccurate += 1,
         }
         wrong.of += 1;
     }
@@ -220,9 +218,9 @@ fn is_provable(model: &Model, shape: &AnyShape) -> bool {
 }
 
 /// Returns rays through the centres of pixels, in the packets in which a render traces them.
-fn camera(model: &Model, group: &[usize]) -> Vec<Packet> {
+fn camera(model: &Model, group: &[usize], pairs: usize) -> Vec<Packet> {
     let camera = &model.camera.value;
-    let count = CAMERA.div_ceil(group.len() * PACKET_SIZE);
+    let count = pairs.div_ceil(group.len() * PACKET_SIZE);
     let mut packets = Vec::new();
     for tile in tiles(camera.pixels, count) {
         let places: Vec<_> = tile.into_iter().map(|place| place.map(|at| at as f64)).collect();
@@ -232,7 +230,7 @@ fn camera(model: &Model, group: &[usize]) -> Vec<Packet> {
 }
 
 /// Returns rays beside the silhouettes of objects, at distances from one pixel width down to 10^-10 of it.
-fn grazing(model: &Model, group: &[usize]) -> Vec<Packet> {
+fn grazing(model: &Model, group: &[usize], pairs: usize) -> Vec<Packet> {
     const DIGITS: i32 = 10;
     let camera = &model.camera.value;
     let [width, height] = camera.pixels;
@@ -253,7 +251,7 @@ fn grazing(model: &Model, group: &[usize]) -> Vec<Packet> {
         }
     }
     let rays = 2 * (DIGITS as usize + 1);
-    let step = edges.len().div_ceil(GRAZING / rays).max(1);
+    let step = edges.len().div_ceil((pairs / rays).max(1)).max(1);
     let mut places_of = vec![Vec::new(); model.objects.len()];
     for (x, y, index, here) in edges.into_iter().step_by(step) {
         let y = y as f64;

@@ -15,6 +15,7 @@ mod estimate;
 mod files;
 mod front;
 mod hits;
+mod judgement;
 mod labels;
 mod machine;
 mod needed;
@@ -28,7 +29,7 @@ mod times;
 mod verdict;
 
 pub use candidate::Load;
-pub use data::{Chart, Family, Panel, Point, Subject, WrongHits};
+pub use data::{Chart, Family, Panel, Point, Subject, WrongHits, WrongHitsOf};
 pub use draw::{png, svg};
 pub use estimate::{Estimate, Estimates, Goal, estimates};
 pub use files::{csv, json};
@@ -52,6 +53,22 @@ pub fn measure(scene: &str, load: Load, progress: &mut dyn Progress) -> io::Resu
     Ok(chart)
 }
 
+/// Counts the wrong hits of a scene's methods alone, on sets of about so many pairs of a ray and an object: camera rays
+/// and grazing rays. If `progress` breaks off a set, those before it are kept.
+///
+/// # Errors
+/// Those of [`measure`].
+pub fn wrong_hits(
+    load: Load,
+    pairs: [usize; 2],
+    progress: &mut dyn Progress,
+) -> io::Result<Vec<WrongHitsOf>> {
+    let study = Study::new(load)?;
+    let sets = hits::sets(&study.candidates[study.strict].model, pairs);
+    let counts = sets.iter().map_while(|set| hits::wrong(&study, set, progress).continue_value());
+    Ok(counts.collect())
+}
+
 impl Chart {
     /// Makes the chart of a scene of which nothing is measured yet.
     pub fn empty(scene: &str) -> Self {
@@ -64,7 +81,7 @@ type Part<'p> = Box<dyn FnOnce(&mut dyn Progress) -> ControlFlow<(), Option<Pane
 
 impl Study {
     fn run(&self, load: Load, panels: &mut Vec<Panel>, progress: &mut dyn Progress) -> ControlFlow<()> {
-        let sets = hits::sets(&self.candidates[self.strict].model);
+        let sets = hits::sets(&self.candidates[self.strict].model, hits::PAIRS);
         let candidates = self.candidates.len();
         let works = sets.iter().map(|set| hits::work(set, candidates)).sum::<usize>();
         progress.more(works + pictures::work(self));

@@ -2,8 +2,6 @@
 
 use super::data::{Chart, Family, Panel, Point, Subject};
 use super::front::{self, SAME_TIME};
-use crate::scene::choice::Choice;
-use crate::world::accuracy::Accuracy;
 use std::fmt::Write;
 
 /// The distance in Oklab from which the eye can tell colours apart, in hundredths of that from black to white.
@@ -22,11 +20,11 @@ pub fn words(chart: &Chart) -> String {
     for panel in &chart.panels {
         let _ = writeln!(text, "{} ({})", panel.title, panel.note);
         let lines = match panel.subject {
-            Subject::Distances => distances(panel),
-            Subject::Methods => methods(panel),
-            Subject::Samples => samples(panel),
+            Subject::Distances => distances(chart, panel),
+            Subject::Methods => methods(chart, panel),
+            Subject::Samples => samples(chart, panel),
             Subject::Bounces => bounces(panel),
-            Subject::Whole => [front(panel)].into_iter().chain(default_position(panel)).collect(),
+            Subject::Whole => front(chart, panel).into_iter().chain(default_position(chart, panel)).collect(),
         };
         for line in lines {
             let _ = writeln!(text, "  {line}");
@@ -53,49 +51,76 @@ pub fn words(chart: &Chart) -> String {
     text
 }
 
-/// Says what to do, in the order of importance.
+/// Says what to do, in the order of importance: what rests on errors and counts first, and what rests on times last.
 fn advice(chart: &Chart) -> Vec<String> {
     let of = |subject: Subject| chart.panels.iter().find(|panel| panel.subject == subject);
-    let is_doubtful = chart.is_noisy() || chart.is_busy();
-    let again =
-        is_doubtful.then(|| "measure again on a machine with nothing else to do: see below".to_owned());
-    let accuracy = of(Subject::Methods).filter(|_| !is_doubtful).and_then(accuracy);
-    let samples =
-        of(Subject::Samples).map(|panel| match panel.points.iter().find(|point| looks_right(point)) {
-            Some(point) if point.is_default => {
-                format!("keep the samples per pixel, {}: 99 % of the pixels look right", point.samples)
-            }
-            Some(point) => {
-                let sampler = if point.family == Family::Random { " --sampler random" } else { "" };
-                let count = point.samples;
-                format!("take `--samples {count}{sampler}`, with which 99 % of the pixels look right")
-            }
-            None => {
-                "take more samples per pixel than were measured: with none do 99 % of the pixels look right"
-                    .to_owned()
-            }
-        });
-    again.into_iter().chain(accuracy).chain(samples).collect()
+    let again = chart
+        .is_doubtful()
+        .then(|| "measure the times again on a machine with nothing else to do: see below".to_owned());
+    let accuracy = of(Subject::Methods).and_then(|panel| accuracy(chart, panel));
+    let samples = of(Subject::Samples).map(sampling);
+    accuracy.into_iter().chain(samples).chain(again).collect()
 }
 
-/// Says which accuracy to choose: the fastest that changes no pixel, or the default where that is as fast.
-fn accuracy(panel: &Panel) -> Option<String> {
+/// Says which accuracy to choose: the default, unless it has wrong hits, or another one that may be advised is clearly
+/// faster and changes no pixel.
+fn accuracy(chart: &Chart, panel: &Panel) -> Option<String> {
     let default = panel.points.iter().find(|point| point.is_default)?;
-    let options: Vec<_> = Accuracy::all().iter().map(|accuracy| accuracy.option().name).collect();
-    let is_same =
-        |point: &&Point| options.contains(&point.name.as_str()) && matches!(point.changed, Some([0, _]));
+    let name = &default.name;
+    if chart.has_faults(name) {
+        return Some(format!("take `--accuracy exact`: {name}, the scene's own, has hits that are wrong"));
+    }
+    let is_same = |point: &&Point| is_advisable(chart, point) && matches!(point.changed, Some([0, _]));
     let fastest = panel.points.iter().filter(is_same).min_by(|a, b| a.times.least.total_cmp(&b.times.least));
     Some(match fastest {
-        Some(fastest) if fastest.times.least <= GAIN * default.times.least => {
-            let option = if fastest.name == "classic" { "--method" } else { "--accuracy" };
+        Some(fastest) if !chart.is_doubtful() && fastest.times.least <= GAIN * default.times.least => {
             let (own, other) = (time(panel, default), time(panel, fastest));
             format!(
-                "take `{option} {}`: it shows the same image in {other} per pixel in place of {own}",
+                "take `--accuracy {}`: it shows the same image in {other} per pixel in place of {own}",
                 fastest.name
             )
         }
-        _ => format!("keep the accuracy, {}: none that is clearly faster shows the same image", default.name),
+        _ => {
+            let is_proven = chart.panels.iter().any(|panel| panel.subject == Subject::Distances);
+            let hits = if is_proven { "no measured hit is wrong, and " } else { "" };
+            let pixels = match default.changed {
+                Some([changed, of]) if changed > 0 => {
+                    percent(changed as f64 / of as f64) + " of the pixels differ"
+                }
+                _ => "no measured pixel differs".to_owned(),
+            };
+            let faster =
+                if chart.is_doubtful() { "" } else { "; none that is clearly faster shows the same image" };
+            format!("keep the accuracy, {name}: {hits}{pixels} from those of strict{faster}")
+        }
     })
+}
+
+/// Says how many samples to choose: the fewest with which nearly all pixels look right.
+fn sampling(panel: &Panel) -> String {
+    let Some(point) = panel.points.iter().find(|point| looks_right(point)) else {
+        return "take more samples per pixel than were measured: with none do 99 % of the pixels look right"
+            .to_owned();
+    };
+    if point.is_default {
+        return format!("keep the samples per pixel, {}: 99 % of the pixels look right", point.samples);
+    }
+    let (count, sampler) = match point.family {
+        Family::Random => (point.samples.to_string(), " --sampler random"),
+        Family::Adaptive => (point.name.clone(), ""),
+        _ => (point.samples.to_string(), ""),
+    };
+    let own = panel.points.iter().find(|point| point.is_default);
+    let own = own.map_or(String::new(), |own| format!(", in place of {}", own.samples));
+    format!("take `--samples {count}{sampler}`{own}, with which 99 % of the pixels look right")
+}
+
+/// Tells whether a choice may be advised: it has no wrong hits in any panel, and bounds the errors of its hits. Methods
+/// without bounds lose some of the hard rays of each kind of shape, as `docs/accuracy.md` counts, even where they lose none
+/// in this scene, and most of them cannot be chosen.
+fn is_advisable(chart: &Chart, point: &Point) -> bool {
+    matches!(point.family, Family::Own | Family::Sobol | Family::Random | Family::Adaptive)
+        && !chart.has_faults(&point.name)
 }
 
 /// Tells whether the eye can tell at most one in a hundred pixels from the right ones.
@@ -103,16 +128,27 @@ fn looks_right(point: &Point) -> bool {
     point.visible.is_some_and(|part| part <= VISIBLE)
 }
 
-fn distances(panel: &Panel) -> Vec<String> {
-    let mut lines = vec![front(panel)];
-    lines.extend(default_position(panel));
-    let (wrong, right): (Vec<_>, Vec<_>) = panel.points.iter().partition(|point| point.wrong.count() > 0);
-    if !wrong.is_empty() {
-        let each = |point: &&Point| {
-            format!("{} {}", point.name, percent(point.wrong.count() as f64 / point.wrong.of as f64))
+fn distances(chart: &Chart, panel: &Panel) -> Vec<String> {
+    let shares = |what: &str, count: &dyn Fn(&Point) -> usize| {
+        let some = panel.points.iter().filter(|point| count(point) > 0);
+        let each: Vec<_> = some
+            .map(|point| format!("{} {}", point.name, percent(count(point) as f64 / point.wrong.of as f64)))
+            .collect();
+        (!each.is_empty()).then(|| format!("{what} hits: {}", each.join("; ")))
+    };
+    let wrong = shares("wrong", &|point| point.wrong.count());
+    let mut lines = vec![wrong.unwrap_or_else(|| "no method has a wrong hit".to_owned())];
+    lines.extend(shares("inaccurate", &|point| point.wrong.inaccurate));
+    lines.extend(front(chart, panel));
+    lines.extend(panel.points.iter().find(|point| point.is_default).map(|default| {
+        let hits = match (default.wrong.count(), default.wrong.inaccurate) {
+            (0, 0) => "has no wrong hits",
+            (0, _) => "has inaccurate hits",
+            _ => "has wrong hits",
         };
-        lines.push(format!("wrong hits: {}", wrong.iter().map(each).collect::<Vec<_>>().join("; ")));
-    }
+        format!("the default, {}, {hits}: {}, {:.0e}", default.name, time(panel, default), default.error)
+    }));
+    let right: Vec<_> = panel.points.iter().filter(|point| is_advisable(chart, point)).collect();
     let mut last = None;
     for limit in [1e-2, 1e-4, 1e-8, 1e-12] {
         let fit = || right.iter().filter(|point| point.error <= limit);
@@ -129,9 +165,9 @@ fn distances(panel: &Panel) -> Vec<String> {
     lines
 }
 
-fn methods(panel: &Panel) -> Vec<String> {
-    let mut lines = vec![front(panel)];
-    lines.extend(default_position(panel));
+fn methods(chart: &Chart, panel: &Panel) -> Vec<String> {
+    let mut lines: Vec<_> = front(chart, panel).into_iter().collect();
+    lines.extend(default_position(chart, panel));
     let (mut same, mut others) = (Vec::new(), Vec::new());
     for point in &panel.points {
         match point.changed {
@@ -143,9 +179,7 @@ fn methods(panel: &Panel) -> Vec<String> {
         }
     }
     if others.is_empty() {
-        let fastest = panel.points.iter().min_by(|a, b| a.times.least.total_cmp(&b.times.least));
-        let fastest = fastest.map(|point| format!("; the fastest is {}, {}", point.name, time(panel, point)));
-        lines.push(format!("no choice changes a pixel{}", fastest.unwrap_or_default()));
+        lines.push("no choice changes a pixel".to_owned());
     } else {
         lines.push(format!("change no pixel: {}", same.join("; ")));
         lines.push(format!("change pixels: {}", others.join("; ")));
@@ -162,8 +196,8 @@ fn bounces(panel: &Panel) -> Vec<String> {
     all.map(|point| line("the default", point)).into_iter().chain(first).collect()
 }
 
-fn samples(panel: &Panel) -> Vec<String> {
-    let mut lines: Vec<_> = default_position(panel).into_iter().collect();
+fn samples(chart: &Chart, panel: &Panel) -> Vec<String> {
+    let mut lines: Vec<_> = default_position(chart, panel).into_iter().collect();
     let of = |family: Family| -> Vec<&Point> {
         panel.points.iter().filter(|point| point.family == family && point.samples > 1).collect()
     };
@@ -196,32 +230,32 @@ fn samples(panel: &Panel) -> Vec<String> {
     lines
 }
 
-/// Names the choices on the front, the fastest first.
-fn front(panel: &Panel) -> String {
-    let mut best: Vec<&Point> = panel
-        .points
-        .iter()
-        .zip(panel.front())
-        .filter(|(_, is_on_front)| *is_on_front)
-        .map(|(point, _)| point)
-        .collect();
+/// Names the choices on the front, the fastest first; `None` where each one has wrong hits.
+fn front(chart: &Chart, panel: &Panel) -> Option<String> {
+    let points = panel.points.iter().zip(chart.front(panel));
+    let mut best: Vec<&Point> =
+        points.filter(|(_, is_on_front)| *is_on_front).map(|(point, _)| point).collect();
     best.sort_by(|a, b| b.error.total_cmp(&a.error).then_with(|| a.name.cmp(&b.name)));
     let each = |point: &&Point| format!("{} ({}, {:.0e})", point.name, time(panel, point), point.error);
-    format!("Pareto front: {}", best.iter().map(each).collect::<Vec<_>>().join("; "))
+    let each: Vec<_> = best.iter().map(each).collect();
+    (!each.is_empty()).then(|| format!("Pareto front: {}", each.join("; ")))
 }
 
-/// Says where the default stands.
-fn default_position(panel: &Panel) -> Option<String> {
-    let default = panel.points.iter().find(|point| point.is_default)?;
+/// Says where the default stands in the time and the colours of images; `None` where the times are in doubt. Only a choice
+/// that may be advised, and is clearly faster or more exact, beats it.
+fn default_position(chart: &Chart, panel: &Panel) -> Option<String> {
+    let default = panel.points.iter().find(|point| point.is_default).filter(|_| !chart.is_doubtful())?;
     let name = &default.name;
-    if default.wrong.count() > 0 {
-        return Some(format!("the default, {name}, has wrong hits"));
-    }
-    Some(match front::fastest_dominating(&panel.points, default, panel.negligible()) {
-        None => format!("the default, {name}, is on the front: {}", time(panel, default)),
+    let error = |point: &Point| point.error.max(panel.negligible());
+    let counts = |point: &Point| {
+        is_advisable(chart, point)
+            && (point.times.least <= GAIN * default.times.least || error(point) < error(default))
+    };
+    let own = time(panel, default);
+    Some(match front::fastest_dominating(&panel.points, counts, default, panel.negligible()) {
+        None => format!("the default, {name}, is not clearly beaten: {own}"),
         Some(best) => {
-            let (own, other) = (time(panel, default), time(panel, best));
-            format!("the default, {name}, {own}, is beaten by {}, {other}", best.name)
+            format!("the default, {name}, {own}, is beaten by {}, {}", best.name, time(panel, best))
         }
     })
 }
