@@ -133,7 +133,8 @@ pub fn estimates(load: Load, goal: Goal, progress: &mut dyn Progress) -> io::Res
     let own = model.camera.value.accuracy;
     let mut study = Study { threads, own, seconds: Vec::new(), goal };
     let mut others = Vec::new();
-    for accuracy in [Accuracy::Exact, Accuracy::Draft, Accuracy::Classic] {
+    // The notes' methods lose hits, and are no choice for a scene that does not ask for them.
+    for accuracy in [Accuracy::Exact, Accuracy::Draft] {
         if accuracy != own {
             others.push((accuracy, load(Some(accuracy))?));
         }

@@ -177,10 +177,22 @@ fn judge_all(study: &Study, candidate: &Candidate, set: &Set, truths: &[Vec<Know
     let strict = &study.candidates[study.strict].model;
     let packets: Vec<_> = set.packets.iter().zip(truths).collect();
     let judge = |(packet, truths): &(&Packet, &Vec<Known>)| -> Vec<Judgement> {
-        let shape = &strict.objects[packet.object].shape;
-        let found = packet.hits(&candidate.model.objects[packet.object].shape, Cpu::best());
+        let [shape, own] = [strict, &candidate.model].map(|model| &model.objects[packet.object].shape);
+        let found = packet.hits(own, Cpu::best());
         let one = |(((ray, sight), truth), found): (((Ray, &Sight), &Known), f64)| {
-            Pair { shape, ray, sight }.judge(truth, found, candidate.promise)
+            let judged = Pair { shape, ray, sight }.judge(truth, found, candidate.promise);
+            // The notes mean another surface in places, as the upper half of a cone.
+            let is_of_another = || {
+                let by_own =
+                    Pair { shape: own, ray, sight }.judge(&Known::of(own, sight), found, candidate.promise);
+                matches!(by_own, Judgement::Right(_))
+            };
+            let is_wrong = !matches!(judged, Judgement::Right(_) | Judgement::Undecided);
+            if is_wrong && candidate.accuracy.is_some() && is_of_another() {
+                Judgement::Undecided
+            } else {
+                judged
+            }
         };
         packet.sights().zip(*truths).zip(found).map(one).collect()
     };

@@ -294,3 +294,97 @@ fn percent(part: f64) -> String {
     let percent = 100.0 * part;
     if percent < 0.1 { format!("{percent:.3} %") } else { format!("{percent:.1} %") }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tools::chart::{Times, WrongHits};
+
+    /// The numbers of a choice: its time in microseconds, its error, its wrong hits of 100, and its changed pixels of 100.
+    fn point(name: &str, family: Family, (time, error): (f64, f64), missed: usize, changed: usize) -> Point {
+        Point {
+            name: name.to_owned(),
+            family,
+            is_default: name == "exact",
+            times: Times { least: 1e-6 * time, median: 1e-6 * time, rounds: 3, waited: 0.0 },
+            error,
+            worst: error,
+            wrong: WrongHits { of: 100, missed, ..WrongHits::default() },
+            visible: Some(1.0),
+            changed: Some([changed, 100]),
+            samples: 1,
+        }
+    }
+
+    fn panel(title: &str, subject: Subject, points: Vec<Point>) -> Panel {
+        Panel { title: title.to_owned(), note: String::new(), subject, points }
+    }
+
+    /// A plane, of which no method loses a hit, and a vase, of which `classic` loses a tenth.
+    fn chart(draft: f64) -> Chart {
+        let plane = vec![
+            point("classic", Family::Notes, (2.0, 1e-12), 0, 0),
+            point("exact", Family::Own, (4.0, 1e-12), 0, 0),
+        ];
+        let vase = vec![
+            point("classic", Family::Notes, (1.0, 1e-12), 10, 0),
+            point("16 + turning points", Family::Sampling, (2.0, 1e-12), 0, 0),
+            point("exact", Family::Own, (9.0, 1e-12), 0, 0),
+        ];
+        let image = vec![
+            point("classic", Family::Notes, (1.0, 0.0), 0, 0),
+            point("draft", Family::Own, (draft, 1e-12), 0, 0),
+            point("exact", Family::Own, (4.0, 0.0), 0, 0),
+        ];
+        Chart {
+            panels: vec![
+                panel("plane", Subject::Distances, plane),
+                panel("vase", Subject::Distances, vase),
+                panel("the image", Subject::Methods, image),
+            ],
+            is_whole: true,
+            ..Chart::empty("scene")
+        }
+    }
+
+    #[test]
+    fn a_method_that_may_lose_hits_is_not_advised_and_not_said_to_beat_the_default() {
+        let text = words(&chart(3.9));
+        let advice = "What to do:\n  keep the accuracy, exact: no measured hit is wrong, and no measured pixel differs from \
+                      those of strict; none that is clearly faster shows the same image\n";
+        assert!(text.starts_with(advice), "{text}");
+        assert!(!text.contains("beaten by"), "{text}");
+        assert!(text.contains("the default, exact, has no wrong hits: 9000 ns, 1e-12"), "{text}");
+        assert!(text.contains("for an error of at most 1e-2: exact, 4000 ns"), "{text}");
+        // It loses no hit of the plane, but is a choice for the whole scene.
+        assert!(!text.contains("Pareto front: classic"), "{text}");
+        let text = words(&chart(2.0));
+        assert!(text.starts_with("What to do:\n  take `--accuracy draft`: "), "{text}");
+        assert!(text.contains("the default, exact, 4.0 µs, is beaten by draft, 2.0 µs"), "{text}");
+    }
+
+    #[test]
+    fn a_scene_whose_own_method_loses_hits_is_told_so_first() {
+        let mut chart = chart(2.0);
+        for point in chart.panels.iter_mut().flat_map(|panel| &mut panel.points) {
+            point.is_default = point.name == "classic";
+        }
+        let text = words(&chart);
+        let advice =
+            "What to do:\n  take `--accuracy exact`: classic, the scene's own, has hits that are wrong\n";
+        assert!(text.starts_with(advice), "{text}");
+    }
+
+    #[test]
+    fn a_busy_machine_leaves_the_errors_and_is_told_last() {
+        let mut chart = chart(2.0);
+        for point in chart.panels.iter_mut().flat_map(|panel| &mut panel.points) {
+            point.times.waited = 0.5;
+        }
+        let text = words(&chart);
+        let advice = "What to do:\n  keep the accuracy, exact: no measured hit is wrong, and no measured pixel differs from \
+                      those of strict\n  measure the times again on a machine with nothing else to do: see below\n\n";
+        assert!(text.starts_with(advice), "{text}");
+        assert!(!text.contains("beaten by"), "{text}");
+    }
+}
