@@ -1,6 +1,6 @@
 //! The light that reaches the points of a surface.
 
-use super::scene::{Colour, Path, Scene};
+use super::scene::{Colour, Path, Place, Scene};
 use super::surface::{Surface, is_black, tint};
 use crate::geometry::sight::Line;
 use crate::numeric::affine::Affine;
@@ -123,12 +123,13 @@ enum Passes {
 fn passed(scene: &Scene, path: &Path) -> Passes {
     let is_glass = |object: usize| scene.model.objects[object].material.transparency != 0.0;
     let mut panes = Panes { at: Vec::new(), passed: None };
+    let (mut is_open, mut is_blocked) = (false, false);
     for object in (0..scene.model.objects.len()).filter(|object| is_glass(*object)) {
-        if panes.add(scene, path, object).is_none() {
-            return Passes::Open;
+        if let Err(low) = panes.add(scene, path, object) {
+            panes.at.push(Interval { low, high: scene.leaves(path, object) });
+            is_open = true;
         }
     }
-    let (mut is_open, mut is_blocked) = (false, false);
     scene.hits(
         path,
         |object| !is_glass(object),
@@ -150,7 +151,7 @@ fn passed(scene: &Scene, path: &Path) -> Passes {
 
 /// The panes of glass on lines.
 struct Panes {
-    /// Where they are.
+    /// Where they are or may be.
     at: Vec<Interval>,
     /// The fraction of light that passes, if there is any pane.
     passed: Option<Colour>,
@@ -163,8 +164,11 @@ impl Panes {
         self.at.iter().any(|pane| pane.low <= t.high && t.low <= pane.high)
     }
 
-    /// Adds each wall of a transparent object that the lines pass through before t = 1; `None` where that is open.
-    fn add(&mut self, scene: &Scene, path: &Path, object: usize) -> Option<()> {
+    /// Adds each wall of a transparent object that the lines pass through before t = 1.
+    ///
+    /// # Errors
+    /// The t before which all are added, where it is open which follow.
+    fn add(&mut self, scene: &Scene, path: &Path, object: usize) -> Result<(), f64> {
         let one = Affine::constant(1.0);
         let (mut onward, mut start) = (*path, Affine::constant(0.0));
         for _ in 0..MAX_PANES {
@@ -178,32 +182,37 @@ impl Panes {
                         FootprintHit::Doubtful(low) => start.range().low + low,
                     };
                     if low < 1.0 {
-                        all.push((hit, place));
+                        all.push((low, hit, place));
                     }
                     true
                 },
             );
-            let at = match all[..] {
-                [] => return Some(()),
-                [(FootprintHit::Hits(at), _)] => start + at,
-                _ => return None,
+            let (at, place) = match all[..] {
+                [] => return Ok(()),
+                [(_, FootprintHit::Hits(at), place)] => (start + at, place),
+                _ => return Err(all.iter().fold(f64::INFINITY, |nearest, (low, ..)| nearest.min(*low))),
             };
             // Of panes in one place, one stands for all: that is not decided here.
             if at.range().high >= 1.0 || self.are_at(at) {
-                return None;
+                return Err(at.range().low);
             }
-            let (point, place) = (path.line.at(at), all[0].1);
-            let pane = &scene.model.objects[object];
-            let (proven, position) = (pane.shape.proven()?, point.map(|axis| axis.range()));
-            let seen = PointBounds::seen(proven, pane.shader.sees(), place.part, position, None);
-            let look = EncloseLook::<f64>::look(&*pane.shader, &pane.material, &seen)?;
-            let tint = tint(pane.material.transparency, look.diffuse.map(Affine::from))?;
+            let point = path.line.at(at);
+            let tint = pane_tint(scene, place, point).ok_or(at.range().low)?;
             let before = self.passed.unwrap_or([one; 3]);
             self.passed = Some([0, 1, 2].map(|channel| before[channel] * tint[channel]));
             self.at.push(at.range());
             start = at;
             onward = Path { line: Line { origin: point, dir: path.line.dir }, leaves: Some(place) };
         }
-        None
+        Err(start.range().low)
     }
+}
+
+/// Encloses the fraction of light that passes through a place at points; `None` where it is open.
+fn pane_tint(scene: &Scene, place: Place, at: [Affine; 3]) -> Option<Colour> {
+    let pane = &scene.model.objects[place.object];
+    let (proven, position) = (pane.shape.proven()?, at.map(|axis| axis.range()));
+    let seen = PointBounds::seen(proven, pane.shader.sees(), place.part, position, None);
+    let look = EncloseLook::<f64>::look(&*pane.shader, &pane.material, &seen)?;
+    tint(pane.material.transparency, look.diffuse.map(Affine::from))
 }

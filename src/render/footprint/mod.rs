@@ -126,15 +126,13 @@ pub(crate) struct Prover {
     boxes: Vec<Option<Aabb>>,
     most: f64,
     passes_fractions: bool,
-    is_split: bool,
 }
 
 impl Prover {
     /// Prepares the proofs of a model.
     pub fn new(model: &Model) -> Self {
-        let is_split = model.objects.iter().any(|object| object.material.interface.is_some());
         let passes_fractions = model.tints_are_fractions();
-        Self { boxes: scene::boxes(model), most: depth::most(model), passes_fractions, is_split }
+        Self { boxes: scene::boxes(model), most: depth::most(model), passes_fractions }
     }
 
     /// Encloses the colour of a pixel, until it is known to within an error, where 1 is white, as it is shown, or until
@@ -146,8 +144,8 @@ impl Prover {
         [x, y]: [usize; 2],
         error: f64,
     ) -> Proof {
-        let Self { most, passes_fractions, is_split, .. } = *self;
-        let scene = Scene { model, depth, boxes: &self.boxes, most, passes_fractions, is_split };
+        let Self { most, passes_fractions, .. } = *self;
+        let scene = Scene { model, depth, boxes: &self.boxes, most, passes_fractions };
         let gain = camera.gain();
         let footprint = |middle: [f64; 2], cuts: u32| {
             let colour = match lines(camera, middle, 0.5_f64.powi(cuts as i32 + 1)) {

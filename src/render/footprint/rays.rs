@@ -58,20 +58,21 @@ impl<'s> Tracer<'s> {
         if travelled.low > MAX_DIST {
             return black;
         }
-        let most = self.bound(ray, 0.0);
+        let most = self.bound(ray);
         let is_negligible = ray.depth > 0 && ray.weight * most < NEGLIGIBLE;
-        if is_negligible || self.scene.is_split || ray.depth >= MAX_DEPTH || travelled.high > MAX_DIST {
+        if is_negligible || ray.depth >= MAX_DEPTH {
             return up_to(most);
         }
         let (places, is_something) = self.scene.first(&ray.path);
-        if places.len() > MAX_PLACES || self.hits + places.len() > MAX_HITS {
-            let nearest = places.iter().map(|(hit, _)| hit.low()).fold(f64::INFINITY, f64::min);
-            return up_to(self.bound(ray, nearest));
+        let are_many = places.len() > MAX_PLACES || self.hits + places.len() > MAX_HITS;
+        if are_many || travelled.high > MAX_DIST {
+            let bounds = places.iter().map(|(hit, place)| self.bound_at(ray, hit.low(), *place));
+            return up_to(bounds.fold(self.behind(), f64::max));
         }
         self.hits += places.len();
         let mut any = (!is_something).then(|| self.background(ray));
         for (hit, place) in places {
-            let most = self.bound(ray, hit.low());
+            let most = self.bound_at(ray, hit.low(), place);
             let seen = match hit {
                 FootprintHit::Hits(t) | FootprintHit::Perhaps(t) => self.seen(ray, t, place),
                 FootprintHit::Doubtful(_) => up_to(most),
@@ -89,8 +90,11 @@ impl<'s> Tracer<'s> {
         background.value.enclose(toward).map(Affine::from)
     }
 
-    /// Encloses the colours that rays return which hit a place at t.
+    /// Encloses the colours that rays return which hit a place at t. Where an interface divides the rays, nothing is known.
     fn seen(&mut self, ray: &Ray, t: Affine, place: Place) -> Colour {
+        if self.scene.model.objects[place.object].material.interface.is_some() {
+            return [Affine::WHOLE; 3];
+        }
         let surfaces = Surface::new(self.scene, &ray.path.line, t, place);
         let any = surfaces.iter().map(|surface| self.shaded(ray, t, surface)).reduce(hull);
         any.unwrap_or([Affine::WHOLE; 3])
@@ -139,20 +143,35 @@ impl<'s> Tracer<'s> {
         self.colour(&Ray { path, length, travelled, weight: ray.weight * most, depth: ray.depth + 1 })
     }
 
-    /// Bounds the magnitude of what rays return that hit nothing before t.
-    fn bound(&self, ray: &Ray, t: f64) -> f64 {
+    /// Bounds the magnitude of what rays return.
+    fn bound(&self, ray: &Ray) -> f64 {
         let most = match (ray.path.leaves, self.scene.depth) {
             (Some(place), Some(depth)) => depth.beyond(Some(place.object)),
             _ => self.scene.most,
         };
-        let behind = self.scene.model.background.as_ref();
-        let behind = behind.map_or(0.0, |background| background.value.brightest().max_element());
+        self.over_path(ray, 0.0, most)
+    }
+
+    /// Bounds the magnitude of what rays return that hit a place at no smaller t than this.
+    fn bound_at(&self, ray: &Ray, t: f64, place: Place) -> f64 {
+        let most = self.scene.depth.map_or(self.scene.most, |depth| depth.objects[place.object].hit);
+        self.over_path(ray, t, most)
+    }
+
+    /// Bounds the magnitude of light, given a bound on it times its path length, where rays hit nothing before t.
+    fn over_path(&self, ray: &Ray, t: f64, most: f64) -> f64 {
         if most == 0.0 {
-            return behind;
+            return self.behind();
         }
         let path = Interval::point(t) * ray.length.range() + ray.travelled.range();
         let bound = (Interval::point(most) / Interval { low: path.low.max(0.0), high: path.high }).high;
-        if bound.is_nan() { f64::INFINITY } else { bound.max(behind) }
+        if bound.is_nan() { f64::INFINITY } else { bound.max(self.behind()) }
+    }
+
+    /// Bounds the light of the background.
+    fn behind(&self) -> f64 {
+        let background = self.scene.model.background.as_ref();
+        background.map_or(0.0, |background| background.value.brightest().max_element())
     }
 }
 

@@ -36,8 +36,6 @@ pub(super) struct Scene<'a> {
     pub most: f64,
     /// Whether what glass lets pass of a channel is known to lie between none of it and all.
     pub passes_fractions: bool,
-    /// Whether an interface divides rays, so that colours are bounded only.
-    pub is_split: bool,
 }
 
 /// Returns the boxes around a model's objects.
@@ -74,6 +72,12 @@ impl Scene<'_> {
                 return;
             }
         }
+    }
+
+    /// Returns a t beyond which the lines have no hit with an object.
+    pub fn leaves(&self, path: &Path, object: usize) -> f64 {
+        let around = self.boxes[object].and_then(|Aabb { low, high }| coarse(&path.line).clip(low, high));
+        around.map_or(f64::INFINITY, |(_, to)| to)
     }
 
     /// Returns the first hits that the lines may have, and whether each line certainly has one.

@@ -88,6 +88,34 @@ fn a_background_is_bounded_by_itself_and_beside_an_edge() {
 }
 
 #[test]
+fn what_cannot_see_refracting_glass_is_certified_as_without_it() {
+    // The glass is to the right of what the left half of the image shows, in the mirror as well. Without a bound on what
+    // it shows itself, as its own light is reflected in it again and again, nothing bounds what other surfaces show.
+    let scene = |glass: &str| {
+        model(&format!(
+            "camera eye {{ pixeldim 16 12 worlddim 8 6 viewpoint 4 3 8 }}
+             material m {{ ambient 0.5 0.5 0.5 diffuse 2 2 2 }}
+             material mirror {{ ambient 0.1 0.1 0.1 diffuse 1 1 1 specular 0.5 }}
+             light lamp {{ location 1 7 1 emissivity 9 9 9 }}
+             plane floor {{ material m normal 0 1 0 point 0 0 0 }}
+             plane wall {{ material mirror normal 0 0 1 point 0 0 -8 }}
+             sphere ball {{ material m center 2 1.5 -4 radius 1 }}
+             {glass}"
+        ))
+    };
+    let without = scene("");
+    for glass in ["glass g { index 1.5 }", "glass g { transparency 0.8 }", "metal g { shininess 0 }"] {
+        let with = scene(&format!("{glass} sphere bowl {{ material g center 7 1.2 -3 radius 1 }}"));
+        for (x, y) in (0..8).flat_map(|x| (0..12).map(move |y| (x, y))) {
+            let [with, without] = [&with, &without].map(|model| proof(model, [x, y], 2.0 / 255.0));
+            let [is_certain, was_certain] = [&with, &without].map(|proof| proof.is_within(2.0 / 255.0, 1.0));
+            assert!(is_certain || !was_certain, "{glass} {x} {y}: {with:?}, {without:?}");
+        }
+        assert!(!proof(&with, [12, 4], 2.0 / 255.0).is_within(2.0 / 255.0, 1.0), "{glass}");
+    }
+}
+
+#[test]
 fn a_sphere_is_known_from_one_footprint() {
     // The sphere is 14 units from the viewer, and lit like the wall above.
     let model = model(&format!(

@@ -12,6 +12,8 @@ pub(crate) const MANY: u32 = 4000;
 pub(crate) struct ContinuationBounds {
     /// A bound on the light of the object's own surface, times the path length to the surface.
     pub own: f64,
+    /// A bound on what rays that hit the object return, times the path length to the object.
+    pub hit: f64,
     /// A bound on what rays that leave the object return, times the path length to the object.
     pub beyond: f64,
     /// How transmitted rays continue.
@@ -35,7 +37,8 @@ pub(crate) struct Branch {
 
 impl ContinuationBounds {
     /// The value of an object from which no rays continue.
-    pub const NONE: Self = Self { own: 0.0, beyond: 0.0, through: Branch::NONE, mirrored: Branch::NONE };
+    pub const NONE: Self =
+        Self { own: 0.0, hit: 0.0, beyond: 0.0, through: Branch::NONE, mirrored: Branch::NONE };
 }
 
 /// The number of steps by which reflected fractions are told apart.

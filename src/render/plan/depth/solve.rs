@@ -68,22 +68,28 @@ impl Scene {
         let one = |light: f64| if light > 0.0 { 1.0 } else { 0.0 };
         let matt_light: Vec<_> = self.matt_light.iter().map(|matt_light| matt_light.map(one)).collect();
         let shares = self.solve(&matt_light, Surface::unit).unwrap_or_else(infinite);
-        let most = |own: &dyn Fn(&Surface) -> f64, beyond: &[Sides<f64>]| {
+        let hits = |own: &dyn Fn(&Surface) -> f64, beyond: &[Sides<f64>]| {
             let mut met: Vec<_> = self.surfaces.iter().map(own).collect();
             for ((index, _), beyond) in self.shiny.iter().zip(beyond) {
                 let surface = &self.surfaces[*index];
                 let [outside, inside] = surface.met(own(surface), *beyond);
                 met[*index] = above(outside, inside);
             }
-            met.into_iter().fold(0.0, above)
+            met
         };
-        let whole = most(&Surface::unit, &shares);
-        let none = |surface: &Surface| ContinuationBounds { own: surface.own, ..ContinuationBounds::NONE };
-        let mut objects: Vec<_> = self.surfaces.iter().map(none).collect();
+        let whole = hits(&Surface::unit, &shares).into_iter().fold(0.0, above);
+        let hits = hits(&own, &beyond);
+        let none = |(surface, hit): (&Surface, &f64)| ContinuationBounds {
+            own: surface.own,
+            hit: *hit,
+            ..ContinuationBounds::NONE
+        };
+        let mut objects: Vec<_> = self.surfaces.iter().zip(&hits).map(none).collect();
         for (((index, _), beyond), shares) in self.shiny.iter().zip(&beyond).zip(&shares) {
-            objects[*index] = self.surfaces[*index].continuation(*beyond, *shares, whole, cuts);
+            let continuation = self.surfaces[*index].continuation(*beyond, *shares, whole, cuts);
+            objects[*index] = ContinuationBounds { hit: hits[*index], ..continuation };
         }
-        (most(&own, &beyond), objects)
+        (hits.into_iter().fold(0.0, above), objects)
     }
 
     /// Bounds what rays that leave each shiny surface return, given the surfaces' own light, and in `matt_light` that

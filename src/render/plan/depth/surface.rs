@@ -101,6 +101,7 @@ impl Surface {
         };
         ContinuationBounds {
             own,
+            hit: own,
             beyond: above(beyond[0], beyond[1]),
             through: branch(through, 1.0 - REFLECTED),
             mirrored: branch(mirrored, REFLECTED),
