@@ -45,6 +45,7 @@ use nix::sys::signal::{SigSet, Signal};
 use process::failure::{Failure, report};
 #[cfg(target_os = "linux")]
 use process::interrupt;
+use process::messages::Told;
 use process::{arguments, color, crash, help, memory, messages, program};
 use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
@@ -53,7 +54,7 @@ use std::process::ExitCode;
 ///
 /// Without a command, does what the course notes' program does: reads a scene from standard input, prints its dump to
 /// standard error and writes its image, a PPM, to standard output. It uses the notes' own methods unless the scene's
-/// camera says otherwise.
+/// camera says otherwise. Warnings follow the dump, and `--quiet` leaves them out.
 #[derive(Parser)]
 #[command(version, after_help = EXIT_STATUS, after_long_help = EXAMPLES)]
 struct Cli {
@@ -147,7 +148,12 @@ fn chosen() -> ExitCode {
     };
     let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     color::choose(cli.color);
-    messages::choose(cli.message_format, cli.quiet);
+    let told = match (cli.quiet, &cli.command) {
+        (false, _) => Told::All,
+        (true, Some(_)) => Told::ErrorsAndWarnings,
+        (true, None) => Told::Errors,
+    };
+    messages::choose(cli.message_format, told);
     let outcome = match Registry::get() {
         Ok(registry) => match cli.command {
             Some(Command::Render(args)) => render::run(registry, *args),

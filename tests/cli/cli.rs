@@ -68,6 +68,34 @@ fn the_program_without_a_command_is_the_notes_program() {
     assert!(picture == rendered && dump.as_bytes() == dumped);
 }
 
+/// The course's spec1 to spec8 have a sphere `left` and an fplane `left`, and its logs have nothing but the dump.
+#[test]
+fn warnings_do_not_disturb_the_dump_of_the_notes_program() {
+    let shared = "camera eye { pixeldim 16 12 worlddim 8 6 viewpoint 4 3 6 }
+        material red { ambient 9 1 1 }
+        sphere left { material red center 2 3 -3 radius 1 }
+        fplane left { material red normal 0 0 1 point 5 3 -3 xdir 1 0 0 dimensions 1 1 }
+        light lamp { location 1 7 2 emissivity 5 5 5 }
+        light lamp { location 7 7 2 emissivity 5 5 5 }\n";
+    let twice = format!("{shared} material red {{ ambient 1 1 9 }}");
+    let dump = |text: &str| {
+        let (_, dump, _) = outcome(tabray(&folder()).args(["dump", "-"]).write_stdin(text));
+        String::from_utf8(dump).expect("text")
+    };
+    let run = |text: &str, options: &[&str]| {
+        let (status, _, err) = outcome(tabray(&folder()).args(options).write_stdin(text));
+        assert_eq!(status, 0, "{err}");
+        err
+    };
+    assert_eq!(run(shared, &[]), dump(shared));
+    let told = run(&twice, &[]);
+    let warning = told.strip_prefix(&dump(&twice)).expect("the dump comes first");
+    assert!(warning.starts_with("warning: material `red` is defined twice"), "{warning}");
+    assert_eq!(run(&twice, &["-q"]), dump(&twice));
+    let (_, _, checked) = outcome(tabray(&folder()).args(["check", "-"]).write_stdin(shared));
+    assert!(checked.contains("two objects have the name `left`"), "other commands warn: {checked}");
+}
+
 #[test]
 fn a_faulty_scene_without_a_command_gives_messages_alone() {
     let (status, out, err) = outcome(tabray(&folder()).write_stdin("sphere ball {"));

@@ -49,7 +49,7 @@ pub fn print_warnings(loaded: Result<Loaded, Report>) -> Result<Loaded, Failure>
     let mut print_warnings = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
     let warnings = loaded.warnings.short();
     if *print_warnings != warnings {
-        messages::report(&loaded.warnings);
+        messages::warnings(&loaded.warnings);
         *print_warnings = warnings;
     }
     Ok(loaded)

@@ -18,21 +18,41 @@ pub enum Form {
     Json,
 }
 
-/// The form of messages, and whether only errors and warnings are printed.
-static CHOSEN: OnceLock<(Form, bool)> = OnceLock::new();
+/// Which messages are printed.
+#[derive(Clone, Copy, Default, PartialEq)]
+pub enum Told {
+    #[default]
+    All,
+    ErrorsAndWarnings,
+    Errors,
+}
 
-/// Sets the form of all later messages, and whether there are only errors and warnings.
-pub fn choose(form: Form, is_quiet: bool) {
-    CHOSEN.get_or_init(|| (form, is_quiet));
+/// The form of messages, and which of them are printed.
+static CHOSEN: OnceLock<(Form, Told)> = OnceLock::new();
+
+/// Sets the form of all later messages, and which of them are printed.
+pub fn choose(form: Form, told: Told) {
+    CHOSEN.get_or_init(|| (form, told));
+}
+
+fn told() -> Told {
+    CHOSEN.get().copied().unwrap_or_default().1
 }
 
 fn form() -> Form {
     CHOSEN.get().copied().unwrap_or_default().0
 }
 
-/// Tells whether only errors and warnings are printed.
+/// Tells whether at most errors and warnings are printed.
 pub fn is_quiet() -> bool {
-    CHOSEN.get().copied().unwrap_or_default().1
+    told() != Told::All
+}
+
+/// Prints the warnings about a scene that has no errors.
+pub fn warnings(warnings: &Report) {
+    if told() != Told::Errors {
+        report(warnings);
+    }
 }
 
 /// Prints the faults of a scene.
@@ -51,7 +71,9 @@ pub fn error(message: &str, help: Option<&str>) {
 
 /// Prints a warning about an image, and what the user can do about it.
 pub fn warning(message: &str, help: Option<&str>) {
-    titled("warning", Level::WARNING, message, help);
+    if told() != Told::Errors {
+        titled("warning", Level::WARNING, message, help);
+    }
 }
 
 fn titled(word: &str, level: Level, message: &str, help: Option<&str>) {

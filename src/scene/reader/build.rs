@@ -85,7 +85,7 @@ impl Check<'_, '_> {
         let parsed = |order| source.entity(self.registry, order, &self.places.get(order));
         let place = |order| parsed(order)?.name.place.clone();
         self.names.report_unresolved(self.registry, store, place, self.report);
-        self.names.report_repeated(store, place, self.report);
+        self.names.report_repeated(store, place, self.may_share_names, self.report);
         if let Some(first) = parsed(0)
             && self.first_camera.is_none()
             && !camera_misspelt

@@ -73,6 +73,8 @@ pub struct ReadOptions<'s> {
     pub above_all: Option<Accuracy>,
     /// The accuracy where the scene chooses none.
     pub by_default: Accuracy,
+    /// Whether there is no warning of entities that share a name and are all used.
+    pub may_share_names: bool,
     /// The limit on the memory of the scene's textures and of its objects' files, in bytes; by default 1 GiB for the
     /// textures, and none for the objects, which take little more than their files do.
     pub memory: Option<u64>,
@@ -98,6 +100,8 @@ pub(super) struct Check<'r, 't> {
     pub(super) setting: Arc<Setting>,
     /// The accuracy that overrides the scene's own.
     accuracy: Option<Accuracy>,
+    /// Whether there is no warning of entities that share a name and are all used.
+    pub(super) may_share_names: bool,
     /// The entities as they were given, and where.
     pub(super) store: Store,
     pub(super) places: Places,
@@ -142,6 +146,7 @@ impl<'r, 't> Check<'r, 't> {
             first_background: None,
             setting: Arc::new(setting),
             accuracy: accuracy.above_all,
+            may_share_names: accuracy.may_share_names,
             store: Store::default(),
             places: Places::default(),
             camera: None,

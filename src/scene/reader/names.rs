@@ -132,8 +132,15 @@ impl Names {
     }
 
     /// Warns of names that several entities have: once for each name, or once for all of them where they are many.
-    /// `place` returns the place of the name of the entity of an order.
-    pub fn report_repeated(&self, store: &Store, place: impl Fn(usize) -> Place, report: &mut Report<'_>) {
+    /// `place` returns the place of the name of the entity of an order. If they `may_share` one, there is no warning of
+    /// entities that are all used.
+    pub fn report_repeated(
+        &self,
+        store: &Store,
+        place: impl Fn(usize) -> Place,
+        may_share: bool,
+        report: &mut Report<'_>,
+    ) {
         let (mut left_out, mut shared) = (Vec::new(), Vec::new());
         for (first, RepeatedClaims { again, .. }) in &self.again {
             let (text, Some(entity)) = (store.name(*first), store.entity(*first)) else { continue };
@@ -156,6 +163,9 @@ impl Names {
             if firsts.len() > 1 {
                 shared.push(Repeated { what: kind.to_string(), text, orders: firsts });
             }
+        }
+        if may_share {
+            shared.clear();
         }
         let is_placed = place(0).is_some();
         for (Repeated { what, text, orders }, names, more) in few(left_out, is_placed) {
