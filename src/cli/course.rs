@@ -1,85 +1,171 @@
-//! Says where the default differs from the course's own methods, after an image was rendered with these.
+//! Says where the default, and the course's own image, differ from an image that was rendered with the course's methods.
+
+mod edges;
 
 use crate::cli::files::input::Source;
 use crate::cli::process::messages;
 use crate::geometry::ray::Side;
 use crate::scene::model::{Model, Object};
 use crate::scene::registry::Registry;
+use crate::scene::value::Datum;
 use crate::text;
 use crate::world::accuracy::Accuracy;
+use crate::world::material::Rgb;
 
 /// The maximum number of objects of a scene that is compared: the course's scenes have few, and none of them from a
 /// file; each is made twice.
 const MOST: usize = 1000;
 
-/// The maximum number of objects that are named.
+/// The maximum number of objects times pixels of an image whose rays are searched for edges.
+const MOST_RAYS: usize = 1 << 24;
+
+/// The maximum number of objects that are named for each reason.
 const NAMED: usize = 4;
 
-/// The parts of a scene where the default may differ from an image of the course's methods.
+/// Objects at which images may differ, and the reason.
+struct Difference {
+    objects: Vec<String>,
+    reason: &'static str,
+}
+
+/// Where images of a scene may differ from one of the course's methods.
 #[derive(Default)]
 pub struct Differences {
-    /// The objects of which the default finds hits that the course's methods lose.
-    lost: Vec<String>,
-    /// The closed objects whose far walls only the default hits.
-    walls: Vec<String>,
+    /// Where that of the default may.
+    default: Vec<Difference>,
+    /// Where the course's own may.
+    course: Vec<Difference>,
 }
 
 impl Differences {
-    /// Compares the objects of a scene that is rendered with the course's methods to those of the default.
+    /// Examines the objects of a scene that is rendered with the course's methods.
     pub fn of(registry: &Registry, source: &Source, model: &Model) -> Self {
-        let mut differences = Self::default();
         let is_large = || {
             model.objects.len() > MOST
                 || model.objects.iter().any(|object| object.args.entity().reads_files())
         };
         if model.camera.value.accuracy != Accuracy::Classic || messages::is_quiet() || is_large() {
-            return differences;
+            return Self::default();
         }
-        let Ok(exact) = source.load(registry, Some(Accuracy::Exact)) else { return differences };
-        for (classic, exact) in model.objects.iter().zip(&exact.model.objects) {
-            let differs = |side: Side| classic.shape.can_hit_itself(side) != exact.shape.can_hit_itself(side);
-            let name = format!("{} `{}`", classic.args.entity().name, classic.args.name());
-            if differs(Side::Outside) {
-                differences.lost.push(name);
-            } else if differs(Side::Inside) && shows_inside(classic, model) {
-                differences.walls.push(name);
-            }
-        }
-        differences
+        let Ok(exact) = source.load(registry, Some(Accuracy::Exact)) else { return Self::default() };
+        Self { default: of_default(model, &exact.model), course: of_course(model) }
     }
 
-    /// Prints where the default may differ, if it may.
+    /// Prints where the images may differ, if they may.
     pub fn print(&self) {
-        let part = |names: &[String], what: &str| {
-            let more = names.len().saturating_sub(NAMED);
-            let mut named: Vec<_> = names.iter().take(NAMED).map(String::as_str).collect();
-            let more = format!("{more} more");
-            if names.len() > NAMED {
-                named.push(&more);
+        for (differences, beginning) in [
+            (&self.default, "this is the course's own method; the default, exact, differs at"),
+            (&self.course, "the course's own image may differ at"),
+        ] {
+            let parts: Vec<_> = differences.iter().map(Difference::describe).collect();
+            if !parts.is_empty() {
+                messages::note(&format!("{beginning} {}: see docs/differences.md", parts.join(", and at ")));
             }
-            (!names.is_empty()).then(|| format!("{} ({what})", text::and(&named)))
-        };
-        let lost = part(
-            &self.lost,
-            "silhouettes that the course's method loses, and places where rays that leave the surface hit it again",
-        );
-        let walls = part(&self.walls, "far walls, which the course's method never hits");
-        let parts: Vec<_> = lost.into_iter().chain(walls).collect();
-        if !parts.is_empty() {
-            let parts = parts.join(", and at ");
-            messages::note(&format!(
-                "this is the course's own method; the default, exact, differs at {parts}: see docs/differences.md"
-            ));
         }
     }
 }
 
-/// Tells whether rays start inside of a closed object: light passes through it, or the viewer is within its bounds.
-fn shows_inside(object: &Object, model: &Model) -> bool {
-    let viewer = model.camera.value.origins().middle;
-    let is_around = object
-        .shape
-        .bounds()
-        .is_some_and(|bounds| bounds.low.cmple(viewer).all() && viewer.cmple(bounds.high).all());
-    object.material.transparency != 0.0 || is_around
+impl Difference {
+    fn describe(&self) -> String {
+        let mut named: Vec<_> = self.objects.iter().take(NAMED).map(String::as_str).collect();
+        let more = format!("{} more", self.objects.len().saturating_sub(NAMED));
+        if self.objects.len() > NAMED {
+            named.push(&more);
+        }
+        format!("{} ({})", text::and(&named), self.reason)
+    }
+}
+
+/// Returns the differences at the objects of a scene for which there is a reason.
+fn differences<'o>(
+    objects: impl Iterator<Item = &'o Object>,
+    reasons: &[(&'static str, &dyn Fn(&Object) -> bool)],
+) -> Vec<Difference> {
+    let objects: Vec<_> = objects.collect();
+    let differences = reasons.iter().map(|(reason, applies)| {
+        let named = objects.iter().filter(|object| applies(object));
+        let name = |object: &&Object| format!("{} `{}`", object.args.entity().name, object.args.name());
+        Difference { objects: named.map(name).collect(), reason }
+    });
+    differences.filter(|difference| !difference.objects.is_empty()).collect()
+}
+
+/// Returns where the default's image may differ from that of the course's methods.
+fn of_default(classic: &Model, exact: &Model) -> Vec<Difference> {
+    let pairs = || classic.objects.iter().zip(&exact.objects);
+    let differing = |side: Side| {
+        let differs = move |(classic, exact): &(&Object, &Object)| {
+            classic.shape.can_hit_itself(side) != exact.shape.can_hit_itself(side)
+        };
+        pairs().filter(differs).map(|(classic, _)| classic)
+    };
+    let is_lost = |object: &Object| differing(Side::Outside).any(|lost| std::ptr::eq(lost, object));
+    let goes_on = |object: &Object| !classic.lights.is_empty() || object.material.specular != Rgb::ZERO;
+    let viewer = classic.camera.value.origins().middle;
+    let is_around_viewer = |object: &Object| {
+        let bounds = object.shape.bounds();
+        bounds.is_some_and(|bounds| bounds.low.cmple(viewer).all() && viewer.cmple(bounds.high).all())
+    };
+    let is_glass = |object: &Object| object.material.transparency != 0.0;
+    let mut all = differences(
+        differing(Side::Outside),
+        &[
+            (
+                "silhouettes that the course's method loses, and where the surface is not convex, its shadow on itself",
+                &goes_on,
+            ),
+            ("silhouettes that the course's method loses", &|object| !goes_on(object)),
+        ],
+    );
+    all.extend(differences(
+        differing(Side::Inside).filter(|object| !is_lost(object)),
+        &[
+            ("light through the glass, which its far wall tints once more", &is_glass),
+            ("far walls around the viewer, which the course's method never hits", &|object| {
+                !is_glass(object) && is_around_viewer(object)
+            }),
+        ],
+    ));
+    all
+}
+
+/// Returns where the course's own image may differ from that of its methods, by the mistakes of its programs.
+fn of_course(model: &Model) -> Vec<Difference> {
+    let Model { objects, lights, .. } = model;
+    let is_lit = |object: &Object| {
+        let is_bright = object.material.diffuse != Rgb::ZERO || object.material.shininess != 0.0;
+        !lights.is_empty() && is_bright
+    };
+    let is_glass = |object: &Object| object.material.transparency != 0.0;
+    let is_patterned = |object: &Object| object.shader.uniform(&object.material).is_none();
+    let is_mirror = |object: &Object| object.material.specular != Rgb::ZERO;
+    let is_mirrored =
+        |object: &Object| objects.iter().any(|mirror| is_mirror(mirror) && !std::ptr::eq(mirror, object));
+    let is_cone = |object: &Object| matches!(object.args.args().find("surfer"), Some(Datum::Choice(profile)) if profile.name == "cone");
+    let mut all = differences(
+        objects.iter(),
+        &[
+            ("the slope of the cone, which is -4/6, and -8/6 in the course's program", &|object| {
+                is_cone(object) && is_lit(object)
+            }),
+            (
+                "light through the glass, which an older program of the course divided by the light's distance from the glass",
+                &|object| is_glass(object) && !lights.is_empty() && objects.len() > 1,
+            ),
+            (
+                "the pattern of the glass, for which the course's program takes the point of a shadow ray",
+                &|object| is_glass(object) && is_patterned(object) && !lights.is_empty(),
+            ),
+            ("highlights in mirrors, which the course's program shifts", &|object| {
+                is_lit(object) && is_mirror(object) && object.material.shininess != 0.0 && is_mirrored(object)
+            }),
+        ],
+    );
+    let film = &model.camera.value;
+    if objects.len() * film.pixels[0] * film.pixels[1] <= MOST_RAYS {
+        let reason =
+            "rays exactly through an edge or between two texels, which the course's program rounds otherwise";
+        all.extend(differences(objects.iter(), &[(reason, &|object| edges::are_met(film, object))]));
+    }
+    all
 }
