@@ -12,18 +12,19 @@ const TABLE: Table = &[&SCALE as &dyn Row];
 
 inventory::submit! {
     Entity::shape("ellipsoid", "a sphere scaled along the coordinate axes", &[SPHERE, TABLE], |args| {
-        Ok(Body::plain(shape(args)))
+        Ok(body(args, args.get(&SCALE)))
     })
 }
 
-fn shape(args: &Args) -> AnyShape {
-    let ((center, radius), scale) = (center_and_radius(args), args.get(&SCALE));
-    match args.accuracy() {
+/// Makes the object of an entity whose table has the rows of a sphere.
+pub fn body(args: &Args, scale: DVec3) -> Body {
+    let (center, radius) = center_and_radius(args);
+    Body::plain(match args.accuracy() {
         Accuracy::Classic => Shape::new(Ellipsoid::<Classic>::new(center, radius, scale)).classic().into(),
         Accuracy::Draft => exact(Ellipsoid::<Draft>::exact(center, radius, scale)),
         Accuracy::Exact => exact(Ellipsoid::<Exact>::exact(center, radius, scale)),
         Accuracy::Strict => exact(Ellipsoid::<Strict>::exact(center, radius, scale)),
-    }
+    })
 }
 
 fn exact<A: Bounded>(ellipsoid: Ellipsoid<A>) -> AnyShape {

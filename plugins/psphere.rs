@@ -3,7 +3,7 @@
 use super::sphere;
 use crate::prelude::*;
 
-static SHADER: Pparm<OnSphere> = Pparm::required("shader", "the procedural shader");
+static SHADER: Pparm<OnSphere> = Pparm::or("shader", "the procedural shader", OnSphere::Number(0));
 
 const TABLE: Table = &[&SHADER as &dyn Row];
 

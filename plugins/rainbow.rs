@@ -3,9 +3,15 @@
 use super::tiles::Wall;
 use crate::prelude::*;
 
-pub static FREQUENCY: Pparm<i64> = Pparm::or("frequency", "how often the hues repeat", 2).between(1.0, 64.0);
-pub static PHASE: Pparm<f64> =
-    Pparm::or("phase", "the angle by which the hues are shifted", 0.0).unit("radians");
+pub static FREQUENCY: Pparm<WholePerChannel> =
+    Pparm::or("frequency", "how often the hues repeat, or red, green and blue each", WholePerChannel([2; 3]))
+        .must("from 1 to 64", |each| each.0.iter().all(|frequency| (1..=64).contains(frequency)));
+pub static PHASE: Pparm<Phases> = Pparm::or(
+    "phase",
+    "the angle by which the hues are shifted, or the phases of red, green and blue: 0, 2/3 pi and 4/3 pi in the notes",
+    Phases::Shifted(0.0),
+)
+.unit("radians");
 static BRIGHTNESS: Pparm<f64> = Pparm::or("brightness", "half of the strongest colour", 6.0)
     .must("0 or more", |brightness| *brightness >= 0.0);
 static ON: Pparm<Wall> = Pparm::or("on", "the wall along which the hues lie", Wall::Backwall);
@@ -50,49 +56,84 @@ impl<const OF_THE_NOTES: bool> Shader for Rainbow<OF_THE_NOTES> {
     }
 }
 
-/// Red, green and blue for a direction of the angle t: `1 + cos(frequency t + phase + k/3)` for channel k, with k/3 in
-/// turns, times the brightness.
+/// The phases of red, green and blue: the notes', all shifted by an angle, or one for each.
+#[derive(Clone, Copy)]
+pub enum Phases {
+    Shifted(f64),
+    Each([f64; 3]),
+}
+
+impl Value for Phases {
+    const TYPE: Type = Type::Number;
+    const ARITY: Counts = Counts::Of(&[1, 3]);
+
+    fn to_datum(&self) -> Datum {
+        match self {
+            Self::Shifted(angle) => angle.to_datum(),
+            Self::Each(phases) => phases.to_datum(),
+        }
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        f64::from_datum(datum).map(Self::Shifted).or_else(|| Value::from_datum(datum).map(Self::Each))
+    }
+}
+
+/// Red, green and blue for a direction of the angle t: `1 + cos(frequency t + phase)` for each channel, times the
+/// brightness.
 #[derive(Clone, Copy)]
 pub struct CosinePalette {
+    hues: [Hue; 3],
+    brightness: f64,
+}
+
+/// A channel, whose phase is an angle and a number of thirds of a turn.
+#[derive(Clone, Copy)]
+struct Hue {
     frequency: i64,
     phase: f64,
-    /// The cosine and the sine of the phase.
+    thirds: usize,
+    /// The cosine and the sine of the angle.
     turn: DVec2,
-    brightness: f64,
 }
 
 impl CosinePalette {
     /// Makes the palette of an entity whose table has [`FREQUENCY`] and [`PHASE`].
     pub fn new(args: &Args, brightness: f64) -> Self {
-        let (frequency, phase) = (args.get(&FREQUENCY), args.get(&PHASE));
-        Self { frequency, phase, turn: DVec2::new(libm::cos(phase), libm::sin(phase)), brightness }
+        let (WholePerChannel(frequencies), phases) = (args.get(&FREQUENCY), args.get(&PHASE));
+        let hues = [0, 1, 2].map(|channel| {
+            let (phase, thirds) = match phases {
+                Phases::Shifted(phase) => (phase, channel),
+                Phases::Each(phases) => (phases[channel], 0),
+            };
+            let turn = DVec2::new(libm::cos(phase), libm::sin(phase));
+            Hue { frequency: frequencies[channel], phase, thirds, turn }
+        });
+        Self { hues, brightness }
     }
 
     /// Tells whether the hues come around as the notes' do, twice.
     pub fn are_of_the_notes(&self) -> bool {
-        self.frequency == 2 && self.phase == 0.0
+        let is_of_the_notes =
+            |(channel, hue): (usize, &Hue)| (hue.frequency, hue.phase, hue.thirds) == (2, 0.0, channel);
+        self.hues.iter().enumerate().all(is_of_the_notes)
     }
 
     /// Returns the colour in a direction. The angle itself is not computed, which avoids the rounding of `acos` and
     /// arguments outside of its domain.
     #[inline]
     pub fn colour<const OF_THE_NOTES: bool>(&self, toward: DVec2) -> Rgb {
-        // At the point itself there is no direction, and all channels are equal.
+        // At the point itself there is no direction: cosine and sine count as 0.
         let DVec2 { x, y } = (toward / toward.abs().max_element()).try_normalize().unwrap_or(DVec2::ZERO);
-        let (cos, sin) = if OF_THE_NOTES { (x * x - y * y, 2.0 * x * y) } else { self.multiple(x, y) };
-        let half_root_3 = 0.5 * 3.0_f64.sqrt();
-        let red_to_blue =
-            Rgb::new(1.0 + cos, 1.0 - 0.5 * cos - half_root_3 * sin, 1.0 - 0.5 * cos + half_root_3 * sin);
-        self.brightness * red_to_blue
-    }
-
-    /// Returns the cosine and the sine of the multiple of an angle, turned on by the phase.
-    fn multiple(&self, x: f64, y: f64) -> (f64, f64) {
-        let (mut cos, mut sin) = (x, y);
-        for _ in 1..self.frequency {
-            (cos, sin) = (cos * x - sin * y, cos * y + sin * x);
-        }
-        (cos * self.turn.x - sin * self.turn.y, cos * self.turn.y + sin * self.turn.x)
+        let channels = if OF_THE_NOTES {
+            [0, 1, 2].map(|thirds| channel(thirds, (x * x - y * y, 2.0 * x * y)))
+        } else {
+            self.hues.map(|hue| {
+                let multiple = hue.multiple((x, y), |part| part);
+                channel(hue.thirds, turned(multiple, hue.turn.into(), |part| part))
+            })
+        };
+        self.brightness * Rgb::from(channels)
     }
 
     /// Encloses [`colour`](Self::colour).
@@ -100,18 +141,17 @@ impl CosinePalette {
         let n = Interval::<F>::constant;
         let within = |of: Interval<F>| of.max(n(-1.0)).min(n(1.0));
         let square = x.powi(2) + y.powi(2);
-        let (cos, sin) = if self.are_of_the_notes() {
-            (within((x.powi(2) - y.powi(2)) / square), within(n(2.0) * x * y / square))
+        let channels = if self.are_of_the_notes() {
+            let twice = (within((x.powi(2) - y.powi(2)) / square), within(n(2.0) * x * y / square));
+            [0, 1, 2].map(|thirds| channel(thirds, twice))
         } else {
             let (x, y) = (within(x / square.sqrt()), within(y / square.sqrt()));
-            let turned = |(cos, sin), (x, y)| (within(cos * x - sin * y), within(cos * y + sin * x));
-            let multiple = (1..self.frequency).fold((x, y), |angle, _| turned(angle, (x, y)));
-            turned(multiple, (n(self.phase).cos(), n(self.phase).sin()))
+            self.hues.map(|hue| {
+                let turn = (n(hue.phase).cos(), n(hue.phase).sin());
+                channel(hue.thirds, turned(hue.multiple((x, y), within), turn, within))
+            })
         };
-        let (half, half_root_3) = (n(0.5), n(0.5) * n(3.0).sqrt());
-        let colour =
-            [n(1.0) + cos, n(1.0) - half * cos - half_root_3 * sin, n(1.0) - half * cos + half_root_3 * sin];
-        colour.map(|channel| n(self.brightness) * channel)
+        channels.map(|channel| n(self.brightness) * channel)
     }
 
     /// Bounds the reflectivities of a shader whose ambient colours are these, and whose others are the material's.
@@ -120,5 +160,28 @@ impl CosinePalette {
         let is_sound = diffuse.min_element() >= 0.0;
         // The largest colour is 2, up to a few ulps; 1e-6 is far more than those.
         is_sound.then_some(Look { ambient: Rgb::splat(2.000001 * self.brightness), diffuse, specular })
+    }
+}
+
+impl Hue {
+    /// Returns the cosine and the sine of the multiple of an angle.
+    fn multiple<N: Scalar>(&self, angle: (N, N), within: impl Fn(N) -> N) -> (N, N) {
+        (1..self.frequency).fold(angle, |multiple, _| turned(multiple, angle, &within))
+    }
+}
+
+/// Returns the cosine and the sine of the sum of two angles.
+fn turned<N: Scalar>((cos, sin): (N, N), (x, y): (N, N), within: impl Fn(N) -> N) -> (N, N) {
+    (within(cos * x - sin * y), within(cos * y + sin * x))
+}
+
+/// Returns 1 + the cosine of an angle and some thirds of a turn.
+fn channel<N: Scalar>(thirds: usize, (cos, sin): (N, N)) -> N {
+    let (one, half) = (N::constant(1.0), N::constant(0.5));
+    let half_root_3 = half * N::constant(3.0).sqrt();
+    match thirds {
+        0 => one + cos,
+        1 => one - half * cos - half_root_3 * sin,
+        _ => one - half * cos + half_root_3 * sin,
     }
 }

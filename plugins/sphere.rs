@@ -1,5 +1,6 @@
 //! A sphere: all points at one distance from a centre.
 
+use super::ellipsoid;
 use crate::prelude::*;
 use crate::shapes::sphere::{self, SphereLine};
 use crate::shapes::uv;
@@ -12,11 +13,20 @@ static RADIUS: Pparm<f64> = Pparm::required("radius", "the distance from the cen
     .positive()
     .dumped("radius", "\n");
 
+/// The scale of the notes' spheres: with it, a sphere is an ellipsoid.
+static SCALE: Pparm<Option<DVec3>> =
+    Pparm::or("scale", "the scale factors along x, y and z, with which it is an ellipsoid", None)
+        .must("positive in each dimension", |scale| scale.is_none_or(|scale| scale.min_element() > 0.0));
+
 /// The rows of every shape with a centre and a radius.
 pub const TABLE: Table = &[&CENTER, &RADIUS];
 
+const OWN: Table = &[&SCALE as &dyn Row];
+
 inventory::submit! {
-    Entity::shape("sphere", "a sphere", &[TABLE], |args| Ok(body(args)))
+    Entity::shape("sphere", "a sphere", &[TABLE, OWN], |args| {
+        Ok(args.get(&SCALE).map_or_else(|| body(args), |scale| ellipsoid::body(args, scale)))
+    })
 }
 
 /// Makes the object of an entity whose table has the rows of [`TABLE`].

@@ -5,11 +5,11 @@
 
 // Registration of an entity type: its table, its constructor, and the constructor's arguments.
 pub use crate::scene::attribute::{LEAST_LENGTH, Pose};
-pub use crate::scene::counts::OneOf;
+pub use crate::scene::counts::{Counts, OneOf};
 pub use crate::scene::entity::{Args, Entity, Refusal};
 pub use crate::scene::list::List;
 pub use crate::scene::pparm::{Attributes, Derived, Pparm, Row, Table};
-pub use crate::scene::value::{COLOUR, Datum, PerChannel, Value};
+pub use crate::scene::value::{COLOUR, Datum, PerChannel, Type, Value, WholePerChannel};
 pub use inventory;
 
 // What a constructor returns: a camera, a material, a texture, a shader, an object, a light or a background.

@@ -56,7 +56,12 @@ fn has_defaults(entity: &Entity) -> bool {
 
 /// A shader, chosen by its name or by its number: that on planes for 0, on spheres for 1.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ByNumber<const ON: usize>(pub Paint);
+pub enum ByNumber<const ON: usize> {
+    /// The shader that a scene chooses.
+    Paint(Paint),
+    /// The type of shader of this number, as a default.
+    Number(i64),
+}
 
 /// A shader, chosen by its name or by its number on planes.
 pub type OnPlane = ByNumber<0>;
@@ -87,13 +92,20 @@ impl<const ON: usize> Value for ByNumber<ON> {
     const ARITY: Counts = Counts::Of(&[1]);
 
     fn to_datum(&self) -> Datum {
-        self.0.to_datum()
+        match self {
+            Self::Paint(paint) => paint.to_datum(),
+            Self::Number(number) => {
+                let mut types = ShaderType::<ON>::all().into_iter().map(|shader| shader.option());
+                let numbered = types.find(|shader| shader.number == Some(*number));
+                numbered.map_or(Datum::Absent, Datum::Choice)
+            }
+        }
     }
 
     fn from_datum(datum: &Datum) -> Option<Self> {
         match datum {
-            Datum::Choice(choice) => of_type(choice.name).cloned().map(Self),
-            datum => Paint::from_datum(datum).map(Self),
+            Datum::Choice(choice) => of_type(choice.name).cloned().map(Self::Paint),
+            datum => Paint::from_datum(datum).map(Self::Paint),
         }
     }
 }

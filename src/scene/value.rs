@@ -202,6 +202,24 @@ impl Value for PerChannel {
     }
 }
 
+/// A whole number for each of red, green and blue, written as three numbers, or as one where the three are equal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WholePerChannel(pub [i64; 3]);
+
+impl Value for WholePerChannel {
+    const TYPE: Type = Type::Whole;
+    const ARITY: Counts = Counts::Of(&[1, 3]);
+
+    fn to_datum(&self) -> Datum {
+        let Self([red, green, blue]) = *self;
+        Datum::Whole(if red == green && green == blue { vec![red] } else { vec![red, green, blue] })
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        i64::from_datum(datum).map(|each| [each; 3]).or_else(|| Value::from_datum(datum)).map(Self)
+    }
+}
+
 impl<const N: usize> Value for [i64; N] {
     const TYPE: Type = Type::Whole;
     const ARITY: Counts = Counts::Of(&[N]);

@@ -1,6 +1,6 @@
 //! The notes' worked numbers, each to the decimals that the notes print.
 
-use crate::common::model;
+use crate::common::{model, render};
 use glam::{DVec3, dvec3};
 use tabray::geometry::{MISS, Ray, RayRange};
 use tabray::render::{Plan, trace};
@@ -154,4 +154,22 @@ fn the_normal_of_the_vase_is_the_gradient_of_its_equation() {
     let at = dvec3(radius * angle.cos(), y, radius * angle.sin());
     let gradient = dvec3(2.0 * at.x, -2.0 * radius * y.cos(), 2.0 * at.z);
     assert!(vase.normal(at + dvec3(0.0, 0.0, -5.0)).abs_diff_eq(gradient.normalize(), 1e-15));
+}
+
+// The notes' `ellipsoid_t` is a sphere with a scale.
+
+#[test]
+fn a_sphere_with_a_scale_is_an_ellipsoid() {
+    let scene = |accuracy: &str, ball: &str| {
+        model(&format!(
+            "camera c {{ accuracy {accuracy} pixeldim 40 30 worlddim 8 6 viewpoint 4 3 6 }}
+             material m {{ ambient 1 1 1 diffuse 3 3 3 }} light l {{ location 1 7 2 emissivity 5 5 5 }}
+             {ball} {{ material m center 4 3 -3 radius 1.5 scale 1.5 1 0.5 }}"
+        ))
+    };
+    for accuracy in ["classic", "draft", "exact", "strict"] {
+        let [sphere, ellipsoid] = ["sphere ball", "ellipsoid ball"].map(|ball| scene(accuracy, ball));
+        assert_eq!(render(&sphere), render(&ellipsoid), "{accuracy}");
+        assert!(dump::notes(&sphere).contains("scale          1.5   1.0   0.5"), "{}", dump::notes(&sphere));
+    }
 }

@@ -308,3 +308,49 @@ fn no_glint_is_brighter_than_its_light() {
         assert!(colour.max_element() <= 1.000001 / way, "{colour} after {way} from {lamp}");
     }
 }
+
+/// The notes: "different effects may be obtained by using different frequencies and phase angles for each color".
+#[test]
+fn each_channel_of_a_rainbow_may_have_its_own_frequency_and_phase() {
+    let rainbow = |attributes: &str| {
+        model(&text(
+            "",
+            &format!(
+                "rainbow r {{ {attributes} }} plane p {{ material m normal 0 0 1 point 0 0 0 shader r }}"
+            ),
+        ))
+    };
+    for (attributes, frequencies, phases) in [
+        ("frequency 1 5 64", [1.0, 5.0, 64.0], [0.0, TAU / 3.0, 2.0 * TAU / 3.0]),
+        ("frequency 3 2 1 phase 0.5", [3.0, 2.0, 1.0], [0.5, 0.5 + TAU / 3.0, 0.5 + 2.0 * TAU / 3.0]),
+        ("phase 0 1 -2", [2.0; 3], [0.0, 1.0, -2.0]),
+        ("frequency 7 phase 4 4 4", [7.0; 3], [4.0; 3]),
+    ] {
+        let model = rainbow(attributes);
+        for angle in (0..64).map(|step| 0.1 * f64::from(step)) {
+            let colour = look(&model, dvec3(3.0 * angle.cos(), 3.0 * angle.sin(), 0.0));
+            for (channel, (frequency, phase)) in frequencies.iter().zip(phases).enumerate() {
+                let expected = 6.0 * (1.0 + (frequency * angle + phase).cos());
+                let error = (colour[channel] - expected).abs();
+                assert!(error < 1e-11, "{attributes}: channel {channel} at {angle} is off by {error:e}");
+            }
+        }
+    }
+    let notes = rainbow("phase 0 \"2*pi/3\" \"4*pi/3\"");
+    for angle in (0..64).map(|step| 0.1 * f64::from(step)) {
+        let at = dvec3(angle.cos(), angle.sin(), 0.0);
+        assert!(look(&notes, at).abs_diff_eq(rainbow_colour(angle), 1e-13), "the notes' phases are these");
+    }
+}
+
+#[test]
+fn a_procedural_sphere_without_a_shader_has_the_notes() {
+    let scene = |shader: &str| {
+        model(&text("", &format!("psphere s {{ material m center 0 0 0 radius 1 {shader} }}")))
+    };
+    for angle in [0.3, 1.0, 2.0, 4.0_f64] {
+        let at = dvec3(angle.cos(), angle.sin(), 0.0);
+        assert_eq!(look(&scene(""), at), look(&scene("shader 0"), at));
+    }
+    assert_eq!(tabray::scene::dump::notes(&scene("")), tabray::scene::dump::notes(&scene("shader 0")));
+}
