@@ -15,8 +15,8 @@ use serde::{Deserialize, Serialize};
 use std::io;
 use std::ops::ControlFlow;
 
-/// An image beside the main one (an arbitrary output variable). All but the colour, the cost, the samples and the colours
-/// of the error are taken along the ray through the centre of each pixel, however many samples the pixel has.
+/// An image beside the main one (an arbitrary output variable). All but the colour, the cost, the samples, the colours of
+/// the error and what is undecided are taken along the ray through the centre of each pixel, however many samples the pixel has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Aov {
@@ -47,6 +47,10 @@ pub enum Aov {
     /// The worst one is white; red where another object is seen. With --certain, what is proven of it: grey up to the
     /// limit, and red where that is not certain.
     Error,
+    /// Pixels whose first hit could not be decided: white, all others black.
+    ///
+    /// With all samples, as in the main image: one undecided camera ray makes its pixel white.
+    Undecided,
 }
 
 /// An auxiliary image, row by row from the top, each row from the left.
@@ -106,6 +110,9 @@ impl Aov {
             Self::Error => {
                 let errors = each(renderer, plan, done, |x, y| PixelError::of(plan, truth, x, y))?;
                 Ok(error(&errors, setting.size))
+            }
+            Self::Undecided => {
+                Ok(undecided(&each(renderer, plan, done, |x, y| trace::is_undecided(plan, x, y))?))
             }
         }
     }
@@ -244,6 +251,15 @@ pub(super) fn colour(colours: &[Rgb]) -> Layer {
 pub(super) fn object(objects: &[Option<usize>]) -> Layer {
     Layer {
         bytes: shown_all(objects.iter().map(|object| object.map_or(DVec3::ZERO, colour_of))),
+        exact: None,
+        most: None,
+        worst: None,
+    }
+}
+
+pub(super) fn undecided(pixels: &[bool]) -> Layer {
+    Layer {
+        bytes: pixels.iter().flat_map(|is_undecided| [if *is_undecided { 255 } else { 0 }; 3]).collect(),
         exact: None,
         most: None,
         worst: None,

@@ -32,6 +32,7 @@ impl Aov {
                 let PixelError { colour, distance, is_other } = PixelError::of(plan, truth, x, y);
                 [colour, distance, f64::from(u8::from(is_other))]
             }
+            Self::Undecided => [f64::from(u8::from(trace::is_undecided(plan, x, y))), 0.0, 0.0],
         }
     }
 
@@ -73,6 +74,7 @@ impl Aov {
                 };
                 aov::error(&all(values, of), setting.size)
             }
+            Self::Undecided => aov::undecided(&all(values, |[undecided, ..]| is(*undecided))),
         }
     }
 }

@@ -5,6 +5,7 @@ mod culling;
 pub mod decisions;
 pub(crate) mod division;
 mod features;
+pub(crate) mod flaws;
 mod footprint;
 mod frusta;
 pub(crate) mod limits;
@@ -17,6 +18,7 @@ pub(crate) mod tiles;
 pub mod trace;
 
 pub use bytes::to_byte;
+pub use flaws::{BudgetCuts, Flaws, Undecided};
 pub use observer::{Count, DropReason, Event, Hit, LightOutcome, RayKind, RayPurpose, TraceObserver};
 pub use plan::Plan;
 pub use ray_stats::{RayStats, TestCounts};

@@ -2,6 +2,7 @@
 
 use crate::geometry::ray::Ray;
 use crate::scene::model::Object;
+use crate::world::certify::Doubt;
 use crate::world::material::Rgb;
 use glam::DVec3;
 use std::fmt;
@@ -82,6 +83,8 @@ pub enum Count {
     },
     /// A pixel has used up its ray budget; it lacks at most this much light in any channel.
     Cut(f64),
+    /// A pixel has a camera ray for which it could not be decided whether it hits the object of this index first.
+    Undecided(usize, Doubt),
 }
 
 /// The kinds of rays.

@@ -2,8 +2,8 @@
 
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::parallel;
+use crate::render::flaws::Flaws;
 use crate::render::plan::Plan;
-use crate::render::ray_stats::BudgetCuts;
 use crate::render::renderer::Renderer;
 use crate::render::trace::{Scratch, Tracer};
 use crate::simd::cpu::Cpu;
@@ -47,7 +47,7 @@ impl Area {
             let start = index * self.block;
             self.corner[side] + start + (self.block / 2).min(self.size[side] - start - 1)
         };
-        let (mut scratch, mut nobody) = (Scratch::default(), BudgetCuts::default());
+        let (mut scratch, mut nobody) = (Scratch::default(), Flaws::default());
         let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody);
         let mut colours = vec![Rgb::ZERO; across * down];
         for top in (0..down).step_by(SQUARE) {

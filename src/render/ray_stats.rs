@@ -1,5 +1,6 @@
 //! The work of an image: its rays by kind, and their tests by object.
 
+use crate::render::flaws::Flaws;
 use crate::render::observer::{Count, RayKind, TraceObserver};
 use crate::scene::model::Model;
 use crate::world::sample::Sampler;
@@ -13,8 +14,8 @@ pub struct RayStats {
     rays: [u64; RayKind::ALL.len()],
     /// The counts of each object, by the object's index.
     tests: Vec<TestCounts>,
-    /// The pixels that have used up their ray budget.
-    pub cuts: BudgetCuts,
+    /// The pixels that are not as they should be.
+    pub flaws: Flaws,
     /// The pixels with proven bounds of their colours.
     pub proofs: Proofs,
     /// The numbers of pixels that took 1, 2, 4 ... samples, where pixels differ in that.
@@ -64,33 +65,6 @@ impl Proofs {
     }
 }
 
-/// The pixels that have used up their ray budget. It is an observer that counts nothing else.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct BudgetCuts {
-    /// The number of pixels that have used up their ray budget.
-    pub pixels: u64,
-    /// A bound on the light that any of these pixels lacks, in any channel; infinite where nothing bounds it.
-    pub most: f64,
-}
-
-impl BudgetCuts {
-    /// Adds the cuts of another part of the image.
-    pub fn add(&mut self, other: Self) {
-        self.pixels += other.pixels;
-        self.most = self.most.max(other.most);
-    }
-}
-
-impl TraceObserver for BudgetCuts {
-    const SEES: bool = false;
-
-    fn count(&mut self, count: Count) {
-        if let Count::Cut(most) = count {
-            self.add(Self { pixels: 1, most });
-        }
-    }
-}
-
 /// The tests against one object, or against all objects of an entity type.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct TestCounts {
@@ -121,7 +95,7 @@ impl TraceObserver for RayStats {
                 let footprints = footprints.into();
                 self.proofs.add(Proofs { certified: 1 - pixels, open: pixels, most, sum, footprints });
             }
-            Count::Cut(_) => self.cuts.count(count),
+            Count::Cut(_) | Count::Undecided(..) => self.flaws.count(count),
         }
     }
 }
@@ -140,7 +114,7 @@ impl RayStats {
         for (sum, part) in self.rays.iter_mut().zip(other.rays) {
             *sum += part;
         }
-        self.cuts.add(other.cuts);
+        self.flaws.add(&other.flaws);
         self.proofs.add(other.proofs);
         for (sum, part) in self.sampled.iter_mut().zip(other.sampled) {
             *sum += part;

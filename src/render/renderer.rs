@@ -2,9 +2,9 @@
 
 use crate::parallel;
 use crate::render::bytes::to_bytes;
+use crate::render::flaws::Flaws;
 use crate::render::observer::TraceObserver;
 use crate::render::plan::Plan;
-use crate::render::ray_stats::BudgetCuts;
 use crate::render::tiles::{self, BAND, Band, Strip, TILE, locked};
 use crate::render::trace::{Scratch, Tracer};
 use crate::simd::cpu::Cpu;
@@ -79,7 +79,7 @@ impl Renderer {
     pub fn picture(&self, plan: &Plan) -> Vec<u8> {
         let [width, height] = plan.camera.pixels;
         let band = Band::blank(0..width, 0..height);
-        self.fill(plan, &band, RenderCallbacks { stops: &|| false, row: &|| () }, &|_: BudgetCuts| {});
+        self.fill(plan, &band, RenderCallbacks { stops: &|| false, row: &|| () }, &|_: Flaws| {});
         band.bytes(usize::MAX).concat()
     }
 

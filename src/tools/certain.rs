@@ -2,9 +2,9 @@
 
 use crate::parallel;
 use crate::render::bytes::shown;
+use crate::render::flaws::Flaws;
 use crate::render::observer::{Count, DynObserver, TraceObserver};
 use crate::render::plan::Plan;
-use crate::render::ray_stats::BudgetCuts;
 use crate::render::renderer::Renderer;
 use crate::render::tiles::{self, TILE, TOGETHER};
 use crate::render::trace::{PixelBound, Scratch, Tracer};
@@ -62,7 +62,7 @@ pub fn truth(renderer: &Renderer, model: &mut Model) -> Vec<Sampled> {
         let row = |index: usize| {
             let y = height - 1 - index;
             let pixels: Vec<_> = (0..width).map(|x| [x, y]).collect();
-            let (mut scratch, mut nobody) = (Scratch::default(), BudgetCuts::default());
+            let (mut scratch, mut nobody) = (Scratch::default(), Flaws::default());
             let mut tracer = Tracer::new(&plan, Cpu::best(), &mut scratch, &mut nobody);
             let seen = tracer.pixels(&pixels);
             (0..width).map(|lane| seen.get(lane)).collect::<Vec<_>>()

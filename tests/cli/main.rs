@@ -22,4 +22,5 @@ mod review;
 mod samples;
 mod server;
 mod size;
+mod undecided;
 mod watch;

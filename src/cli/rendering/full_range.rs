@@ -38,7 +38,7 @@ pub fn render(
     let mut pixels = None;
     stats.timed(|| pixels = renderer.colours(plan, [&part.columns, &part.rows], overseer, &add));
     progress.end();
-    job::warn_of(stats.tally.cuts());
+    job::warn_of(&stats.tally.flaws(), plan.model);
     job::report_proofs(stats.tally.proofs(), plan);
     let Some(pixels) = pixels else {
         stop.report();

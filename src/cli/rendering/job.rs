@@ -10,12 +10,15 @@ use crate::cli::rendering::resume::{self, ResumedImage};
 use crate::cli::rendering::stats::Stats;
 use crate::output::packing::PIECE;
 use crate::output::picture::Format;
+use crate::render::flaws::{BudgetCuts, Flaws, Undecided};
 use crate::render::limits::MAX_RAYS;
 use crate::render::plan::Plan;
-use crate::render::ray_stats::{BudgetCuts, Proofs, RayStats};
+use crate::render::ray_stats::{Proofs, RayStats};
 use crate::render::renderer::{RenderCallbacks, Renderer};
 use crate::render::tiles::{BAND, Band, Tiles};
+use crate::scene::model::Model;
 use crate::text::{count, short};
+use crate::world::certify::Doubt;
 use std::io::{self, BufWriter};
 use std::mem::{replace, take};
 use std::ops::Range;
@@ -26,6 +29,9 @@ use std::time::Instant;
 /// The maximum number of blank pixels that are written in place of missing ones. If more are missing, the file ends at
 /// the first row of which nothing is rendered.
 const MOST_BLANK: usize = 1 << 24;
+
+/// The maximum number of reasons that are listed why pixels could not be decided.
+const MOST_REASONS: usize = 4;
 
 /// A part of a plan's image, and how it is rendered.
 pub struct Job<'a> {
@@ -49,16 +55,16 @@ impl Job<'_> {
     /// ends with what is done, because threads may still be at work.
     pub fn run(&self, output: Output, begun: Option<ResumedImage>) -> Result<(), Failure> {
         let progress = Progress::new(self.part.rows.len());
-        let (cuts, proofs) = (Mutex::new(BudgetCuts::default()), Mutex::new(Proofs::default()));
-        let cut = |part| cuts.lock().unwrap_or_else(PoisonError::into_inner).add(part);
+        let (flaws, proofs) = (Mutex::new(Flaws::default()), Mutex::new(Proofs::default()));
+        let flawed = |part: Flaws| flaws.lock().unwrap_or_else(PoisonError::into_inner).add(&part);
         let sum = self.stats.map(|stats| &stats.tally);
         let add = |tally: RayStats| {
-            cut(tally.cuts);
             proofs.lock().unwrap_or_else(PoisonError::into_inner).add(tally.proofs);
             sum.iter().for_each(|sum| sum.add(&tally));
+            flawed(tally.flaws);
         };
         let overseer = RenderCallbacks { stops: &|| self.stop.is_due(), row: &|| progress.step() };
-        let (plan, plain, counted) = (self.plan, &cut, &add);
+        let (plan, plain, counted) = (self.plan, &flawed, &add);
         self.stop.begin();
         self.renderer.unfinished(|renders| {
             let fill = |band: &mut Band| match self.stats {
@@ -68,7 +74,7 @@ impl Job<'_> {
             };
             let outcome = self.write(output, begun, &progress, fill);
             progress.end();
-            warn_of(take(&mut cuts.lock().unwrap_or_else(PoisonError::into_inner)));
+            warn_of(&take(&mut flaws.lock().unwrap_or_else(PoisonError::into_inner)), plan.model);
             report_proofs(take(&mut proofs.lock().unwrap_or_else(PoisonError::into_inner)), plan);
             match outcome {
                 Err(failure) if self.stop.is_due() => failure::end(&failure),
@@ -208,11 +214,38 @@ pub fn report_proofs(proofs: Proofs, plan: &Plan) {
     ));
 }
 
-/// Warns of pixels with primary rays that used up their ray budget, if there are any.
-pub fn warn_of(cuts: BudgetCuts) {
-    if cuts.pixels == 0 {
-        return;
+/// Warns of pixels with primary rays that used up their ray budget or could not be decided, if there are any.
+pub fn warn_of(Flaws { cuts, undecided }: &Flaws, model: &Model) {
+    if cuts.pixels > 0 {
+        warn_of_cuts(cuts);
     }
+    if undecided.pixels() > 0 {
+        warn_of_undecided(undecided, model);
+    }
+}
+
+fn warn_of_undecided(undecided: &Undecided, model: &Model) {
+    let of = |((object, doubt), pixels): (&(usize, Doubt), &u64)| {
+        let why = format!("`{}` {doubt}", model.objects[*object].args.name());
+        if undecided.0.len() > 1 { format!("{why} ({pixels})") } else { why }
+    };
+    let reasons: Vec<_> = undecided.0.iter().map(of).collect();
+    let (named, others) = reasons.split_at(reasons.len().min(MOST_REASONS));
+    let more = if others.is_empty() { String::new() } else { format!("; and {} more", others.len()) };
+    messages::warning(
+        &format!(
+            "{} could not be decided: {}{more}",
+            count(undecided.pixels() as usize, "pixel"),
+            named.join("; ")
+        ),
+        Some(
+            "a surface that rays touch and do not cross may be missing there, as where a factor of a formula is squared; \
+            `--aov undecided` shows these pixels",
+        ),
+    );
+}
+
+fn warn_of_cuts(cuts: &BudgetCuts) {
     let levels = 255.0 * cuts.most;
     let most = if levels.is_finite() {
         format!("off by at most {} of 255 levels", short(levels))

@@ -185,7 +185,7 @@ impl Share<'_> {
             }
             progress.end();
             let tally = &self.stats.tally;
-            warn_of(tally.cuts());
+            warn_of(&tally.flaws(), self.plan.model);
             report_proofs(tally.proofs(), self.plan);
             let is_whole = mask.len() == tiles.len() && mask.iter().all(|done| *done == 1);
             if is_whole {
@@ -316,7 +316,7 @@ impl Share<'_> {
             }
         }
         progress.end();
-        warn_of(self.stats.tally.cuts());
+        warn_of(&self.stats.tally.flaws(), self.plan.model);
         report_proofs(self.stats.tally.proofs(), self.plan);
         finish(path, writer)
     }

@@ -1,10 +1,12 @@
 //! `--stats`: statistics of a render: rays, tests, time and memory.
 
 use crate::cli::process::memory;
+use crate::render::flaws::{BudgetCuts, Flaws};
 use crate::render::observer::RayKind;
-use crate::render::ray_stats::{BudgetCuts, Proofs, RayStats, TestCounts};
+use crate::render::ray_stats::{Proofs, RayStats, TestCounts};
 use crate::scene::model::Model;
 use crate::text::{json, short};
+use crate::world::certify::Doubt;
 use serde::Serialize;
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -18,7 +20,7 @@ use std::time::{Duration, Instant};
 #[command(next_help_heading = "Looking inside")]
 pub struct Args {
     /// Print statistics of the render to standard error, as a table or as JSON: rays by kind, pixels that used up their
-    /// ray budget, tests by entity type, the time of each stage and the peak memory
+    /// ray budget or could not be decided, tests by entity type, the time of each stage and the peak memory
     #[arg(long, value_name = "FORMAT", num_args = 0..=1, require_equals = true, default_missing_value = "table")]
     stats: Option<Format>,
 }
@@ -72,9 +74,9 @@ impl Sum {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Returns the pixels that have used up their ray budget.
-    pub fn cuts(&self) -> BudgetCuts {
-        self.get().cuts
+    /// Returns the pixels that are not as they should be.
+    pub fn flaws(&self) -> Flaws {
+        self.get().flaws.clone()
     }
 
     /// Returns the proven bounds of pixels' colours.
@@ -123,9 +125,16 @@ impl Stats {
             let _ = writeln!(out, "{:<12} {open:>14} {most:>14} {mean:>14}", "open, within");
             let _ = writeln!(out, "{:<12} {footprints:>14}", "footprints");
         }
-        let BudgetCuts { pixels, most } = tally.cuts;
+        let BudgetCuts { pixels, most } = tally.flaws.cuts;
         let _ = writeln!(out, "\n{:<12} {:>14} {:>14}", "cut off", "pixels", "levels");
         let _ = writeln!(out, "{:<12} {pixels:>14} {:>14}", "at most", short(255.0 * most));
+        let undecided = undecided(&tally, model);
+        if !undecided.is_empty() {
+            let _ = writeln!(out, "\n{:<12} {:>14}", "undecided", "pixels");
+        }
+        for Undecided { object, pixels, reason } in undecided {
+            let _ = writeln!(out, "{object:<12} {pixels:>14}  {reason}");
+        }
         let _ = writeln!(
             out,
             "\n{:<12} {:>14} {:>14} {:>14} {:>14}",
@@ -149,10 +158,10 @@ impl Stats {
         out
     }
 
-    fn counts(&self, model: &Model) -> Counts {
+    fn counts<'m>(&self, model: &'m Model) -> Counts<'m> {
         let tally = self.tally.get();
         Counts {
-            cut: Cut { levels: 255.0 * tally.cuts.most, pixels: tally.cuts.pixels },
+            cut: Cut { levels: 255.0 * tally.flaws.cuts.most, pixels: tally.flaws.cuts.pixels },
             peak_memory: memory::peak(),
             proven: (tally.proofs.pixels() > 0).then(|| Proven {
                 certain: tally.proofs.certified,
@@ -170,13 +179,24 @@ impl Stats {
             samples: mean_samples(&tally).map(|mean| Samples { mean, pixels: tally.sampled().collect() }),
             seconds: self.seconds(),
             tests: tally.tests(model),
+            undecided: undecided(&tally, model),
         }
     }
 }
 
+/// Lists the pixels whose first hit could not be decided, by object and reason.
+fn undecided<'m>(tally: &RayStats, model: &'m Model) -> Vec<Undecided<'m>> {
+    let of = |((object, doubt), pixels): (&(usize, Doubt), &u64)| Undecided {
+        object: model.objects[*object].args.name(),
+        pixels: *pixels,
+        reason: doubt.to_string(),
+    };
+    tally.flaws.undecided.0.iter().map(of).collect()
+}
+
 /// The statistics of a render, for other programs.
 #[derive(Serialize)]
-struct Counts {
+struct Counts<'m> {
     /// The pixels that reached the limit on their number of rays.
     cut: Cut,
     /// The most memory that the program used at one time, in bytes; left out where the system does not report it.
@@ -194,6 +214,20 @@ struct Counts {
     seconds: Seconds,
     /// The outcomes of the tests, by entity type.
     tests: BTreeMap<&'static str, TestCounts>,
+    /// The pixels whose first hit could not be decided, by object and reason; left out where there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    undecided: Vec<Undecided<'m>>,
+}
+
+/// Pixels whose first hit could not be decided.
+#[derive(Serialize)]
+struct Undecided<'m> {
+    /// The name of the object that may be hit first.
+    object: &'m str,
+    /// The number of pixels.
+    pixels: u64,
+    /// Why, phrased to follow the name.
+    reason: String,
 }
 
 /// The numbers of rays that were traced.

@@ -93,7 +93,7 @@ mod tests {
                 .collect()
         });
         assert_eq!(together, alone, "{surface}");
-        (stats.all_rays() as usize, stats.cuts.pixels)
+        (stats.all_rays() as usize, stats.flaws.cuts.pixels)
     }
 
     #[test]

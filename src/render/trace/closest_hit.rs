@@ -3,7 +3,7 @@
 use super::arrays::resized;
 use super::context::Tracer;
 use super::hit_record::HitRecord;
-use super::one_ray::{RoundedRay, exact, located};
+use super::one_ray::{Located, RoundedRay, exact, located};
 use super::order;
 use super::ray_group::RayGroup;
 use crate::geometry::bvh::{self, PacketVisitor, Stack};
@@ -42,6 +42,9 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
         let part = 0..group.padded();
         ClosestHitSearch { tracer: self, group, hits, part, single: None }.run(&mut stack, &mut ends);
         (self.scratch.stack, self.scratch.ends) = (stack, ends);
+        if !self.scratch.undecided.lanes.is_empty() {
+            self.note_undecided(group, hits);
+        }
     }
 
     /// Finds one ray's closest hit and reports each step to the observer.
@@ -56,7 +59,7 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
                 self.observer.see(Event::Tested(index, None));
                 continue;
             }
-            let (distance, bracket) = located(shape, &start, origin_side, MISS);
+            let Located { distance, bracket, .. } = located(shape, &start, origin_side, MISS);
             let is_first = self.is_first(&start, (index, distance), (hits.met[0], nearest));
             self.observer.see(Event::Tested(index, Some(if is_first { distance } else { MISS })));
             if is_first {
@@ -75,7 +78,7 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
     }
 
     /// Returns one ray of a group, with the bounds of its errors.
-    fn start(&self, group: &RayGroup, lane: usize) -> RoundedRay {
+    pub(super) fn start(&self, group: &RayGroup, lane: usize) -> RoundedRay {
         let [x, y] = &self.scratch.places;
         let lens = |side: usize| self.scratch.lens[side].get(lane).copied().unwrap_or_default();
         let look = || self.plan.camera.sight_through(x[lane], y[lane], DVec2::new(lens(0), lens(1)));
@@ -251,7 +254,11 @@ impl<W: TraceObserver> ClosestHitSearch<'_, '_, '_, W> {
     fn decide(&mut self, lane: usize, index: usize, origin_side: Option<Side>) {
         let objects = &self.tracer.model.objects;
         let start = self.tracer.start(self.group, lane);
-        let (distance, own) = located(&objects[index].shape, &start, origin_side, MISS);
+        let Located { distance, bracket: own, open } =
+            located(&objects[index].shape, &start, origin_side, MISS);
+        if let Some(from) = open {
+            self.tracer.scratch.undecided.lanes.push((lane, index, from));
+        }
         if distance == MISS {
             return;
         }

@@ -28,15 +28,16 @@ mod shadow_rays;
 mod surface;
 mod trail;
 mod transmittance;
+mod undecided;
 
 pub(crate) use context::Tracer;
 pub(crate) use scratch::Scratch;
 
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::geometry::sight::Sight;
+use crate::render::flaws::Flaws;
 use crate::render::observer::{Count, DynObserver, Event, Hit, RayKind, RayPurpose, TraceObserver};
 use crate::render::plan::Plan;
-use crate::render::ray_stats::BudgetCuts;
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::View;
 use crate::world::film;
@@ -102,11 +103,18 @@ pub fn samples(plan: &Plan, x: usize, y: usize) -> (u32, Option<f64>) {
     if plan.camera.adaptive.is_none() {
         return (plan.camera.samples, None);
     }
-    let (mut scratch, mut nobody) = (Scratch::default(), BudgetCuts::default());
+    let (mut scratch, mut nobody) = (Scratch::default(), Flaws::default());
     Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody).pixels(&[[x, y]]);
     let (count, error) =
         scratch.primary.map_or((0, 0.0), |primary| primary.adaptive.first(plan.camera.gain()));
     (count, Some(error))
+}
+
+/// Tells whether any of a pixel's camera rays has a first hit that could not be decided.
+pub fn is_undecided(plan: &Plan, x: usize, y: usize) -> bool {
+    let (mut scratch, mut flaws) = (Scratch::default(), Flaws::default());
+    Tracer::new(plan, Cpu::best(), &mut scratch, &mut flaws).pixels(&[[x, y]]);
+    flaws.undecided.pixels() > 0
 }
 
 /// Computes the colour that a primary ray returns, before it is clamped. Lights with a size are sampled at the point
@@ -160,7 +168,7 @@ fn traced(
 
 /// Finds the first hit of a primary ray.
 pub fn first_hit<'m>(plan: &Plan<'m>, sight: &Sight) -> Option<Hit<'m>> {
-    let (mut scratch, mut nobody) = (Scratch::default(), BudgetCuts::default());
+    let (mut scratch, mut nobody) = (Scratch::default(), Flaws::default());
     let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody);
     let mut group = RayGroup::primary(sight, None);
     let (mut hits, mut distances) = (HitRecord::default(), Vec::new());
@@ -184,6 +192,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             (None, _) if camera.samples == 1 => self.middles(pixels, &mut primary),
             (None, _) if sampled::is_unbounded(self.plan) => self.one_by_one(pixels, &mut primary),
             (None, _) => self.fixed_samples(pixels, &mut primary),
+        }
+        if !self.scratch.undecided.pixels.is_empty() {
+            self.report_undecided();
         }
         if camera.exposure != 0.0 {
             let mut colours = primary.colours.resized(pixels.len());
@@ -295,7 +306,7 @@ mod tests {
 
     /// Traces rays through the lowest row of pixels, each with its own ray budget.
     fn seen(plan: &Plan, pixels: &[usize], budgets: &[u32]) -> Vec<Rgb> {
-        let (mut scratch, mut nobody) = (Scratch::default(), BudgetCuts::default());
+        let (mut scratch, mut nobody) = (Scratch::default(), Flaws::default());
         scratch.places = [vec![0.0; PACKET_SIZE], vec![0.0; PACKET_SIZE]];
         for (lane, column) in pixels.iter().enumerate() {
             scratch.places[0][lane] = *column as f64;

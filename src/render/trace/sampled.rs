@@ -89,7 +89,7 @@ mod tests {
             let seen = tracer.pixels(&pixels());
             (0..20).map(|lane| seen.get(lane)).collect()
         });
-        assert_eq!(stats.cuts.pixels, 20);
+        assert_eq!(stats.flaws.cuts.pixels, 20);
         (colours, stats.all_rays())
     }
 

@@ -8,7 +8,9 @@ use super::surface::Surface;
 use super::trail::PathHashes;
 use crate::geometry::bvh::Stack;
 use crate::geometry::ray::Side;
+use crate::world::certify::Doubt;
 use crate::world::sample::Sample;
+use f256::f256;
 
 /// The scratch space of one thread.
 #[derive(Default)]
@@ -49,6 +51,18 @@ pub(crate) struct Scratch {
     pub(super) kept: Vec<u32>,
     /// Whether any primary ray may lack light.
     pub(super) any_missing: bool,
+    /// The primary rays whose first hit could not be decided.
+    pub(super) undecided: UndecidedScratch,
+}
+
+/// What is undecided. Nearly always there is nothing.
+#[derive(Default)]
+pub(super) struct UndecidedScratch {
+    /// The lanes of the current packet of primary rays that may hit an object, which is given by its index, and from which
+    /// distance on, in lengths of the direction of the ray before anything is rounded.
+    pub lanes: Vec<(usize, usize, f256)>,
+    /// The pixels, each by its number, with the index of the object and the reason.
+    pub pixels: Vec<(u32, usize, Doubt)>,
 }
 
 /// The scratch space of primary rays.

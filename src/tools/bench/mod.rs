@@ -9,9 +9,10 @@ pub mod scenes;
 
 pub use packets::Times;
 
+use crate::render::flaws::Flaws;
 use crate::render::observer::RayKind;
 use crate::render::plan::Plan;
-use crate::render::ray_stats::{BudgetCuts, RayStats};
+use crate::render::ray_stats::RayStats;
 use crate::render::renderer::{RenderCallbacks, Renderer};
 use crate::render::tiles::{BAND, Band};
 use crate::scene::model::{Model, Object};
@@ -140,7 +141,7 @@ fn render(renderer: &Renderer, plan: &Plan, room: &mut Option<Band>) {
         };
         band.rows = rows;
         (0..band.strips.len()).for_each(|index| band.strip(index).tiles.fill(false));
-        renderer.fill(plan, &band, RenderCallbacks { stops: &|| false, row: &|| () }, &|_: BudgetCuts| {});
+        renderer.fill(plan, &band, RenderCallbacks { stops: &|| false, row: &|| () }, &|_: Flaws| {});
         *room = Some(band);
     }
 }

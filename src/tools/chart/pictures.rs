@@ -13,9 +13,9 @@ use super::times::Times;
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::parallel;
 use crate::render::bytes::shown;
+use crate::render::flaws::Flaws;
 use crate::render::observer::{Event, TraceObserver};
 use crate::render::plan::Plan;
-use crate::render::ray_stats::BudgetCuts;
 use crate::render::renderer::Renderer;
 use crate::render::trace::{self, Scratch, Tracer};
 use crate::scene::model::Model;
@@ -279,7 +279,7 @@ pub(super) fn count(tiles: &[Pixels]) -> usize {
 
 /// Traces tiles as a render does, on this thread.
 pub(super) fn render(plan: &Plan, tiles: &[Pixels]) {
-    let (mut scratch, mut nobody) = (Scratch::default(), BudgetCuts::default());
+    let (mut scratch, mut nobody) = (Scratch::default(), Flaws::default());
     for tile in tiles {
         black_box(Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody).pixels(tile));
     }
@@ -290,7 +290,7 @@ pub(super) fn shown_colours(threads: &Renderer, plan: &Plan, pixels: &[[usize; 2
     let at_once = (4 * PACKET_SIZE / plan.camera.samples as usize).max(1);
     let packets: Vec<_> = pixels.chunks(at_once).collect();
     let part = |range: Range<usize>| {
-        let (mut scratch, mut nobody, mut shades) = (Scratch::default(), BudgetCuts::default(), Vec::new());
+        let (mut scratch, mut nobody, mut shades) = (Scratch::default(), Flaws::default(), Vec::new());
         for pixels in &packets[range] {
             let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody);
             let colours = tracer.pixels(pixels);

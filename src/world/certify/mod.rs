@@ -7,12 +7,14 @@
 
 mod along;
 mod closed;
+mod doubt;
 mod equation;
 mod footprint;
 mod hit_proofs;
 mod premise;
 mod search;
 
+pub use doubt::Doubt;
 pub use equation::{Equation, HitEnclosure};
 pub use footprint::{FootprintHit, OverFootprint, coarse, gradient_over};
 pub use hit_proofs::{HitProofs, Precise, Proven, gradient, shading_normals};

@@ -1,0 +1,65 @@
+//! The pixels of an image that are not as they should be: those cut off at the ray budget, and those whose first hit could
+//! not be decided.
+
+use crate::render::observer::{Count, TraceObserver};
+use crate::world::certify::Doubt;
+use std::collections::BTreeMap;
+
+/// The pixels that are not as they should be. As an observer, it counts nothing else.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Flaws {
+    /// The pixels that have used up their ray budget.
+    pub cuts: BudgetCuts,
+    /// The pixels whose first hit could not be decided.
+    pub undecided: Undecided,
+}
+
+/// The pixels that have used up their ray budget.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BudgetCuts {
+    /// The number of pixels that have used up their ray budget.
+    pub pixels: u64,
+    /// A bound on the light that any of these pixels lacks, in any channel; infinite where nothing bounds it.
+    pub most: f64,
+}
+
+/// The numbers of pixels with a camera ray whose first hit could not be decided, by the index of the object that it may hit,
+/// and by the reason. Where a pixel has several, the first counts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Undecided(pub BTreeMap<(usize, Doubt), u64>);
+
+impl Flaws {
+    /// Adds the flaws of another part of the image.
+    pub fn add(&mut self, other: &Self) {
+        self.cuts.add(other.cuts);
+        for (of, pixels) in &other.undecided.0 {
+            *self.undecided.0.entry(*of).or_default() += pixels;
+        }
+    }
+}
+
+impl BudgetCuts {
+    fn add(&mut self, other: Self) {
+        self.pixels += other.pixels;
+        self.most = self.most.max(other.most);
+    }
+}
+
+impl Undecided {
+    /// Returns the number of pixels.
+    pub fn pixels(&self) -> u64 {
+        self.0.values().sum()
+    }
+}
+
+impl TraceObserver for Flaws {
+    const SEES: bool = false;
+
+    fn count(&mut self, count: Count) {
+        match count {
+            Count::Cut(most) => self.cuts.add(BudgetCuts { pixels: 1, most }),
+            Count::Undecided(object, doubt) => *self.undecided.0.entry((object, doubt)).or_default() += 1,
+            _ => {}
+        }
+    }
+}
