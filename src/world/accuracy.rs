@@ -13,7 +13,8 @@ pub enum Accuracy {
     /// First hits found with error bounds, and hit points on the surface up to rounding.
     #[default]
     Exact,
-    /// Like `Exact`, but in double-double arithmetic wherever a shape supports it.
+    /// Like `Exact`, but in double-double arithmetic where a hit has a closed form. Shapes whose hits are searched for have the
+    /// numbers of `Exact`.
     Strict,
 }
 
@@ -31,7 +32,10 @@ impl Accuracy {
             Self::Exact => {
                 ("exact", "first hits found with error bounds, hit points on the surface up to rounding")
             }
-            Self::Strict => ("strict", "like exact, in twice the precision wherever a shape supports it"),
+            Self::Strict => (
+                "strict",
+                "like exact, in twice the precision where a hit has a closed form; elsewhere the same numbers as exact",
+            ),
         }
     }
 }

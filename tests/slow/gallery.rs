@@ -171,8 +171,8 @@ a tenth count as equal, and so do errors that differ by less than a half.
   against more samples, with all sources of error.
 
 Errors of distances are the 99th percentile of all right hits. The ground truth is that of the real ray through the
-point of the image and of the scene's numbers as they are written: a hit is isolated by intervals of 237 bits, as in
-`tabray verify`, and the error of a distance includes the effect of rounding the ray. Where the intervals do not decide,
+point of the image and of the scene's numbers as they are read: a hit is isolated by intervals of 237 bits, as in
+`tabray verify`, which names what that assumes, and the error of a distance includes the effect of rounding the ray. Where the intervals do not decide,
 the pair is left out and counted as undecided.
 
 A found hit is judged by what it is, not by how far off it is. It is *missed* if the ray has a root and none was found,
@@ -183,7 +183,8 @@ thousands of units. Where a ray within rounding of the true one hits what was fo
 and in places the notes mean another surface, as the upper half of a cone. The pair is then left out for that method.
 
 Errors of colours are root mean squares over pixels and channels, of the
-colours as displayed, from 0 to 1. Errors depend on the scene alone: two runs give the same errors to the last digit,
+colours as displayed, from 0 to 1; their truth is this renderer, by `strict` or with more samples, so that what it draws
+wrongly in both is no error here. Errors depend on the scene alone: two runs give the same errors to the last digit,
 unless the time limit, 2 minutes if `--time-limit` does not set it, leaves time for fewer pixels; the panel has their number.
 
 Times are CPU times of one thread, of the same work for each choice in turn, in up to 15 rounds after a warm-up round;
@@ -199,7 +200,10 @@ time, but cores that share a cache or an arithmetic unit slow each other down, f
 ## The methods
 
 The methods without a link are `tabray`'s own: `classic` is the method of the notes' program, and `draft`, `exact` and
-`strict` are those that a scene chooses with `accuracy`; see [how exact the methods are](accuracy.md).
+`strict` are those that a scene chooses with `accuracy`; see [how exact the methods are](accuracy.md). `strict` changes
+closed forms only: where a hit is searched for, it gives the same numbers as `exact`. The other methods, such as `steps`,
+replace the search only: objects with a closed form keep the numbers of `exact`, and a scene without searched objects has
+no such points.
 
 | point | method | where it fails |
 |---|---|---|
