@@ -99,6 +99,38 @@ fn copies_of_planes_end_where_planes_end_in_the_world() {
 }
 
 #[test]
+fn a_copy_on_a_floor_has_no_speckles_in_mirrors() {
+    let floor = "plane floor { material red normal 0 1 0 point 0 0 0 }";
+    for (translation, degrees, is_on_top) in [
+        ([4.7, -5.2], 0.0, true),
+        ([2.3, -4.1], 10.0, false),
+        ([3.9, -3.4], 45.0, true),
+        ([5.1, -5.9], 30.0, true),
+    ] {
+        let scene = |height: f64| {
+            let [x, z] = translation;
+            let rug = format!(
+                "fplane own {{ material green normal 0 1 0 point -1.5 0 1 xdir 1 0 0 dimensions 3 2 }}
+                 place rug {{ object own rotation 0 {degrees} 0 translation {x} {height} {z} }}"
+            );
+            let [one, other] = if is_on_top { [&*rug, floor] } else { [floor, &*rug] };
+            format!(
+                "camera eye {{ pixeldim 120 90 worlddim 8 6 viewpoint 4 3 6 }}
+                 material red {{ ambient 9 0 0 }} material green {{ ambient 0 9 0 }} material m {{ specular 0.9 }}
+                 fplane mirror {{ material m normal 0.2 0.1 1 point -1 0 -8 xdir 1 0 0 dimensions 10 7 }}
+                 sphere ball {{ material m center 4 2 -5 radius 1.4 }} {one} {other}"
+            )
+        };
+        // What comes first in the scene is seen, as if it lay on top.
+        let apart = if is_on_top { 1e-6 } else { -1e-6 };
+        let [coincident, apart] = [0.0, apart].map(|height| render(&model(&scene(height))));
+        let is_other = |(one, other): (&u8, &u8)| one.abs_diff(*other) > 40;
+        let different = coincident.iter().zip(apart.iter()).filter(|pair| is_other(*pair)).count();
+        assert_eq!(different, 0, "{degrees} {translation:?}");
+    }
+}
+
+#[test]
 fn a_placed_object_looks_as_the_same_object_written_out() {
     for (pattern, placed, written) in [
         (

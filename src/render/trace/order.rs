@@ -8,6 +8,10 @@ use crate::world::certify::{Enclosure, Precision};
 use crate::world::coincidence::{LEAST_COSINE, SAME, close};
 use std::cmp::Ordering;
 
+/// A bound on the error of the distance of a copy's hit by the rounding of the copy's matrix, as a fraction of the
+/// coordinates, at a right angle: 512 units of 2^-53.
+const COPIED: f64 = 256.0 * f64::EPSILON;
+
 /// Tells whether a ray hits one shape before another, given their approximate distances in world units. Returns `None`
 /// where they coincide as far as the ray is known, whose origin may be off by `origin_error` world units.
 ///
@@ -19,33 +23,57 @@ pub(super) fn is_before(
     (one, distance): (&AnyShape, f64),
     (other, far): (&AnyShape, f64),
 ) -> Option<bool> {
-    let size = ray.origin.abs().max_element() + distance;
-    if (distance - far).abs() <= close(ray, distance)
-        && let (Some(fine), Some(fine_far)) =
-            (one.packets().fine_distance(ray, distance), other.packets().fine_distance(ray, far))
+    let apart = (distance - far).abs();
+    if apart > close(ray, distance) {
+        return Some(distance < far);
+    }
+    let Divergence { per_shift, cosine } = divergence(ray, (one, distance), other);
+    let lost = (shift(distance) + origin_error) * per_shift;
+    let size = ray.origin.abs().max_element() + distance + one.reach() + other.reach();
+    if let (Some(fine), Some(fine_far)) =
+        (one.packets().fine_distance(ray, distance), other.packets().fine_distance(ray, far))
     {
         let apart = (fine - fine_far).high;
-        let normals = [one, other].map(|shape| shape.normal(ray.at(distance)));
-        let [cosine, other_cosine] = normals.map(|normal| ray.dir.dot(normal));
-        // The change of the distances' difference per unit of sideways shift.
-        let divergence = (normals[0] / cosine - normals[1] / other_cosine).length();
-        // Two ulps in each of three components are less than 4 ulps in length.
-        let shift = 4.0 * f64::EPSILON * distance + origin_error;
-        let min_cosine = larger(cosine.abs().min(other_cosine.abs()), LEAST_COSINE);
-        let same = shift * divergence + SAME * (size + one.reach() + other.reach()) / min_cosine;
-        return (apart.abs() > same).then_some(apart < 0.0);
+        return (apart.abs() > lost + SAME * size / cosine).then_some(apart < 0.0);
     }
-    (distance != far).then_some(distance < far)
+    // A copy's distance is off by the rounding of its matrix, and has no more digits.
+    (apart > lost + COPIED * size / cosine).then_some(distance < far)
 }
 
-/// Tells whether two distances may be equal up to rounding, and one of them has no more digits, as in a copy.
+/// How two surfaces come apart near the point where a ray hits them.
+struct Divergence {
+    /// The change of the difference between their distances for each unit by which the ray is shifted sideways.
+    per_shift: f64,
+    /// The smaller cosine of the angles between the ray and their normals.
+    cosine: f64,
+}
+
+fn divergence(ray: &Ray, (one, distance): (&AnyShape, f64), other: &AnyShape) -> Divergence {
+    let normals = [one, other].map(|shape| shape.normal(ray.at(distance)));
+    let [cosine, other_cosine] = normals.map(|normal| ray.dir.dot(normal));
+    let per_shift = (normals[0] / cosine - normals[1] / other_cosine).length();
+    Divergence { per_shift, cosine: larger(cosine.abs().min(other_cosine.abs()), LEAST_COSINE) }
+}
+
+/// Returns how far the rounding of its direction shifts a ray sideways at a distance: two ulps in each of three
+/// components are less than 4 ulps in length.
+fn shift(distance: f64) -> f64 {
+    4.0 * f64::EPSILON * distance
+}
+
+/// Tells whether two distances may be equal up to rounding, and have no more digits that decide: one of them is a copy's, or
+/// the ray grazes a surface so that its own rounding moves the hit by more than that.
 pub(super) fn is_unclear(
     ray: &Ray,
     (one, distance): (&AnyShape, f64),
     (other, far): (&AnyShape, f64),
 ) -> bool {
+    let apart = (distance - far).abs();
+    if apart > close(ray, distance) {
+        return apart <= shift(distance) * divergence(ray, (one, distance), other).per_shift;
+    }
     let has_digits = |shape: &AnyShape, at: f64| shape.packets().fine_distance(ray, at).is_some();
-    (distance - far).abs() <= close(ray, distance) && !(has_digits(one, distance) && has_digits(other, far))
+    !(has_digits(one, distance) && has_digits(other, far))
 }
 
 /// Returns the order in which a ray hits two shapes, by a proof with 237 bits, up to which equal distances are the same;

@@ -282,6 +282,42 @@ impl TraceObserver for Onlooker {
 
 /// Where surfaces coincide, single rays decide, and the other rays of the packet must not matter.
 #[test]
+fn the_first_of_two_grazed_planes_is_seen_where_they_cross() {
+    // The ray's angle with one of the planes is about 1e-8, so that the rounding of the ray moves the hit by 1e-8 of the
+    // distance, but as the scene has it, it meets both planes in one point.
+    for [position, target, one, two] in [
+        [
+            "-4.3005632986037785 -1.3628415427153087 -1.338645179688677",
+            "-0.3125 0.0625 -1.375",
+            "0.3080192564870387 -0.8389184514399903 0.8970645219725393",
+            "0.21936359759589366 -0.6136409447180333 0.005169588236545902",
+        ],
+        [
+            "1.163462817490709 -8.930119844943308 6.388704298731028",
+            "0.3125 -0.25 -3.6875",
+            "0.28811985556844605 0.17522832987433565 0.12661615972003262",
+            "-0.8474302214765466 0.3702838564230871 0.39054783025033907",
+        ],
+        [
+            "-5.006068818235802 5.714317090894845 8.750167047497992",
+            "3.6875 -1.1875 -2.1875",
+            "-0.6010904879718251 -0.5556148000010593 -0.12716331100258052",
+            "0.40400530042041183 0.950880699643271 0.18576857898753873",
+        ],
+    ] {
+        for accuracy in ["exact", "strict"] {
+            let scene = format!(
+                "look_at eye {{ pixeldim 1 1 position {position} target {target} up 0.1 1 0.3 accuracy {accuracy} }}
+                 material red {{ ambient 1e9 0 0 }} material green {{ ambient 0 1e9 0 }}
+                 plane one {{ material red normal {one} point {target} }}
+                 plane two {{ material green normal {two} point {target} }}"
+            );
+            assert_eq!(picture(&scene).get_pixel(0, 0).0, [255, 0, 0], "{scene}");
+        }
+    }
+}
+
+#[test]
 fn the_colour_of_a_ray_that_starts_on_several_surfaces_is_its_own() {
     let scene = "camera eye { pixeldim 60 45 worlddim 8 6 viewpoint 4 3 6 }".to_owned()
         + &materials(1.0)
