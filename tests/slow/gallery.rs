@@ -179,7 +179,8 @@ A found hit is judged by what it is, not by how far off it is. It is *missed* if
 *invented* if it has none, and *later* only if another root lies between it and the first one. It is *inaccurate* if no
 root lies between, but its point is farther from the surface than rounding and the method's own tolerance explain. The
 distance itself would say little: on a plane that a ray nearly runs along, rounding the ray's direction moves the hit by
-thousands of units. Where a ray within rounding of the true one hits what was found, rounding decides and not the method;
+millions of units. Each panel says how far rounding may move the hits that it moves most, the error across the surface
+divided by the cosine. Where a ray within rounding of the true one hits what was found, rounding decides and not the method;
 and in places the notes mean another surface, as the upper half of a cone. The pair is then left out for that method.
 
 Errors of colours are root mean squares over pixels and channels, of the

@@ -106,6 +106,7 @@ pub fn panel(study: &Study, set: &Set, progress: &mut dyn Progress) -> ControlFl
     };
     let count = timed.iter().map(|packet| packet.len()).sum();
     let times = clock::rounds(candidates.len(), count, work, progress)?;
+    let moved = moved_by_rounding(study, set, &truths);
     let truths: Vec<_> = truths.iter().flatten().map(|known| &known.truth).collect();
     let hits = truths.iter().filter(|truth| matches!(truth, Truth::Hit { .. })).count();
     let undecided = truths.iter().filter(|truth| matches!(truth, Truth::Undecided)).count();
@@ -136,7 +137,10 @@ pub fn panel(study: &Study, set: &Set, progress: &mut dyn Progress) -> ControlFl
     });
     ControlFlow::Continue(Some(Panel {
         title: set.title.clone(),
-        note: format!("{} rays, {hits} hits{undecided}{lost}", truths.len()),
+        note: format!(
+            "{} rays, {hits} hits{undecided}, rounding may move 1 % by {moved:.0e} or more{lost}",
+            truths.len()
+        ),
         subject: Subject::Distances,
         points: points.collect(),
     }))
@@ -170,6 +174,21 @@ fn each<T: Sync, U: Send>(of: &[T], work: impl Fn(&T) -> U + Sync + Send) -> Vec
 fn truths_of(model: &Model, packet: &Packet) -> Vec<Known> {
     let shape = &model.objects[packet.object].shape;
     packet.sights().map(|(_, sight)| Known::of(shape, sight)).collect()
+}
+
+/// Returns the distance by which rounding may move one in a hundred of the true hits, or more, in world units.
+fn moved_by_rounding(study: &Study, set: &Set, truths: &[Vec<Known>]) -> f64 {
+    let strict = &study.candidates[study.strict].model;
+    let moved = |(packet, truths): (&Packet, &Vec<Known>)| -> Vec<f64> {
+        let shape = &strict.objects[packet.object].shape;
+        let pairs = packet.sights().zip(truths);
+        pairs
+            .filter_map(|((ray, sight), known)| Pair { shape, ray, sight }.moved_by_rounding(known))
+            .collect()
+    };
+    let mut moved: Vec<f64> = set.packets.iter().zip(truths).flat_map(moved).collect();
+    moved.sort_unstable_by(f64::total_cmp);
+    moved.get((0.99 * moved.len() as f64) as usize).copied().unwrap_or(0.0)
 }
 
 /// Judges the hits that a candidate finds in the packets of which the truth is known.

@@ -113,6 +113,14 @@ impl Pair<'_> {
         }
     }
 
+    /// Returns the distance by which rounding may move the true hit along the ray, in world units: the error across the
+    /// surface, divided by the cosine.
+    pub fn moved_by_rounding(&self, known: &Known) -> Option<f64> {
+        let Truth::Hit { distance, .. } = known.truth else { return None };
+        let normal = self.shape.normal(self.ray.at(distance.high));
+        Some(self.rounding(distance.high) / normal.dot(self.ray.dir).abs())
+    }
+
     /// Returns a bound of how far rounding moves the ray and the surface at a distance, in world units.
     fn rounding(&self, distance: f64) -> f64 {
         ROUNDING * (self.ray.origin.abs().max_element() + distance.abs() + self.shape.reach())
