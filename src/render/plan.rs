@@ -2,9 +2,11 @@
 
 pub(crate) mod depth;
 pub(crate) mod needs;
+mod shut_out;
 
 use depth::{ContinuationBounds, Depth};
-use needs::Needs;
+use needs::{Needs, UnlitReason};
+use shut_out::{Objects, shut_out};
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::Bvh;
@@ -48,6 +50,8 @@ pub struct Plan<'m> {
     pub(crate) bounces: usize,
     /// The lights that are sampled, and what is left out.
     pub(crate) needs: Needs,
+    /// The lights that a closed object keeps from all that is seen, each with the index of that object.
+    pub(crate) shut_out: Vec<(usize, usize)>,
 }
 
 /// Objects whose hits may take long to find.
@@ -85,7 +89,7 @@ impl<'m> Plan<'m> {
         let objects = &model.objects;
         let bounds = parallel::filled(objects.len(), MANY, |index| culling::bounds(&objects[index]));
         let depth = Depth::new(model);
-        let needs = needs(&bounds, depth.as_ref());
+        let mut needs = needs(&bounds, depth.as_ref());
         let mut unreached = needs.unreached.iter().peekable();
         let met = (0..objects.len()).filter(|index| unreached.next_if_eq(&index).is_none());
         let (boxed, unbounded): (Vec<_>, Vec<_>) = met.partition(|index| bounds[*index].is_some());
@@ -96,7 +100,12 @@ impl<'m> Plan<'m> {
             tree
         });
         let bounded = if tree.is_some() { &[] } else { &boxed[..] };
-        let bounded = bounded.iter().map(|index| (*index, box_of(*index))).collect();
+        let bounded: Vec<_> = bounded.iter().map(|index| (*index, box_of(*index))).collect();
+        let searched = Objects { unbounded: &unbounded, bounded: &bounded, tree: tree.as_ref() };
+        let shut_out = shut_out(model, &searched);
+        for (light, _) in &shut_out {
+            needs.leave_out(*light, UnlitReason::ShutOut);
+        }
         let camera = model.camera.value.clone();
         let features = camera.adaptive.map(|_| Features::new(&camera, objects));
         let prover = camera.certain.then(|| Prover::new(model));
@@ -118,6 +127,7 @@ impl<'m> Plan<'m> {
             costly,
             bounces,
             needs,
+            shut_out,
         }
     }
 

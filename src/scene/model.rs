@@ -3,6 +3,7 @@
 use crate::geometry::ray::Side;
 use crate::scene::kind::Kind;
 use crate::scene::store::Record;
+use crate::scene::value::Type;
 use crate::world::any_shape::AnyShape;
 use crate::world::background::AnyBackground;
 use crate::world::body::{AnyLight, AnyShader, NamedBody, Paint};
@@ -12,6 +13,7 @@ use crate::world::shader::SurfacePoint;
 use crate::world::texture::Texture;
 use glam::DVec3;
 use std::path::PathBuf;
+use std::ptr;
 use std::sync::Arc;
 
 /// All that an image depends on.
@@ -97,6 +99,21 @@ pub struct Object {
 }
 
 impl Object {
+    /// Tells whether another object certainly has the same shape: it is of the same type, and has the same values but for
+    /// its material and its shader. Of objects that may be made of several, such as solids and meshes, that is not told.
+    pub fn is_shaped_as(&self, other: &Self) -> bool {
+        let entity = self.args.entity();
+        if !ptr::eq(entity, other.args.entity()) || entity.reads_files() {
+            return false;
+        }
+        let (one, other) = (self.args.args(), other.args.args());
+        one.values().zip(other.values()).all(|((attribute, one), (_, other))| match attribute.value_type() {
+            Type::Name(Kind::Material | Kind::Shader) => true,
+            Type::Name(Kind::Object) => false,
+            _ => one == other,
+        })
+    }
+
     /// Returns a point of the surface, with what the shader sees of it, where a ray hits it on this side.
     pub fn surface_point(&self, position: DVec3, side: Side) -> SurfacePoint {
         let sees = self.shader.sees();

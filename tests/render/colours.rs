@@ -1,11 +1,12 @@
 //! The bytes of images are those of the proven colours, in every scene.
 
-use crate::common::{load, model, model_in, root, scenes};
+use crate::common::{load, model, model_in, render, root, scenes};
 use std::fs;
 use std::thread;
 use tabray::render::Plan;
 use tabray::tools::colours::{Prover, Verdict};
 use tabray::world::Accuracy;
+use tempfile::TempDir;
 
 /// The scenes that show what is not enclosed: an image by its direction, bent normals, refraction, and metal.
 /// Many of their pixels remain open, and none is to be contradicted.
@@ -51,6 +52,29 @@ fn along_a_wall_of_slivers_the_face_that_is_hit_is_proven() {
             assert_eq!(prover.traced(x, y).verdict(), Verdict::Proven, "{x} {y}");
         }
     }
+}
+
+#[test]
+fn colours_of_a_mesh_of_several_materials_are_proven() {
+    let folder = TempDir::new().expect("a folder");
+    let cube = "v 2 1 -4\nv 6 1 -4\nv 6 5 -4\nv 2 5 -4\nv 2 1 -1\nv 6 1 -1\nv 6 5 -2\nv 2 5 -2
+        usemtl red\nf 1 4 3 2\nf 5 6 7 8\nusemtl blue\nf 1 2 6 5\nf 3 4 8 7\nf 1 5 8 4\nf 2 3 7 6";
+    fs::write(folder.path().join("cube.obj"), cube).expect("a file");
+    let model = model_in(
+        folder.path(),
+        "camera eye { pixeldim 33 21 worlddim 8 6 viewpoint 4 8 9 } material red { ambient 3 1 1 diffuse 9 3 3 }
+         material blue { ambient 1 1 3 diffuse 2 2 9 } light lamp { location 1 9 9 emissivity 30 30 30 }
+         mesh o { material red file cube.obj }",
+    );
+    let plan = Plan::new(&model);
+    let prover = Prover::new(&plan);
+    let pixels = (0..21).flat_map(|y| (0..33).map(move |x| (x, y)));
+    let open: Vec<_> = pixels.filter(|(x, y)| prover.traced(*x, *y).verdict() != Verdict::Proven).collect();
+    assert!(open.is_empty(), "{open:?}");
+    // Both materials are seen.
+    let picture = render(&model);
+    let shows = |more: usize, less: usize| picture.pixels().any(|pixel| pixel.0[more] > pixel.0[less]);
+    assert!(shows(0, 2) && shows(2, 0));
 }
 
 #[test]

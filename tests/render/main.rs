@@ -11,6 +11,7 @@ mod inside;
 mod needs;
 mod plan;
 mod readme;
+mod sealed;
 mod shaders;
 mod snapshots;
 mod verify;

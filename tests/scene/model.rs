@@ -65,3 +65,46 @@ fn a_built_model_is_checked_as_a_text_is() {
         ]
     );
 }
+
+#[test]
+fn objects_with_the_same_values_have_the_same_shape() {
+    let shaped = |text: &str| {
+        let head = "camera eye { pixeldim 4 3 worlddim 8 6 viewpoint 4 3 6 }
+            material m { ambient 1 1 1 } material n { ambient 2 1 1 } ";
+        let objects = model(&(head.to_owned() + text)).objects;
+        let [one, other] = &objects[..] else { panic!("{} objects", objects.len()) };
+        one.is_shaped_as(other)
+    };
+    let torus = "torus a { material m center 4 3 -3 radius 1 tube 0.5 }";
+    let to_torus = |other: &str| shaped(&format!("{torus} torus b {{ center 4 3 -3 {other} }}"));
+    assert!(to_torus("material n radius 1 tube 0.5 direction 0 1 0"), "the direction is the default");
+    assert!(!to_torus("material m radius 1 tube 0.25"));
+    assert!(!shaped(&format!("{torus} sphere b {{ material m center 4 3 -3 radius 1 }}")));
+    let formulas = |one: &str, other: &str| {
+        let surface = |name: &str, formula: &str| {
+            format!("implicit {name} {{ material m formula \"{formula}\" box -1 -1 -3 1 1 2 }}\n")
+        };
+        shaped(&(surface("a", one) + &surface("b", other)))
+    };
+    assert!(formulas("x^2 + y^2 - z", "x^2 + y^2 - z"));
+    assert!(!formulas("x^2 + y^2 - z", "x^2 + y^3 - z"));
+    // The objects are the parts of a solid.
+    let block = |name: &str, wide: f64| format!("box {name} {{ material m center 0 0 -3 size {wide} 1 1 }}");
+    assert!(!shaped(&format!("{} {} union u {{ objects x y }}", block("x", 1.0), block("y", 2.0))));
+}
+
+#[test]
+fn equal_objects_look_as_the_first_of_them() {
+    let hearts = |which: [&str; 2]| {
+        let [one, other] = which;
+        render(&model(&format!(
+            "camera eye {{ pixeldim 48 36 worlddim 8 6 viewpoint 4 3 6 }} material red {{ ambient 6 1 1 }}
+             material blue {{ ambient 1 1 6 }} light lamp {{ location 1 7 3 emissivity 9 9 9 }} {one} {other}"
+        )))
+    };
+    let heart =
+        |name: &str, material: &str| format!("heart {name} {{ material {material} center 4 3 -3 size 2 }}");
+    let (red, blue) = (heart("a", "red"), heart("b", "blue"));
+    assert!(hearts([&red, &blue]) == hearts([&red, ""]));
+    assert!(hearts([&blue, &red]) == hearts([&blue, ""]));
+}

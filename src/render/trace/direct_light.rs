@@ -21,6 +21,11 @@ pub(super) const RIM_POINTS: f64 = 16.0;
 impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Adds the contributions of all lights.
     pub(super) fn illuminate(&mut self, group: &mut RayGroup, surface: &Surface, colours: &mut VectorList) {
+        if W::SEES {
+            for (light, object) in &self.plan.shut_out {
+                self.observer.see(Event::Light(*light, LightOutcome::Blocked(*object)));
+            }
+        }
         if self.plan.needs.lights.is_empty() {
             return;
         }

@@ -1,8 +1,10 @@
 //! The materials of a mesh whose file names them.
 
 use super::surface::Surface;
+use crate::numeric::interval::Interval;
+use crate::world::certify::Precise;
 use crate::world::material::{Look, Material, Rgb};
-use crate::world::shader::{Shader, SurfacePoint};
+use crate::world::shader::{LookBounds, PointBounds, Shader, SurfacePoint};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
@@ -17,10 +19,19 @@ pub struct Painted {
 }
 
 impl Painted {
+    /// Returns the slot of the material at a point.
+    fn slot(&self, at: DVec3) -> u16 {
+        self.surface.slots[self.surface.face_at(at)]
+    }
+
+    /// Returns the material of a slot; `own` is that of the mesh itself.
+    fn material<'m>(&'m self, own: &'m Material, slot: u16) -> &'m Material {
+        usize::from(slot).checked_sub(1).and_then(|index| self.materials[index].as_deref()).unwrap_or(own)
+    }
+
     /// Returns the material at a point; `own` is that of the mesh itself.
     fn at<'m>(&'m self, own: &'m Material, at: DVec3) -> &'m Material {
-        let slot = usize::from(self.surface.slots[self.surface.face_at(at)]);
-        slot.checked_sub(1).and_then(|index| self.materials[index].as_deref()).unwrap_or(own)
+        self.material(own, self.slot(at))
     }
 }
 
@@ -38,7 +49,17 @@ impl Shader for Painted {
     }
 
     fn tile(&self, at: &SurfacePoint) -> DVec2 {
-        DVec2::new(f64::from(self.surface.slots[self.surface.face_at(at.position)]), 0.0)
+        DVec2::new(f64::from(self.slot(at.position)), 0.0)
+    }
+
+    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
+        let coarse = at.position.map(Interval::coarse);
+        let slot = self.slot(DVec3::from(coarse.map(Interval::middle)));
+        if self.surface.is_alone(coarse, |face| self.surface.slots[face] == slot) {
+            return Some(self.material(material, slot).into());
+        }
+        let others = self.materials.iter().flatten().map(|other| LookBounds::from(&**other));
+        Some(others.fold(material.into(), |all: LookBounds<F>, other| all.hull(&other)))
     }
 
     /// The largest of all materials, if none has a negative diffuse colour.

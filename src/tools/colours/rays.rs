@@ -99,9 +99,10 @@ impl<'s, 'p, 'm> Tracer<'s, 'p, 'm> {
         let travelled = ray.travelled + t * ray.length;
         let mut colour = surface.ambient;
         let toward = per_axis(|axis| ray.path.line.dir[axis] / ray.length);
-        for (index, light) in self.scene.plan.model.lights.iter().enumerate() {
-            let draw = self.sample.map(|sample| sample.on_light(index));
-            let added = light::shine(self.scene, &*light.value, draw, &surface, toward)?;
+        for index in &self.scene.plan.needs.lights {
+            let light = &*self.scene.plan.model.lights[*index].value;
+            let draw = self.sample.map(|sample| sample.on_light(*index));
+            let added = light::shine(self.scene, light, draw, &surface, toward)?;
             colour = per_axis(|channel| colour[channel] + added[channel]);
         }
         colour = per_axis(|channel| colour[channel] / travelled);

@@ -7,7 +7,8 @@
 //!
 //! **Lights.** A light is left out where it adds nothing to anything that a view may meet: it lies behind the object's
 //! plane, it does not shine on the object's region ([`is_clear_of`](crate::world::light::Light::is_clear_of)), or the
-//! product of its colour and the object's reflectivities is black.
+//! product of its colour and the object's reflectivities is black. The plan also leaves out those that a closed object keeps
+//! from all that is seen.
 //!
 //! **Objects.** An object is left out where it is clear of all views, and of all paths from what is seen to a light that
 //! is needed. What is left out is tested by no ray that could meet it, so the image stays the same to the byte. All tests
@@ -62,6 +63,8 @@ pub(crate) enum UnlitReason {
     Aside,
     /// Each of these holds for some of what is seen.
     Mixed,
+    /// A closed object is between it and all that is seen.
+    ShutOut,
 }
 
 impl UnlitReason {
@@ -72,6 +75,7 @@ impl UnlitReason {
             Self::Behind => "it is behind all that is seen",
             Self::Aside => "it does not shine on anything that is seen",
             Self::Mixed => "it is behind what is seen, or does not shine on it",
+            Self::ShutOut => "a closed object is around either it or the viewer",
         }
     }
 }
@@ -81,6 +85,14 @@ impl Needs {
     pub fn all(model: &Model) -> Self {
         let lights = (0..model.lights.len()).collect();
         Self { lights, dark: Vec::new(), unreached: Vec::new(), clearance: f64::INFINITY }
+    }
+
+    /// Leaves out a light, if it is not left out already.
+    pub fn leave_out(&mut self, light: usize, reason: UnlitReason) {
+        if let Some(place) = self.lights.iter().position(|needed| *needed == light) {
+            self.lights.remove(place);
+            self.dark.push((light, reason));
+        }
     }
 
     /// What the image of the model's camera needs, given the objects' bounding boxes. `depth` has the mirrors that

@@ -1,0 +1,70 @@
+//! Lights that a closed object keeps from all that is seen, as either the viewer or the light is inside of it.
+//!
+//! Each path from such a light to the viewer crosses the object, which is opaque. Shadow rays find that out one by one,
+//! except for those that start at an edge: there they leave all faces, and pass to the other side.
+
+use super::depth::clearance;
+use crate::geometry::aabb::Aabb;
+use crate::geometry::bvh::Bvh;
+use crate::scene::model::{Model, Object};
+use crate::world::accuracy::Accuracy;
+use glam::DVec3;
+
+/// The least distance of the viewer and of a light from an object, as a fraction of their coordinates and of the
+/// object's: far more than their rounding. A light nearer to it is one on the surface.
+const MARGIN: f64 = 1e-9;
+
+/// The objects of a plan, as they are searched.
+pub(super) struct Objects<'p> {
+    pub unbounded: &'p [usize],
+    pub bounded: &'p [(usize, Aabb)],
+    pub tree: Option<&'p Bvh>,
+}
+
+impl Objects<'_> {
+    /// Returns the indices of the objects that may hold a point.
+    fn around(&self, at: DVec3) -> Vec<usize> {
+        let is_around = |(_, bounds): &&(usize, Aabb)| bounds.overlaps(&Aabb { low: at, high: at });
+        let bounded = self.bounded.iter().filter(is_around).map(|(index, _)| *index);
+        let mut around: Vec<_> = self.unbounded.iter().copied().chain(bounded).collect();
+        if let Some(tree) = self.tree {
+            tree.around(at, 0.0, &mut |index| {
+                around.push(index);
+                0.0
+            });
+        }
+        around
+    }
+}
+
+/// Returns the lights that are kept from all that is seen, each with the object that does it.
+pub(super) fn shut_out(model: &Model, objects: &Objects) -> Vec<(usize, usize)> {
+    if model.lights.is_empty() || model.camera.value.accuracy == Accuracy::Classic {
+        return Vec::new();
+    }
+    let viewer = model.camera.value.origins();
+    let around_viewer = objects.around(viewer.middle);
+    let separates = |index: &usize, at: DVec3, size: f64| {
+        let object = &model.objects[*index];
+        let is_inside = is_inside(object, viewer.middle, viewer.radius);
+        // Whether a mesh is closed may take long to find out.
+        object.material.transparency == 0.0
+            && is_inside.is_some_and(|is_inside| self::is_inside(object, at, size) == Some(!is_inside))
+            && object.shape.openness().is_none()
+    };
+    let lights = model.lights.iter().enumerate();
+    let by = lights.filter_map(|(light, item)| {
+        let (at, size) = (item.value.location(), item.value.size());
+        let around = objects.around(at);
+        let candidates = around_viewer.iter().chain(&around);
+        Some((light, *candidates.filter(|index| separates(index, at, size)).min()?))
+    });
+    by.collect()
+}
+
+/// Tells whether a ball lies inside of a closed object, rather than outside; `None` where that is not certain.
+fn is_inside(object: &Object, middle: DVec3, radius: f64) -> Option<bool> {
+    let margin = MARGIN * (middle.abs().max_element() + object.shape.reach());
+    let is_clear = radius == 0.0 || clearance(object, middle) > radius + margin;
+    if is_clear { object.shape.holds(middle, margin) } else { None }
+}
