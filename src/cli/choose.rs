@@ -8,10 +8,12 @@ use crate::cli::options::{set, stop};
 use crate::cli::process::failure::{self, Failure, print};
 use crate::cli::process::interrupt::{self, InterruptAction};
 use crate::cli::process::program;
+use crate::render::plan::Plan;
 use crate::scene::choice::Choice;
 use crate::scene::registry::Registry;
 use crate::text::short;
-use crate::tools::chart::{self, Estimate, Estimates, Goal};
+use crate::tools::bench::clock;
+use crate::tools::chart::{self, Cost, Estimate, Estimates, Goal};
 use crate::world::accuracy::Accuracy;
 use clap::ArgGroup;
 use std::cmp::Ordering;
@@ -27,8 +29,8 @@ use std::time::{Duration, Instant};
 ///
 /// Measures the choices on a part of the image, shows them with a bound on their errors that holds with a confidence of
 /// 99 %, and prints the command line to use. Takes at most half as many rays as an image with the fixed number of
-/// samples that suffices, or 1 million if that is more (2 million with `--worst`). That is at most about 500 rays for
-/// each pixel of a tiny image. Gives up after 10 seconds or after --time-limit, and may take a tenth longer.
+/// samples that suffices, or 1 million if that is more (2 million with `--worst`), beside those that are timed. That is
+/// at most about 500 rays for each pixel of a tiny image. Gives up after 10 seconds or after --time-limit, and may take a tenth longer.
 #[derive(clap::Args)]
 #[command(group = ArgGroup::new("limit").args(["max_error", "max_time"]).required(true))]
 #[command(after_long_help = EXAMPLES)]
@@ -40,7 +42,7 @@ pub struct Args {
     /// Maximum error: the root mean square error of the colours, such as `2` (levels of 255) or `0.5%` (of white)
     #[arg(long, value_name = "LEVELS|PERCENT%", allow_negative_numbers = true)]
     max_error: Option<MaxError>,
-    /// Maximum time for the image on all cores, in seconds
+    /// Maximum time for the image in seconds, on all cores if these have nothing else to do
     #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
     max_time: Option<f64>,
     /// Measure the error that one of a thousand pixels exceeds, instead of the root mean square of all: a few jagged edges
@@ -63,6 +65,9 @@ const LIMIT: Duration = Duration::from_secs(10);
 /// The ratio of costs or errors from which on another choice than the first is worth taking.
 const GAIN: f64 = 0.8;
 
+/// The greatest ratio of the time that a render may take to its estimate for which no range is told.
+const SURE: f64 = 1.3;
+
 fn positive(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(number) if number > 0.0 && f64::is_finite(number) => Ok(number),
@@ -75,7 +80,11 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let (mut work, start) = (Work::within(limit), Instant::now());
     let units = work.units();
     let source = Source::read(&args.scene, &args.set)?;
-    input::print_warnings(source.load(registry, None))?;
+    let model = input::print_warnings(source.load(registry, None))?.model;
+    drop(Plan::for_picture(&model));
+    // A render begins with the same work as this program.
+    let beginning = clock::of_process().as_secs_f64();
+    drop(model);
     let load = all_accuracies(registry, &source)?;
     interrupt::catch(InterruptAction::Exit("nothing has been chosen"))?;
     let worst = args.worst;
@@ -93,7 +102,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         let (sender, measured) = mpsc::channel();
         let load = &load;
         scope.spawn(move || {
-            let estimates = chart::estimates(load, goal, &mut work);
+            let estimates = chart::estimates(load, goal, beginning, &mut work);
             work.end();
             let _ = sender.send(estimates);
         });
@@ -124,18 +133,13 @@ struct Selection<'e> {
 }
 
 impl<'e> Selection<'e> {
-    /// Returns the time of a choice on all cores, in seconds.
-    fn time(&self, estimate: &Estimate) -> f64 {
-        estimate.seconds / self.cores as f64
-    }
-
     /// Tells whether one choice is clearly faster than another one. Those of one accuracy are compared by their rays, which
     /// are the same on each machine; times of choices that are timed apart are not.
     fn is_faster(one: &Estimate, other: &Estimate) -> bool {
         let costs = if one.accuracy == other.accuracy {
             [one.rays, other.rays]
         } else {
-            [one.seconds, other.seconds]
+            [one.cost.tracing.mean, other.cost.tracing.mean]
         };
         costs[0] <= GAIN * costs[1]
     }
@@ -146,9 +150,9 @@ impl<'e> Selection<'e> {
             (one.accuracy, one.most.is_some()) == (other.accuracy, other.most.is_some())
         });
         let mut best: Option<&Estimate> = None;
-        for met in accuracies.filter_map(|choices| self.goal.first_meeting(choices, self.cores)) {
+        for met in accuracies.filter_map(|choices| self.goal.first_meeting(choices)) {
             let is_better = |best: &Estimate| match self.goal {
-                Goal::Error { .. } => Self::is_faster(met, best),
+                Goal::Error { .. } | Goal::None => Self::is_faster(met, best),
                 Goal::Time { .. } => met.bound <= GAIN * best.bound,
             };
             if best.is_none_or(is_better) {
@@ -161,7 +165,7 @@ impl<'e> Selection<'e> {
             };
             let asked = &self.asked;
             Failure::Failed(match self.goal {
-                Goal::Error { .. } => {
+                Goal::Error { .. } | Goal::None => {
                     let least = least(&|one| one.bound);
                     let least = if least.is_finite() { levels(least) } else { "unknown".to_owned() };
                     format!(
@@ -169,10 +173,8 @@ impl<'e> Selection<'e> {
                     )
                 }
                 Goal::Time { .. } => {
-                    let least = Duration::from_secs_f64(least(&|one| self.time(one)));
-                    format!(
-                        "no choice is estimated to take at most {asked}; the fastest takes about {least:.2?}"
-                    )
+                    let least = seconds(least(&|one| one.cost.time.range[1]));
+                    format!("no choice is sure to take at most {asked}; the fastest may take {least}")
                 }
             })
         })
@@ -180,17 +182,17 @@ impl<'e> Selection<'e> {
 
     /// Says which choices were considered and which one was chosen, and shows the command line.
     fn words(&self, chosen: &Estimate, scene: &Path, set: &set::Args) -> String {
-        let head = ["accuracy", "samples", "error", "at most", "rays", "time"];
+        let head = ["accuracy", "samples", "error", "at most", "rays", "time", "CPU time"];
         let mut text = format!(
-            "  {:<9}{:>8}{:>12}{:>12}{:>9}{:>12}\n",
-            head[0], head[1], head[2], head[3], head[4], head[5]
+            "  {:<9}{:>8}{:>12}{:>12}{:>9}{:>12}{:>12}\n",
+            head[0], head[1], head[2], head[3], head[4], head[5], head[6]
         );
         let is_chosen = |one: &Estimate| is_same(one, chosen);
         let mut shown: Vec<_> =
             self.estimates.all.iter().filter(|one| self.is_best(one) || is_chosen(one)).collect();
         shown.sort_by(|a, b| {
-            (a.most, a.samples, a.seconds)
-                .partial_cmp(&(b.most, b.samples, b.seconds))
+            (a.most, a.samples, a.cost.tracing.mean)
+                .partial_cmp(&(b.most, b.samples, b.cost.tracing.mean))
                 .unwrap_or(Ordering::Equal)
         });
         for estimate in shown {
@@ -199,10 +201,10 @@ impl<'e> Selection<'e> {
             let error =
                 |error: f64| if error.is_finite() { short(LEVELS * error) } else { "unknown".to_owned() };
             let [measured, bound] = [error(estimate.error), error(estimate.bound)];
-            let time = format!("{:.3} s", self.time(estimate));
+            let [time, cpu] = [estimate.cost.time, estimate.cost.cpu].map(|time| seconds(time.mean));
             let _ = writeln!(
                 text,
-                "{mark} {name:<9}{:>8}{measured:>12}{bound:>12}{:>9.1}{time:>12}",
+                "{mark} {name:<9}{:>8}{measured:>12}{bound:>12}{:>9.1}{time:>12}{cpu:>12}",
                 estimate.numbers(),
                 estimate.rays
             );
@@ -212,9 +214,9 @@ impl<'e> Selection<'e> {
             accuracy => format!("--accuracy {}", accuracy.option().name),
         };
         let why = match self.goal {
-            Goal::Error { .. } => format!("the fastest with an error of at most {}", self.asked),
+            Goal::Error { .. } | Goal::None => format!("the fastest with an error of at most {}", self.asked),
             Goal::Time { .. } => {
-                format!("the one with the least error within {} on {} threads", self.asked, self.cores)
+                format!("the one with the least error within {} on {} cores", self.asked, self.cores)
             }
         };
         let Estimates { pixels: [measured, all], against, is_short, .. } = *self.estimates;
@@ -224,14 +226,36 @@ impl<'e> Selection<'e> {
             text,
             "\nThe marked choice is {why}{sure}. Errors are in levels of 255. They were measured on {measured} of {all} pixels, against \
              {against} samples in each{short}; those of the whole image are at most what the table says. Choices of one \
-             accuracy are compared by their rays per pixel, those of several by their times, which are estimates.\n\n\
+             accuracy are compared by their rays per pixel, those of several by their times.\n\n{}\n\n\
              {} render {}{} {how} --samples {}\n",
+            self.times(chosen),
             program::name(),
             scene.display(),
             set.words(),
             chosen.numbers()
         );
         text
+    }
+
+    /// Says how long the chosen render takes, and how sure that is.
+    fn times(&self, chosen: &Estimate) -> String {
+        let idle = format!("on {} cores that have nothing else to do", self.cores);
+        let rays = rounded(chosen.cost.rays);
+        let Cost { cpu, time, .. } = chosen.cost;
+        if cpu.range[1] <= SURE * cpu.mean {
+            let [cpu, time] = [cpu, time].map(|time| seconds(time.mean));
+            return format!(
+                "It takes about {cpu} of CPU time for {rays} rays of all kinds, and {time} {idle}."
+            );
+        }
+        let [cpu, time] = [cpu, time].map(|time| {
+            let [least, most] = time.range.map(seconds);
+            format!("from {least} to {most}")
+        });
+        format!(
+            "It takes {cpu} of CPU time for about {rays} rays of all kinds, and {time} {idle}. The places of the image where \
+             rays were timed differ too much to say more."
+        )
     }
 
     /// Tells whether no other choice is clearly faster and has no larger bound.
@@ -242,6 +266,17 @@ impl<'e> Selection<'e> {
             .iter()
             .any(|other| !is_same(one, other) && Self::is_faster(other, one) && other.bound <= one.bound)
     }
+}
+
+/// Writes a time of this many seconds to about two digits.
+fn seconds(seconds: f64) -> String {
+    let digits = if seconds < 0.1 { 3 } else { 2 };
+    if seconds.is_finite() { format!("{seconds:.digits$} s") } else { "an unknown time".to_owned() }
+}
+
+/// Writes a number of rays to about three digits.
+fn rounded(rays: f64) -> String {
+    if rays < 1e6 { format!("{:.0} thousand", rays / 1e3) } else { format!("{} million", short(rays / 1e6)) }
 }
 
 /// Tells whether two estimates are of the same choice.

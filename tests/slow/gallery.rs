@@ -252,6 +252,6 @@ With `--worst`, the error is that which one of a thousand pixels exceeds, instea
 Each error has a bound that holds with a confidence of 99 %, and the bound of what is chosen is at most what was asked
 for; if all pixels are measured, the bound is the error. The samples are chosen by counts, so that the same scene has
 the same answer. Another accuracy than the scene's is chosen only if it takes at most 80 % of its time in each of five
-rounds. Choosing takes at most half as many rays as the image that it recommends, or a million, and ends after 10 seconds
+groups of packets of rays. Times are [measured](choose.md#how-times-are-measured) for each number of samples. Choosing takes at most half as many rays as the image that it recommends, or a million, and ends after 10 seconds
 unless `--time-limit` gives it more. [What was promised and what was measured](choose.md), for 30 scenes.
 ";

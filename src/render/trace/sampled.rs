@@ -11,6 +11,7 @@ use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::render::limits::MAX_RAYS;
 use crate::render::observer::TraceObserver;
 use crate::render::plan::Plan;
+use crate::render::tiles::TILE;
 use crate::world::material::Rgb;
 
 /// The number of rays that a sample may cost in a pixel that is off by an unknown amount.
@@ -21,7 +22,22 @@ pub(super) fn is_unbounded(plan: &Plan) -> bool {
     plan.depth.as_ref().is_some_and(|depth| !depth.most.is_finite())
 }
 
+/// The number of pixels that are traced together in measurements where one sample is traced after the other: so few that
+/// many samples do not take too long, and so many that a packet of them takes hardly longer than a part of a larger one.
+const SINGLY: usize = 64;
+
 impl<W: TraceObserver> Tracer<'_, '_, W> {
+    /// Returns how many pixels' rays are traced together: those of a packet, or of tiles where pixels differ in their
+    /// numbers of samples. Where one sample is traced after the other, it is a part of a packet that takes hardly longer.
+    pub(crate) fn pixels_together(&self) -> usize {
+        let camera = &self.plan.camera;
+        match camera.adaptive {
+            Some(_) => self.tiles_together() * TILE * TILE,
+            None if is_unbounded(self.plan) => SINGLY,
+            None => (PACKET_SIZE / camera.samples as usize).max(1),
+        }
+    }
+
     /// Computes the colours of pixels sample by sample.
     pub(super) fn one_by_one(&mut self, pixels: &[[usize; 2]], primary: &mut PrimaryScratch) {
         let camera = &self.plan.camera;

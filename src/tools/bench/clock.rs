@@ -9,12 +9,28 @@ const MIN_DURATION: Duration = Duration::from_micros(200);
 /// Returns the CPU time that this thread has used so far.
 #[cfg(target_os = "linux")]
 pub fn now() -> Duration {
-    use nix::time::{ClockId, clock_gettime};
-    // Every Linux has this clock.
-    clock_gettime(ClockId::CLOCK_THREAD_CPUTIME_ID).map_or(Duration::ZERO, Duration::from)
+    read(nix::time::ClockId::CLOCK_THREAD_CPUTIME_ID)
 }
 
-/// Returns the wall-clock time, on systems without a clock for each thread.
+/// Returns the CPU time that all threads of this process have used so far.
+#[cfg(target_os = "linux")]
+pub fn of_process() -> Duration {
+    read(nix::time::ClockId::CLOCK_PROCESS_CPUTIME_ID)
+}
+
+#[cfg(target_os = "linux")]
+fn read(clock: nix::time::ClockId) -> Duration {
+    // Every Linux has these clocks.
+    nix::time::clock_gettime(clock).map_or(Duration::ZERO, Duration::from)
+}
+
+/// Returns the wall-clock time since the first call, on systems without a clock for the process.
+#[cfg(not(target_os = "linux"))]
+pub fn of_process() -> Duration {
+    now()
+}
+
+/// Returns the wall-clock time since the first call, on systems without a clock for each thread.
 #[cfg(not(target_os = "linux"))]
 pub fn now() -> Duration {
     use std::sync::OnceLock;

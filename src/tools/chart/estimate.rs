@@ -7,22 +7,20 @@
 use super::candidate::Load;
 use super::data::{Family, Panel, Point, Subject, WrongHits};
 use super::needed;
-use super::pictures::{count, render, timed};
 use super::places::{Pixels, spread};
 use super::progress::Progress;
 use super::sampled::{Colours, Errors};
 use super::times::Times;
+use super::timings::{self, Cost, Timings, plan};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::choice::Choice;
 use crate::scene::model::Model;
-use crate::tools::bench::clock;
 use crate::world::accuracy::Accuracy;
 use crate::world::film::Film;
 use crate::world::material::Rgb;
-use crate::world::sample::Sampler;
 use std::io;
-use std::time::Instant;
+use std::mem::take;
 
 /// The numbers of samples to choose from, and the number of samples that they are compared with.
 const STAGES: [(&[u32], u32); 2] = [(&[1, 2, 4, 8, 16, 32, 64], 256), (&[128, 256], 1024)];
@@ -42,16 +40,6 @@ const ADAPTIVE_FROM: u32 = 16;
 const FIRST: usize = 1024;
 const FEWEST: usize = 128;
 
-/// The number of times that each accuracy is timed, and the samples per pixel that are timed.
-const ROUNDS: usize = 5;
-const TIMED_SAMPLES: u32 = 4;
-
-/// About how long a round may take, in seconds.
-const ROUND: f64 = 0.05;
-
-/// The most that another accuracy than the scene's may take of its time, in each round, to be a choice.
-const GAIN: f64 = 0.8;
-
 /// The goal of a choice.
 #[derive(Clone, Copy)]
 pub enum Goal {
@@ -69,6 +57,8 @@ pub enum Goal {
         /// Whether the error is that of the worst pixels, as for an error.
         worst: bool,
     },
+    /// None: all numbers of samples are measured.
+    None,
 }
 
 /// The cost and the error of an accuracy and a number of samples, with all sources of error together.
@@ -83,8 +73,8 @@ pub struct Estimate {
     /// The mean number of rays from the viewer for a pixel: its samples, and where pixels take different numbers, its part
     /// of the probes that decide on them.
     pub rays: f64,
-    /// The CPU time of one thread for the whole image, in seconds.
-    pub seconds: f64,
+    /// The cost of the render of the whole image.
+    pub cost: Cost,
     /// The measured error, where 1 is white.
     pub error: f64,
     /// The upper bound of the error of the whole image, with a confidence of 99 %.
@@ -115,23 +105,40 @@ impl Goal {
     }
 
     /// Returns the first choice that meets the goal, among those of one accuracy by ascending samples.
-    pub fn first_meeting(self, estimates: &[Estimate], threads: usize) -> Option<&Estimate> {
+    pub fn first_meeting(self, estimates: &[Estimate]) -> Option<&Estimate> {
         match self {
             Self::Error { most, .. } => estimates.iter().find(|one| one.bound <= most),
-            Self::Time { most, .. } => estimates.iter().rfind(|one| one.seconds / threads as f64 <= most),
+            Self::Time { most, .. } => estimates.iter().rfind(|one| one.cost.time.range[1] <= most),
+            Self::None => None,
         }
+    }
+
+    fn is_none(self) -> bool {
+        matches!(self, Self::None)
+    }
+
+    /// Tells whether a render of this cost is estimated to take at most the time that is allowed.
+    fn is_likely(self, cost: &Cost) -> bool {
+        matches!(self, Self::Time { most, .. } if cost.time.mean <= most)
     }
 }
 
-/// Measures the scene's own accuracy with several numbers of samples, and the accuracies that are clearly faster.
+/// Measures the scene's own accuracy with several numbers of samples, and the accuracies that are clearly faster. A render begins
+/// with work of this CPU time, in seconds.
 ///
 /// # Errors
 /// Those of `load`, and those of starting threads; `Interrupted` if `progress` breaks off before enough is known.
-pub fn estimates(load: Load, goal: Goal, progress: &mut dyn Progress) -> io::Result<Estimates> {
-    let (threads, thread) = (Renderer::new(0)?, Renderer::new(1)?);
+pub fn estimates(
+    load: Load,
+    goal: Goal,
+    beginning: f64,
+    progress: &mut dyn Progress,
+) -> io::Result<Estimates> {
+    let threads = Renderer::new(0)?;
     let model = load(None)?;
     let own = model.camera.value.accuracy;
-    let mut study = Study { threads, own, seconds: Vec::new(), goal };
+    let timings = Timings::new(&model, &threads, beginning);
+    let mut study = Study { threads, own, kept: vec![0], timings, goal };
     let mut others = Vec::new();
     // The notes' methods lose hits, and are no choice for a scene that does not ask for them.
     for accuracy in [Accuracy::Exact, Accuracy::Draft] {
@@ -141,19 +148,18 @@ pub fn estimates(load: Load, goal: Goal, progress: &mut dyn Progress) -> io::Res
     }
     let models: Vec<_> =
         [(own, &model)].into_iter().chain(others.iter().map(|(own, model)| (*own, model))).collect();
-    study.seconds = times(&thread, &models, progress)?;
+    let compared: Vec<_> = others.iter().map(|(_, model)| model).collect();
+    let gains = timings::gains(&model, &compared, &study.threads);
+    study.kept.extend((1..models.len()).filter(|index| gains[index - 1]));
     // The most exact of the accuracies is the truth.
     let right = if matches!(own, Accuracy::Exact | Accuracy::Strict) { 0 } else { 1 };
     let mut last = None;
     for (samples, against) in STAGES {
         let estimates = study.measure(&models, right, samples, against, progress)?;
-        let is_met =
-            goal.first_meeting(&estimates.all[..samples.len()], study.cores()).is_some_and(
-                |met| match goal {
-                    Goal::Error { .. } => true,
-                    Goal::Time { .. } => met.samples < samples[samples.len() - 1],
-                },
-            );
+        let is_met = goal.first_meeting(&estimates.all[..samples.len()]).is_some_and(|met| match goal {
+            Goal::Error { .. } | Goal::None => true,
+            Goal::Time { .. } => met.samples < samples[samples.len() - 1],
+        });
         let before = last.replace(estimates);
         if let (Some(before), Some(last)) = (before, &mut last) {
             last.all.extend(before.all);
@@ -177,11 +183,10 @@ pub fn estimates(load: Load, goal: Goal, progress: &mut dyn Progress) -> io::Res
 pub(super) fn panel(load: Load, progress: &mut dyn Progress) -> io::Result<Panel> {
     let model = load(None)?;
     let Film { samples, pixels: [width, height], .. } = model.camera.value;
-    // No choice but one without an error meets this, so that all numbers of samples are measured.
-    let estimates = estimates(load, Goal::Error { most: 0.0, worst: false }, progress)?;
+    let estimates = estimates(load, Goal::None, 0.0, progress)?;
     let all = (width * height) as f64;
     let point = |one: &Estimate| {
-        let seconds = one.seconds / all;
+        let seconds = one.cost.tracing.mean / all;
         Point {
             name: format!("{} {}", one.accuracy.option().name, one.numbers()),
             family: match (one.accuracy, one.most) {
@@ -190,7 +195,7 @@ pub(super) fn panel(load: Load, progress: &mut dyn Progress) -> io::Result<Panel
                 _ => Family::Own,
             },
             is_default: one.accuracy == estimates.own && one.most.is_none() && one.samples == samples,
-            times: Times { least: seconds, median: seconds, rounds: ROUNDS, waited: 0.0 },
+            times: Times { least: seconds, median: seconds, rounds: 1, waited: 0.0 },
             error: one.error,
             worst: one.worst,
             wrong: WrongHits::default(),
@@ -214,74 +219,92 @@ pub(super) fn panel(load: Load, progress: &mut dyn Progress) -> io::Result<Panel
 struct Study {
     threads: Renderer,
     own: Accuracy,
-    /// For each accuracy, the times of each round: the CPU times of one thread for the whole image, in seconds, with one
-    /// sample and for each of more.
-    seconds: Vec<Vec<[f64; 2]>>,
+    /// The indices of the scene's own accuracy, which is 0, and of those that are clearly faster.
+    kept: Vec<usize>,
+    timings: Timings,
     goal: Goal,
 }
 
 impl Study {
-    fn cores(&self) -> usize {
-        self.threads.run(rayon::current_num_threads)
-    }
-
-    /// Returns the time of an image by the accuracy of this index.
-    fn time(&self, index: usize, samples: u32) -> f64 {
-        let kind = usize::from(samples > 1);
-        let least = self.seconds[index].iter().map(|round| round[kind]).fold(f64::INFINITY, f64::min);
-        least * f64::from(samples)
-    }
-
-    /// Tells whether the accuracy of this index is clearly faster than the scene's own, in every round.
-    fn gains(&self, index: usize) -> bool {
-        let rounds = self.seconds[index].iter().zip(&self.seconds[0]);
-        let mut pairs = rounds.flat_map(|(round, own)| round.iter().zip(own));
-        pairs.all(|(time, own)| *time <= GAIN * own)
-    }
-
     /// Measures pixels that take as many samples as they need, with the scene's own accuracy.
     fn needed(
-        &self,
+        &mut self,
         (accuracy, model): (Accuracy, &Model),
         pixels: &Pixels,
         right: &[Rgb],
         against: u32,
         all: usize,
     ) -> Vec<Estimate> {
-        let tiles = timed(model.camera.value.pixels, f64::INFINITY);
-        let measured = needed::measure(model, &self.threads, pixels, needed::timed(&tiles), against / MORE);
-        let estimate = |one: needed::MeasuredChoice| {
+        let mut measured = needed::measure(model, &self.threads, pixels, against / MORE);
+        let estimate = |one: &mut needed::MeasuredChoice| {
             let (mut errors, [samples, most]) = (Errors::new(1), one.limits);
-            errors.add(&[one.colours], right);
+            errors.add(&[take(&mut one.colours)], right);
             let [error, bound] = errors.bounds(0, most, against, all, self.goal.is_worst());
-            let (seconds, worst) = (one.seconds * all as f64, errors.worst(0));
-            Estimate { accuracy, samples, most: Some(most), rays: one.rays, seconds, error, bound, worst }
+            let (rays, worst) = (one.rays, errors.worst(0));
+            let cost = self.timings.cost_of(rays, &one.timing);
+            Estimate { accuracy, samples, most: Some(most), rays, cost, error, bound, worst }
         };
-        measured.into_iter().map(estimate).collect()
+        let mut estimates: Vec<_> = measured.iter_mut().map(estimate).collect();
+        let met = self.goal.first_meeting(&estimates).map(|met| met.most);
+        for (one, estimate) in measured.iter_mut().zip(&mut estimates) {
+            if met == Some(estimate.most) || self.goal.is_none() {
+                needed::refine(model, &self.threads, one.limits, &mut one.timing);
+                estimate.cost = self.timings.cost_of(one.rays, &one.timing);
+            }
+        }
+        estimates
+    }
+
+    /// Times images of an accuracy, by its index: exactly the last one that is estimated to meet a goal of time.
+    fn time(
+        &mut self,
+        index: usize,
+        samples: &[u32],
+        plan: &mut Plan,
+        progress: &mut dyn Progress,
+    ) -> io::Result<()> {
+        self.timings.measure(index, samples, (plan, &self.threads), progress)?;
+        let likely = |samples: &&u32| self.goal.is_likely(&self.timings.cost(index, **samples));
+        if let Some(samples) = samples.iter().rfind(likely).copied() {
+            let goes_on = |cost: &Cost| self.goal.is_likely(cost) && !progress.is_late();
+            self.timings.refine((index, samples), (plan, &self.threads), goes_on);
+        }
+        Ok(())
+    }
+
+    /// Times the choice of an accuracy that meets the goal exactly, or all where there is no goal.
+    fn refine(&mut self, index: usize, estimates: &mut [Estimate], plan: &mut Plan, progress: &dyn Progress) {
+        let met = self.goal.first_meeting(estimates).map(|met| met.samples);
+        for estimate in estimates {
+            if met == Some(estimate.samples) || self.goal.is_none() {
+                let choice = (index, estimate.samples);
+                self.timings.refine(choice, (plan, &self.threads), |_| !progress.is_late());
+                estimate.cost = self.timings.cost(index, estimate.samples);
+            }
+        }
     }
 
     fn measure(
-        &self,
+        &mut self,
         models: &[(Accuracy, &Model)],
         right: usize,
         samples: &[u32],
         against: u32,
         progress: &mut dyn Progress,
     ) -> io::Result<Estimates> {
-        let kept: Vec<_> = (0..models.len()).filter(|index| *index == 0 || self.gains(*index)).collect();
-        let plan = |index: usize| {
-            let mut plan = Plan::for_picture(models[index].1);
-            plan.camera.sampler = Sampler::Sobol;
-            plan
-        };
-        let mut plans: Vec<_> = kept.iter().map(|index| plan(*index)).collect();
-        let mut truth = (right != 0).then(|| plan(right));
+        let goal = self.goal;
+        let kept = self.kept.clone();
+        let mut plans: Vec<_> = kept.iter().map(|index| plan(models[*index].1)).collect();
+        for (index, plan) in kept.iter().zip(&mut plans) {
+            self.time(*index, samples, plan, progress)?;
+        }
+        let mut truth = (right != 0).then(|| plan(models[right].1));
         let size = models[0].1.camera.value.pixels;
         let all = size[0] * size[1];
         // One pixel costs the samples of each choice, and the true ones.
         let of_pixel = samples.iter().sum::<u32>() * kept.len() as u32 + against + needed::RAYS;
         let most = |picture: u32| {
-            let least = if self.goal.is_worst() { 2.0 * MIN_RAYS } else { MIN_RAYS };
+            let least = if goal.is_worst() { 2.0 * MIN_RAYS } else { MIN_RAYS };
             let rays = (PART * f64::from(picture) * all as f64).max(least);
             // A small image has fewer pixels than that.
             ((rays / f64::from(of_pixel)) as usize).max(FEWEST).min(all)
@@ -312,15 +335,16 @@ impl Study {
                 is_short = progress.is_late();
             }
             let measured = errors[0].pixels();
+            let timings = &self.timings;
             let estimates = kept.iter().zip(&errors).flat_map(|(index, errors)| {
                 let choice = move |(place, samples): (usize, &u32)| {
-                    let [error, bound] = errors.bounds(place, *samples, against, all, self.goal.is_worst());
+                    let [error, bound] = errors.bounds(place, *samples, against, all, goal.is_worst());
                     Estimate {
                         accuracy: models[*index].0,
                         samples: *samples,
                         most: None,
                         rays: f64::from(*samples),
-                        seconds: self.time(*index, *samples),
+                        cost: timings.cost(*index, *samples),
                         error,
                         bound,
                         worst: errors.worst(place),
@@ -329,9 +353,13 @@ impl Study {
                 samples.iter().enumerate().map(choice)
             });
             let mut estimates: Vec<_> = estimates.collect();
-            let met = self.goal.first_meeting(&estimates[..samples.len()], self.cores());
+            let met = goal.first_meeting(&estimates[..samples.len()]);
             let picture = met.map_or(samples[samples.len() - 1], |met| met.samples);
             if is_short || measured >= most(picture) {
+                let of_accuracy = estimates.chunks_mut(samples.len());
+                for ((index, plan), estimates) in kept.iter().zip(&mut plans).zip(of_accuracy) {
+                    self.refine(*index, estimates, plan, progress);
+                }
                 if !is_short && picture >= ADAPTIVE_FROM {
                     let pixels: Pixels = pixels[..measured].to_vec();
                     estimates.extend(self.needed(models[0], &pixels, &rights, against, all));
@@ -353,43 +381,4 @@ impl Estimate {
             None => self.samples.to_string(),
         }
     }
-}
-
-/// Times each accuracy on some tiles, in turns.
-fn times(
-    thread: &Renderer,
-    models: &[(Accuracy, &Model)],
-    progress: &mut dyn Progress,
-) -> io::Result<Vec<Vec<[f64; 2]>>> {
-    let mut plans: Vec<_> = models.iter().map(|(_, model)| Plan::for_picture(model)).collect();
-    let size = plans[0].camera.pixels;
-    let mut tiles = timed(size, f64::INFINITY);
-    // The first tile warms up the caches and tells how many of them are enough.
-    let first = Instant::now();
-    thread.run(|| render(&plans[0], &tiles[..1]));
-    let of_round = (1.0 + f64::from(TIMED_SAMPLES)) * plans.len() as f64 * first.elapsed().as_secs_f64();
-    tiles.truncate(((ROUND / of_round) as usize).max(1));
-    let mut times = vec![Vec::new(); plans.len()];
-    for round in 0..ROUNDS {
-        for (plan, times) in plans.iter_mut().zip(&mut times) {
-            plan.camera.sampler = Sampler::Sobol;
-            let scale = (size[0] * size[1]) as f64 / count(&tiles) as f64;
-            let own = [1, TIMED_SAMPLES].map(|samples| {
-                plan.camera.samples = samples;
-                thread.run(|| {
-                    let start = clock::now();
-                    render(plan, &tiles);
-                    scale * (clock::now() - start).as_secs_f64() / f64::from(samples)
-                })
-            });
-            times.push(own);
-            if progress.done(0).is_break() {
-                return Err(io::ErrorKind::Interrupted.into());
-            }
-        }
-        if progress.is_late() || round > 0 && first.elapsed().as_secs_f64() > ROUNDS as f64 * ROUND {
-            break;
-        }
-    }
-    Ok(times)
 }

@@ -9,6 +9,7 @@ mod candidate;
 mod canvas;
 mod clock;
 mod colours;
+mod cost;
 mod data;
 mod draw;
 mod estimate;
@@ -26,9 +27,11 @@ mod progress;
 mod sampled;
 mod study;
 mod times;
+mod timings;
 mod verdict;
 
 pub use candidate::Load;
+pub use cost::Estimated;
 pub use data::{Chart, Family, Panel, Point, Subject, WrongHits, WrongHitsOf};
 pub use draw::{png, svg};
 pub use estimate::{Estimate, Estimates, Goal, estimates};
@@ -36,6 +39,7 @@ pub use files::{csv, json};
 pub use machine::Machine;
 pub use progress::Progress;
 pub use times::Times;
+pub use timings::Cost;
 pub use verdict::words;
 
 use std::io;

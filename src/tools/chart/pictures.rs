@@ -268,17 +268,17 @@ fn choices(own: u32, own_sampler: Sampler) -> Vec<(u32, Sampler, Option<Adaptive
 }
 
 /// Returns the tiles to time in an image with `tests` object tests per pixel.
-pub(super) fn timed(size: [usize; 2], tests: f64) -> Vec<Pixels> {
+fn timed(size: [usize; 2], tests: f64) -> Vec<Pixels> {
     tiles(size, ((TIMED_TESTS as f64 / tests) as usize).div_ceil(PACKET_SIZE).max(TIMED_TILES))
 }
 
 /// Returns the number of pixels of the tiles.
-pub(super) fn count(tiles: &[Pixels]) -> usize {
+fn count(tiles: &[Pixels]) -> usize {
     tiles.iter().map(Vec::len).sum()
 }
 
 /// Traces tiles as a render does, on this thread.
-pub(super) fn render(plan: &Plan, tiles: &[Pixels]) {
+fn render(plan: &Plan, tiles: &[Pixels]) {
     let (mut scratch, mut nobody) = (Scratch::default(), Flaws::default());
     for tile in tiles {
         black_box(Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody).pixels(tile));

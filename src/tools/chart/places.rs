@@ -12,19 +12,29 @@ pub fn spread([width, height]: [usize; 2], count: usize) -> Pixels {
     if count >= all {
         return (0..all).map(|index| [index % width, index / width]).collect();
     }
+    (0..count).map(|index| place([width, height], index)).collect()
+}
+
+/// Returns one of the pixels that are spread over an image. Those of all indices below a number are spread evenly.
+pub fn place([width, height]: [usize; 2], index: usize) -> [usize; 2] {
     let size = DVec2::new(width as f64, height as f64);
-    let place = |index: usize| (size * (STEP * index as f64).fract()).to_array().map(|side| side as usize);
-    (0..count).map(place).collect()
+    (size * (STEP * index as f64).fract()).to_array().map(|side| side as usize)
+}
+
+/// Returns the pixels of a tile and of those beside it, of which so many are traced together, in the order in which they
+/// are traced.
+pub fn tiles_around([width, height]: [usize; 2], [x, y]: [usize; 2], together: usize) -> Pixels {
+    let (left, low) = (x / (TILE * together) * TILE * together, y / TILE * TILE);
+    let mut pixels = Vec::new();
+    for left in (left..width.min(left + TILE * together)).step_by(TILE) {
+        tiles::list(left..width.min(left + TILE), low..height.min(low + TILE), &mut pixels);
+    }
+    pixels
 }
 
 /// Returns `count` of the tiles of an image, each the pixels of one packet of rays, or all tiles of a smaller image.
 pub fn tiles([width, height]: [usize; 2], count: usize) -> Vec<Pixels> {
-    let tile = |[column, row]: [usize; 2]| {
-        let (left, low) = (column * TILE, row * TILE);
-        let mut pixels = Vec::new();
-        tiles::list(left..width.min(left + TILE), low..height.min(low + TILE), &mut pixels);
-        pixels
-    };
+    let tile = |corner: [usize; 2]| tiles_around([width, height], corner.map(|side| side * TILE), 1);
     spread([width, height].map(|side| side.div_ceil(TILE)), count).into_iter().map(tile).collect()
 }
 

@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# Whether `tabray choose --max-time` is right about times: chooses for a time in seconds in each of some scenes, renders
+# the choice, and prints a table in Markdown of the CPU time that was stated and the one that was taken.
+#
+#     bash docs/choose-time.sh target/release/tabray 1 scenes/gallery/*.ray
+set -euo pipefail
+tabray=$(realpath "$1")
+time=$2
+shift 2
+out=$(mktemp -d)
+trap 'rm -r "$out"' EXIT
+TIMEFORMAT='%U %S'
+
+echo "| scene | choice | CPU time stated | CPU time taken | ratio |"
+echo "|---|---|---|---|---|"
+for scene; do
+    if ! "$tabray" choose "$scene" --max-time "$time" >"$out/said" 2>"$out/error"; then
+        echo "| $(basename "$scene" .ray) | none: $(tail -n 1 "$out/error") | | | |"
+        continue
+    fi
+    # The last line is the command to use, and the times stand above it.
+    read -r _ _ _ options <<<"$(tail -n 1 "$out/said")"
+    # shellcheck disable=SC2086
+    taken=$({ time "$tabray" render "$scene" -o "$out/chosen.png" $options 2>"$out/error"; } 2>&1)
+    awk -v name="$(basename "$scene" .ray)" -v taken="$taken" '
+        /^>/ { choice = $2 " " $3; stated = $9 }
+        /^It takes from/ { range = " (" $4 " to " $7 " s)" }
+        END {
+            split(taken, part, " ")
+            spent = part[1] + part[2]
+            printf "| %s | %s | %.2f s%s | %.2f s | %.2f |\n", name, choice, stated, range, spent, spent / stated
+        }' "$out/said"
+done
