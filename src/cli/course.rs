@@ -76,10 +76,13 @@ impl Difference {
     }
 }
 
+/// The reason of a difference, and whether it applies to an object.
+type Reason<'a> = (&'static str, &'a dyn Fn(&Object) -> bool);
+
 /// Returns the differences at the objects of a scene for which there is a reason.
 fn differences<'o>(
     objects: impl Iterator<Item = &'o Object>,
-    reasons: &[(&'static str, &dyn Fn(&Object) -> bool)],
+    reasons: &[Reason],
 ) -> Vec<Difference> {
     let objects: Vec<_> = objects.collect();
     let differences = reasons.iter().map(|(reason, applies)| {
