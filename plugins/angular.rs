@@ -1,7 +1,7 @@
 //! The notes' shading of a sphere: colours that change with the angle around its centre.
 
 use super::rainbow::{CosinePalette, FREQUENCY, PHASE};
-use crate::prelude::*;
+use tabray::prelude::*;
 
 static BRIGHTNESS: Pparm<f64> = Pparm::or("brightness", "half of the strongest colour", 1.0)
     .must("0 or more", |brightness| *brightness >= 0.0);

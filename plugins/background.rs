@@ -1,6 +1,6 @@
 //! A background of one colour.
 
-use crate::prelude::*;
+use tabray::prelude::*;
 
 static COLOUR: Pparm<Rgb> =
     Pparm::required("colour", "the red, green and blue of every ray that hits nothing, where 1 is white")

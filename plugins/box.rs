@@ -1,7 +1,7 @@
 //! A box: a cuboid with its sides along the axes.
 
-use crate::prelude::*;
-use crate::shapes::outline;
+use tabray::prelude::*;
+use tabray::shapes::outline;
 
 static CENTER: Pparm<DVec3> =
     Pparm::required("center", "the position of the centre").alias(&["centre"]).unit("world coordinates");

@@ -1,6 +1,6 @@
 //! Bumps: normals bent as those of a surface that is raised by a formula. The surface itself stays smooth.
 
-use crate::prelude::*;
+use tabray::prelude::*;
 
 static HEIGHT: Pparm<Field> =
     Pparm::required("height", "how far the surface seems to be raised at each point, in world units");

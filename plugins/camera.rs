@@ -1,7 +1,7 @@
 //! The notes' camera: the viewer, and the image plane at z = 0 through which the viewer looks.
 
-use crate::prelude::*;
 use std::sync::Arc;
+use tabray::prelude::*;
 
 static WORLDDIM: Pparm<DVec2> = Pparm::required("worlddim", "the width and height of the image plane")
     .alias(&["world_dim"])

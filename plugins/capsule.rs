@@ -1,6 +1,6 @@
 //! A capsule: a cylinder whose ends are half spheres.
 
-use crate::prelude::*;
+use tabray::prelude::*;
 
 static BASE: Pparm<DVec3> =
     Pparm::required("base", "the centre of its lower half sphere").unit("world coordinates");

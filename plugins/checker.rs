@@ -1,7 +1,7 @@
 //! Squares in u and v, of two materials in turn: on spheres, rectangles, triangles, whatever has such coordinates.
 
-use crate::prelude::*;
 use std::sync::Arc;
+use tabray::prelude::*;
 
 static SQUARES: Pparm<[i64; 2]> =
     Pparm::or("squares", "how many squares there are along u and along v", [8, 8]).between(1.0, 1e6);

@@ -1,7 +1,7 @@
 //! A cylinder: solid, or a tube without its ends.
 
-use crate::prelude::*;
-use crate::shapes::uv;
+use tabray::prelude::*;
+use tabray::shapes::uv;
 
 static BASE: Pparm<DVec3> = Pparm::required("base", "the centre of its lower end").unit("world coordinates");
 static DIRECTION: Pparm<DVec3> =

@@ -1,7 +1,7 @@
 //! A difference: what is left of an object when others are taken away.
 
-use crate::prelude::*;
-use crate::shapes::{Objects, Operation, combined};
+use tabray::prelude::*;
+use tabray::shapes::{Objects, Operation, combined};
 
 static OBJECTS: Pparm<Objects> = Pparm::required(
     "objects",

@@ -1,6 +1,6 @@
 //! A disc: the part of a plane within a circle.
 
-use crate::prelude::*;
+use tabray::prelude::*;
 
 static CENTER: Pparm<DVec3> =
     Pparm::required("center", "the position of the centre").alias(&["centre"]).unit("world coordinates");

@@ -1,8 +1,8 @@
 //! An environment: a picture all around the scene.
 
-use crate::prelude::*;
 use std::f64::consts::PI;
 use std::sync::Arc;
+use tabray::prelude::*;
 
 static TEXTURE: Pparm<Arc<Texture>> = Pparm::required(
     "texture",

@@ -1,6 +1,6 @@
 //! A colour for each face of a box, a prism or a mesh.
 
-use crate::prelude::*;
+use tabray::prelude::*;
 
 static COLOURS: Pparm<List<Rgb, 1, 256>> = Pparm::required(
     "colours",

@@ -1,8 +1,8 @@
 //! A camera with a very wide angle of view, up to all of space.
 
 use super::look_at::{self, frame};
-use crate::prelude::*;
 use std::sync::Arc;
+use tabray::prelude::*;
 
 static ANGLE: Pparm<f64> = Pparm::or("angle", "the angle of view across the width of the image", 180.0)
     .unit("degrees")

@@ -1,6 +1,6 @@
 //! Colours by formulas: in the point x, y, z, in u and v, and in the normal nx, ny, nz.
 
-use crate::prelude::*;
+use tabray::prelude::*;
 
 type Formulas = [SurfaceField; 3];
 

@@ -1,9 +1,9 @@
 //! A finite plane: a rectangle.
 
 use super::plane;
-use crate::numeric::double_double::scaled;
-use crate::prelude::*;
-use crate::shapes::rectangle::{self, FinitePlane, Rectangle};
+use tabray::exact::double_double::scaled;
+use tabray::prelude::*;
+use tabray::shapes::rectangle::{self, FinitePlane, Rectangle};
 
 pub static DIMENSIONS: Pparm<DVec2> =
     Pparm::required("dimensions", "the size along `xdir` and perpendicular to it")

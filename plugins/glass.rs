@@ -1,6 +1,6 @@
 //! Glass: a material that bends and reflects light by its refractive index.
 
-use crate::prelude::*;
+use tabray::prelude::*;
 
 static INDEX: Pparm<f64> = Pparm::or(
     "index",

@@ -1,6 +1,6 @@
 //! A heart: the surface of the sixth degree by G. Taubin (1993).
 
-use crate::prelude::*;
+use tabray::prelude::*;
 
 static CENTER: Pparm<DVec3> =
     Pparm::required("center", "the position of the centre").alias(&["centre"]).unit("world coordinates");

@@ -1,7 +1,7 @@
 //! An image on a surface, by its u and v.
 
-use crate::prelude::*;
 use std::sync::Arc;
+use tabray::prelude::*;
 
 static TEXTURE: Pparm<Arc<Texture>> = Pparm::required("texture", "the texture, defined earlier in the scene");
 static REPEAT: Pparm<[i64; 2]> =

@@ -1,7 +1,7 @@
 //! A surface by its formula: the points where it is 0.
 
-use crate::prelude::*;
-use crate::shapes::field;
+use tabray::prelude::*;
+use tabray::shapes::field;
 
 static FORMULA: Pparm<Field> = Pparm::required(
     "formula",

@@ -1,7 +1,7 @@
 //! An intersection: the space that several objects share.
 
-use crate::prelude::*;
-use crate::shapes::{Objects, Operation, combined};
+use tabray::prelude::*;
+use tabray::shapes::{Objects, Operation, combined};
 
 static OBJECTS: Pparm<Objects> = Pparm::required(
     "objects",

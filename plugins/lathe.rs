@@ -1,7 +1,7 @@
 //! A turned piece: a surface of revolution whose profile is a spline through points.
 
-use crate::prelude::*;
-use crate::shapes::{ClassicRevolution, InFrame, Refinement, Revolution};
+use tabray::prelude::*;
+use tabray::shapes::{ClassicRevolution, InFrame, Refinement, Revolution};
 
 /// The points of a profile: the height and the radius of each.
 type Points = List<DVec2, 2, 64>;

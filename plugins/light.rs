@@ -1,6 +1,6 @@
 //! A light: a point that emits equally in all directions.
 
-use crate::prelude::*;
+use tabray::prelude::*;
 
 static LOCATION: Pparm<DVec3> =
     Pparm::required("location", "the position of the light").unit("world coordinates");

@@ -1,7 +1,7 @@
 //! A camera that stands anywhere and looks toward a point.
 
-use crate::prelude::*;
 use std::sync::Arc;
+use tabray::prelude::*;
 
 pub static POSITION: Pparm<DVec3> =
     Pparm::required("position", "the position of the viewer").unit("world coordinates").pose(Pose::Position);

@@ -1,6 +1,6 @@
 //! A material: how a surface emits, reflects and transmits light.
 
-use crate::prelude::*;
+use tabray::prelude::*;
 
 static AMBIENT: Pparm<Rgb> =
     Pparm::or("ambient", "the emission in red, green and blue, independent of lights", Rgb::ZERO)

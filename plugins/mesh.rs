@@ -1,10 +1,10 @@
 //! A mesh of triangles from a file.
 
-use crate::prelude::*;
-use crate::shapes::mesh::{Mesh, Painted, Surface, SurfaceError, ToWorld, read};
-use crate::text;
 use std::path::PathBuf;
 use std::sync::Arc;
+use tabray::prelude::*;
+use tabray::shapes::mesh::{Mesh, Painted, Surface, SurfaceError, ToWorld, read};
+use tabray::text;
 
 static FILE: Pparm<PathBuf> =
     Pparm::required("file", "an OBJ, PLY or STL file, relative to the scene's folder");

@@ -1,6 +1,6 @@
 //! Metal: a coloured mirror that reflects more of the light that grazes it.
 
-use crate::prelude::*;
+use tabray::prelude::*;
 
 static REFLECTANCE: Pparm<Rgb> = Pparm::or(
     "colour",

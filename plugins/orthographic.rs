@@ -1,8 +1,8 @@
 //! A camera whose rays are parallel, as in plans and elevations.
 
 use super::look_at::{self, frame};
-use crate::prelude::*;
 use std::sync::Arc;
+use tabray::prelude::*;
 
 static WIDTH: Pparm<f64> =
     Pparm::required("width", "the width of the part of the scene that the image shows")

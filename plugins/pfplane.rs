@@ -1,7 +1,7 @@
 //! A procedural finite plane: a rectangle whose colours are computed at each point by a shader.
 
 use super::{fplane, plane, pplane};
-use crate::prelude::*;
+use tabray::prelude::*;
 
 inventory::submit! {
     Entity::shape(

@@ -1,7 +1,7 @@
 //! A copy of another object in another place, which shares its shape.
 
-use crate::geometry::Placement;
-use crate::prelude::*;
+use tabray::geometry::Placement;
+use tabray::prelude::*;
 
 static OBJECT: Pparm<NamedBody> = Pparm::required(
     "object",

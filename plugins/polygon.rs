@@ -1,7 +1,7 @@
 //! A polygon: a flat surface with straight edges.
 
-use crate::prelude::*;
-use crate::shapes::outline;
+use tabray::prelude::*;
+use tabray::shapes::outline;
 
 static POINTS: Pparm<List<DVec3, 3, 256>> =
     Pparm::required("points", "the corners; the side from which they run counterclockwise is lit")

@@ -1,7 +1,7 @@
 //! A procedural plane: a plane whose colours are computed at each point by a shader.
 
 use super::plane;
-use crate::prelude::*;
+use tabray::prelude::*;
 
 static SHADER: Pparm<OnPlane> = Pparm::required("shader", "the procedural shader");
 

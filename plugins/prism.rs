@@ -1,7 +1,7 @@
 //! A prism: a polygon extended upward.
 
-use crate::prelude::*;
-use crate::shapes::outline;
+use tabray::prelude::*;
+use tabray::shapes::outline;
 
 static POINTS: Pparm<List<DVec2, 3, 256>> =
     Pparm::required("points", "the corners of the polygon: the x and the z of each, relative to `base`")

@@ -4,8 +4,8 @@ use super::fplane::{self, finite_plane};
 use super::light::{self, PointLight};
 use super::plane;
 use super::texplane::{self, Picture};
-use crate::prelude::*;
-use crate::shapes::rectangle::{FinitePlane, Rectangle};
+use tabray::prelude::*;
+use tabray::shapes::rectangle::{FinitePlane, Rectangle};
 
 static HEADING: Derived = Derived(|_| Datum::Word(String::new()).line("projector", " \n"));
 

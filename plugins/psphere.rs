@@ -1,7 +1,7 @@
 //! A procedural sphere: a sphere whose colours are computed at each point by a shader.
 
 use super::sphere;
-use crate::prelude::*;
+use tabray::prelude::*;
 
 static SHADER: Pparm<OnSphere> = Pparm::or("shader", "the procedural shader", OnSphere::Number(0));
 

@@ -1,7 +1,7 @@
 //! The notes' continuously modulated shading: colours that change with the angle around a point.
 
 use super::tiles::Wall;
-use crate::prelude::*;
+use tabray::prelude::*;
 
 pub static FREQUENCY: Pparm<WholePerChannel> =
     Pparm::or("frequency", "how often the hues repeat, or red, green and blue each", WholePerChannel([2; 3]))

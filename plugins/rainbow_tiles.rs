@@ -2,7 +2,7 @@
 
 use super::rainbow::{self, CosinePalette};
 use super::tiles::{Grid, WIDTH};
-use crate::prelude::*;
+use tabray::prelude::*;
 
 static BRIGHTNESS: Pparm<f64> = Pparm::or("brightness", "half of the strongest colour", 6.0)
     .must("0 or more", |brightness| *brightness >= 0.0);

@@ -1,8 +1,8 @@
 //! A surface of revolution: a profile curve rotated around an axis.
 
-use crate::prelude::*;
-use crate::shapes::{ClassicRevolution, InFrame, Refinement, Revolution};
 use std::sync::Arc;
+use tabray::prelude::*;
+use tabray::shapes::{ClassicRevolution, InFrame, Refinement, Revolution};
 
 static SURFER: Pparm<Option<&'static Profile>> =
     Pparm::or("surfer", "the profile curve, by the notes' number or by its name", None);

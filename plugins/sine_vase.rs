@@ -1,6 +1,6 @@
 //! A vase with a wide body and a narrow neck.
 
-use crate::prelude::*;
+use tabray::prelude::*;
 
 inventory::submit! {
     Profile::new("sine_vase", "a vase with a narrow neck", "1 + 0.5 * sin(y)").number(3)

@@ -1,7 +1,7 @@
 //! A sky: a gradient from the horizon up to the zenith.
 
-use crate::numeric::double_double::scaled;
-use crate::prelude::*;
+use tabray::exact::double_double::scaled;
+use tabray::prelude::*;
 
 static HORIZON: Pparm<Rgb> = Pparm::or(
     "horizon",

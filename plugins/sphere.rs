@@ -1,10 +1,10 @@
 //! A sphere: all points at one distance from a centre.
 
 use super::ellipsoid;
-use crate::prelude::*;
-use crate::shapes::sphere::{self, SphereLine};
-use crate::shapes::uv;
 use std::marker::PhantomData;
+use tabray::prelude::*;
+use tabray::shapes::sphere::{self, SphereLine};
+use tabray::shapes::uv;
 
 static CENTER: Pparm<DVec3> =
     Pparm::required("center", "the position of the centre").alias(&["centre"]).unit("world coordinates");

@@ -1,7 +1,7 @@
 //! A spotlight: a light that shines into a cone.
 
 use super::light::{self, PointLight};
-use crate::prelude::*;
+use tabray::prelude::*;
 
 static POINT: Pparm<DVec3> =
     Pparm::required("point", "a point on the axis of the beam").unit("world coordinates").not_dumped();

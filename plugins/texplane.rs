@@ -1,9 +1,9 @@
 //! A textured plane: a rectangle that shows an image.
 
 use super::{fplane, plane};
-use crate::prelude::*;
-use crate::shapes::rectangle::{Rectangle, along_sides};
 use std::sync::Arc;
+use tabray::prelude::*;
+use tabray::shapes::rectangle::{Rectangle, along_sides};
 
 static TEXNAME: Pparm<Arc<Texture>> = Pparm::required("texname", "the texture, defined earlier in the scene");
 static MODE: Pparm<i64> = Pparm::required(

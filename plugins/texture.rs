@@ -1,6 +1,6 @@
 //! A texture: an image from a file.
 
-use crate::prelude::*;
+use tabray::prelude::*;
 
 static FILENAME: Pparm<String> =
     Pparm::required("filename", "a PPM or PNG file, relative to the scene's folder");

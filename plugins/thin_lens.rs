@@ -1,8 +1,8 @@
 //! A camera with a lens, before and behind whose focus things are blurred.
 
 use super::look_at::{self, ANGLE, LookAt, frame};
-use crate::prelude::*;
 use std::sync::Arc;
+use tabray::prelude::*;
 
 static APERTURE: Pparm<f64> =
     Pparm::required("aperture", "the diameter of the lens; a single sample passes through its centre")

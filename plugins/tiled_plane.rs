@@ -2,9 +2,9 @@
 
 use super::fplane::{self, DIMENSIONS, XDIR, sides};
 use super::plane;
-use crate::prelude::*;
-use crate::shapes::rectangle::along_sides;
 use std::sync::Arc;
+use tabray::prelude::*;
+use tabray::shapes::rectangle::along_sides;
 
 static ALTMATERIAL: Pparm<Arc<Material>> =
     Pparm::required("altmaterial", "the material of every other tile").not_dumped();

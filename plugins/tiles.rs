@@ -1,7 +1,7 @@
 //! The notes' tiled shading: cyan and yellow tiles half a unit wide, along x and z.
 
-use crate::prelude::*;
 use std::panic::Location;
+use tabray::prelude::*;
 
 pub static WIDTH: Pparm<f64> = Pparm::or("width", "the width of a tile", 0.5).unit("world units").positive();
 static ON: Pparm<Wall> = Pparm::or("on", "the wall along which the tiles lie", Wall::Floor);

@@ -1,6 +1,6 @@
 //! A torus: a circle rotated around an axis in its plane.
 
-use crate::prelude::*;
+use tabray::prelude::*;
 
 static CENTER: Pparm<DVec3> =
     Pparm::required("center", "the position of the centre").alias(&["centre"]).unit("world coordinates");

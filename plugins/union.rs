@@ -1,7 +1,7 @@
 //! A union: what lies in any of several objects.
 
-use crate::prelude::*;
-use crate::shapes::{Objects, Operation, combined};
+use tabray::prelude::*;
+use tabray::shapes::{Objects, Operation, combined};
 
 static OBJECTS: Pparm<Objects> = Pparm::required(
     "objects",

@@ -3,19 +3,19 @@
 mod certain;
 mod sampling;
 
-use crate::cli::files::{input, output};
-use crate::cli::options::{cpu, method, set};
-use crate::cli::process::failure::{Failure, print};
-use crate::scene::model::Model;
-use crate::scene::reader;
-use crate::scene::registry::Registry;
-use crate::simd::cpu::Cpu;
-use crate::text;
-use crate::tools::bench::{Cost, Speed, TestTimes, scenes};
+use crate::files::{input, output};
+use crate::options::{cpu, method, set};
+use crate::process::failure::{Failure, print};
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;
 use std::time::Duration;
+use tabray_core::scene::model::Model;
+use tabray_core::simd::cpu::Cpu;
+use tabray_core::text;
+use tabray_lang::reader;
+use tabray_lang::registry::Registry;
+use tabray_tools::bench::{Cost, Speed, TestTimes, scenes};
 
 /// Measure how fast scenes are traced on one core
 ///

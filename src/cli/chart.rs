@@ -1,17 +1,12 @@
 //! `tabray chart`: the cost and the error of each choice in a scene.
 
 use super::measuring::{Time, Work, wait};
-use crate::cli::files::input::{self, Source};
-use crate::cli::files::output::{self, Output};
-use crate::cli::options::{set, stop};
-use crate::cli::process::failure::{self, Failure, print};
-use crate::cli::process::interrupt::{self, InterruptAction};
-use crate::cli::process::{messages, progress};
-use crate::scene::choice::Choice;
-use crate::scene::model::Model;
-use crate::scene::registry::Registry;
-use crate::tools::chart::{self, Chart};
-use crate::world::accuracy::Accuracy;
+use crate::files::input::{self, Source};
+use crate::files::output::{self, Output};
+use crate::options::{set, stop};
+use crate::process::failure::{self, Failure, print};
+use crate::process::interrupt::{self, InterruptAction};
+use crate::process::{messages, progress};
 use std::io::{self, Write};
 use std::panic;
 use std::path::{Path, PathBuf};
@@ -19,6 +14,11 @@ use std::sync::PoisonError;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::{Duration, Instant};
+use tabray_core::scene::choice::Choice;
+use tabray_core::scene::model::Model;
+use tabray_core::world::accuracy::Accuracy;
+use tabray_lang::registry::Registry;
+use tabray_tools::chart::{self, Chart};
 
 /// Chart the cost and the error of each choice in a scene
 ///

@@ -1,11 +1,11 @@
 //! `tabray check`: reports the faults of scenes.
 
-use crate::cli::files::input;
-use crate::cli::options::set;
-use crate::cli::process::failure::{Failure, report, status};
-use crate::cli::process::messages;
-use crate::scene::registry::Registry;
+use crate::files::input;
+use crate::options::set;
+use crate::process::failure::{Failure, report, status};
+use crate::process::messages;
 use std::path::PathBuf;
+use tabray_lang::registry::Registry;
 
 /// Check scenes for errors
 ///

@@ -2,19 +2,12 @@
 
 use super::chart::all_accuracies;
 use super::measuring::{Work, wait};
-use crate::cli::files::input::{self, Source};
-use crate::cli::options::max_error::{LEVELS, MaxError, levels};
-use crate::cli::options::{set, stop};
-use crate::cli::process::failure::{self, Failure, print};
-use crate::cli::process::interrupt::{self, InterruptAction};
-use crate::cli::process::program;
-use crate::render::plan::Plan;
-use crate::scene::choice::Choice;
-use crate::scene::registry::Registry;
-use crate::text::short;
-use crate::tools::bench::clock;
-use crate::tools::chart::{self, Cost, Estimate, Estimates, Goal};
-use crate::world::accuracy::Accuracy;
+use crate::files::input::{self, Source};
+use crate::options::max_error::{LEVELS, MaxError, levels};
+use crate::options::{set, stop};
+use crate::process::failure::{self, Failure, print};
+use crate::process::interrupt::{self, InterruptAction};
+use crate::process::program;
 use clap::ArgGroup;
 use std::cmp::Ordering;
 use std::fmt::Write;
@@ -24,6 +17,13 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::{Duration, Instant};
+use tabray_core::render::plan::Plan;
+use tabray_core::scene::choice::Choice;
+use tabray_core::text::short;
+use tabray_core::world::accuracy::Accuracy;
+use tabray_lang::registry::Registry;
+use tabray_tools::bench::clock;
+use tabray_tools::chart::{self, Cost, Estimate, Estimates, Goal};
 
 /// Choose accuracy and samples for a maximum error or time
 ///

@@ -1,9 +1,9 @@
 //! `tabray completions`: scripts with which shells complete the command line.
 
-use crate::cli::process::failure::{Failure, print};
-use crate::cli::process::program;
-use crate::scene::registry::Registry;
+use crate::process::failure::{Failure, print};
+use crate::process::program;
 use clap_complete::Shell;
+use tabray_lang::registry::Registry;
 
 /// Print a completion script for a shell
 #[derive(clap::Args)]

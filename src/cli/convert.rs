@@ -1,15 +1,15 @@
 //! `tabray convert`: writes a scene in the other syntax.
 
-use crate::cli::files::{input, output};
-use crate::cli::options::set;
-use crate::cli::process::failure::{Failure, print};
-use crate::cli::process::messages;
-use crate::scene::dump;
-use crate::scene::model::Model;
-use crate::scene::reader;
-use crate::scene::registry::Registry;
-use crate::scene::syntax::Syntax;
+use crate::files::{input, output};
+use crate::options::set;
+use crate::process::failure::{Failure, print};
+use crate::process::messages;
 use std::path::{Path, PathBuf};
+use tabray_core::scene::model::Model;
+use tabray_lang::dump;
+use tabray_lang::reader;
+use tabray_lang::registry::Registry;
+use tabray_lang::syntax::Syntax;
 
 /// Write a scene in the other syntax
 ///

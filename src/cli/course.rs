@@ -2,15 +2,15 @@
 
 mod edges;
 
-use crate::cli::files::input::Source;
-use crate::cli::process::messages;
-use crate::geometry::ray::Side;
-use crate::scene::model::{Model, Object};
-use crate::scene::registry::Registry;
-use crate::scene::value::Datum;
-use crate::text;
-use crate::world::accuracy::Accuracy;
-use crate::world::material::Rgb;
+use crate::files::input::Source;
+use crate::process::messages;
+use tabray_core::geometry::ray::Side;
+use tabray_core::scene::model::{Model, Object};
+use tabray_core::scene::value::Datum;
+use tabray_core::text;
+use tabray_core::world::accuracy::Accuracy;
+use tabray_core::world::material::Rgb;
+use tabray_lang::registry::Registry;
 
 /// The maximum number of objects of a scene that is compared: the course's scenes have few, and none of them from a
 /// file; each is made twice.
@@ -80,10 +80,7 @@ impl Difference {
 type Reason<'a> = (&'static str, &'a dyn Fn(&Object) -> bool);
 
 /// Returns the differences at the objects of a scene for which there is a reason.
-fn differences<'o>(
-    objects: impl Iterator<Item = &'o Object>,
-    reasons: &[Reason],
-) -> Vec<Difference> {
+fn differences<'o>(objects: impl Iterator<Item = &'o Object>, reasons: &[Reason]) -> Vec<Difference> {
     let objects: Vec<_> = objects.collect();
     let differences = reasons.iter().map(|(reason, applies)| {
         let named = objects.iter().filter(|object| applies(object));

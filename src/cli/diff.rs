@@ -2,15 +2,15 @@
 
 use super::explain::Place;
 use super::report::{Change, Item, Page};
-use crate::cli::files::input;
-use crate::cli::files::picture::Picture;
-use crate::cli::options::number::whole;
-use crate::cli::options::set;
-use crate::cli::process::failure::{Failure, print, report};
-use crate::output::compare::{Comparison, FullRangeComparison, Pixel};
-use crate::scene::registry::Registry;
+use crate::files::input;
+use crate::files::picture::Picture;
+use crate::options::number::whole;
+use crate::options::set;
+use crate::process::failure::{Failure, print, report};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use tabray_core::output::compare::{Comparison, FullRangeComparison, Pixel};
+use tabray_lang::registry::Registry;
 
 /// Compare two images
 ///

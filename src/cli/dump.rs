@@ -1,12 +1,12 @@
 //! `tabray dump`: a scene as the program understands it.
 
-use crate::cli::files::input;
-use crate::cli::options::set;
-use crate::cli::process::failure::{Failure, print};
-use crate::scene::dump;
-use crate::scene::registry::Registry;
-use crate::scene::syntax::Syntax;
+use crate::files::input;
+use crate::options::set;
+use crate::process::failure::{Failure, print};
 use std::path::PathBuf;
+use tabray_lang::dump;
+use tabray_lang::registry::Registry;
+use tabray_lang::syntax::Syntax;
 
 /// Print a scene as the program understands it
 #[derive(clap::Args)]

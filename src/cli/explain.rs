@@ -1,14 +1,14 @@
 //! Explanations of an image's pixel by `probe`, for reports: from this program, and from an older one.
 
-use crate::cli::options::set;
-use crate::output::compare::Pixel;
-use crate::render::plan::Plan;
-use crate::render::renderer::Renderer;
-use crate::scene::model::Model;
-use crate::text;
-use crate::tools::probe;
+use crate::options::set;
 use std::path::Path;
 use std::process::{Command, Stdio};
+use tabray_core::output::compare::Pixel;
+use tabray_core::render::plan::Plan;
+use tabray_core::render::renderer::Renderer;
+use tabray_core::scene::model::Model;
+use tabray_core::text;
+use tabray_tools::probe;
 
 /// An explanation of how a pixel got its colour, as far as possible.
 pub struct Explanation {

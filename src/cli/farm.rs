@@ -1,12 +1,12 @@
 //! `tabray farm`: writes scripts with which a job scheduler renders the parts of an image.
 
-use crate::cli::files::output;
-use crate::cli::options::number::whole;
-use crate::cli::process::failure::{self, Failure};
-use crate::text;
+use crate::files::output;
+use crate::options::number::whole;
+use crate::process::failure::{self, Failure};
 use std::env;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use tabray_core::text;
 
 /// Write scripts that render the parts of an image on a cluster
 #[derive(clap::Args)]

@@ -1,21 +1,21 @@
 //! `tabray film`: puts frames together to a contact sheet and to an animation.
 
-use crate::cli::files::output::{self, Output};
-use crate::cli::files::picture;
-use crate::cli::options::number::whole;
-use crate::cli::process::failure::Failure;
-use crate::cli::process::progress::Progress;
-use crate::cli::process::{memory, messages};
-use crate::files::are_same;
-use crate::output::deflate::Compression;
-use crate::output::picture::Format;
-use crate::text;
+use crate::files::output::{self, Output};
+use crate::files::picture;
+use crate::options::number::whole;
+use crate::process::failure::Failure;
+use crate::process::progress::Progress;
+use crate::process::{memory, messages};
 use clap::ArgGroup;
 use image::imageops;
 use std::ffi::OsStr;
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use tabray_core::files::are_same;
+use tabray_core::output::deflate::Compression;
+use tabray_core::output::picture::Format;
+use tabray_core::text;
 
 /// The maximum number of frames on a contact sheet.
 const ON_SHEET: usize = 100;

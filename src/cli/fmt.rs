@@ -1,12 +1,12 @@
 //! `tabray fmt`: formats scenes.
 
-use crate::cli::files::{input, output};
-use crate::cli::process::failure::{Failure, print, report, status};
-use crate::cli::process::messages;
-use crate::editor::{self, Text, formatted, problem};
-use crate::scene::reader::{Fault, Report};
-use crate::scene::registry::Registry;
+use crate::files::{input, output};
+use crate::process::failure::{Failure, print, report, status};
+use crate::process::messages;
 use std::path::{Path, PathBuf};
+use tabray_lang::editor::{self, Text, formatted, problem};
+use tabray_lang::reader::{Fault, Report};
+use tabray_lang::registry::Registry;
 
 /// Format scenes
 ///

@@ -1,9 +1,9 @@
 //! `tabray grammar`: a grammar with which editors colour scenes in the notes' syntax.
 
-use crate::cli::process::failure::{Failure, print};
-use crate::scene::grammar;
-use crate::scene::registry::Registry;
-use crate::text;
+use crate::process::failure::{Failure, print};
+use tabray_core::text;
+use tabray_lang::grammar;
+use tabray_lang::registry::Registry;
 
 /// Print a TextMate grammar of scenes, for editors
 #[derive(clap::Args)]

@@ -38,7 +38,6 @@ mod serve;
 mod verify;
 mod watch;
 
-use crate::scene::registry::Registry;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 #[cfg(target_os = "linux")]
 use nix::sys::signal::{SigSet, Signal};
@@ -49,6 +48,7 @@ use process::messages::Told;
 use process::{arguments, color, crash, help, memory, messages, program};
 use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
+use tabray_lang::registry::Registry;
 
 /// A ray tracer in which a scene is data and every entity type is a plugin
 ///

@@ -1,14 +1,14 @@
 //! `tabray list`: the entity types and their attributes, from their tables.
 
-use crate::cli::process::failure::{Failure, print};
-use crate::cli::process::program;
-use crate::scene::attribute::Attribute;
-use crate::scene::entity::Entity;
-use crate::scene::list_json::Tables;
-use crate::scene::reference;
-use crate::scene::registry::Registry;
-use crate::scene::value::Datum;
-use crate::text;
+use crate::process::failure::{Failure, print};
+use crate::process::program;
+use tabray_core::scene::attribute::Attribute;
+use tabray_core::scene::entity::Entity;
+use tabray_core::scene::value::Datum;
+use tabray_core::text;
+use tabray_lang::list_json::Tables;
+use tabray_lang::reference;
+use tabray_lang::registry::Registry;
 
 /// List the entity types, or the attributes of one
 #[derive(clap::Args)]

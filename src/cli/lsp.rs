@@ -6,10 +6,8 @@ mod faults;
 mod protocol;
 mod transport;
 
-use crate::cli::process::crash;
-use crate::cli::process::failure::Failure;
-use crate::scene::registry::Registry;
-use crate::text;
+use crate::process::crash;
+use crate::process::failure::Failure;
 use answers::Server;
 use documents::Documents;
 use faults::Faults;
@@ -19,6 +17,8 @@ use serde_json::{Value, json};
 use std::io::{self, StdinLock, Write};
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread;
+use tabray_core::text;
+use tabray_lang::registry::Registry;
 
 /// Serve editors: the Language Server Protocol on standard input and output
 ///
@@ -92,7 +92,7 @@ fn begin(input: &mut StdinLock<'_>, sender: &Sender<String>) -> Result<Value, Fa
             Message::Request(Request { id, method, params }) if method == "initialize" => {
                 let result = json!({
                     "capabilities": capabilities(),
-                    "serverInfo": { "name": crate::cli::process::program::name(), "version": env!("CARGO_PKG_VERSION") },
+                    "serverInfo": { "name": crate::process::program::name(), "version": env!("CARGO_PKG_VERSION") },
                 });
                 send(sender, response(&id, &result.to_string()))?;
                 return Ok(params);

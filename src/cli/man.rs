@@ -1,12 +1,12 @@
 //! `tabray man`: manual pages, as packages install them.
 
-use crate::cli::files::output;
-use crate::cli::process::failure::Failure;
-use crate::cli::process::{messages, program};
-use crate::scene::registry::Registry;
+use crate::files::output;
+use crate::process::failure::Failure;
+use crate::process::{messages, program};
 use clap::Command;
 use clap_mangen::Man;
 use std::path::{Path, PathBuf};
+use tabray_lang::registry::Registry;
 
 /// Write the man pages, one for each command
 #[derive(clap::Args)]

@@ -1,26 +1,26 @@
 //! `tabray merge`: puts an image together from its parts.
 
-use crate::cli::files::output::{self, Output};
-use crate::cli::options::number::whole;
-use crate::cli::process::failure::Failure;
-use crate::cli::process::progress::Progress;
-use crate::cli::process::{memory, messages};
-use crate::cli::rendering::part_files::{Parts, open, refuse};
-use crate::cli::rendering::{aov, full_range, part};
-use crate::files::are_same;
-use crate::output::aov::Aov;
-use crate::output::aov_values::Values;
-use crate::output::full_range::FullRange;
-use crate::output::part::{PixelFormat, Reader, put_tile};
-use crate::output::picture::Format;
-use crate::render::renderer::Renderer;
-use crate::render::tiles::TILE;
-use crate::text;
+use crate::files::output::{self, Output};
+use crate::options::number::whole;
+use crate::process::failure::Failure;
+use crate::process::progress::Progress;
+use crate::process::{memory, messages};
+use crate::rendering::part_files::{Parts, open, refuse};
+use crate::rendering::{aov, full_range, part};
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::iter;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use tabray_core::files::are_same;
+use tabray_core::output::aov::Aov;
+use tabray_core::output::aov_values::Values;
+use tabray_core::output::full_range::FullRange;
+use tabray_core::output::picture::Format;
+use tabray_core::render::renderer::Renderer;
+use tabray_core::render::tiles::TILE;
+use tabray_core::text;
+use tabray_tools::part::{PixelFormat, Reader, put_tile};
 
 /// The maximum number of parts that are named in a message.
 const NAMED: usize = 12;

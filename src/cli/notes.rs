@@ -1,24 +1,24 @@
 //! Without a subcommand: the notes' program, a filter from a scene to its dump and its image.
 
-use crate::cli::files::input::Source;
-use crate::cli::files::output::Output;
-use crate::cli::options::set;
-use crate::cli::options::size::Part;
-use crate::cli::options::stop::Stop;
-use crate::cli::process::failure::Failure;
-use crate::cli::process::interrupt::{self, InterruptAction};
-use crate::cli::process::messages;
-use crate::cli::rendering::job::Job;
-use crate::output::picture::Format;
-use crate::render::plan::Plan;
-use crate::render::renderer::Renderer;
-use crate::render::tiles::BAND;
-use crate::scene::dump;
-use crate::scene::reader::{Loaded, ReadOptions};
-use crate::scene::registry::Registry;
-use crate::world::accuracy::Accuracy;
+use crate::files::input::Source;
+use crate::files::output::Output;
+use crate::options::set;
+use crate::options::size::Part;
+use crate::options::stop::Stop;
+use crate::process::failure::Failure;
+use crate::process::interrupt::{self, InterruptAction};
+use crate::process::messages;
+use crate::rendering::job::Job;
 use std::io::Write;
 use std::path::Path;
+use tabray_core::output::picture::Format;
+use tabray_core::render::plan::Plan;
+use tabray_core::render::renderer::Renderer;
+use tabray_core::render::tiles::BAND;
+use tabray_core::world::accuracy::Accuracy;
+use tabray_lang::dump;
+use tabray_lang::reader::{Loaded, ReadOptions};
+use tabray_lang::registry::Registry;
 
 pub fn run(registry: &Registry) -> Result<(), Failure> {
     let standard = Path::new("-");

@@ -1,13 +1,13 @@
 //! `tabray plan`: how a scene would be rendered, and why.
 
-use crate::cli::files::input;
-use crate::cli::options::{keep, method, samples, set};
-use crate::cli::process::failure::{Failure, print};
-use crate::render::decisions::{self, Decision};
-use crate::render::plan::Plan;
-use crate::scene::registry::Registry;
-use crate::simd::cpu::Cpu;
+use crate::files::input;
+use crate::options::{keep, method, samples, set};
+use crate::process::failure::{Failure, print};
 use std::path::PathBuf;
+use tabray_core::render::decisions::{self, Decision};
+use tabray_core::render::plan::Plan;
+use tabray_core::simd::cpu::Cpu;
+use tabray_lang::registry::Registry;
 
 /// Print how a scene would be rendered, each decision with its reason
 #[derive(clap::Args)]

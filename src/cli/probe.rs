@@ -1,15 +1,15 @@
 //! `tabray probe`: explains one pixel.
 
-use crate::cli::files::input;
-use crate::cli::options::{method, set};
-use crate::cli::process::failure::Failure;
-use crate::render::plan::Plan;
-use crate::render::renderer::Renderer;
-use crate::scene::model::Model;
-use crate::scene::registry::Registry;
-use crate::tools::probe;
+use crate::files::input;
+use crate::options::{method, set};
+use crate::process::failure::Failure;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use tabray_core::render::plan::Plan;
+use tabray_core::render::renderer::Renderer;
+use tabray_core::scene::model::Model;
+use tabray_lang::registry::Registry;
+use tabray_tools::probe;
 
 /// Explain how a pixel gets its colour
 #[derive(clap::Args)]

@@ -1,31 +1,31 @@
 //! `tabray render`: renders a scene's image.
 
 use super::course::Differences;
-use crate::cli::files::input::Source;
-use crate::cli::files::output::{Output, format_by_name};
-use crate::cli::files::{input, output, provenance, several};
-use crate::cli::options::number::whole;
-use crate::cli::options::size::Part;
-use crate::cli::options::stop::{self, Stop};
-use crate::cli::options::{cpu, frames, keep, method, samples, set, size};
-use crate::cli::process::failure::Failure;
-use crate::cli::process::{messages, progress};
-use crate::cli::rendering::job::Job;
-use crate::cli::rendering::resume::ResumedImage;
-use crate::cli::rendering::stats::{self, Stats};
-use crate::cli::rendering::{aov, debug, full_range, part, resume};
-use crate::output::aov::Aov;
-use crate::output::deflate::Compression;
-use crate::output::full_range::FullRange;
-use crate::output::part::PixelFormat;
-use crate::output::picture::Format;
-use crate::render::renderer::Renderer;
-use crate::scene::model::Model;
-use crate::scene::reader::{Loaded, ReadOptions};
-use crate::scene::registry::Registry;
-use crate::world::accuracy::Accuracy;
+use crate::files::input::Source;
+use crate::files::output::{Output, format_by_name};
+use crate::files::{input, output, provenance, several};
+use crate::options::number::whole;
+use crate::options::size::Part;
+use crate::options::stop::{self, Stop};
+use crate::options::{cpu, frames, keep, method, samples, set, size};
+use crate::process::failure::Failure;
+use crate::process::{messages, progress};
+use crate::rendering::job::Job;
+use crate::rendering::resume::ResumedImage;
+use crate::rendering::stats::{self, Stats};
+use crate::rendering::{aov, debug, full_range, part, resume};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use tabray_core::output::aov::Aov;
+use tabray_core::output::deflate::Compression;
+use tabray_core::output::full_range::FullRange;
+use tabray_core::output::picture::Format;
+use tabray_core::render::renderer::Renderer;
+use tabray_core::scene::model::Model;
+use tabray_core::world::accuracy::Accuracy;
+use tabray_lang::reader::{Loaded, ReadOptions};
+use tabray_lang::registry::Registry;
+use tabray_tools::part::PixelFormat;
 
 /// Render scenes to images
 #[derive(clap::Args)]

@@ -1,11 +1,9 @@
 //! The page that shows changes: one self-contained file, which works without a network.
 
 use super::explain::Explanation;
-use crate::cli::files::output::Output;
-use crate::cli::process::failure::Failure;
-use crate::cli::process::messages;
-use crate::output::compare::{Comparison, Pixel};
-use crate::text;
+use crate::files::output::Output;
+use crate::process::failure::Failure;
+use crate::process::messages;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use image::RgbImage;
@@ -15,6 +13,8 @@ use similar::algorithms::{Capture, Compact, Replace, myers};
 use similar::{Change as LineChange, ChangeTag, DiffableStr};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use tabray_core::output::compare::{Comparison, Pixel};
+use tabray_core::text;
 
 const PAGE: &str = include_str!("report.html");
 

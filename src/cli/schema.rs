@@ -1,9 +1,9 @@
 //! `tabray schema`: a schema with which editors check and complete scenes in TOML.
 
-use crate::cli::process::failure::{Failure, print};
-use crate::scene::registry::Registry;
-use crate::scene::schema;
-use crate::text;
+use crate::process::failure::{Failure, print};
+use tabray_core::text;
+use tabray_lang::registry::Registry;
+use tabray_lang::schema;
 
 /// Print a JSON Schema of scenes in TOML, for editors
 #[derive(clap::Args)]

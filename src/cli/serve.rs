@@ -9,8 +9,7 @@ pub use connections::Answer;
 pub use response::{Body, content, stream, text};
 pub use work::{Client, Work};
 
-use crate::cli::process::failure::Failure;
-use crate::text;
+use crate::process::failure::Failure;
 use access::Access;
 use connections::{Connections, Limits};
 use hyper::Request;
@@ -19,6 +18,7 @@ use socket2::SockRef;
 use std::io;
 use std::net::{Ipv4Addr, TcpListener};
 use std::ops::RangeInclusive;
+use tabray_core::text;
 use tokio::task::LocalSet;
 
 /// The ports that are tried when none is given.

@@ -4,20 +4,20 @@ mod colours;
 mod form;
 mod objects;
 
-use crate::cli::files::input;
-use crate::cli::files::output::{self, Output, format_by_name};
-use crate::cli::options::number::whole;
-use crate::cli::options::{method, set};
-use crate::cli::process::failure::Failure;
-use crate::cli::process::interrupt::{self, InterruptAction};
-use crate::cli::process::progress::Progress;
-use crate::render::plan::Plan;
-use crate::render::renderer::Renderer;
-use crate::scene::registry::Registry;
-use crate::tools::verify;
+use crate::files::input;
+use crate::files::output::{self, Output, format_by_name};
+use crate::options::number::whole;
+use crate::options::{method, set};
+use crate::process::failure::Failure;
+use crate::process::interrupt::{self, InterruptAction};
+use crate::process::progress::Progress;
 use form::{Form, Premises};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
+use tabray_core::render::plan::Plan;
+use tabray_core::render::renderer::Renderer;
+use tabray_lang::registry::Registry;
+use tabray_tools::verify;
 
 /// Prove for each pixel which object is seen, or the bytes of its colour
 ///

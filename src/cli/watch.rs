@@ -16,13 +16,11 @@ pub(super) mod trial_values;
 mod watched;
 
 use super::serve::{Server, Work};
-use crate::cli::files::input;
-use crate::cli::options::number::whole;
-use crate::cli::options::{method, set};
-use crate::cli::process::failure::Failure;
-use crate::cli::process::{interrupt, messages};
-use crate::scene::registry::Registry;
-use crate::text;
+use crate::files::input;
+use crate::options::number::whole;
+use crate::options::{method, set};
+use crate::process::failure::Failure;
+use crate::process::{interrupt, messages};
 use files::Files;
 use hyper::Request;
 use hyper::body::Bytes;
@@ -33,6 +31,8 @@ use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread;
 use std::time::Duration;
+use tabray_core::text;
+use tabray_lang::registry::Registry;
 use watched::Watched;
 
 /// The time for which a file must have been left alone before it is read: many editors write a file in several steps.

@@ -1,7 +1,7 @@
 //! Everything that a plugin needs, in one `use`: `crate::prelude::*` in `plugins/`, `tabray::prelude::*` elsewhere.
 //!
 //! Arithmetic that only some shapes share is not included; it is in [`shapes`](crate::shapes) and
-//! [`double_double`](crate::numeric::double_double).
+//! [`double_double`](tabray_exact::double_double).
 
 // Registration of an entity type: its table, its constructor, and the constructor's arguments.
 pub use crate::scene::attribute::{LEAST_LENGTH, Pose};
@@ -30,11 +30,11 @@ pub use crate::world::shape::Shape;
 pub use crate::world::texture::Texture;
 
 // What a scene selects by name: shaders, profiles and other alternatives.
-pub use crate::numeric::formula::Formula;
-pub use crate::numeric::formula::field::{Field, SurfaceField};
 pub use crate::scene::choice::{Choice, ChoiceName};
 pub use crate::scene::procedural::{OnPlane, OnSphere};
 pub use crate::scene::profile::{Profile, ProfileLine};
+pub use tabray_exact::formula::Formula;
+pub use tabray_exact::formula::field::{Field, SurfaceField};
 
 // What the traits of shapes and cameras take and return.
 pub use crate::geometry::aabb::{Aabb, SLACK};
@@ -44,12 +44,12 @@ pub use crate::geometry::placement::Rotation;
 pub use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 pub use crate::geometry::sight::{Line, Sight};
 pub use crate::geometry::view_frame::{ViewFrame, half_tangent};
-pub use crate::numeric::double_double::DoubleDouble;
-pub use crate::numeric::dual::Dual;
-pub use crate::numeric::interval::{Interval, Wide};
-pub use crate::numeric::scalar::{Scalar, constants, cross, dot, per_axis};
 pub use crate::shapes::implicit::Implicit;
 pub use crate::world::certify::{Equation, Precise};
+pub use tabray_exact::double_double::DoubleDouble;
+pub use tabray_exact::dual::Dual;
+pub use tabray_exact::interval::{Interval, Wide};
+pub use tabray_exact::scalar::{Scalar, constants, cross, dot, per_axis};
 
 // Vectors and matrices.
 pub use glam::{DMat3, DVec2, DVec3};

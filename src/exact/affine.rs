@@ -8,7 +8,7 @@
 
 mod functions;
 
-use crate::numeric::interval::Interval;
+use crate::interval::Interval;
 use std::array;
 use std::ops::{Add, Mul, Neg, Sub};
 

@@ -1,7 +1,7 @@
 //! Dual numbers: forward-mode automatic differentiation.
 
-use crate::numeric::scalar::{Scalar, apart_if};
-use crate::numeric::spline::Spline;
+use crate::scalar::{Scalar, apart_if};
+use crate::spline::Spline;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number and its derivative.

@@ -4,9 +4,9 @@
 //! where that is possible: the reduction and the polynomials are those of FreeBSD's msun, from which that crate is
 //! ported.
 
-use crate::numeric::scalar::Scalar;
-use crate::numeric::spline::Spline;
-use crate::simd::soa::LANES;
+use crate::f64x8::LANES;
+use crate::scalar::Scalar;
+use crate::spline::Spline;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Eight independent numbers, one per lane.
@@ -16,12 +16,12 @@ pub struct F64x8(pub [f64; LANES]);
 /// Evaluates an expression for each lane of one or more vectors: `each!(a = x, b = y => a.hypot(b))`.
 macro_rules! each {
     ($($number:ident = $vector:expr),+ => $value:expr) => {{
-        let mut all = [0.0; $crate::simd::soa::LANES];
-        for lane in 0..$crate::simd::soa::LANES {
+        let mut all = [0.0; $crate::f64x8::LANES];
+        for lane in 0..$crate::f64x8::LANES {
             $(let $number = $vector.0[lane];)+
             all[lane] = $value;
         }
-        $crate::numeric::f64x8::F64x8(all)
+        $crate::f64x8::F64x8(all)
     }};
 }
 pub(crate) use each;
@@ -258,7 +258,7 @@ const C: [f64; 6] = [
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::dual::Dual;
+    use crate::dual::Dual;
 
     fn same(a: f64, b: f64) -> bool {
         a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan()

@@ -3,9 +3,9 @@
 //! Source: Griewank and Walther, Evaluating Derivatives, second edition, 2008, chapter 13, "Taylor and Tensor
 //! Coefficients".
 
-use crate::numeric::dual::Dual;
-use crate::numeric::scalar::{Scalar, apart_if};
-use crate::numeric::spline::Spline;
+use crate::dual::Dual;
+use crate::scalar::{Scalar, apart_if};
+use crate::spline::Spline;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number and its first two derivatives.
@@ -259,7 +259,7 @@ impl<N: Scalar> Scalar for Jet<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::interval::Interval;
+    use crate::interval::Interval;
     use std::fmt::Debug;
 
     /// Returns functions that use each operation, whose derivatives exist where x is above 0 and no integer.

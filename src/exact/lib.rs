@@ -1,16 +1,16 @@
 //! Number types that formulas are evaluated with, and formulas.
 
-pub(crate) mod affine;
-pub(crate) mod decimal;
+pub mod affine;
+pub mod decimal;
 pub mod double_double;
-pub(crate) mod dual;
-pub(crate) mod f64x8;
-pub(crate) mod formula;
-pub(crate) mod interval;
-pub(crate) mod jet;
-pub(crate) mod polynomial;
-pub(crate) mod scalar;
-pub(crate) mod spline;
+pub mod dual;
+pub mod f64x8;
+pub mod formula;
+pub mod interval;
+pub mod jet;
+pub mod polynomial;
+pub mod scalar;
+pub mod spline;
 
 pub use dual::Dual;
 pub use formula::Formula;

@@ -3,9 +3,9 @@
 //! A polynomial stands for all that differ from it by no more than its error, a bound of the sum of the absolute errors of
 //! its coefficients. Where -1 <= s <= 1 this is a bound of the error of its value, too.
 
-use crate::numeric::interval::Interval;
-use crate::numeric::scalar::Scalar;
-use crate::numeric::spline::Spline;
+use crate::interval::Interval;
+use crate::scalar::Scalar;
+use crate::spline::Spline;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// The highest degree; a product of a higher one is unknown. A polynomial of this degree takes 128 bytes, more than which
@@ -239,7 +239,7 @@ impl Scalar for Polynomial {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::interval::Wide;
+    use crate::interval::Wide;
 
     /// Some operations on a place, in any number type.
     fn formula<N: Scalar>(at: N) -> N {

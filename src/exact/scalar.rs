@@ -1,10 +1,10 @@
 //! The number types that formulas are evaluated with: plain numbers here,
-//! [`Interval`](crate::numeric::interval::Interval)s and [`Dual`](crate::numeric::dual::Dual) numbers beside them.
+//! [`Interval`](crate::interval::Interval)s and [`Dual`](crate::dual::Dual) numbers beside them.
 //!
 //! One formula evaluated with one type after the other gives values, derivatives and proven bounds. The functions are
 //! those of the `libm` crate, whose results do not depend on the machine.
 
-use crate::numeric::spline::Spline;
+use crate::spline::Spline;
 use glam::DVec3;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -12,7 +12,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// take megabytes of code.
 macro_rules! apart_if {
     ($is_long:expr, $operation:expr) => {
-        if $is_long { $crate::numeric::scalar::apart(move || $operation) } else { $operation }
+        if $is_long { $crate::scalar::apart(move || $operation) } else { $operation }
     };
 }
 

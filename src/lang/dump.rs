@@ -1,13 +1,13 @@
 //! Writes a model as text: as the notes' program dumps it, or as a scene that loads again.
 
-use crate::scene::attribute::Attribute;
-use crate::scene::entity::Args;
-use crate::scene::kind::Kind;
-use crate::scene::model::Model;
-use crate::scene::store::Record;
-use crate::scene::syntax::Syntax;
-use crate::scene::value::Datum;
+use crate::syntax::Syntax;
 use std::collections::HashMap;
+use tabray_core::scene::attribute::Attribute;
+use tabray_core::scene::entity::Args;
+use tabray_core::scene::kind::Kind;
+use tabray_core::scene::model::Model;
+use tabray_core::scene::store::Record;
+use tabray_core::scene::value::Datum;
 
 /// Returns the notes' dump: camera, materials, objects and lights, with numbers to one decimal.
 /// Textures, shaders and backgrounds are not in it.

@@ -1,12 +1,12 @@
 //! A TextMate grammar of the notes' syntax, generated from the tables: editors colour scenes with it.
 
-use crate::scene::attribute::Attribute;
-use crate::scene::entity::Entity;
-use crate::scene::registry::Registry;
-use crate::scene::value::Type;
+use crate::registry::Registry;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::iter;
+use tabray_core::scene::attribute::Attribute;
+use tabray_core::scene::entity::Entity;
+use tabray_core::scene::value::Type;
 
 /// Matches the position at which a word ends.
 const END: &str = r"(?=[\s{}]|$)";

@@ -1,8 +1,8 @@
 //! A JSON Schema: what its keywords hold.
 
-use crate::scene::value::Datum;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use tabray_core::scene::value::Datum;
 
 /// A schema (draft 2020-12), or a part of one. It has only the keywords that scenes need, in the order in which they
 /// are written; keywords without a value are left out.

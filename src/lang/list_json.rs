@@ -2,18 +2,18 @@
 //!
 //! Fields are declared in the order in which they are written.
 
-use crate::scene::attribute;
-use crate::scene::choice::ChoiceName;
-use crate::scene::counts::Counts;
-use crate::scene::entity;
-use crate::scene::kind::Kind;
-use crate::scene::profile::Profile;
-use crate::scene::reference::by_name;
-use crate::scene::registry::Registry;
-use crate::scene::schema::Constant;
-use crate::scene::value::Type;
+use crate::reference::by_name;
+use crate::registry::Registry;
+use crate::schema::Constant;
 use serde::Serialize;
 use std::borrow::Cow;
+use tabray_core::scene::attribute;
+use tabray_core::scene::choice::ChoiceName;
+use tabray_core::scene::counts::Counts;
+use tabray_core::scene::entity;
+use tabray_core::scene::kind::Kind;
+use tabray_core::scene::profile::Profile;
+use tabray_core::scene::value::Type;
 
 /// The format's version: it grows when a field is removed or changes its meaning, and not when one is added.
 const VERSION: u32 = 1;

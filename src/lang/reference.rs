@@ -1,14 +1,14 @@
 //! The reference of the scene language: the meaning of its words, generated from the tables.
 
-use crate::scene::attribute::Attribute;
-use crate::scene::choice::{Choice, ChoiceName};
-use crate::scene::counts::OneOf;
-use crate::scene::entity::Entity;
-use crate::scene::kind::Kind;
-use crate::scene::profile::Profile;
-use crate::scene::registry::Registry;
-use crate::scene::value::Datum;
-use crate::text;
+use crate::registry::Registry;
+use tabray_core::scene::attribute::Attribute;
+use tabray_core::scene::choice::{Choice, ChoiceName};
+use tabray_core::scene::counts::OneOf;
+use tabray_core::scene::entity::Entity;
+use tabray_core::scene::kind::Kind;
+use tabray_core::scene::profile::Profile;
+use tabray_core::scene::value::Datum;
+use tabray_core::text;
 
 /// The part of the reference that is the same whatever entity types there are.
 const LANGUAGE: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/language.md"));

@@ -1,15 +1,15 @@
 //! The registry: all entity types of the program, by name.
 
-use crate::scene::choice::contradictions;
-use crate::scene::entity::Entity;
-use crate::scene::kind::Kind;
-use crate::scene::procedural::ShaderType;
-use crate::scene::profile::Profile;
-use crate::scene::syntax::Syntax;
-use crate::text::nearest;
+use crate::syntax::Syntax;
 use std::collections::{BTreeMap, BTreeSet};
 use std::iter;
 use std::sync::LazyLock;
+use tabray_core::scene::choice::contradictions;
+use tabray_core::scene::entity::Entity;
+use tabray_core::scene::kind::Kind;
+use tabray_core::scene::procedural::ShaderType;
+use tabray_core::scene::profile::Profile;
+use tabray_core::text::nearest;
 
 /// All entity types of the program.
 pub struct Registry {
@@ -128,9 +128,9 @@ fn taken(what: &str, name: &str, first: &Entity, second: &Entity) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::pparm::{Pparm, Row, Table};
-    use crate::scene::value::{Datum, Type};
-    use crate::world::body::Body;
+    use tabray_core::scene::pparm::{Pparm, Row, Table};
+    use tabray_core::scene::value::{Datum, Type};
+    use tabray_core::world::body::Body;
 
     static SIZE: Pparm<f64> = Pparm::required("size", "how large it is").alias(&["extent"]);
     static EXTENT: Pparm<f64> = Pparm::required("extent", "how far it reaches");
@@ -142,7 +142,7 @@ mod tests {
     static OTHER_BOX: Entity = Entity::shape("box", "another box", &[SOUND], |_| unreachable());
     static TORN: Entity = Entity::shape("torn", "a contradiction", &[TWICE], |_| unreachable());
 
-    fn unreachable() -> Result<Body, crate::scene::entity::Refusal> {
+    fn unreachable() -> Result<Body, tabray_core::scene::entity::Refusal> {
         unreachable!("nothing is built here")
     }
 

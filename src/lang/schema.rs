@@ -1,15 +1,15 @@
 //! The JSON Schema of scenes in TOML, generated from the tables: editors check and complete with it.
 
-use crate::scene::attribute::Attribute;
-use crate::scene::counts::Counts;
-use crate::scene::entity::Entity;
-use crate::scene::kind::Kind;
-use crate::scene::registry::Registry;
-use crate::scene::value::{Datum, Type};
+use crate::registry::Registry;
 use std::collections::BTreeMap;
 use std::iter;
+use tabray_core::scene::attribute::Attribute;
+use tabray_core::scene::counts::Counts;
+use tabray_core::scene::entity::Entity;
+use tabray_core::scene::kind::Kind;
+use tabray_core::scene::value::{Datum, Type};
 
-pub use crate::scene::json_schema::{AdditionalProperties, Constant, Schema, TypeKeyword};
+pub use crate::json_schema::{AdditionalProperties, Constant, Schema, TypeKeyword};
 
 /// Returns the schema of scenes. Rules that the language states in words appear only in the descriptions.
 pub fn of(registry: &Registry) -> Schema {

@@ -1,14 +1,14 @@
 //! The two syntaxes of a scene: how each writes names, attributes and values.
 
-use crate::numeric::formula::variables::SPACE;
-use crate::scene::attribute::Attribute;
-use crate::scene::counts::OneOf;
-use crate::scene::entity::Entity;
-use crate::scene::value::{Datum, Type, yes_or_no};
-use crate::text::shortest;
 use clap::ValueEnum;
 use std::fmt;
 use std::path::Path;
+use tabray_core::scene::attribute::Attribute;
+use tabray_core::scene::counts::OneOf;
+use tabray_core::scene::entity::Entity;
+use tabray_core::scene::value::{Datum, Type, yes_or_no};
+use tabray_core::text::shortest;
+use tabray_exact::formula::variables::SPACE;
 
 /// A syntax of the scene language.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]

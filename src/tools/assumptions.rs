@@ -1,13 +1,13 @@
 //! What the proofs about a scene assume, and which of its shapes they say nothing about.
 
-use crate::geometry::sight::Rounded;
-use crate::render::plan::Plan;
-use crate::scene::model::{Model, Object};
-use crate::text;
-use crate::world::certify::{Assumption, Premise};
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::fmt;
+use tabray_core::geometry::sight::Rounded;
+use tabray_core::render::plan::Plan;
+use tabray_core::scene::model::{Model, Object};
+use tabray_core::text;
+use tabray_core::world::certify::{Assumption, Premise};
 
 /// An assumption of the proofs about a scene.
 #[derive(Debug, PartialEq, Serialize)]

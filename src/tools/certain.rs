@@ -1,19 +1,19 @@
 //! Measures certified pixels: how many there are, whether samples contradict them, and what they cost.
 
-use crate::parallel;
-use crate::render::bytes::shown;
-use crate::render::flaws::Flaws;
-use crate::render::observer::{Count, DynObserver, TraceObserver};
-use crate::render::plan::Plan;
-use crate::render::renderer::Renderer;
-use crate::render::tiles::{self, TILE, TOGETHER};
-use crate::render::trace::{PixelBound, Scratch, Tracer};
-use crate::scene::model::Model;
-use crate::simd::cpu::Cpu;
-use crate::tools::bench::clock;
-use crate::world::film::Adaptive;
-use crate::world::material::Rgb;
-use crate::world::sample::{SCRAMBLE, Sampler};
+use crate::bench::clock;
+use tabray_core::parallel;
+use tabray_core::render::bytes::shown;
+use tabray_core::render::flaws::Flaws;
+use tabray_core::render::observer::{Count, DynObserver, TraceObserver};
+use tabray_core::render::plan::Plan;
+use tabray_core::render::renderer::Renderer;
+use tabray_core::render::tiles::{self, TILE, TOGETHER};
+use tabray_core::render::trace::{PixelBound, Scratch, Tracer};
+use tabray_core::scene::model::Model;
+use tabray_core::simd::cpu::Cpu;
+use tabray_core::world::film::Adaptive;
+use tabray_core::world::material::Rgb;
+use tabray_core::world::sample::{SCRAMBLE, Sampler};
 
 /// The number of independent images that the true colours are the mean of, and of the samples per pixel of each.
 const IMAGES: u32 = 8;
@@ -160,9 +160,9 @@ fn render(renderer: &Renderer, model: &Model) -> (Vec<Rgb>, Vec<PixelBound>, f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::reader;
-    use crate::scene::registry::Registry;
     use std::path::Path;
+    use tabray_lang::reader;
+    use tabray_lang::registry::Registry;
 
     /// A floor, a wall with a mirror, spheres, a cone and a torus, a pane of glass, two lights, one of them with a size.
     const SCENE: &str = "camera eye { pixeldim 16 12 worlddim 8 6 viewpoint 4 3 8 }

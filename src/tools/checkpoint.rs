@@ -3,15 +3,6 @@
 //! A checkpoint is a PNG whose pixels are opaque where they are rendered and transparent elsewhere. A text chunk says
 //! what the image depends on.
 
-use crate::output::picture::{AS_SHOWN, Rows};
-use crate::parallel;
-use crate::render::tiles::{Band, Strip, TILE, Tiles};
-use crate::scene::choice::Choice;
-use crate::scene::dump;
-use crate::scene::model::Model;
-use crate::scene::syntax::Syntax;
-use crate::text;
-use crate::world::film::Adaptive;
 use rayon::ThreadPoolBuilder;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -22,6 +13,15 @@ use std::io::{self, BufReader, Read, Write};
 use std::iter;
 use std::ops::Range;
 use std::path::Path;
+use tabray_core::output::picture::{AS_SHOWN, Rows};
+use tabray_core::parallel;
+use tabray_core::render::tiles::{Band, Strip, TILE, Tiles};
+use tabray_core::scene::choice::Choice;
+use tabray_core::scene::model::Model;
+use tabray_core::text;
+use tabray_core::world::film::Adaptive;
+use tabray_lang::dump;
+use tabray_lang::syntax::Syntax;
 
 /// The keyword of the text chunk.
 const KEYWORD: &str = "tabray checkpoint";
@@ -321,8 +321,8 @@ fn invalid(error: png::DecodingError) -> io::Error {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::picture::Format;
     use std::io::Seek;
+    use tabray_core::output::picture::Format;
 
     const SIZE: [usize; 2] = [20, 18];
 

@@ -1,14 +1,14 @@
 //! The notes' debug lines (`DBG_PIX` and so on), in their order and their format.
 
-use crate::geometry::ray::{Ray, RayRange};
-use crate::render::bytes::to_byte;
-use crate::render::observer::{Event, RayPurpose, TraceObserver};
-use crate::render::plan::Plan;
-use crate::render::trace;
-use crate::scene::model::Model;
 use clap::ValueEnum;
 use std::fmt;
 use std::io::{self, Write};
+use tabray_core::geometry::ray::{Ray, RayRange};
+use tabray_core::render::bytes::to_byte;
+use tabray_core::render::observer::{Event, RayPurpose, TraceObserver};
+use tabray_core::render::plan::Plan;
+use tabray_core::render::trace;
+use tabray_core::scene::model::Model;
 
 /// A kind of the notes' debug lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

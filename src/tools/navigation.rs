@@ -1,11 +1,11 @@
 //! Moves a camera around a point: orbit, pan and dolly, for every type of camera whose table says where it stands.
 
-use crate::scene::attribute::{Attribute, Pose};
-use crate::scene::entity::{Args, Construct};
-use crate::scene::value::Datum;
-use crate::world::film::Film;
 use glam::{DMat3, DVec3};
 use std::collections::BTreeMap;
+use tabray_core::scene::attribute::{Attribute, Pose};
+use tabray_core::scene::entity::{Args, Construct};
+use tabray_core::scene::value::Datum;
+use tabray_core::world::film::Film;
 
 /// The greatest angle in degrees by which a viewer who goes up or down looks down or up: straight up and down, there would
 /// be no side of the image at which `up` is.
@@ -184,11 +184,11 @@ fn point(camera: &Args, wanted: Pose) -> Option<DVec3> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::kind::Kind;
-    use crate::scene::reader;
-    use crate::scene::registry::Registry;
-    use crate::world::camera::Projected;
     use std::path::Path;
+    use tabray_core::scene::kind::Kind;
+    use tabray_core::world::camera::Projected;
+    use tabray_lang::reader;
+    use tabray_lang::registry::Registry;
 
     /// Returns the camera of each type, as in the scene of its type.
     fn cameras() -> Vec<Args> {

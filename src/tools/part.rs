@@ -4,19 +4,19 @@
 //! pixels come tile by tile, and in a tile in rows from the top. A part that is not finished yet has a byte for each of
 //! its tiles before the pixels, 1 where the tile is rendered.
 
-use crate::output::aov::{Aov, Setting};
-use crate::output::checkpoint::Identity;
-use crate::output::deflate::Compression;
-use crate::output::full_range::FullRange;
-use crate::output::picture::Format;
-use crate::render::division::Grid;
-use crate::text;
+use crate::checkpoint::Identity;
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::ops::Range;
+use tabray_core::output::aov::{Aov, Setting};
+use tabray_core::output::deflate::Compression;
+use tabray_core::output::full_range::FullRange;
+use tabray_core::output::picture::Format;
+use tabray_core::render::division::Grid;
+use tabray_core::text;
 
 /// The maximum number of parts of an image.
 pub const MOST_PARTS: usize = 100_000;

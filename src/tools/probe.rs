@@ -1,15 +1,15 @@
 //! Explains one pixel: its rays as an indented tree, with all that was tested, hit and added up on the way.
 
-use crate::geometry::ray::{MISS, Ray, RayRange};
-use crate::render::bytes::to_byte;
-use crate::render::limits::{MAX_DIST, MAX_RAYS};
-use crate::render::observer::{DropReason, Event, Hit, LightOutcome, RayPurpose, TraceObserver};
-use crate::render::plan::Plan;
-use crate::render::trace::{self};
-use crate::scene::model::Model;
-use crate::world::material::Rgb;
 use glam::DVec3;
 use std::io::{self, Write};
+use tabray_core::geometry::ray::{MISS, Ray, RayRange};
+use tabray_core::render::bytes::to_byte;
+use tabray_core::render::limits::{MAX_DIST, MAX_RAYS};
+use tabray_core::render::observer::{DropReason, Event, Hit, LightOutcome, RayPurpose, TraceObserver};
+use tabray_core::render::plan::Plan;
+use tabray_core::render::trace::{self};
+use tabray_core::scene::model::Model;
+use tabray_core::world::material::Rgb;
 
 /// The greatest depth of a ray that is still indented farther: between parallel mirrors the indentation would otherwise
 /// fill the line.

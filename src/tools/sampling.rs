@@ -1,21 +1,21 @@
 //! Measures what numbers of samples per pixel cost, and how wrong they leave an image.
 
-use crate::parallel;
-use crate::render::bytes::shown;
-use crate::render::observer::RayKind;
-use crate::render::plan::Plan;
-use crate::render::ray_stats::RayStats;
-use crate::render::renderer::Renderer;
-use crate::render::tiles::{self, TILE, TOGETHER};
-use crate::render::trace::{Scratch, Tracer};
-use crate::scene::model::Model;
-use crate::simd::cpu::Cpu;
-use crate::tools::bench::clock;
-use crate::world::film::Adaptive;
-use crate::world::material::Rgb;
-use crate::world::sample::{SCRAMBLE, Sampler};
+use crate::bench::clock;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
+use tabray_core::parallel;
+use tabray_core::render::bytes::shown;
+use tabray_core::render::observer::RayKind;
+use tabray_core::render::plan::Plan;
+use tabray_core::render::ray_stats::RayStats;
+use tabray_core::render::renderer::Renderer;
+use tabray_core::render::tiles::{self, TILE, TOGETHER};
+use tabray_core::render::trace::{Scratch, Tracer};
+use tabray_core::scene::model::Model;
+use tabray_core::simd::cpu::Cpu;
+use tabray_core::world::film::Adaptive;
+use tabray_core::world::material::Rgb;
+use tabray_core::world::sample::{SCRAMBLE, Sampler};
 
 /// Numbers of samples per pixel.
 #[derive(Clone, Copy, Debug)]

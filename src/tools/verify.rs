@@ -1,15 +1,15 @@
 //! Proves which object a pixel's ray hits first, and compares it with what the tracer finds.
 
-use crate::geometry::sight::Sight;
-use crate::numeric::interval::{Float, Wide};
-use crate::render::plan::Plan;
-use crate::render::renderer::Renderer;
-use crate::render::trace;
-use crate::scene::model::Model;
-use crate::world::certify::{Enclosure, Precision};
 use f256::f256;
 use std::io;
 use std::ops::ControlFlow;
+use tabray_core::geometry::sight::Sight;
+use tabray_core::render::plan::Plan;
+use tabray_core::render::renderer::Renderer;
+use tabray_core::render::trace;
+use tabray_core::scene::model::Model;
+use tabray_core::world::certify::{Enclosure, Precision};
+use tabray_exact::interval::{Float, Wide};
 
 /// The verdict on a pixel, for the exact ray through its centre.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -106,7 +106,7 @@ pub fn picture(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::interval::Interval;
+    use tabray_exact::interval::Interval;
 
     fn hits(low: f64, high: f64) -> Enclosure {
         Enclosure::Hits(Interval { low, high }.into())

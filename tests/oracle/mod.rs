@@ -7,7 +7,7 @@ pub mod revolution;
 pub mod shapes;
 pub mod tally;
 
-use tabray::numeric::double_double::DoubleDouble;
+use tabray::exact::double_double::DoubleDouble;
 
 /// The first hit of a ray on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,8 +6,8 @@
 
 use super::{Crossings, Hit, Truth};
 use glam::DVec3;
+use tabray::exact::{Dual, Formula, Interval, Scalar, double_double::DoubleDouble};
 use tabray::geometry::Ray;
-use tabray::numeric::{Dual, Formula, Interval, Scalar, double_double::DoubleDouble};
 
 /// A curve x = g(y) turned about the y axis through a base. Where g is below 0 there is no surface.
 pub struct Revolution {

@@ -8,8 +8,8 @@ use super::{Hit, Truth};
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
 use glam::{DVec2, DVec3};
+use tabray::exact::double_double::DoubleDouble;
 use tabray::geometry::Ray;
-use tabray::numeric::double_double::DoubleDouble;
 
 /// A number of 300 bits.
 pub type Big = FBig<HalfEven, 2>;

@@ -2,8 +2,8 @@
 
 use super::{Hit, Truth};
 use std::fmt;
+use tabray::exact::double_double::DoubleDouble;
 use tabray::geometry::MISS;
-use tabray::numeric::double_double::DoubleDouble;
 
 /// Returns the size of an ulp: the distance from a number to the next.
 pub fn ulp(number: f64) -> f64 {

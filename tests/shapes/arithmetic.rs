@@ -252,7 +252,7 @@ fn a_ball_in_the_box_around_it_is_whole() {
     for step in 1..=60 {
         let radius = 0.05 * f64::from(step);
         // The exact radius is the root of a rounded square: where it exceeds the box, both poles are cut off.
-        let is_wider = tabray::numeric::double_double::two_product(radius, radius).1 < 0.0;
+        let is_wider = tabray::exact::double_double::two_product(radius, radius).1 < 0.0;
         let found = distance(&*ball(radius), dvec3(4.0, 3.0, 6.0), DVec3::NEG_Z);
         let is_right = if is_wider { found == MISS } else { (found - (10.13 - radius)).abs() < 1e-14 };
         assert!(is_right, "of radius {radius}: {found}");

@@ -2,8 +2,8 @@
 
 use crate::common::model;
 use glam::{DVec2, DVec3};
+use tabray::exact::double_double::DoubleDouble;
 use tabray::geometry::{ImagePoint, Ray};
-use tabray::numeric::double_double::DoubleDouble;
 use tabray::render::{Plan, Renderer, to_byte, trace};
 use tabray::world::Film;
 

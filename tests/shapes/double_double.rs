@@ -5,7 +5,7 @@ use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
 use dashu_int::{IBig, UBig};
 use f256::f256;
-use tabray::numeric::{Interval, Scalar, Wide, double_double::DoubleDouble};
+use tabray::exact::{Interval, Scalar, Wide, double_double::DoubleDouble};
 
 type Big = FBig<HalfEven, 2>;
 

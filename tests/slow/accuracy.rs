@@ -15,8 +15,8 @@ use std::fmt::Write;
 use std::hint::black_box;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
+use tabray::exact::Formula;
 use tabray::geometry::{MISS, Ray, RayRange};
-use tabray::numeric::Formula;
 use tabray::world::{AnyShape, Hittable};
 
 /// The number of rays of each kind for each profile.

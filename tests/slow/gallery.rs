@@ -209,12 +209,12 @@ no such points.
 | point | method | where it fails |
 |---|---|---|
 | `classic` | one bracket, from the viewer to the ray's point closest to the axis | silhouettes, inner walls, distant spheres |
-| [`steps of 0.1`](../src/geometry/roots/steps.rs) | the notes' page on procedural surfaces: steps, then bisection to 1e-6 | anything thinner than a step |
-| [`64 + ...`](../src/geometry/roots/samples.rs) | samples in the bounding cylinder, then a refiner: [bisection](../src/geometry/roots/bisection.rs), [Chandrupatla](../src/geometry/roots/chandrupatla.rs) or [Newton](../src/geometry/roots/newton.rs) | silhouettes, however many samples |
-| [`16 + turning points`](../src/geometry/roots/turning.rs) | samples, and the turning points of the function between them | functions that turn twice between two samples |
-| [`sphere tracing`](../src/geometry/roots/tracing.rs) | steps of a length that a bound of the slope allows | hits surfaces that it only passes closely; slow at silhouettes |
-| [`intervals`](../src/geometry/roots/intervals.rs) | bounds of values and slopes (Mitchell 1990) | slow at silhouettes |
-| [`Taylor bounds`](../src/geometry/roots/taylor.rs) | bounds of the curvature, too; the method for shapes given by one formula | a few of a hundred thousand near tangents: [the falsifier](falsify.md) counts them |
+| [`steps of 0.1`](../src/exact/roots/steps.rs) | the notes' page on procedural surfaces: steps, then bisection to 1e-6 | anything thinner than a step |
+| [`64 + ...`](../src/exact/roots/samples.rs) | samples in the bounding cylinder, then a refiner: [bisection](../src/exact/roots/bisection.rs), [Chandrupatla](../src/exact/roots/chandrupatla.rs) or [Newton](../src/exact/roots/newton.rs) | silhouettes, however many samples |
+| [`16 + turning points`](../src/exact/roots/turning.rs) | samples, and the turning points of the function between them | functions that turn twice between two samples |
+| [`sphere tracing`](../src/exact/roots/tracing.rs) | steps of a length that a bound of the slope allows | hits surfaces that it only passes closely; slow at silhouettes |
+| [`intervals`](../src/exact/roots/intervals.rs) | bounds of values and slopes (Mitchell 1990) | slow at silhouettes |
+| [`Taylor bounds`](../src/exact/roots/taylor.rs) | bounds of the curvature, too; the method for shapes given by one formula | a few of a hundred thousand near tangents: [the falsifier](falsify.md) counts them |
 | `draft`, `exact`, `strict` | for surfaces of revolution, quadrics with a proven error, then Newton; Taylor bounds for grazing rays | a few of a hundred thousand near tangents: [the falsifier](falsify.md) counts them |
 
 The counts here differ from those of [accuracy.md](accuracy.md) and of other tables, because the rays differ. There, all

@@ -347,7 +347,7 @@ inventory::submit! { Entity::shader(\"checks\", \"its number is that of tiles\",
 
 const BARREL: &str = "//! A barrel.
 
-use crate::prelude::*;
+use tabray::prelude::*;
 
 inventory::submit! {
     Profile::new(\"barrel\", \"a barrel 4 high\", \"1.5 - 0.1 * (y - 2)^2\")
@@ -356,7 +356,7 @@ inventory::submit! {
 
 const STRIPES: &str = "//! Stripes, as wide as a tenth of the anchor's unit.
 
-use crate::prelude::*;
+use tabray::prelude::*;
 
 inventory::submit! {
     Entity::shader(\"stripes\", \"stripes across y\", &[], |_| Ok(Paint::new(Stripes)))

@@ -10,8 +10,8 @@ use crate::oracle::{Crossings, Truth};
 use glam::{DMat3, DVec3, dvec2, dvec3};
 use hashbrown::HashMap;
 use std::cell::RefCell;
+use tabray::exact::{Float, Wide};
 use tabray::geometry::{MISS, Ray, RayRange, Side, Sight};
-use tabray::numeric::{Float, Wide};
 use tabray::scene::Model;
 use tabray::world::certify::{self, Enclosure, Precision};
 
@@ -254,7 +254,7 @@ fn profiles_that_hide_in_thin_parts_are_found() {
 fn the_truth_of_a_revolution_is_where_the_function_first_changes_its_sign() {
     for (formula, height) in [VASE, NASTY, CONE, FLANGE, KINK, TUBE, JUMP] {
         let surface = Revolution::new(formula, BASE, height);
-        let line = tabray::numeric::Formula::parse(formula).expect("a formula");
+        let line = tabray::exact::Formula::parse(formula).expect("a formula");
         for ray in rays::camera(500, 1.0).chain(rays::inside(500, BASE + dvec3(0.0, 3.0, 0.0), 4.0)) {
             let outside = |t: f64| {
                 let at = ray.at(t) - BASE;

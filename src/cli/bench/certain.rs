@@ -1,11 +1,11 @@
 //! `bench --sampling certain`: what `--max-error --certain` proves, whether samples contradict it, and what it costs.
 
-use crate::cli::process::failure::{Failure, print};
-use crate::render::renderer::Renderer;
-use crate::scene::model::Model;
-use crate::text::short;
-use crate::tools::certain::{self, Outcome};
+use crate::process::failure::{Failure, print};
 use std::path::Path;
+use tabray_core::render::renderer::Renderer;
+use tabray_core::scene::model::Model;
+use tabray_core::text::short;
+use tabray_tools::certain::{self, Outcome};
 
 /// The limits that are measured, in levels.
 const LIMITS: [f64; 3] = [1.0, 2.0, 4.0];

@@ -1,17 +1,17 @@
 //! `bench --sampling`: the cost and the error of numbers of samples per pixel.
 
-use crate::cli::files::output;
-use crate::cli::process::failure::{Failure, print};
-use crate::render::renderer::Renderer;
-use crate::scene::model::Model;
-use crate::text::{self, short};
-use crate::tools::chart::{self, Chart, Family, Machine, Panel, Point, Subject, Times, WrongHits};
-use crate::tools::sampling::{self, LEVELS, Measured, Samples};
-use crate::world::film::Adaptive;
-use crate::world::sample::Sampler;
+use crate::files::output;
+use crate::process::failure::{Failure, print};
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
+use tabray_core::render::renderer::Renderer;
+use tabray_core::scene::model::Model;
+use tabray_core::text::{self, short};
+use tabray_core::world::film::Adaptive;
+use tabray_core::world::sample::Sampler;
+use tabray_tools::chart::{self, Chart, Family, Machine, Panel, Point, Subject, Times, WrongHits};
+use tabray_tools::sampling::{self, LEVELS, Measured, Samples};
 
 /// The number of samples per pixel of the images that count as true.
 const TRUTH: u32 = 1024;

@@ -1,10 +1,10 @@
 //! Rays exactly through the edges and the texels' boundaries of rectangles: the course's program, which computed with 80
 //! bits, rounded some of them to the other side.
 
-use crate::scene::model::Object;
-use crate::scene::value::Datum;
-use crate::world::film::Film;
 use glam::DVec2;
+use tabray_core::scene::model::Object;
+use tabray_core::scene::value::Datum;
+use tabray_core::world::film::Film;
 
 /// The fraction of a side or of a texel within which rounding decides on which side of its boundary a ray is.
 const NEAR: f64 = 1e-9;

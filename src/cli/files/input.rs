@@ -1,19 +1,19 @@
 //! Reads scenes from files and from standard input.
 
-use crate::cli::options::set;
-use crate::cli::process::failure::Failure;
-use crate::cli::process::{crash, memory, messages};
-use crate::files;
-use crate::scene::model::Model;
-use crate::scene::reader::{self, Loaded, ReadOptions, Report};
-use crate::scene::registry::Registry;
-use crate::scene::syntax::Syntax;
-use crate::text;
-use crate::world::accuracy::Accuracy;
+use crate::options::set;
+use crate::process::failure::Failure;
+use crate::process::{crash, memory, messages};
 use sha2::{Digest, Sha256};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
+use tabray_core::files;
+use tabray_core::scene::model::Model;
+use tabray_core::text;
+use tabray_core::world::accuracy::Accuracy;
+use tabray_lang::reader::{self, Loaded, ReadOptions, Report};
+use tabray_lang::registry::Registry;
+use tabray_lang::syntax::Syntax;
 
 /// The maximum size of a scene, in bytes: far more than written scenes have, and far less than memory holds.
 const LARGEST: u64 = 1 << 30;

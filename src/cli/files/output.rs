@@ -1,21 +1,21 @@
 //! Writes images beside their targets first and then replaces the targets, so that a target never holds half an image.
 
-use crate::cli::files::input;
-use crate::cli::process::failure::Failure;
-use crate::cli::process::messages;
-use crate::cli::process::temporary::Temporary;
-use crate::files::{self, are_same};
-use crate::output::picture::Format;
-use crate::scene::model::{Item, Model};
-use crate::scene::store::Record;
-use crate::text;
-use crate::world::texture::Texture;
+use crate::files::input;
+use crate::process::failure::Failure;
+use crate::process::messages;
+use crate::process::temporary::Temporary;
 use same_file::Handle;
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, IsTerminal, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use tabray_core::files::{self, are_same};
+use tabray_core::output::picture::Format;
+use tabray_core::scene::model::{Item, Model};
+use tabray_core::scene::store::Record;
+use tabray_core::text;
+use tabray_core::world::texture::Texture;
 
 /// A place to write to, which is opened before any work is done.
 pub enum Output {

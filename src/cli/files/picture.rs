@@ -1,12 +1,12 @@
 //! Reads images, to compare them.
 
-use crate::cli::process::failure::Failure;
-use crate::files::{self, ImageBytes};
-use crate::output::full_range::{self, FullRange};
-use crate::text;
+use crate::process::failure::Failure;
 use image::{DynamicImage, ImageFormat, ImageReader, Rgb32FImage, RgbImage};
 use std::io::{self, BufReader};
 use std::path::Path;
+use tabray_core::files::{self, ImageBytes};
+use tabray_core::output::full_range::{self, FullRange};
+use tabray_core::text;
 
 /// Reads the image in a file.
 pub fn read(path: &Path) -> Result<RgbImage, Failure> {

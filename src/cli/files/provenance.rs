@@ -1,18 +1,18 @@
 //! The texts that a PNG records about how its image was made: the same for images that must be the same. By these
 //! texts, an existing frame is recognized.
 
-use crate::cli::files::input::Source;
-use crate::cli::options::size::Part;
-use crate::cli::options::{max_error, set};
-use crate::files;
-use crate::scene::choice::Choice;
-use crate::text;
-use crate::world::accuracy::Accuracy;
-use crate::world::film::{Adaptive, Film};
+use crate::files::input::Source;
+use crate::options::size::Part;
+use crate::options::{max_error, set};
 use std::env;
 use std::fs;
 use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
+use tabray_core::files;
+use tabray_core::scene::choice::Choice;
+use tabray_core::text;
+use tabray_core::world::accuracy::Accuracy;
+use tabray_core::world::film::{Adaptive, Film};
 
 /// Returns the texts of an image, each with its keyword: the version of the program, the hash of the scene's text, and
 /// the options with which the program makes the same image of the scene. Threads, the level of CPU instructions and

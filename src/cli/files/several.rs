@@ -1,12 +1,12 @@
 //! Several scenes for one command: the names of their images, what is said about all of them, and the exit status.
 
-use crate::cli::files::{input, output};
-use crate::cli::process::failure::{Failure, report, status};
-use crate::cli::process::progress;
-use crate::text::{self, list};
+use crate::files::{input, output};
+use crate::process::failure::{Failure, report, status};
+use crate::process::progress;
 use std::collections::HashMap;
 use std::path::{self, Path, PathBuf};
 use std::time::Instant;
+use tabray_core::text::{self, list};
 
 /// The maximum number of scenes that the summary names.
 const NAMED: usize = 10;
@@ -75,10 +75,7 @@ pub fn for_each_scene(
     let all = scenes.len();
     if failed.is_empty() {
         let seconds = start.elapsed().as_secs_f64();
-        crate::cli::process::messages::note(&format!(
-            "rendered {} in {seconds:.2} s",
-            text::count(all, "scene")
-        ));
+        crate::process::messages::note(&format!("rendered {} in {seconds:.2} s", text::count(all, "scene")));
         return Ok(());
     }
     let named = list(failed.iter().take(NAMED).map(String::as_str));
@@ -86,6 +83,6 @@ pub fn for_each_scene(
     let more = if more > 0 { format!(" and {more} more") } else { String::new() };
     let message =
         format!("{} of {} could not be rendered: {named}{more}", failed.len(), text::count(all, "scene"));
-    crate::cli::process::messages::error(&message, None);
+    crate::process::messages::error(&message, None);
     Err(Failure::Several(worst))
 }

@@ -6,13 +6,13 @@ use super::protocol::{
     ColorInformation, DocumentSymbol, FoldingRange, InlayHint, RequestParams, Span, markdown, path, range,
     span, text_of,
 };
-use crate::editor::{self, CompletionKind, Files, Group, Location, Position, View};
-use crate::scene::syntax::Syntax;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use tabray_lang::editor::{self, CompletionKind, Files, Group, Location, Position, View};
+use tabray_lang::syntax::Syntax;
 
 /// The state of the server.
 pub struct Server<'r> {

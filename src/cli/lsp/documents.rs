@@ -1,9 +1,6 @@
 //! The texts that are open in the editor, and the files beside them.
 
 use super::protocol::{ContentChange, path};
-use crate::editor::{self, Files, Text, View};
-use crate::files;
-use crate::scene::registry::Registry;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::fs;
@@ -11,6 +8,9 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 use std::time::SystemTime;
+use tabray_core::files;
+use tabray_lang::editor::{self, Files, Text, View};
+use tabray_lang::registry::Registry;
 
 /// The largest file that is read beside the open ones, in bytes.
 const LARGEST: u64 = 1 << 24;

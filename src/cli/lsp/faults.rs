@@ -2,15 +2,15 @@
 
 use super::documents;
 use super::protocol::{self, span, uri};
-use crate::cli::process::crash;
-use crate::editor::{Diagnosis, diagnose};
-use crate::scene::reader::Severity;
-use crate::scene::registry::Registry;
+use crate::process::crash;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
+use tabray_lang::editor::{Diagnosis, diagnose};
+use tabray_lang::reader::Severity;
+use tabray_lang::registry::Registry;
 
 /// The longest time for which a text must have been left alone before it is read. A scene that is read in less is left
 /// alone for as long as that takes.

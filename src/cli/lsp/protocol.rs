@@ -1,12 +1,12 @@
 //! The Language Server Protocol, as far as it is used here: the requests of an editor, and the answers to it.
 
-use crate::editor::{self, Fold, Hint, Position, Symbol, Text};
-use crate::scene::kind::Kind;
 use lsp_server::{ErrorCode, RequestId};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use tabray_core::scene::kind::Kind;
+use tabray_lang::editor::{self, Fold, Hint, Position, Symbol, Text};
 
 /// The parameters of a request of any kind; those that a request does not have get a default.
 #[derive(Default, Deserialize)]

@@ -3,8 +3,8 @@
 mod plugin;
 mod scene;
 
-use crate::cli::process::failure::Failure;
-use crate::scene::registry::Registry;
+use crate::process::failure::Failure;
+use tabray_lang::registry::Registry;
 
 /// Write a scene or a plugin to start from
 #[derive(clap::Args)]

@@ -1,14 +1,14 @@
 //! `tabray new plugin`: a working plugin, and its scenes.
 
-use crate::cli::files::output;
-use crate::cli::process::failure::Failure;
-use crate::cli::process::messages;
-use crate::scene::choice::Choice;
-use crate::scene::profile::Profile;
-use crate::scene::registry::Registry;
+use crate::files::output;
+use crate::process::failure::Failure;
+use crate::process::messages;
 use serde::Deserialize;
 use std::fs;
 use std::path::Path;
+use tabray_core::scene::choice::Choice;
+use tabray_core::scene::profile::Profile;
+use tabray_lang::registry::Registry;
 
 /// Write a working, commented plugin and its scenes
 ///

@@ -1,11 +1,11 @@
 //! `tabray new scene`: a commented scene.
 
-use crate::cli::files::output;
-use crate::cli::process::failure::Failure;
-use crate::cli::process::{messages, program};
-use crate::scene::syntax::Syntax;
-use crate::text;
+use crate::files::output;
+use crate::process::failure::Failure;
+use crate::process::{messages, program};
 use std::path::PathBuf;
+use tabray_core::text;
+use tabray_lang::syntax::Syntax;
 
 /// Write a commented scene, ready to render
 #[derive(clap::Args)]

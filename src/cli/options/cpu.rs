@@ -1,8 +1,8 @@
 //! `--cpu`: the level of CPU instructions.
 
-use crate::cli::process::failure::Failure;
-use crate::simd::cpu::{Cpu, Level};
-use crate::text;
+use crate::process::failure::Failure;
+use tabray_core::simd::cpu::{Cpu, Level};
+use tabray_core::text;
 
 #[derive(clap::Args)]
 #[group(id = "instructions")]

@@ -1,11 +1,11 @@
 //! `tabray render --frames --sweep`: one image for each frame, with values that change from frame to frame.
 
-use crate::cli::options::number::whole;
-use crate::cli::process::failure::Failure;
-use crate::numeric::decimal::{self, DecimalFault};
-use crate::text;
+use crate::options::number::whole;
+use crate::process::failure::Failure;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
+use tabray_core::text;
+use tabray_exact::decimal::{self, DecimalFault};
 
 /// The highest number of a frame.
 const MOST: u32 = 999_999;

@@ -1,7 +1,7 @@
 //! `--keep-all`: whether objects and lights that can change no byte of the image are left out.
 
-use crate::render::plan::Plan;
-use crate::scene::model::Model;
+use tabray_core::render::plan::Plan;
+use tabray_core::scene::model::Model;
 
 #[derive(clap::Args)]
 #[group(id = "what is left out")]

@@ -1,8 +1,8 @@
 //! A maximum error of colours, as options take it: in levels of 255, or in percent of white.
 
-use crate::text::{short, shortest};
 use std::fmt;
 use std::str::FromStr;
+use tabray_core::text::{short, shortest};
 
 /// The number of levels from black to white.
 pub const LEVELS: f64 = 255.0;

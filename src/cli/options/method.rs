@@ -1,10 +1,10 @@
 //! `--method` and `--accuracy`: the accuracy of a render, overriding the scene's own.
 
-use crate::cli::process::failure::Failure;
-use crate::scene::choice::{Choice, ChoiceName};
-use crate::text;
-use crate::world::accuracy::Accuracy;
+use crate::process::failure::Failure;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use tabray_core::scene::choice::{Choice, ChoiceName};
+use tabray_core::text;
+use tabray_core::world::accuracy::Accuracy;
 
 #[derive(clap::Args)]
 #[group(id = "how exactly")]

@@ -1,11 +1,11 @@
 //! `--samples`, `--max-error` and `--sampler`: how many samples the pixels of an image take, and where.
 
 use super::max_error::MaxError;
-use crate::cli::process::failure::Failure;
-use crate::cli::process::messages;
-use crate::world::accuracy::Accuracy;
-use crate::world::film::{Adaptive, Film};
-use crate::world::sample::Sampler;
+use crate::process::failure::Failure;
+use crate::process::messages;
+use tabray_core::world::accuracy::Accuracy;
+use tabray_core::world::film::{Adaptive, Film};
+use tabray_core::world::sample::Sampler;
 
 /// The numbers of samples per pixel that `--max-error` chooses from, where `--samples` does not say.
 const BY_ERROR: [u32; 2] = [4, 4096];

@@ -1,6 +1,6 @@
 //! `--set`: values beside the text of a scene.
 
-use crate::text;
+use tabray_core::text;
 
 /// The values that are set.
 #[derive(Clone, Default, clap::Args)]

@@ -1,8 +1,8 @@
 //! `--size`, `--quick` and `--crop`: the size of the image, and the part of it that is rendered.
 
-use crate::cli::process::failure::Failure;
-use crate::world::film::Film;
+use crate::process::failure::Failure;
 use std::ops::Range;
+use tabray_core::world::film::Film;
 
 /// The maximum width and the maximum height in pixels, as for `pixeldim`.
 const MAX_SIDE: usize = 100_000;

@@ -1,16 +1,16 @@
 //! Stops a render before its image is finished: at an interruption, or at a limit of time or memory.
 
-use crate::cli::process::failure::Failure;
-use crate::cli::process::interrupt::{self, InterruptAction};
-use crate::cli::process::{memory, messages};
-use crate::render::tiles::{BAND, TILE};
-use crate::text;
+use crate::process::failure::Failure;
+use crate::process::interrupt::{self, InterruptAction};
+use crate::process::{memory, messages};
 use bytesize::ByteSize;
 use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::thread;
 use std::time::{Duration, Instant};
+use tabray_core::render::tiles::{BAND, TILE};
+use tabray_core::text;
 
 /// The time to leave an unfinished image, as a multiple of the time in which it was written: it is read and written
 /// again with transparency. The time limit includes that, up to a quarter of the limit.

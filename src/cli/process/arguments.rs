@@ -1,9 +1,7 @@
 //! Parses the command line; if that fails, says what the user probably meant.
 
-use crate::cli::process::failure::Failure;
-use crate::cli::process::{color, program};
-use crate::scene::syntax::Syntax;
-use crate::text::{nearest, quoted};
+use crate::process::failure::Failure;
+use crate::process::{color, program};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, ArgMatches, Command};
 use std::env;
@@ -11,6 +9,8 @@ use std::ffi::OsString;
 use std::io::{self, Write};
 use std::path::Path;
 use std::process;
+use tabray_core::text::{nearest, quoted};
+use tabray_lang::syntax::Syntax;
 
 /// Parses the program's arguments. What is wrong with them is printed, and ends the program; so do `--help` and
 /// `--version`.

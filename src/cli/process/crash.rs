@@ -1,7 +1,7 @@
 //! Panics: faults of the program itself. They are reported as messages, and servers keep running.
 
-use crate::cli::process::failure::{self, Failure};
-use crate::cli::process::program;
+use crate::process::failure::{self, Failure};
+use crate::process::program;
 use std::panic::{self, AssertUnwindSafe, Location};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

@@ -1,13 +1,13 @@
 //! The end of a command: its output, or a failure.
 
-use crate::cli::process::{messages, progress, temporary};
-use crate::scene::reader::Report;
-use crate::text;
+use crate::process::{messages, progress, temporary};
 use std::io::{self, Write};
 use std::path::Path;
 use std::process::{self, ExitCode};
 use std::thread;
 use std::time::Duration;
+use tabray_core::text;
+use tabray_lang::reader::Report;
 
 /// The time in which a program that ends must have said why.
 const SAYING: Duration = Duration::from_millis(500);

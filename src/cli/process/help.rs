@@ -36,7 +36,7 @@ pub fn grouped(command: Command) -> Command {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::command;
+    use crate::command;
     use clap::error::ErrorKind;
 
     #[test]

@@ -1,8 +1,8 @@
 //! Ctrl-C: a command that keeps nothing ends at once; a command that keeps what is done notes the interruption and
 //! stops soon. A second interruption ends the program at once.
 
-use crate::cli::process::failure::{self, Failure};
-use crate::cli::process::temporary;
+use crate::process::failure::{self, Failure};
+use crate::process::temporary;
 #[cfg(target_os = "linux")]
 use nix::sys::signal::{SigSet, Signal};
 #[cfg(target_os = "linux")]

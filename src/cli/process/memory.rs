@@ -1,8 +1,8 @@
 //! The memory of the program: what the system provides, and, on systems that report it, what is used: Linux.
 
-use crate::cli::process::crash;
-use crate::cli::process::failure::{self, Failure};
 use crate::heap;
+use crate::process::crash;
+use crate::process::failure::{self, Failure};
 use bytesize::ByteSize;
 use std::fs;
 use std::io::{self, Write};

@@ -1,10 +1,10 @@
 //! Messages on standard error, in the form that was asked for.
 
-use crate::scene::reader::{Message, Report};
 use annotate_snippets::{Group, Level, Renderer};
 use anstream::AutoStream;
 use std::io::{self, Write};
 use std::sync::OnceLock;
+use tabray_lang::reader::{Message, Report};
 
 /// The form of messages.
 #[derive(Clone, Copy, Default, PartialEq, clap::ValueEnum)]

@@ -1,11 +1,11 @@
 //! The name of the program, and its command line under that name.
 
-use crate::scene::registry::Registry;
 use clap::Command;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use std::env::{self, consts};
 use std::path::Path;
 use std::sync::LazyLock;
+use tabray_lang::registry::Registry;
 
 /// The name of the library, and of the program with no plugins but those of the library.
 const LIBRARY: &str = env!("CARGO_PKG_NAME");

@@ -1,6 +1,6 @@
 //! Shows progress on a terminal.
 
-use crate::cli::process::messages;
+use crate::process::messages;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};

@@ -1,21 +1,21 @@
 //! `tabray render --aov`: auxiliary images beside the main one, and exact numbers.
 
-use crate::cli::files::output::{self, Output};
-use crate::cli::process::failure::Failure;
-use crate::cli::process::messages;
-use crate::cli::process::progress::Progress;
-use crate::output::aov::{Aov, Layer};
-use crate::output::picture::Format;
-use crate::render::plan::Plan;
-use crate::render::renderer::Renderer;
-use crate::scene::model::Model;
-use crate::text;
-use crate::world::sample::{SCRAMBLE, Sampler};
+use crate::files::output::{self, Output};
+use crate::process::failure::Failure;
+use crate::process::messages;
+use crate::process::progress::Progress;
 use std::ffi::OsStr;
 use std::io::Write;
 use std::iter;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use tabray_core::output::aov::{Aov, Layer};
+use tabray_core::output::picture::Format;
+use tabray_core::render::plan::Plan;
+use tabray_core::render::renderer::Renderer;
+use tabray_core::scene::model::Model;
+use tabray_core::text;
+use tabray_core::world::sample::{SCRAMBLE, Sampler};
 
 /// The maximum number of pixels of an image with auxiliary images: unlike the main image, they are held in memory as a
 /// whole.

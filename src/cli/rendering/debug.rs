@@ -1,12 +1,12 @@
 //! `tabray render --debug`: the notes' debug lines, for some pixels or for all.
 
-use crate::cli::probe;
-use crate::cli::process::failure::Failure;
-use crate::render::plan::Plan;
-use crate::render::renderer::Renderer;
-use crate::scene::model::Model;
-use crate::tools::debug::{self, LogLine};
+use crate::probe;
+use crate::process::failure::Failure;
 use std::io::{self, BufWriter, Write};
+use tabray_core::render::plan::Plan;
+use tabray_core::render::renderer::Renderer;
+use tabray_core::scene::model::Model;
+use tabray_tools::debug::{self, LogLine};
 
 #[derive(clap::Args)]
 #[group(id = "debug lines")]

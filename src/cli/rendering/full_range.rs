@@ -1,18 +1,18 @@
 //! Renders an image into a file of full range: colours before they are clamped and rounded to levels.
 
-use crate::cli::files::output::{self, Output};
-use crate::cli::options::size::Part;
-use crate::cli::options::stop::Stop;
-use crate::cli::process::failure::Failure;
-use crate::cli::process::progress::Progress;
-use crate::cli::process::{memory, messages};
-use crate::cli::rendering::job;
-use crate::cli::rendering::stats::Stats;
-use crate::output::full_range::FullRange;
-use crate::render::plan::Plan;
-use crate::render::ray_stats::RayStats;
-use crate::render::renderer::{RenderCallbacks, Renderer};
+use crate::files::output::{self, Output};
+use crate::options::size::Part;
+use crate::options::stop::Stop;
+use crate::process::failure::Failure;
+use crate::process::progress::Progress;
+use crate::process::{memory, messages};
+use crate::rendering::job;
+use crate::rendering::stats::Stats;
 use std::path::Path;
+use tabray_core::output::full_range::FullRange;
+use tabray_core::render::plan::Plan;
+use tabray_core::render::ray_stats::RayStats;
+use tabray_core::render::renderer::{RenderCallbacks, Renderer};
 
 /// The memory for a pixel, in bytes: its colour, and what encodes it.
 pub const PIXEL: usize = 12 * 4;

@@ -1,30 +1,30 @@
 //! Renders an image and writes it, or stops and leaves what a later render can continue from.
 
-use crate::cli::files::output::{Output, finished};
-use crate::cli::options::size::Part;
-use crate::cli::options::stop::Stop;
-use crate::cli::process::failure::{self, Failure};
-use crate::cli::process::progress::Progress;
-use crate::cli::process::{memory, messages};
-use crate::cli::rendering::resume::{self, ResumedImage};
-use crate::cli::rendering::stats::Stats;
-use crate::output::packing::PIECE;
-use crate::output::picture::Format;
-use crate::render::flaws::{BudgetCuts, Flaws, Undecided};
-use crate::render::limits::MAX_RAYS;
-use crate::render::plan::Plan;
-use crate::render::ray_stats::{Proofs, RayStats};
-use crate::render::renderer::{RenderCallbacks, Renderer};
-use crate::render::tiles::{BAND, Band, Tiles};
-use crate::scene::model::Model;
-use crate::text::{count, short};
-use crate::world::certify::Doubt;
+use crate::files::output::{Output, finished};
+use crate::options::size::Part;
+use crate::options::stop::Stop;
+use crate::process::failure::{self, Failure};
+use crate::process::progress::Progress;
+use crate::process::{memory, messages};
+use crate::rendering::resume::{self, ResumedImage};
+use crate::rendering::stats::Stats;
 use std::io::{self, BufWriter};
 use std::mem::{replace, take};
 use std::ops::Range;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
+use tabray_core::output::packing::PIECE;
+use tabray_core::output::picture::Format;
+use tabray_core::render::flaws::{BudgetCuts, Flaws, Undecided};
+use tabray_core::render::limits::MAX_RAYS;
+use tabray_core::render::plan::Plan;
+use tabray_core::render::ray_stats::{Proofs, RayStats};
+use tabray_core::render::renderer::{RenderCallbacks, Renderer};
+use tabray_core::render::tiles::{BAND, Band, Tiles};
+use tabray_core::scene::model::Model;
+use tabray_core::text::{count, short};
+use tabray_core::world::certify::Doubt;
 
 /// The maximum number of blank pixels that are written in place of missing ones. If more are missing, the file ends at
 /// the first row of which nothing is rendered.

@@ -1,30 +1,30 @@
 //! `tabray render --part`: renders a part of an image into a file beside it, from which `tabray merge` makes the image.
 
-use crate::cli::files::output::{self, Output};
-use crate::cli::options::size::Part;
-use crate::cli::options::stop::Stop;
-use crate::cli::process::failure::{self, Failure};
-use crate::cli::process::progress::Progress;
-use crate::cli::process::{memory, messages};
-use crate::cli::rendering::job::{report_proofs, warn_of};
-use crate::cli::rendering::part_begun::{UnfinishedPart, is_complete, remove};
-use crate::cli::rendering::stats::Stats;
-use crate::cli::rendering::{aov, full_range, resume};
-use crate::output::aov::{Aov, Setting};
-use crate::output::aov_values::Values;
-use crate::output::part::{self, Label, MOST_PARTS, PixelFormat, Writer};
-use crate::output::picture::Format;
-use crate::parallel;
-use crate::render::division::{self, Grid};
-use crate::render::plan::Plan;
-use crate::render::ray_stats::RayStats;
-use crate::render::renderer::{RenderCallbacks, Renderer};
-use crate::render::tiles::{Band, TILE};
-use crate::text;
+use crate::files::output::{self, Output};
+use crate::options::size::Part;
+use crate::options::stop::Stop;
+use crate::process::failure::{self, Failure};
+use crate::process::progress::Progress;
+use crate::process::{memory, messages};
+use crate::rendering::job::{report_proofs, warn_of};
+use crate::rendering::part_begun::{UnfinishedPart, is_complete, remove};
+use crate::rendering::stats::Stats;
+use crate::rendering::{aov, full_range, resume};
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use tabray_core::output::aov::{Aov, Setting};
+use tabray_core::output::aov_values::Values;
+use tabray_core::output::picture::Format;
+use tabray_core::parallel;
+use tabray_core::render::division::{self, Grid};
+use tabray_core::render::plan::Plan;
+use tabray_core::render::ray_stats::RayStats;
+use tabray_core::render::renderer::{RenderCallbacks, Renderer};
+use tabray_core::render::tiles::{Band, TILE};
+use tabray_core::text;
+use tabray_tools::part::{self, Label, MOST_PARTS, PixelFormat, Writer};
 
 /// The message if a part is stopped of which nothing is kept.
 const UNKEPT: &str = "the part was not finished, and nothing is written";

@@ -1,14 +1,14 @@
 //! Existing parts of images, complete or not, when a part is to be rendered with `--resume`.
 
-use crate::cli::process::failure::Failure;
-use crate::cli::process::messages;
-use crate::files;
-use crate::output::part::{self, Label, Reader};
-use crate::text;
+use crate::process::failure::Failure;
+use crate::process::messages;
 use std::fs;
 use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use tabray_core::files;
+use tabray_core::text;
+use tabray_tools::part::{self, Label, Reader};
 
 /// Tells whether a complete part exists.
 pub fn is_complete((path, label): &(PathBuf, Label)) -> Result<bool, Failure> {

@@ -1,16 +1,16 @@
 //! Finds the parts of an image, and refuses parts that do not belong together.
 
-use crate::cli::files::input;
-use crate::cli::process::failure::Failure;
-use crate::cli::rendering::{part, resume};
-use crate::files;
-use crate::output::checkpoint::Identity;
-use crate::output::part::{Label, PixelFormat, Reader};
+use crate::files::input;
+use crate::process::failure::Failure;
+use crate::rendering::{part, resume};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use tabray_core::files;
+use tabray_tools::checkpoint::Identity;
+use tabray_tools::part::{Label, PixelFormat, Reader};
 
 /// The maximum number of runs of missing parts that are named in a message.
 const RUNS: usize = 12;

@@ -1,18 +1,18 @@
 //! Checkpoints beside images: written where a render stops, and continued from by `--resume`.
 
-use crate::cli::files::output::{self, Output};
-use crate::cli::options::size::Part;
-use crate::cli::process::failure::Failure;
-use crate::cli::process::messages;
-use crate::files;
-use crate::output::checkpoint::{self, Checkpoint, Identity};
-use crate::output::picture::Format;
-use crate::render::tiles::{Band, Tiles};
-use crate::scene::model::Model;
-use crate::text;
+use crate::files::output::{self, Output};
+use crate::options::size::Part;
+use crate::process::failure::Failure;
+use crate::process::messages;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use tabray_core::files;
+use tabray_core::output::picture::Format;
+use tabray_core::render::tiles::{Band, Tiles};
+use tabray_core::scene::model::Model;
+use tabray_core::text;
+use tabray_tools::checkpoint::{self, Checkpoint, Identity};
 
 /// The checkpoint that a render continues from.
 pub struct ResumedImage {

@@ -1,12 +1,6 @@
 //! `--stats`: statistics of a render: rays, tests, time and memory.
 
-use crate::cli::process::memory;
-use crate::render::flaws::{BudgetCuts, Flaws};
-use crate::render::observer::RayKind;
-use crate::render::ray_stats::{Proofs, RayStats, TestCounts};
-use crate::scene::model::Model;
-use crate::text::{json, short};
-use crate::world::certify::Doubt;
+use crate::process::memory;
 use serde::Serialize;
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -14,6 +8,12 @@ use std::fmt::Write as _;
 use std::io::{self, Write as _};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
+use tabray_core::render::flaws::{BudgetCuts, Flaws};
+use tabray_core::render::observer::RayKind;
+use tabray_core::render::ray_stats::{Proofs, RayStats, TestCounts};
+use tabray_core::scene::model::Model;
+use tabray_core::text::{json, short};
+use tabray_core::world::certify::Doubt;
 
 #[derive(clap::Args)]
 #[group(id = "statistics")]

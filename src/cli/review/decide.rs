@@ -2,17 +2,17 @@
 
 use super::items::items;
 use super::pending::{self, Pending};
-use crate::cli::process::failure::{self, Failure};
-use crate::cli::process::messages;
-use crate::cli::report;
-use crate::cli::serve::{self, Answer, Server, Work};
-use crate::scene::registry::Registry;
-use crate::text;
+use crate::process::failure::{self, Failure};
+use crate::process::messages;
+use crate::report;
+use crate::serve::{self, Answer, Server, Work};
 use hyper::body::Bytes;
 use hyper::{Request, Response, StatusCode};
 use serde::Deserialize;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use tabray_core::text;
+use tabray_lang::registry::Registry;
 
 /// Serves the page and does what the user decides there.
 pub fn serve(

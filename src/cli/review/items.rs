@@ -1,19 +1,19 @@
 //! The pending snapshots, as the page shows them.
 
 use super::pending::{self, Content, Pending};
-use crate::cli::explain::Place;
-use crate::cli::files::{input, picture};
-use crate::cli::options::set;
-use crate::cli::process::crash;
-use crate::cli::process::failure::{self, Failure};
-use crate::cli::report::{Change, Decision, Item};
-use crate::output::compare::Comparison;
-use crate::scene::registry::Registry;
-use crate::text::quoted;
+use crate::explain::Place;
+use crate::files::{input, picture};
+use crate::options::set;
+use crate::process::crash;
+use crate::process::failure::{self, Failure};
+use crate::report::{Change, Decision, Item};
 use std::env;
 use std::ffi::OsStr;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
+use tabray_core::output::compare::Comparison;
+use tabray_core::text::quoted;
+use tabray_lang::registry::Registry;
 
 /// Returns the pending snapshots below a folder, and whether all of them could be read; errors were printed.
 pub fn items(

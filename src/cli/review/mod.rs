@@ -5,12 +5,12 @@ mod items;
 mod pending;
 
 use super::report::Page;
-use crate::cli::options::number::whole;
-use crate::cli::process::failure::Failure;
-use crate::cli::process::messages;
-use crate::scene::registry::Registry;
+use crate::options::number::whole;
+use crate::process::failure::Failure;
+use crate::process::messages;
 use pending::Pending;
 use std::path::PathBuf;
+use tabray_lang::registry::Registry;
 
 /// Review the snapshots that failing tests left
 ///

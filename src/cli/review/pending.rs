@@ -4,14 +4,14 @@
 //! the snapshot is binary, its content is in a separate file, `ball.snap.png` for `ball.snap` and `ball.snap.new.png`
 //! for `ball.snap.new`.
 
-use crate::cli::files::output;
-use crate::cli::process::failure::Failure;
-use crate::files;
-use crate::text;
+use crate::files::output;
+use crate::process::failure::Failure;
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
+use tabray_core::files;
+use tabray_core::text;
 
 /// A snapshot that waits for a decision.
 pub struct Pending {

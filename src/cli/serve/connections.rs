@@ -6,8 +6,7 @@
 
 use super::access::Access;
 use super::response::{Body, guard, text};
-use crate::cli::process::messages;
-use crate::text;
+use crate::process::messages;
 use http_body_util::{BodyExt, Limited};
 use hyper::body::{Bytes, Incoming};
 use hyper::server::conn::http1;
@@ -25,6 +24,7 @@ use std::pin::Pin;
 use std::rc::Rc;
 use std::task::Poll;
 use std::time::Duration;
+use tabray_core::text;
 use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::net::TcpListener;
 use tokio::sync::{Notify, Semaphore};

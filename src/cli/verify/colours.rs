@@ -1,23 +1,23 @@
 //! `tabray verify --colours`: proves the bytes of an image.
 
 use super::form::{Form, Premises};
-use crate::cli::files::output::{self, Output};
-use crate::cli::options::number::whole;
-use crate::cli::options::stop;
-use crate::cli::process::failure::{Failure, print};
-use crate::cli::process::messages;
-use crate::cli::process::progress::Progress;
-use crate::output::picture::Format;
-use crate::render::plan::Plan;
-use crate::render::renderer::Renderer;
-use crate::text;
-use crate::tools::colours::{Pixel, Prover, Verdict};
-use crate::world::accuracy::Accuracy;
-use crate::world::sample::Sampler;
+use crate::files::output::{self, Output};
+use crate::options::number::whole;
+use crate::options::stop;
+use crate::process::failure::{Failure, print};
+use crate::process::messages;
+use crate::process::progress::Progress;
 use serde::Serialize;
 use std::iter;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
+use tabray_core::output::picture::Format;
+use tabray_core::render::plan::Plan;
+use tabray_core::render::renderer::Renderer;
+use tabray_core::text;
+use tabray_core::world::accuracy::Accuracy;
+use tabray_core::world::sample::Sampler;
+use tabray_tools::colours::{Pixel, Prover, Verdict};
 
 #[derive(clap::Args)]
 #[group(id = "proofs of colours")]

@@ -1,9 +1,9 @@
 //! What `tabray verify` reports beside its verdicts: what the proofs start from, and the first pixels of each kind.
 
-use crate::render::plan::Plan;
-use crate::text;
-use crate::tools::assumptions::{self, Assumed};
 use serde::Serialize;
+use tabray_core::render::plan::Plan;
+use tabray_core::text;
+use tabray_tools::assumptions::{self, Assumed};
 
 /// The number of pixels of each kind that are named.
 const NAMED: usize = 5;

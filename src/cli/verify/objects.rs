@@ -1,14 +1,14 @@
 //! The report of `tabray verify`: which pixels show the object that is certainly hit first.
 
 use super::form::{Form, Premises};
-use crate::cli::files::output::{self, Output};
-use crate::cli::process::failure::{Failure, print};
-use crate::output::picture::Format;
-use crate::text;
-use crate::tools::verify::Verdict;
+use crate::files::output::{self, Output};
+use crate::process::failure::{Failure, print};
 use serde::Serialize;
 use std::iter;
 use std::path::PathBuf;
+use tabray_core::output::picture::Format;
+use tabray_core::text;
+use tabray_tools::verify::Verdict;
 
 /// The numbers of pixels.
 #[derive(Serialize)]

@@ -2,17 +2,17 @@
 
 use super::events;
 use super::frame::Frame;
-use crate::render::plan::Plan;
-use crate::render::progressive::{self, Area};
-use crate::render::renderer::Renderer;
-use crate::scene::choice::Choice;
-use crate::scene::registry::Registry;
-use crate::world::accuracy::Accuracy;
-use crate::world::material::Rgb;
-use crate::world::sample::Sampler;
 use std::io;
 use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
+use tabray_core::render::plan::Plan;
+use tabray_core::render::progressive::{self, Area};
+use tabray_core::render::renderer::Renderer;
+use tabray_core::scene::choice::Choice;
+use tabray_core::world::accuracy::Accuracy;
+use tabray_core::world::material::Rgb;
+use tabray_core::world::sample::Sampler;
+use tabray_lang::registry::Registry;
 
 /// A setting that replaces that of the scene.
 #[derive(Clone, Copy)]

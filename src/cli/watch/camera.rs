@@ -3,17 +3,17 @@
 use super::fields;
 use super::frame::Frame;
 use super::session::Session;
-use crate::cli::serve::{self, Body};
-use crate::editor::{self, Text};
-use crate::render::plan::Plan;
-use crate::render::trace;
-use crate::scene::registry::Registry;
-use crate::scene::store::Record;
-use crate::text;
-use crate::tools::navigation::{self, CameraPose, Movement};
+use crate::serve::{self, Body};
 use glam::DVec3;
 use hyper::{Response, StatusCode};
 use serde::{Deserialize, Serialize};
+use tabray_core::render::plan::Plan;
+use tabray_core::render::trace;
+use tabray_core::scene::store::Record;
+use tabray_core::text;
+use tabray_lang::editor::{self, Text};
+use tabray_lang::registry::Registry;
+use tabray_tools::navigation::{self, CameraPose, Movement};
 
 /// The state of a camera that is about to be moved.
 #[derive(Serialize)]

@@ -1,12 +1,9 @@
 //! The chart of a scene, measured for a page that waits for it.
 
 use super::frame::Frame;
-use crate::cli::measuring::Time;
-use crate::cli::process::crash;
-use crate::cli::process::failure::report;
-use crate::scene::registry::Registry;
-use crate::text;
-use crate::tools::chart::{self, Chart, Panel, Progress};
+use crate::measuring::Time;
+use crate::process::crash;
+use crate::process::failure::report;
 use serde::Serialize;
 use std::io;
 use std::ops::ControlFlow;
@@ -16,6 +13,9 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
+use tabray_core::text;
+use tabray_lang::registry::Registry;
+use tabray_tools::chart::{self, Chart, Panel, Progress};
 
 /// The longest time that a page may give a chart, in seconds.
 pub const MOST_SECONDS: u64 = 3600;

@@ -1,15 +1,15 @@
 //! The events that the program sends to a page: server-sent events, each a name and data on one line.
 
 use super::frame::Frame;
-use crate::render::bytes::to_byte;
-use crate::render::progressive::Area;
-use crate::text::json;
-use crate::world::material::Rgb;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use hyper::body::Bytes;
 use serde::Serialize;
 use std::time::Duration;
+use tabray_core::render::bytes::to_byte;
+use tabray_core::render::progressive::Area;
+use tabray_core::text::json;
+use tabray_core::world::material::Rgb;
 
 /// Announces a valid scene, whose image follows in parts.
 pub fn scene(frame: &Frame) -> Bytes {

@@ -1,15 +1,15 @@
 //! The numbers of a scene's entities, as a page offers them to be changed.
 
 use super::frame::Frame;
-use crate::editor::{self, Text, View};
-use crate::render::plan::Plan;
-use crate::render::trace;
-use crate::scene::attribute::Attribute;
-use crate::scene::registry::Registry;
-use crate::scene::store::Record;
-use crate::scene::syntax::Syntax;
-use crate::scene::value::{Datum, Type};
 use serde::Serialize;
+use tabray_core::render::plan::Plan;
+use tabray_core::render::trace;
+use tabray_core::scene::attribute::Attribute;
+use tabray_core::scene::store::Record;
+use tabray_core::scene::value::{Datum, Type};
+use tabray_lang::editor::{self, Text, View};
+use tabray_lang::registry::Registry;
+use tabray_lang::syntax::Syntax;
 
 /// An entity of a scene.
 #[derive(Serialize)]

@@ -1,7 +1,6 @@
 //! Watches the files that a scene is read from.
 
-use crate::cli::process::failure::Failure;
-use crate::text;
+use crate::process::failure::Failure;
 use notify::event::{AccessKind, AccessMode, EventKind, ModifyKind};
 use notify::{ErrorKind, Event, RecommendedWatcher, RecursiveMode, Watcher};
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,6 +8,7 @@ use std::ffi::OsStr;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use tabray_core::text;
 
 /// Watches files by their folders, because many editors replace a file by a new one.
 pub struct Files {

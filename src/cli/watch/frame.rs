@@ -1,15 +1,15 @@
 //! A valid scene, as it was when it was read.
 
-use crate::render::plan::Plan;
-use crate::render::trace;
-use crate::scene::model::Model;
-use crate::scene::reader::{self, Places, ReadOptions, Report};
-use crate::scene::registry::Registry;
-use crate::world::accuracy::Accuracy;
 use std::io;
 use std::ops::{ControlFlow, Range};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use tabray_core::render::plan::Plan;
+use tabray_core::render::trace;
+use tabray_core::scene::model::Model;
+use tabray_core::world::accuracy::Accuracy;
+use tabray_lang::reader::{self, Places, ReadOptions, Report};
+use tabray_lang::registry::Registry;
 
 /// A valid scene, its text and the state of its image.
 pub struct Frame {

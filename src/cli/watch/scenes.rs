@@ -4,11 +4,9 @@ use super::answer;
 use super::events::{self, SceneEntry};
 use super::files::{Files, is_scene};
 use super::session::{ChangeListener, Session};
-use crate::cli::files::input;
-use crate::cli::process::failure::Failure;
-use crate::cli::serve::{self, Body, Work};
-use crate::scene::registry::Registry;
-use crate::text;
+use crate::files::input;
+use crate::process::failure::Failure;
+use crate::serve::{self, Body, Work};
 use hyper::body::Bytes;
 use hyper::{Request, Response, StatusCode};
 use std::collections::{BTreeMap, HashSet};
@@ -16,6 +14,8 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use tabray_core::text;
+use tabray_lang::registry::Registry;
 
 /// The scenes that are watched.
 pub struct Scenes {

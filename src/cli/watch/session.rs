@@ -2,15 +2,15 @@
 
 use super::feed::EventFeed;
 use super::trial_values::TrialValues;
-use crate::cli::files::output;
-use crate::cli::process::failure::Failure;
-use crate::cli::serve::{self, Body};
-use crate::scene::registry::Registry;
+use crate::files::output;
+use crate::process::failure::Failure;
+use crate::serve::{self, Body};
 use hyper::{Response, StatusCode};
 use std::fs;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use tabray_lang::registry::Registry;
 
 /// The state of a watched scene that the program and its pages share.
 pub struct Session {
@@ -84,7 +84,7 @@ impl Session {
             Ok(Ok(text)) => text,
             Ok(Err(_)) => return refuse("the scene is not in UTF-8: change it in an editor\n".to_owned()),
             Err(error) => {
-                return refuse(format!("the scene cannot be read: {}\n", crate::text::reason(&error)));
+                return refuse(format!("the scene cannot be read: {}\n", tabray_core::text::reason(&error)));
             }
         };
         let shown = self.feed.text();

@@ -1,12 +1,12 @@
 //! The values that a page tries out beside a scene's text, and how they are written into it.
 
-use crate::editor::{self, Text, View};
-use crate::scene::registry::Registry;
-use crate::scene::syntax::Syntax;
-use crate::scene::value::Datum;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use tabray_core::scene::value::Datum;
+use tabray_lang::editor::{self, Text, View};
+use tabray_lang::registry::Registry;
+use tabray_lang::syntax::Syntax;
 
 /// A value that is tried out, as a page sends it.
 #[derive(Deserialize)]

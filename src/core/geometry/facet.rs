@@ -1,8 +1,8 @@
 //! Flat parts of surfaces, compared by the numbers of the scene: two facets may lie in one plane exactly.
 
 use crate::geometry::placement::{Placement, Rotation};
-use crate::numeric::double_double::two_sum;
 use glam::DVec3;
+use tabray_exact::double_double::two_sum;
 
 /// The plane that contains all of a closed shape's surface near a point, and the side on which the shape lies.
 #[derive(Clone, Copy, Debug, PartialEq)]

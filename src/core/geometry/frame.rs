@@ -4,9 +4,9 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::facet::Facet;
 use crate::geometry::ray::Ray;
 use crate::geometry::sight::{Line, Sight};
-use crate::numeric::double_double::{DoubleDouble, offset, scaled};
-use crate::numeric::scalar::{Scalar, constants, dot, per_axis};
 use glam::{DMat3, DVec3};
+use tabray_exact::double_double::{DoubleDouble, offset, scaled};
+use tabray_exact::scalar::{Scalar, constants, dot, per_axis};
 
 /// The rounding error of each coordinate of a point that is transformed into a frame, as a fraction of the point's
 /// distance from the frame's origin. In units of EPSILON, the axes contribute 3, the rotation 3/2 and the vector from

@@ -1,7 +1,7 @@
 //! Points of an image.
 
-use crate::numeric::scalar::Scalar;
 use glam::DVec2;
+use tabray_exact::scalar::Scalar;
 
 /// A point of an image, in any number type: its distances from the left and from the bottom.
 #[derive(Clone, Copy, Debug)]

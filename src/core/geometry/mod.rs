@@ -1,17 +1,17 @@
 //! Geometry without shapes: rays, bounding boxes and frames.
 
-pub(crate) mod aabb;
-pub(crate) mod bvh;
-pub(crate) mod facet;
-pub(crate) mod frame;
-pub(crate) mod image_point;
-pub(crate) mod orientation;
-pub(crate) mod placement;
-pub(crate) mod ray;
-pub(crate) mod ray_packet;
-pub(crate) mod roots;
-pub(crate) mod sight;
-pub(crate) mod view_frame;
+pub mod aabb;
+pub mod bvh;
+pub mod facet;
+pub mod frame;
+pub mod image_point;
+pub mod orientation;
+pub mod placement;
+pub mod ray;
+pub mod ray_packet;
+pub mod roots;
+pub mod sight;
+pub mod view_frame;
 
 pub use aabb::{Aabb, clearance};
 pub use bvh::{Bvh, Stack};

@@ -1,10 +1,10 @@
 //! On which side of a plane, or of a line in it, a point lies: decided exactly, as long as no product of the coordinates'
 //! differences, brought to sizes around 1, underflows.
 
-use crate::numeric::double_double::DoubleDouble;
-use crate::numeric::double_double::vectors::{cross, product, scaled_to_one, triple_product};
 use glam::DVec3;
 use std::cmp::Ordering;
+use tabray_exact::double_double::DoubleDouble;
+use tabray_exact::double_double::vectors::{cross, product, scaled_to_one, triple_product};
 
 /// A bound on the rounding error of a component of the cross product of two vectors between points, as a fraction of the
 /// product of their largest components. Units of 2^-53: 2 * (3 + 1), less than 16.

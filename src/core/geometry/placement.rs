@@ -1,7 +1,7 @@
 //! Placements: the position, size and rotation of a copy of a shape in the world.
 
-use crate::numeric::scalar::{Scalar, cross, dot, per_axis};
 use glam::{DMat3, DVec3};
+use tabray_exact::scalar::{Scalar, cross, dot, per_axis};
 
 /// π as the sum of four numbers, to within [`PI_ERROR`].
 const PI: [f64; 4] = [
@@ -129,8 +129,8 @@ pub(crate) fn radians<N: Scalar>(degrees: f64) -> N {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::interval::{Float, Interval, Wide};
     use glam::DQuat;
+    use tabray_exact::interval::{Float, Interval, Wide};
 
     #[test]
     fn half_a_turn_is_enclosed() {

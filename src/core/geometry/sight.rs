@@ -4,13 +4,13 @@ use crate::geometry::image_point::ImagePoint;
 use crate::geometry::placement::Placement;
 use crate::geometry::ray::Ray;
 use crate::geometry::view_frame::{self, ViewFrame};
-use crate::numeric::double_double::exact::exact_sum;
-use crate::numeric::double_double::two_product;
-use crate::numeric::dual::Dual;
-use crate::numeric::interval::{Float, Interval};
-use crate::numeric::scalar::{Scalar, constants, per_axis};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
+use tabray_exact::double_double::exact::exact_sum;
+use tabray_exact::double_double::two_product;
+use tabray_exact::dual::Dual;
+use tabray_exact::interval::{Float, Interval};
+use tabray_exact::scalar::{Scalar, constants, per_axis};
 
 /// A ray as the scene gives it, before rounding.
 #[derive(Clone, Debug)]

@@ -2,9 +2,9 @@
 
 use crate::geometry::image_point::ImagePoint;
 use crate::geometry::placement::radians;
-use crate::numeric::double_double::{DoubleDouble, exponent_to_one, scaled, times_power_of_two};
-use crate::numeric::scalar::{Scalar, constants, cross, dot, per_axis};
 use glam::DVec3;
+use tabray_exact::double_double::{DoubleDouble, exponent_to_one, scaled, times_power_of_two};
+use tabray_exact::scalar::{Scalar, constants, cross, dot, per_axis};
 
 /// A viewer's position and the perpendicular directions to its right, up and forward.
 #[derive(Clone, Copy, Debug)]

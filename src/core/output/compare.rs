@@ -1,9 +1,9 @@
 //! The difference of two images, in numbers.
 
-use crate::numeric::scalar::per_axis;
 use crate::text;
 use image::{Rgb32FImage, RgbImage};
 use std::fmt;
+use tabray_exact::scalar::per_axis;
 
 /// The difference of two images of the same size. Differences are in levels of a channel, from 0 to 255.
 #[derive(Clone, Debug, PartialEq)]

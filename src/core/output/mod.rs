@@ -1,15 +1,15 @@
 //! Images and other files made from what is rendered.
 
-pub(crate) mod aov;
-pub(crate) mod aov_values;
-pub(crate) mod checkpoint;
-pub(crate) mod compare;
-pub(crate) mod deflate;
+pub mod aov;
+pub mod aov_values;
+pub mod checkpoint;
+pub mod compare;
+pub mod deflate;
 mod filter;
-pub(crate) mod full_range;
-pub(crate) mod packing;
-pub(crate) mod part;
-pub(crate) mod picture;
+pub mod full_range;
+pub mod packing;
+pub mod part;
+pub mod picture;
 
 pub use aov::Aov;
 pub use compare::Comparison;

@@ -1,13 +1,13 @@
 //! The objects that are so small in the image that they may lie between samples.
 
 use crate::geometry::aabb::Aabb;
-use crate::numeric::scalar::per_axis;
 use crate::render::tiles::TILE;
 use crate::scene::model::Object;
 use crate::world::camera::Projected;
 use crate::world::film::Film;
 use glam::{DVec2, DVec3};
 use std::ops::RangeInclusive;
+use tabray_exact::scalar::per_axis;
 
 /// The width or height in pixels below which an object may be missed by the first samples of pixels that see it: its
 /// bounds then hold no whole neighbourhood of a pixel.

@@ -1,20 +1,20 @@
 //! From a model to colours: the plan, the BVH, the tracer, and its observers.
 
-pub(crate) mod bytes;
+pub mod bytes;
 mod culling;
 pub mod decisions;
-pub(crate) mod division;
+pub mod division;
 mod features;
-pub(crate) mod flaws;
+pub mod flaws;
 mod footprint;
 mod frusta;
-pub(crate) mod limits;
-pub(crate) mod observer;
-pub(crate) mod plan;
-pub(crate) mod progressive;
-pub(crate) mod ray_stats;
-pub(crate) mod renderer;
-pub(crate) mod tiles;
+pub mod limits;
+pub mod observer;
+pub mod plan;
+pub mod progressive;
+pub mod ray_stats;
+pub mod renderer;
+pub mod tiles;
 pub mod trace;
 
 pub use bytes::to_byte;

@@ -1,7 +1,7 @@
 //! What a scene needs, decided once before any ray is traced, so that rendering can leave out everything else.
 
-pub(crate) mod depth;
-pub(crate) mod needs;
+pub mod depth;
+pub mod needs;
 mod shut_out;
 
 use depth::{ContinuationBounds, Depth};

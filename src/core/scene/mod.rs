@@ -1,29 +1,29 @@
 //! From a scene's text to a model, and back: the tables of entity types, and the documents generated from them.
 
-pub(crate) mod attribute;
-pub(crate) mod choice;
+pub mod attribute;
+pub mod choice;
 mod common;
-pub(crate) mod counts;
+pub mod counts;
 pub mod dump;
-pub(crate) mod entity;
+pub mod entity;
 pub mod grammar;
 mod json_schema;
-pub(crate) mod kind;
-pub(crate) mod list;
-pub(crate) mod list_json;
-pub(crate) mod model;
-pub(crate) mod pparm;
-pub(crate) mod procedural;
-pub(crate) mod profile;
-pub(crate) mod reader;
+pub mod kind;
+pub mod list;
+pub mod list_json;
+pub mod model;
+pub mod pparm;
+pub mod procedural;
+pub mod profile;
+pub mod reader;
 pub mod reference;
-pub(crate) mod references;
-pub(crate) mod registry;
-pub(crate) mod rotation;
+pub mod references;
+pub mod registry;
+pub mod rotation;
 pub mod schema;
-pub(crate) mod store;
-pub(crate) mod syntax;
-pub(crate) mod value;
+pub mod store;
+pub mod syntax;
+pub mod value;
 
 pub use attribute::{Attribute, Pose};
 pub use choice::Choice;

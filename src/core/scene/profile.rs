@@ -1,10 +1,10 @@
 //! Profiles: the curves that surfaces of revolution are turned from.
 
-use crate::numeric::dual::Dual;
-use crate::numeric::formula::Formula;
 use crate::scene::choice::{Choice, ChoiceName};
 use crate::text;
 use std::panic::Location;
+use tabray_exact::dual::Dual;
+use tabray_exact::formula::Formula;
 
 /// A curve x = g(y), which a scene chooses by name or by number. A plugin registers one with `inventory::submit!`.
 pub struct Profile {

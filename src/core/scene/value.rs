@@ -1,8 +1,5 @@
 //! The types of attribute values that the scene language has.
 
-use crate::numeric::formula::Formula;
-use crate::numeric::formula::field::{Field, SurfaceField};
-use crate::numeric::formula::variables::{HEIGHT, SPACE, SURFACE};
 use crate::scene::choice::{Choice, ChoiceName, Choices};
 use crate::scene::counts::Counts;
 use crate::scene::kind::Kind;
@@ -12,6 +9,9 @@ use crate::world::texture::Texture;
 use glam::{DVec2, DVec3};
 use std::path::PathBuf;
 use std::sync::Arc;
+use tabray_exact::formula::Formula;
+use tabray_exact::formula::field::{Field, SurfaceField};
+use tabray_exact::formula::variables::{HEIGHT, SPACE, SURFACE};
 
 /// The names of the values of a colour. Editors show a swatch for an attribute whose values have these names.
 pub const COLOUR: &[&str] = &["red", "green", "blue"];

@@ -1,13 +1,15 @@
 //! Spheres stretched along the axes: the arithmetic behind ellipsoids.
 
+mod hits;
+
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, Drift, Ray, RayRange};
-use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two};
-use crate::numeric::scalar::Scalar;
 use crate::shapes::sphere::{self, SphereLine};
 use crate::world::accuracy::Bounded;
 use glam::DVec3;
 use std::marker::PhantomData;
+use tabray_exact::double_double::{DoubleDouble, exponent_to_one, times_power_of_two};
+use tabray_exact::scalar::Scalar;
 
 /// A sphere in a space that is divided by `scale` around the ellipsoid's centre.
 pub struct Ellipsoid<A> {

@@ -1,11 +1,11 @@
 //! The conditions on a formula in x, y and z under which its surface can be hit: on the whole surface within its box,
 //! the formula and its slope are bounded. Interval arithmetic proves that on smaller and smaller parts of the box.
 
-use crate::numeric::dual::Dual;
-use crate::numeric::formula::field::Field;
-use crate::numeric::interval::Interval;
 use glam::DVec3;
 use std::collections::VecDeque;
+use tabray_exact::dual::Dual;
+use tabray_exact::formula::field::Field;
+use tabray_exact::interval::Interval;
 
 /// The number of formula operations that a check may take, a function counted as eight: some tenths of a second.
 const OPERATIONS: u64 = 40_000_000;

@@ -4,13 +4,13 @@ use super::plane::{Flat, Plane};
 use super::rectangle::{FinitePlane, along_sides};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
-use crate::numeric::double_double::DoubleDouble;
-use crate::numeric::interval::Interval;
-use crate::numeric::scalar::{Scalar, constants, per_axis};
 use crate::world::accuracy::{Bounded, Marker};
 use crate::world::certify::Equation;
 use crate::world::hittable::{Bracketed, Certified, Hittable};
 use glam::{DVec2, DVec3};
+use tabray_exact::double_double::DoubleDouble;
+use tabray_exact::interval::Interval;
+use tabray_exact::scalar::{Scalar, constants, per_axis};
 
 impl<A: Marker> Hittable for FinitePlane<A> {
     #[inline(always)]

@@ -3,17 +3,17 @@
 mod ellipsoid;
 pub mod field;
 mod finite_plane;
-pub(crate) mod implicit;
+pub mod implicit;
 pub mod mesh;
 pub mod outline;
-pub(crate) mod placed;
+pub mod placed;
 pub mod plane;
-pub(crate) mod quadratic;
+pub mod quadratic;
 pub mod rectangle;
-pub(crate) mod revolution;
-pub(crate) mod solid;
+pub mod revolution;
+pub mod solid;
 pub mod sphere;
-pub(crate) mod triangle;
+pub mod triangle;
 pub mod uv;
 
 pub use ellipsoid::Ellipsoid;

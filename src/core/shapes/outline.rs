@@ -1,13 +1,13 @@
 //! Polygons in a plane: cut into triangles, or extended to prisms.
 
 use crate::geometry::placement::Rotation;
-use crate::numeric::double_double::DoubleDouble;
 use crate::shapes::mesh::read::Model;
 use crate::shapes::mesh::{Mesh, Surface, SurfaceError, ToWorld};
 use crate::world::accuracy::{Accuracy, Exact, Strict};
 use crate::world::body::Body;
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
+use tabray_exact::double_double::DoubleDouble;
 
 /// Scales points by a power of two to a size between 1 and 2, so that products of their coordinates neither overflow nor
 /// underflow.

@@ -2,12 +2,12 @@
 
 use crate::geometry::aabb::{Aabb, larger, smaller};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
-use crate::numeric::double_double::vectors::{cross, product, unit};
-use crate::numeric::double_double::{DoubleDouble, scaled};
-use crate::numeric::scalar::{self, Scalar, constants, dot, per_axis};
 use crate::shapes::plane::Plane;
 use crate::world::accuracy::Marker;
 use glam::{DMat3, DVec2, DVec3};
+use tabray_exact::double_double::vectors::{cross, product, unit};
+use tabray_exact::double_double::{DoubleDouble, scaled};
+use tabray_exact::scalar::{self, Scalar, constants, dot, per_axis};
 
 /// The place and the size of a rectangle.
 #[derive(Clone, Copy, Debug)]

@@ -6,10 +6,10 @@
 
 use crate::geometry::aabb::{Aabb, SLACK, larger};
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
-use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two, two_product};
-use crate::numeric::scalar::per_axis;
 use crate::world::accuracy::{Accuracy, Marker};
 use glam::DVec3;
+use tabray_exact::double_double::{DoubleDouble, exponent_to_one, times_power_of_two, two_product};
+use tabray_exact::scalar::per_axis;
 
 /// A half-line from a point, in double-double arithmetic.
 #[derive(Clone, Copy, Debug)]

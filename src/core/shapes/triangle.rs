@@ -1,17 +1,19 @@
 //! The tests of a ray against the edges of a triangle: the arithmetic behind triangles.
 
+mod hits;
+
 use crate::geometry::aabb::larger;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
 use crate::geometry::ray_packet::RayPacket;
-use crate::numeric::double_double::vectors::{
-    self, plain_cross, quick_unit, rounded_unit, scaled_to_one, triple_product,
-};
-use crate::numeric::double_double::{DoubleDouble, two_sum};
-use crate::numeric::scalar::{Scalar, constants, cross, dot, per_axis};
 use crate::shapes::plane::Plane;
 use crate::simd::soa::{LANES, Vectors};
 use crate::world::accuracy::{Bounded, Classic};
 use glam::DVec3;
+use tabray_exact::double_double::vectors::{
+    self, plain_cross, quick_unit, rounded_unit, scaled_to_one, triple_product,
+};
+use tabray_exact::double_double::{DoubleDouble, two_sum};
+use tabray_exact::scalar::{Scalar, constants, cross, dot, per_axis};
 
 /// A triangle.
 #[derive(Clone, Copy, Debug)]

@@ -1,9 +1,9 @@
 //! Coordinates u and v on surfaces, for shaders.
 
-use crate::numeric::interval::Interval;
-use crate::numeric::scalar::{Scalar, constants, cross, dot, per_axis};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
+use tabray_exact::interval::Interval;
+use tabray_exact::scalar::{Scalar, constants, cross, dot, per_axis};
 
 /// Returns how far around the y axis a point lies, from 0 to 1: 0.5 toward +z, and more toward +x.
 pub fn turn(at: DVec3) -> f64 {

@@ -1,7 +1,7 @@
 //! Kernels, compiled for each level of instructions, and the arrays that they work on.
 
-pub(crate) mod cpu;
-pub(crate) mod soa;
+pub mod cpu;
+pub mod soa;
 
 pub use cpu::Cpu;
 pub use soa::Vectors;

@@ -1,8 +1,8 @@
 //! Backgrounds: the trait that a plugin implements for the colour of rays that hit no object.
 
-use crate::numeric::interval::Interval;
 use crate::world::material::Rgb;
 use glam::DVec3;
+use tabray_exact::interval::Interval;
 
 /// Any [`Background`].
 pub type AnyBackground = Box<dyn Background>;

@@ -4,9 +4,9 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::image_point::ImagePoint;
 use crate::geometry::ray::Ray;
 use crate::geometry::sight::{Line, Sight};
-use crate::numeric::scalar::Scalar;
 use glam::{DVec2, DVec3};
 use std::fmt;
+use tabray_exact::scalar::Scalar;
 
 /// A camera: which ray belongs to each point of the image.
 ///

@@ -8,13 +8,13 @@
 use crate::geometry::aabb::larger;
 use crate::geometry::ray::Ray;
 use crate::geometry::sight::{Line, Sight};
-use crate::numeric::double_double::DoubleDouble;
-use crate::numeric::dual::Dual;
-use crate::numeric::interval::Interval;
-use crate::numeric::scalar::Scalar;
 use crate::simd::cpu::kernels;
 use crate::world::certify::Equation;
 use glam::DVec3;
+use tabray_exact::double_double::DoubleDouble;
+use tabray_exact::dual::Dual;
+use tabray_exact::interval::Interval;
+use tabray_exact::scalar::Scalar;
 
 /// A bound on the rounding error of a hit point, as a fraction of the coordinates that it is computed from: 8 ulps for
 /// the distance along the ray and 1.5 ulps for each of the two operations that follow, together 11, rounded up to 16.

@@ -3,7 +3,6 @@
 use crate::geometry::image_point::ImagePoint;
 use crate::geometry::ray::Ray;
 use crate::geometry::sight::Sight;
-use crate::numeric::affine::Affine;
 use crate::simd::cpu::{Cpu, kernels};
 use crate::world::accuracy::Accuracy;
 use crate::world::camera::{Origins, Projected};
@@ -13,6 +12,7 @@ use crate::world::sample::{self, Sample, Sampler};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
 use std::sync::Arc;
+use tabray_exact::affine::Affine;
 
 /// Any [`Camera`](crate::world::camera::Camera): `Arc::new(camera)` makes one.
 pub type AnyCamera = Arc<dyn PacketCamera>;

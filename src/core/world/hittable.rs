@@ -6,11 +6,11 @@
 use crate::geometry::aabb::Aabb;
 use crate::geometry::facet::Facet;
 use crate::geometry::ray::{Bracket, Drift, Ray, RayRange, Side};
-use crate::geometry::roots::Method;
-use crate::numeric::double_double::DoubleDouble;
 use crate::world::certify::{Assumption, Equation};
 use crate::world::coincidence;
 use glam::{DMat3, DVec2, DVec3};
+use tabray_exact::double_double::DoubleDouble;
+use tabray_exact::roots::Method;
 
 /// A shape that rays can hit. Shapes do not change while an image is rendered.
 ///

@@ -1,11 +1,11 @@
 //! Lights: the trait that a plugin implements.
 
 use crate::geometry::aabb::Aabb;
-use crate::numeric::interval::Interval;
-use crate::numeric::scalar::constants;
 use crate::world::certify::Precise;
 use crate::world::material::Rgb;
 use glam::DVec3;
+use tabray_exact::interval::Interval;
+use tabray_exact::scalar::constants;
 
 /// A source of light.
 pub trait Light: Send + Sync {

@@ -1,27 +1,27 @@
 //! What a scene is made of: the traits of shapes, shaders, lights, backgrounds and cameras, and the types in their
 //! signatures.
 
-pub(crate) mod accuracy;
-pub(crate) mod any_shape;
-pub(crate) mod background;
-pub(crate) mod body;
-pub(crate) mod camera;
+pub mod accuracy;
+pub mod any_shape;
+pub mod background;
+pub mod body;
+pub mod camera;
 pub mod certify;
 pub mod coincidence;
-pub(crate) mod film;
-pub(crate) mod hittable;
-pub(crate) mod interaction;
-pub(crate) mod interface;
-pub(crate) mod light;
-pub(crate) mod light_samples;
-pub(crate) mod material;
-pub(crate) mod packets;
-pub(crate) mod pinhole;
-pub(crate) mod sample;
-pub(crate) mod shader;
-pub(crate) mod shape;
-pub(crate) mod solid;
-pub(crate) mod texture;
+pub mod film;
+pub mod hittable;
+pub mod interaction;
+pub mod interface;
+pub mod light;
+pub mod light_samples;
+pub mod material;
+pub mod packets;
+pub mod pinhole;
+pub mod sample;
+pub mod shader;
+pub mod shape;
+pub mod solid;
+pub mod texture;
 
 pub use accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Marker, Strict};
 pub use any_shape::AnyShape;

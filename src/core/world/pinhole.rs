@@ -3,9 +3,9 @@
 use crate::geometry::image_point::ImagePoint;
 use crate::geometry::ray::Ray;
 use crate::geometry::sight::{self, Line, Sight};
-use crate::numeric::scalar::{Scalar, constants};
 use crate::world::camera::{Camera, Origins, Projected};
 use glam::{DVec2, DVec3};
+use tabray_exact::scalar::{Scalar, constants};
 
 /// The z, in world units, beyond which planes are cut off: the viewer's side of the image plane (the course notes'
 /// "wrong side").

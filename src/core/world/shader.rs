@@ -1,12 +1,12 @@
 //! Shaders: the trait that a plugin implements for one point of a surface.
 
 use crate::geometry::ray::Side;
-use crate::numeric::interval::{Float, Interval};
-use crate::numeric::scalar::{Scalar, per_axis};
 use crate::world::certify::{Precise, Proven};
 use crate::world::hittable::Hittable;
 use crate::world::material::{Look, Material, Rgb};
 use glam::{DVec2, DVec3};
+use tabray_exact::interval::{Float, Interval};
+use tabray_exact::scalar::{Scalar, per_axis};
 
 /// A point of a surface, as a shader sees it. On a copy of an object, the point is in the coordinates of the original.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,6 @@
 //! Textures: images that colour surfaces and light.
 
 use crate::files::{self, ImageBytes};
-use crate::numeric::interval::{Float, Interval};
-use crate::numeric::scalar::{Scalar, constants, per_axis};
 use crate::text;
 use crate::world::material::Rgb;
 use bytesize::ByteSize;
@@ -11,6 +9,8 @@ use std::fs;
 use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
+use tabray_exact::interval::{Float, Interval};
+use tabray_exact::scalar::{Scalar, constants, per_axis};
 
 /// The memory that a decoder may take beside the image, in bytes.
 const ASIDE: u64 = 1 << 20;

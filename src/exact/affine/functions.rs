@@ -1,9 +1,9 @@
 //! The functions of affine numbers: each by its tangent and a bound on its curvature, or by its range.
 
 use super::{Affine, spread};
-use crate::numeric::interval::Interval;
-use crate::numeric::scalar::{Scalar, of_cubic};
-use crate::numeric::spline::Spline;
+use crate::interval::Interval;
+use crate::scalar::{Scalar, of_cubic};
+use crate::spline::Spline;
 use std::ops::Div;
 
 impl Affine {

@@ -2,8 +2,8 @@
 //! true hits that tests compare with.
 
 use super::{DoubleDouble, two_product};
-use crate::numeric::scalar::{Scalar, of_cubic};
-use crate::numeric::spline::Spline;
+use crate::scalar::{Scalar, of_cubic};
+use crate::spline::Spline;
 
 /// Returns 2^`exponent`, which may be subnormal.
 fn power_of_two(exponent: i32) -> f64 {

@@ -4,7 +4,7 @@ use super::program::MOST_REGISTERS;
 use super::step::{Function, Step};
 use super::variables::{SPACE, SURFACE};
 use super::{FEW_REGISTERS, Formula};
-use crate::numeric::scalar::Scalar;
+use crate::scalar::Scalar;
 use std::sync::Arc;
 
 /// The number of registers that suffices for most formulas of space, in values. [`MOST_REGISTERS`] take longer to set up

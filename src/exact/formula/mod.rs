@@ -10,11 +10,11 @@ pub mod variables;
 pub(crate) use parser::functions;
 pub use parser::{FormulaFault, Named, is_taken};
 
-use crate::numeric::dual::Dual;
-use crate::numeric::f64x8::F64x8;
-use crate::numeric::scalar::{Scalar, apart_if};
-use crate::numeric::spline::Spline;
-use crate::simd::soa::LANES;
+use crate::dual::Dual;
+use crate::f64x8::F64x8;
+use crate::f64x8::LANES;
+use crate::scalar::{Scalar, apart_if};
+use crate::spline::Spline;
 use crate::text;
 use program::{Instruction, MOST_REGISTERS, Program};
 use std::fmt;

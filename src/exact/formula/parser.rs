@@ -1,7 +1,7 @@
 //! The parser: from the text of a formula to its operations in postfix order.
 
 use super::step::{Function, MAX_DEPTH, Step};
-use crate::numeric::decimal;
+use crate::decimal;
 use crate::text;
 use std::f64::consts::PI;
 use std::ops::Range;

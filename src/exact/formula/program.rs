@@ -125,9 +125,9 @@ fn values(steps: &[Step], variables: usize, are_shared: bool) -> (Vec<Value>, us
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::formula::Formula;
-    use crate::numeric::formula::field::{Field, SurfaceField};
-    use crate::numeric::formula::variables::SPACE;
+    use crate::formula::Formula;
+    use crate::formula::field::{Field, SurfaceField};
+    use crate::formula::variables::SPACE;
     use std::sync::Arc;
 
     #[test]

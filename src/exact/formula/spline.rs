@@ -2,7 +2,7 @@
 
 use super::step::Step;
 use super::{Formula, HEIGHT};
-use crate::numeric::spline::Spline;
+use crate::spline::Spline;
 use std::sync::Arc;
 
 impl Formula {
@@ -23,9 +23,9 @@ impl Formula {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::dual::Dual;
-    use crate::numeric::interval::Interval;
-    use crate::numeric::jet::Jet;
+    use crate::dual::Dual;
+    use crate::interval::Interval;
+    use crate::jet::Jet;
 
     #[test]
     fn a_spline_passes_its_points_and_bends_evenly() {

@@ -321,8 +321,8 @@ impl From<f256> for Fraction {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::interval::{Interval, Wide};
-    use crate::numeric::scalar::Scalar;
+    use crate::interval::{Interval, Wide};
+    use crate::scalar::Scalar;
     use proptest::prelude::*;
 
     type Exact = Interval<Fraction>;

@@ -1,8 +1,8 @@
 //! The functions of formulas over intervals.
 
 use super::{Float, Interval};
-use crate::numeric::scalar::{Scalar, apart_if, of_cubic};
-use crate::numeric::spline::Spline;
+use crate::scalar::{Scalar, apart_if, of_cubic};
+use crate::spline::Spline;
 
 impl<F: Float> Interval<F> {
     /// Returns whether the interval may contain `start` plus any multiple of 2π radians.

@@ -6,7 +6,7 @@ mod float;
 mod fraction;
 mod functions;
 
-use crate::numeric::scalar::{Scalar, apart_if};
+use crate::scalar::{Scalar, apart_if};
 use f256::f256;
 pub use float::Float;
 pub use fraction::Fraction;

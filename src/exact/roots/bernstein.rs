@@ -3,7 +3,7 @@
 //! Source: G. Farin, Curves and Surfaces for CAGD, fifth edition, 2002, sections 5.1 and 6.4: the convex hull property,
 //! subdivision at the middle, and variation diminution.
 
-use crate::numeric::polynomial::{MAX_DEGREE, Polynomial};
+use crate::polynomial::{MAX_DEGREE, Polynomial};
 
 /// Coefficients that are not above this many times their error are taken to be hidden by rounding.
 const HIDDEN: f64 = 64.0;
@@ -112,8 +112,8 @@ impl Bernstein {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::interval::Interval;
-    use crate::numeric::scalar::Scalar;
+    use crate::interval::Interval;
+    use crate::scalar::Scalar;
 
     /// Returns the form, from 0 to 1, of the polynomial with these roots that is above 0 far to the right.
     fn with_roots(roots: &[f64]) -> Bernstein {

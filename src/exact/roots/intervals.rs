@@ -6,9 +6,9 @@
 
 use super::refiner::{Refiner, value_and_slope};
 use super::taylor::FunctionOnLine;
-use crate::geometry::ray::Side;
-use crate::numeric::dual::Dual;
-use crate::numeric::interval::Interval;
+use crate::dual::Dual;
+use crate::interval::Interval;
+use crate::roots::range::Side;
 use std::ops::Range;
 
 /// The number of pieces after which a ray is given up.

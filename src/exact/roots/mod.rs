@@ -1,7 +1,7 @@
 //! Methods that find the first root of a function along a line, one per file, which `tabray chart` compares.
 //!
 //! Scenes are traced with two of them. [`taylor`] finds the hits of shapes that are one formula, and decides where a
-//! ray grazes a surface of revolution, whose other hits come from quadrics ([`revolution`](crate::shapes::revolution));
+//! ray grazes a surface of revolution, whose other hits come from quadrics ([`revolution`](tabray_core::shapes::revolution));
 //! [`newton`] refines the roots of both. The others are what other programs use; each file says where its method is
 //! from and where it fails.
 
@@ -19,7 +19,7 @@ mod tracing;
 mod turning;
 pub mod twice;
 
-use crate::geometry::ray::RayRange;
+use crate::roots::range::RayRange;
 pub use refiner::Refiner;
 use std::fmt;
 use std::ops::Range;
@@ -120,8 +120,8 @@ impl fmt::Display for Method {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::ray::Side;
-    use crate::numeric::scalar::Scalar;
+    use crate::roots::range::Side;
+    use crate::scalar::Scalar;
 
     /// Falls through 0 at the square root of 2, rises through 0 at 3.
     struct Parabola;

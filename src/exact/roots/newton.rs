@@ -1,6 +1,6 @@
 //! Newton's method safeguarded by a bracket, for one function or for several at a time.
 
-use crate::numeric::dual::Dual;
+use crate::dual::Dual;
 use std::array::from_fn;
 
 /// The largest number of steps, after which a root is taken as it is; a bracket that is only bisected has shrunk by

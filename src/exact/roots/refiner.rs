@@ -3,8 +3,8 @@
 
 use super::taylor::FunctionOnLine;
 use super::{bisection, chandrupatla, newton};
-use crate::geometry::ray::Side;
-use crate::numeric::dual::Dual;
+use crate::dual::Dual;
+use crate::roots::range::Side;
 use std::fmt;
 use std::ops::Range;
 

@@ -6,7 +6,7 @@
 
 use super::refiner::{Refiner, evenly, sign_change};
 use super::taylor::FunctionOnLine;
-use crate::geometry::ray::Side;
+use crate::roots::range::Side;
 use std::ops::Range;
 
 pub fn first_root(

@@ -7,7 +7,7 @@
 use super::bisection;
 use super::refiner::sign_change;
 use super::taylor::FunctionOnLine;
-use crate::geometry::ray::Side;
+use crate::roots::range::Side;
 use std::ops::Range;
 
 const STEP: f64 = 0.1;

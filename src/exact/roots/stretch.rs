@@ -1,6 +1,6 @@
 //! The part of a line that is searched for roots.
 
-use crate::geometry::frame::BLUR;
+use crate::roots::stretch::BLUR;
 use std::ops::Range;
 
 /// The part of a line that is searched.

@@ -10,13 +10,13 @@
 //! If the function is a polynomial, the signs of its [`bernstein`](super::bernstein) coefficients are judged first; pieces
 //! whose roots these do not tell are judged as above.
 
-use crate::geometry::ray::{RayRange, Side};
-use crate::geometry::roots::bernstein::{Bernstein, Roots};
-use crate::geometry::roots::{newton, stretch::Stretch, twice};
-use crate::numeric::dual::Dual;
-use crate::numeric::interval::Interval;
-use crate::numeric::jet::Jet;
-use crate::numeric::scalar::Scalar;
+use crate::dual::Dual;
+use crate::interval::Interval;
+use crate::jet::Jet;
+use crate::roots::bernstein::{Bernstein, Roots};
+use crate::roots::range::{RayRange, Side};
+use crate::roots::{newton, stretch::Stretch, twice};
+use crate::scalar::Scalar;
 use std::ops::Range;
 
 /// A function along a line: above 0 outside an object, below 0 inside.

@@ -6,9 +6,9 @@
 //! a hit, too, and one that runs along the surface takes very many steps.
 
 use super::taylor::FunctionOnLine;
-use crate::geometry::ray::Side;
-use crate::numeric::dual::Dual;
-use crate::numeric::interval::Interval;
+use crate::dual::Dual;
+use crate::interval::Interval;
+use crate::roots::range::Side;
 use std::ops::Range;
 
 /// The step that counts as a hit, in world units.

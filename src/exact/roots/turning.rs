@@ -7,9 +7,9 @@
 use super::newton;
 use super::refiner::{Refiner, evenly, value_and_slope};
 use super::taylor::FunctionOnLine;
-use crate::geometry::ray::Side;
-use crate::numeric::dual::Dual;
-use crate::numeric::jet::Jet;
+use crate::dual::Dual;
+use crate::jet::Jet;
+use crate::roots::range::Side;
 use std::ops::Range;
 
 pub fn first_root(

@@ -5,12 +5,12 @@
 //! from 0 either counts as a touch: a tangent line meets the surface, but one that leaves the surface does not meet it
 //! there.
 
-use crate::geometry::ray::Side;
-use crate::geometry::roots::bisection::bisect;
-use crate::geometry::roots::{chandrupatla, newton};
-use crate::numeric::double_double::DoubleDouble;
-use crate::numeric::dual::Dual;
-use crate::numeric::interval::Interval;
+use crate::double_double::DoubleDouble;
+use crate::dual::Dual;
+use crate::interval::Interval;
+use crate::roots::bisection::bisect;
+use crate::roots::range::Side;
+use crate::roots::{chandrupatla, newton};
 
 /// The rounding error of double-double arithmetic as a fraction of that of `f64`: 2^-53, with five bits to spare.
 pub const STILL_HIDDEN: f64 = 1.0 / 281_474_976_710_656.0;

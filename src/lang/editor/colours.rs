@@ -1,10 +1,10 @@
 //! The colours of a scene, as swatches, and how another one is written in the place of one.
 
 use super::view::{Form, Item, View, Word};
-use crate::scene::COLOUR;
-use crate::scene::syntax::Syntax;
-use crate::text::shortest;
+use crate::syntax::Syntax;
 use std::ops::Range;
+use tabray_core::scene::COLOUR;
+use tabray_core::text::shortest;
 
 /// A colour in a text.
 #[derive(Clone, Debug, PartialEq)]

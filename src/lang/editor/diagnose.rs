@@ -1,12 +1,12 @@
 //! The faults of a scene, as the loader tells them, in the files in which they are.
 
 use super::text::{Position, Text};
-use crate::files::plain;
-use crate::scene::reader::{self, Fault, Located, ReadOptions, Severity};
-use crate::scene::registry::Registry;
+use crate::reader::{self, Fault, Located, ReadOptions, Severity};
+use crate::registry::Registry;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use tabray_core::files::plain;
 
 /// A fault in a file.
 #[derive(Clone, Debug)]
@@ -74,7 +74,7 @@ fn diagnosis<'r>(fault: &Fault, located: Vec<Located<'r>>, texts: &mut HashMap<&
         message += &format!(": {}", first.text);
     }
     if fault.similar_faults.0 > 0 {
-        message += &format!(" (and in {})", crate::text::count(fault.similar_faults.0, "more place"));
+        message += &format!(" (and in {})", tabray_core::text::count(fault.similar_faults.0, "more place"));
     }
     if let Some(help) = &fault.help {
         message += &format!("\nhelp: {help}");

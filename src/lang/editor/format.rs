@@ -3,8 +3,8 @@
 
 use super::format_toml;
 use super::view::{Attribute, Break, Entity, Item, Repeat, View, Word};
-use crate::scene::reader::toml_error;
-use crate::scene::syntax::Syntax;
+use crate::reader::toml_error;
+use crate::syntax::Syntax;
 use std::fmt::Write;
 use std::ops::Range;
 

@@ -1,7 +1,7 @@
 //! The names in formulas.
 
-use crate::numeric::formula::is_taken;
 use std::ops::Range;
+use tabray_exact::formula::is_taken;
 
 /// Returns the places of the names in a formula that its variables, its functions and `pi` are not, in bytes.
 pub fn names(formula: &str) -> Vec<Range<usize>> {

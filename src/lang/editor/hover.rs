@@ -4,13 +4,13 @@ use super::names::describe;
 use super::project::{Group, definitions};
 use super::types::{ExpectedValue, expected_value, value_name};
 use super::view::{Attribute, Entity, Item, View, Word};
-use crate::scene::attribute;
-use crate::scene::entity;
-use crate::scene::reader::keyword::Keyword;
-use crate::scene::syntax::Syntax;
-use crate::scene::value::Datum;
-use crate::text::list;
+use crate::reader::keyword::Keyword;
+use crate::syntax::Syntax;
 use std::ops::Range;
+use tabray_core::scene::attribute;
+use tabray_core::scene::entity;
+use tabray_core::scene::value::Datum;
+use tabray_core::text::list;
 
 /// The most lines of a definition that are shown.
 const MOST_LINES: usize = 16;
@@ -73,7 +73,7 @@ fn value(
             format!(
                 "**{}**{number}, {}: {}",
                 chosen.name,
-                crate::text::with_article(choices.what),
+                tabray_core::text::with_article(choices.what),
                 chosen.meaning
             )
         }

@@ -1,9 +1,9 @@
 //! The names of a text, to be looked up.
 
 use super::word::Word;
-use crate::scene::kind::Kind;
 use std::collections::HashMap;
 use std::ops::Range;
+use tabray_core::scene::kind::Kind;
 
 /// The namespaces: names in different ones do not clash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -4,9 +4,9 @@ use super::formulas;
 pub use super::named::{Definition, Name, NameContext, Names, Namespace};
 use super::types::{ExpectedValue, expected_value};
 use super::view::{Attribute, Entity, Form, Item, Repeat, View, Word};
-use crate::scene::syntax::Syntax;
-use crate::scene::value::Datum;
+use crate::syntax::Syntax;
 use std::ops::Range;
+use tabray_core::scene::value::Datum;
 
 impl Names {
     /// Finds the names of a text.

@@ -1,16 +1,16 @@
 //! Reads a text in the notes' syntax as far as possible.
 
 use super::view::{Attribute, Break, Entity, Form, Include, Item, Let, Repeat, Word};
-use crate::scene::attribute;
-use crate::scene::entity;
-use crate::scene::reader::keyword::Keyword;
-use crate::scene::reader::tokens::{Token, TokenForm, Tokens};
-use crate::scene::reader::{Report, looks_like_number};
-use crate::scene::registry::Registry;
-use crate::scene::value::Type;
-use crate::text::nearest;
+use crate::reader::keyword::Keyword;
+use crate::reader::tokens::{Token, TokenForm, Tokens};
+use crate::reader::{Report, looks_like_number};
+use crate::registry::Registry;
 use std::collections::HashMap;
 use std::ops::Range;
+use tabray_core::scene::attribute;
+use tabray_core::scene::entity;
+use tabray_core::scene::value::Type;
+use tabray_core::text::nearest;
 
 /// The maximum depth of nested `repeat`s. Deeper ones are skipped.
 const DEEPEST: usize = 64;

@@ -1,8 +1,8 @@
 //! The outline of a scene, and what can be folded.
 
 use super::view::{Item, View};
-use crate::scene::kind::Kind;
 use std::ops::Range;
+use tabray_core::scene::kind::Kind;
 
 /// An entry of the outline.
 #[derive(Clone, Debug)]

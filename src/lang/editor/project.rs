@@ -2,10 +2,10 @@
 
 use super::names::{Definition, Name, NameContext, Names, Namespace, check_name, written};
 use super::view::{Item, View};
-use crate::files::plain;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use tabray_core::files::plain;
 
 /// The most files of a scene that are read.
 const MOST_FILES: usize = 1000;

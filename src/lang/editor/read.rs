@@ -3,8 +3,8 @@
 use super::text::Text;
 use super::view::View;
 use super::{notes, toml};
-use crate::scene::registry::Registry;
-use crate::scene::syntax::Syntax;
+use crate::registry::Registry;
+use crate::syntax::Syntax;
 
 /// Reads a text. Its syntax is that of the file's name, or else that in which the text begins.
 pub fn read(registry: &Registry, name: &str, text: Text) -> View {

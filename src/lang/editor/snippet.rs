@@ -2,9 +2,9 @@
 
 use super::types::{ExpectedValue, expected_value, value_name};
 use super::view::{Entity, View};
-use crate::scene::attribute::Attribute;
-use crate::scene::entity;
-use crate::scene::syntax::Syntax;
+use crate::syntax::Syntax;
+use tabray_core::scene::attribute::Attribute;
+use tabray_core::scene::entity;
 
 /// The most alternatives of a place to fill in.
 const MOST: usize = 30;
@@ -15,12 +15,12 @@ pub struct Snippet<'v> {
     places: usize,
     view: &'v View,
     /// Returns the names of the entities of a kind that can be used here.
-    names: &'v dyn Fn(crate::scene::kind::Kind) -> Vec<String>,
+    names: &'v dyn Fn(tabray_core::scene::kind::Kind) -> Vec<String>,
 }
 
 impl<'v> Snippet<'v> {
     /// Begins with nothing.
-    pub fn new(view: &'v View, names: &'v dyn Fn(crate::scene::kind::Kind) -> Vec<String>) -> Self {
+    pub fn new(view: &'v View, names: &'v dyn Fn(tabray_core::scene::kind::Kind) -> Vec<String>) -> Self {
         Self { text: String::new(), places: 0, view, names }
     }
 

@@ -1,9 +1,8 @@
 //! Tests of all answers together: on the scenes of the repository, and on texts that random edits make of them.
 
 use super::*;
-use crate::scene::reader;
-use crate::scene::registry::Registry;
-use crate::scene::{Syntax, dump};
+use crate::reader;
+use crate::registry::Registry;
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::collections::BTreeMap;
@@ -11,6 +10,7 @@ use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use tabray_core::scene::{Syntax, dump};
 
 fn registry() -> &'static Registry {
     Registry::get().expect("no two plugins claim one name")
@@ -196,7 +196,7 @@ fn a_name_that_is_changed_there_and_back_leaves_the_text_as_it_was() {
 /// Asks everything about a position, and checks that all answers lie in the text.
 fn ask(path: &Path, text: &Text, at: usize) {
     let view = Arc::new(read(registry(), &path.to_string_lossy(), text.clone()));
-    let (at, length) = (crate::text::boundary(text.as_str(), at), text.as_str().len());
+    let (at, length) = (tabray_core::text::boundary(text.as_str(), at), text.as_str().len());
     let check = |place: &Range<usize>| {
         assert!(place.start <= place.end && place.end <= length, "{place:?} of {length}");
         assert!(text.as_str().get(place.clone()).is_some(), "{place:?} cuts a character");

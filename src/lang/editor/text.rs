@@ -1,9 +1,9 @@
 //! A text and its lines. Positions are those of editors: lines from 0, and units of UTF-16 from 0.
 
-use crate::text::boundary;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::sync::Arc;
+use tabray_core::text::boundary;
 
 /// A position in a text: the line and the number of UTF-16 units before it on the line, both from 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

@@ -2,8 +2,8 @@
 
 use super::notes::attribute;
 use super::view::{Attribute, Break, Entity, Form, Include, Item, Let, Repeat, Word};
-use crate::scene::reader::keyword::Keyword;
-use crate::scene::registry::Registry;
+use crate::reader::keyword::Keyword;
+use crate::registry::Registry;
 use std::mem::take;
 use std::ops::Range;
 use toml_parser::decoder::Encoding;

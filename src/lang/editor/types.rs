@@ -1,10 +1,10 @@
 //! What the values of an attribute are, for everything here that depends on it. A new type of values is told of here.
 
 use super::view::{Entity, View};
-use crate::scene::attribute::Attribute;
-use crate::scene::choice::Choices;
-use crate::scene::kind::Kind;
-use crate::scene::value::Type;
+use tabray_core::scene::attribute::Attribute;
+use tabray_core::scene::choice::Choices;
+use tabray_core::scene::kind::Kind;
+use tabray_core::scene::value::Type;
 
 /// The values that an attribute expects.
 #[derive(Clone, Copy)]
@@ -49,7 +49,7 @@ pub fn value_name(attribute: &dyn Attribute, index: usize) -> &'static str {
 /// Returns the words that stand for yes and no.
 pub fn truths(view: &View) -> [&'static str; 2] {
     match view.syntax {
-        crate::scene::syntax::Syntax::Notes => ["yes", "no"],
-        crate::scene::syntax::Syntax::Toml => ["true", "false"],
+        crate::syntax::Syntax::Notes => ["yes", "no"],
+        crate::syntax::Syntax::Toml => ["true", "false"],
     }
 }

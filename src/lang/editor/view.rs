@@ -3,13 +3,13 @@
 use super::named::Names;
 use super::text::Text;
 pub use super::word::{Form, Word};
-use crate::scene::attribute;
-use crate::scene::entity;
-use crate::scene::reader::tokens;
-use crate::scene::syntax::Syntax;
+use crate::reader::tokens;
+use crate::syntax::Syntax;
 use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::OnceLock;
+use tabray_core::scene::attribute;
+use tabray_core::scene::entity;
 use toml_parser::decoder::Encoding;
 use toml_parser::{ParseError, Raw, Span};
 

@@ -1,7 +1,7 @@
 //! Guesses which file was meant by a name that leads nowhere: one with another extension, or one folder off.
 
-use crate::text::nearest_file;
 use std::path::{Component, Path, PathBuf};
+use tabray_core::text::nearest_file;
 
 /// The extensions of images that textures can be.
 const IMAGES: [&str; 5] = ["ppm", "png", "pgm", "pbm", "pnm"];

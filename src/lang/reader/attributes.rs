@@ -6,14 +6,14 @@ use super::names::Names;
 use super::parsed::{Form, MAX_VALUES, Parsed, VALUES, Word};
 use super::report::Report;
 use super::values;
-use crate::scene::attribute::{Attribute, LEAST_LENGTH, MOST_LENGTH};
-use crate::scene::choice::Choices;
-use crate::scene::entity::Entity;
-use crate::scene::kind::Kind;
-use crate::scene::pparm::AttributeValue;
-use crate::scene::store::Store;
-use crate::scene::value::{Datum, Type};
-use crate::text::{self, list};
+use tabray_core::scene::attribute::{Attribute, LEAST_LENGTH, MOST_LENGTH};
+use tabray_core::scene::choice::Choices;
+use tabray_core::scene::entity::Entity;
+use tabray_core::scene::kind::Kind;
+use tabray_core::scene::pparm::AttributeValue;
+use tabray_core::scene::store::Store;
+use tabray_core::scene::value::{Datum, Type};
+use tabray_core::text::{self, list};
 
 /// Checks an entity against the table of its type and reports its faults.
 pub struct AttributeChecker<'c, 't> {

@@ -5,15 +5,15 @@ use super::fault::{Fault, Places, Severity};
 use super::names::suggestion;
 use super::report::Report;
 use super::threads::Threads;
-use crate::scene::kind::Kind;
-use crate::scene::model::{Item, Model};
-use crate::scene::registry::Registry;
-use crate::scene::store::{Record, Store};
-use crate::text::list;
+use crate::registry::Registry;
 use std::mem::{swap, take};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
+use tabray_core::scene::kind::Kind;
+use tabray_core::scene::model::{Item, Model};
+use tabray_core::scene::store::{Record, Store};
+use tabray_core::text::list;
 
 /// A model, the places of its entities, and the time that it took to make, in addition to parsing.
 pub type Checked = (Option<Model>, Places, Duration);

@@ -11,24 +11,24 @@ use super::parsed::{Parsed, Word};
 use super::quick::Quick;
 use super::report::Report;
 use super::threads::Threads;
-use crate::scene::entity::{Args, Construct, Entity, Refusal, Setting};
-use crate::scene::kind::Kind;
-use crate::scene::model::{Item, Object};
-use crate::scene::registry::Registry;
-use crate::scene::store::Store;
-use crate::scene::value::Datum;
-use crate::world::accuracy::Accuracy;
-use crate::world::background::AnyBackground;
-use crate::world::body::{AnyLight, NamedBody, Paint};
-use crate::world::film::Film;
-use crate::world::material::Material;
-use crate::world::texture::Texture;
+use crate::registry::Registry;
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::mem::replace;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use tabray_core::scene::entity::{Args, Construct, Entity, Refusal, Setting};
+use tabray_core::scene::kind::Kind;
+use tabray_core::scene::model::{Item, Object};
+use tabray_core::scene::store::Store;
+use tabray_core::scene::value::Datum;
+use tabray_core::world::accuracy::Accuracy;
+use tabray_core::world::background::AnyBackground;
+use tabray_core::world::body::{AnyLight, NamedBody, Paint};
+use tabray_core::world::film::Film;
+use tabray_core::world::material::Material;
+use tabray_core::world::texture::Texture;
 
 /// The entities of a scene: parsed while they are checked, or all of them parsed before.
 pub enum Source<'s, 'a> {

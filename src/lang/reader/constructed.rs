@@ -1,14 +1,14 @@
 //! Constructs objects and lights, some at a time.
 
-use crate::scene::entity::{Args, Construct, Entity, Refusal};
-use crate::scene::procedural;
-use crate::scene::store::Store;
-use crate::scene::value::Datum;
-use crate::world::any_shape::AnyShape;
-use crate::world::body::{AnyLight, AnyShader, Body};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::ptr;
+use tabray_core::scene::entity::{Args, Construct, Entity, Refusal};
+use tabray_core::scene::procedural;
+use tabray_core::scene::store::Store;
+use tabray_core::scene::value::Datum;
+use tabray_core::world::any_shape::AnyShape;
+use tabray_core::world::body::{AnyLight, AnyShader, Body};
 
 /// The result of the constructor of an object or a light.
 pub enum Constructed {

@@ -2,7 +2,7 @@
 
 use super::fault::Fault;
 use super::report::Report;
-use crate::scene::syntax::Syntax;
+use crate::syntax::Syntax;
 
 /// The number of pairs of bytes that are looked at to recognise UTF-16 without a mark, and the least number that tells.
 const PAIRS: [usize; 2] = [8, 256];

@@ -2,9 +2,9 @@
 
 use super::fault::{Fault, Place, Severity};
 use super::parts::{Lines, Parts};
-use crate::text::{self, boundary};
 use annotate_snippets::{AnnotationKind, Element, Level, Origin, Renderer, Snippet};
 use std::ops::Range;
+use tabray_core::text::{self, boundary};
 
 /// The longest excerpt that is shown in full, in bytes, from the first marked line to the last. In a longer one, each
 /// marked place is shown separately.

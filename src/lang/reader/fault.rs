@@ -1,7 +1,7 @@
 //! Faults: what is wrong with a scene, where, and what would be right.
 
-use crate::text;
 use std::ops::Range;
+use tabray_core::text;
 
 /// The maximum number of places of similar faults that one fault lists.
 const PLACES: usize = 3;
@@ -26,7 +26,7 @@ impl Places {
         self.0.is_empty()
     }
 
-    /// Returns the place of the entity of this [order](crate::scene::Record::order).
+    /// Returns the place of the entity of this [order](tabray_core::scene::Record::order).
     pub fn get(&self, order: usize) -> Place {
         let [start, end] = self.0.get(order).filter(|place| **place != [u32::MAX; 2])?;
         Some(*start as usize..*end as usize)

@@ -1,15 +1,15 @@
 //! Finds attributes by their names, and guesses which attribute a misspelt word was meant to be.
 
-use crate::scene::attribute::Attribute;
-use crate::scene::counts::OneOf;
-use crate::scene::entity::Entity;
-use crate::scene::registry::Registry;
-use crate::scene::value::Type;
-use crate::text::{self, nearest};
+use crate::registry::Registry;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::ops::{Deref, Index};
 use std::ptr;
+use tabray_core::scene::attribute::Attribute;
+use tabray_core::scene::counts::OneOf;
+use tabray_core::scene::entity::Entity;
+use tabray_core::scene::value::Type;
+use tabray_core::text::{self, nearest};
 
 /// Finds the attribute of this name or alias.
 pub fn find_attribute(entity: &'static Entity, name: &str) -> Option<&'static dyn Attribute> {

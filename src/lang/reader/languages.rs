@@ -4,8 +4,8 @@ use super::fault::Fault;
 use super::notes::has_entities;
 use super::report::Report;
 use super::tokens::{Token, Tokens};
-use crate::scene::registry::Registry;
-use crate::scene::syntax::Syntax;
+use crate::registry::Registry;
+use crate::syntax::Syntax;
 use std::collections::HashSet;
 
 /// Words with which a statement of POV-Ray's language begins, and which scenes have no use for. Those with a `#` begin

@@ -1,9 +1,9 @@
 //! Recognises colours that are meant to be from 0 to 255.
 
 use super::fault::Fault;
-use crate::scene::entity::Args;
-use crate::scene::value::Datum;
-use crate::text::short;
+use tabray_core::scene::entity::Args;
+use tabray_core::scene::value::Datum;
+use tabray_core::text::short;
 
 /// The least brightest channel of such a colour. Scenes have colours of up to some tens, where objects are far away.
 const LEAST: f64 = 100.0;

@@ -8,7 +8,7 @@ use super::report::Report;
 use super::rounds::Rounds;
 use super::sets::Sets;
 use super::sources::Sources;
-use crate::scene::registry::Registry;
+use crate::registry::Registry;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 

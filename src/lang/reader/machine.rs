@@ -4,11 +4,11 @@ use super::excerpt::{self, rendered};
 use super::fault::{Fault, Severity};
 use super::parts::Parts;
 use super::report::Report;
-use crate::text;
 use annotate_snippets::Renderer;
 use serde::Serialize;
 use std::fmt;
 use std::ops::Range;
+use tabray_core::text;
 
 impl fmt::Display for Severity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -4,20 +4,20 @@ use super::fault::{Fault, Place, Severity};
 use super::missing::Missing;
 use super::parsed::{Form, Word};
 use super::report::Report;
-use crate::scene::entity::Entity;
-use crate::scene::kind::Kind;
-use crate::scene::procedural;
-use crate::scene::registry::Registry;
-use crate::scene::store::Store;
-use crate::scene::value::{Datum, Value};
-use crate::text::{self, nearest};
-use crate::world::body::{NamedBody, Paint};
+use crate::registry::Registry;
 use hashbrown::hash_table::Entry;
 use hashbrown::{DefaultHashBuilder, HashMap, HashSet, HashTable};
 use std::collections::BTreeMap;
 use std::hash::BuildHasher;
 use std::mem::take;
 use std::sync::{Arc, LazyLock};
+use tabray_core::scene::entity::Entity;
+use tabray_core::scene::kind::Kind;
+use tabray_core::scene::procedural;
+use tabray_core::scene::store::Store;
+use tabray_core::scene::value::{Datum, Value};
+use tabray_core::text::{self, nearest};
+use tabray_core::world::body::{NamedBody, Paint};
 
 /// The scope in which a name must be unique: the entity type for an object, and an empty string, the whole kind, for
 /// the others.

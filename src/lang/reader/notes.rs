@@ -9,11 +9,11 @@ use super::rounds::Rounds;
 use super::sets::Sets;
 use super::sources::Sources;
 use super::tokens::{Token, TokenForm, Tokens};
-use crate::scene::registry::Registry;
-use crate::scene::syntax::Syntax;
-use crate::scene::value::Type;
+use crate::registry::Registry;
+use crate::syntax::Syntax;
 use std::borrow::Cow;
 use std::ops::Range;
+use tabray_core::scene::value::Type;
 
 /// Begins to parse the entities of a text. Returns `None`, and reports why, if no part of it is an entity.
 pub fn parser<'a, 'r>(

@@ -5,10 +5,10 @@ use super::parsed::{Form, Word};
 use super::report::Report;
 use super::tokens::Tokens;
 use super::values;
-use crate::numeric::formula::{Formula, FormulaFault, is_taken};
-use crate::scene::value::Type;
-use crate::text::{list, nearest, shortest};
 use std::collections::HashMap;
+use tabray_core::scene::value::Type;
+use tabray_core::text::{list, nearest, shortest};
+use tabray_exact::formula::{Formula, FormulaFault, is_taken};
 
 /// The maximum number of names that a message lists.
 const LISTED: usize = 8;

@@ -3,16 +3,16 @@
 use super::check::{Check, PIECE, Source, TOGETHER, place_of};
 use super::constructed::{Constructed, constructed};
 use super::fault::Fault;
-use crate::scene::entity::{Args, Construct, Refusal};
-use crate::scene::model::{Item, Object};
-use crate::scene::procedural;
-use crate::scene::store::{Record, Store};
-use crate::scene::value::Datum;
-use crate::world::accuracy::Accuracy;
-use crate::world::body::{Body, Warning};
 use std::iter;
 use std::mem::take;
 use std::sync::Arc;
+use tabray_core::scene::entity::{Args, Construct, Refusal};
+use tabray_core::scene::model::{Item, Object};
+use tabray_core::scene::procedural;
+use tabray_core::scene::store::{Record, Store};
+use tabray_core::scene::value::Datum;
+use tabray_core::world::accuracy::Accuracy;
+use tabray_core::world::body::{Body, Warning};
 
 impl Check<'_, '_> {
     /// Constructs the objects and the lights. Those that read files, and those that others refer to, are constructed one

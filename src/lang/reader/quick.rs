@@ -5,13 +5,13 @@ use super::guesses::Tables;
 use super::names::Names;
 use super::parsed::{Form, Parsed, Word};
 use super::values::{self, ValueError};
-use crate::scene::entity::Entity;
-use crate::scene::kind::Kind;
-use crate::scene::registry::Registry;
-use crate::scene::store::{Packer, Store};
-use crate::scene::value::{Datum, Type};
+use crate::registry::Registry;
 use std::mem::replace;
 use std::ops::Range;
+use tabray_core::scene::entity::Entity;
+use tabray_core::scene::kind::Kind;
+use tabray_core::scene::store::{Packer, Store};
+use tabray_core::scene::value::{Datum, Type};
 
 /// Entities that were checked and packed, and the memory in which that is done.
 pub struct Quick<'r> {

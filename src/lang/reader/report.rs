@@ -4,13 +4,13 @@ use super::excerpt::rendered;
 use super::fault::{Fault, Place, Severity};
 use super::guesses::Guesses;
 use super::parts::{Part, Parts};
-use crate::scene::syntax::Syntax;
-use crate::text;
+use crate::syntax::Syntax;
 use annotate_snippets::Renderer;
 use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
 use std::path::PathBuf;
+use tabray_core::text;
 
 /// The maximum number of errors of one scene that are listed, and the maximum number of warnings. The others are
 /// counted.

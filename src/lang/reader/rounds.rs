@@ -4,10 +4,10 @@ use super::fault::{Fault, Place};
 use super::numbers::Numbers;
 use super::parsed::Word;
 use super::report::Report;
-use crate::scene::choice::Choices;
-use crate::scene::value::Type;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
+use tabray_core::scene::choice::Choices;
+use tabray_core::scene::value::Type;
 
 /// The maximum number of rounds and of repeated entities of a scene, and the maximum length of the texts of all rounds,
 /// in bytes.
@@ -95,7 +95,7 @@ impl<'a> Rounds<'a> {
         let rounds = number.map_or(0.0, |number| number);
         if rounds < 0.0 || rounds.fract() != 0.0 || rounds > MOST as f64 {
             let message =
-                format!("`repeat {}` cannot have {} rounds", name.text, crate::text::shortest(rounds));
+                format!("`repeat {}` cannot have {} rounds", name.text, tabray_core::text::shortest(rounds));
             let help = format!("the number of rounds is a whole number from 0 to {MOST}");
             report.add(Fault::error(count.place.clone(), message).help(help));
         }

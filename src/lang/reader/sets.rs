@@ -6,10 +6,10 @@ use super::numbers::Numbers;
 use super::parsed::{Form, Parsed, Word};
 use super::report::Report;
 use super::tokens::Tokens;
-use crate::scene::registry::Registry;
-use crate::text::nearest;
+use crate::registry::Registry;
 use std::collections::BTreeSet;
 use std::ops::Range;
+use tabray_core::text::nearest;
 
 /// The name of the options in messages.
 pub const OPTION: &str = "--set";

@@ -7,15 +7,15 @@ use super::parts::Part;
 use super::report::Report;
 use super::sets::OPTION;
 use super::tokens::{Token, TokenForm, Tokens};
-use crate::files;
-use crate::scene::syntax::Syntax;
-use crate::text::{self, nearest_file};
+use crate::syntax::Syntax;
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::io::{self, Read};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use tabray_core::files;
+use tabray_core::text::{self, nearest_file};
 use toml::de::{DeTable, DeValue};
 
 /// The maximum length of all texts together, in bytes.

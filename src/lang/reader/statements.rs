@@ -7,7 +7,7 @@ use super::parsed::{Parsed, Word};
 use super::report::Report;
 use super::sources::Sources;
 use super::tokens::{Token, TokenForm, Tokens};
-use crate::scene::registry::Registry;
+use crate::registry::Registry;
 use std::collections::HashSet;
 use std::mem::replace;
 

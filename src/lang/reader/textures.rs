@@ -3,9 +3,9 @@
 use super::astray;
 use super::check::{Check, Source, place_of};
 use super::fault::{Fault, Severity};
-use crate::scene::store::Store;
-use crate::scene::value::Datum;
 use std::collections::BTreeSet;
+use tabray_core::scene::store::Store;
+use tabray_core::scene::value::Datum;
 
 impl Check<'_, '_> {
     /// Reads the textures that some entity refers to, and no others.

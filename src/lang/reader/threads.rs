@@ -1,8 +1,8 @@
 //! The threads that large scenes are read by.
 
-use crate::parallel;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::sync::OnceLock;
+use tabray_core::parallel;
 
 /// The threads that the entities of large scenes are checked and constructed by: one on each core. They are started when
 /// they are first needed.

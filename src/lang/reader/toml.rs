@@ -5,12 +5,12 @@ use super::listed::Statement;
 use super::report::Report;
 use super::toml_document::Reader;
 use super::toml_faults::{LINE, is_duplicate, is_title, long_line, parts, pieces};
-use crate::parallel;
-use crate::scene::registry::Registry;
-use crate::scene::syntax::Syntax;
+use crate::registry::Registry;
+use crate::syntax::Syntax;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::OnceLock;
+use tabray_core::parallel;
 use toml::de::DeTable;
 
 /// Parses the part of a text that begins at `start` and ends with it, and reports syntax errors. Parsing goes on after

@@ -1,9 +1,9 @@
 //! The syntax errors of a scene in TOML, and the pieces in which one that has some is parsed.
 
 use super::fault::Fault;
-use crate::parallel;
 use std::iter;
 use std::ops::Range;
+use tabray_core::parallel;
 use toml::de::{DeTable, Error};
 
 /// The maximum length of a line, and of the part of a text that is parsed at once before the whole text is known to be

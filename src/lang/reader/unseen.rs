@@ -1,11 +1,11 @@
 //! Warns of images that are black for certain, with the reason.
 
 use super::fault::Fault;
-use crate::geometry::aabb::Aabb;
-use crate::scene::model::{Model, Object};
-use crate::text::shortest;
-use crate::world::material::Rgb;
 use glam::DVec3;
+use tabray_core::geometry::aabb::Aabb;
+use tabray_core::scene::model::{Model, Object};
+use tabray_core::text::shortest;
+use tabray_core::world::material::Rgb;
 
 /// How much wider than it is the image is taken to be, as a fraction of it.
 const MARGIN: f64 = 0.01;

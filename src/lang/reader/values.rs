@@ -2,12 +2,12 @@
 
 use super::fault::Fault;
 use super::parsed::{Form, Word};
-use crate::numeric::decimal::{self, DecimalFault};
-use crate::numeric::formula::Formula;
-use crate::scene::choice::Choices;
-use crate::scene::value::{Datum, Type};
-use crate::text::{self, nearest};
 use std::sync::Arc;
+use tabray_core::scene::choice::Choices;
+use tabray_core::scene::value::{Datum, Type};
+use tabray_core::text::{self, nearest};
+use tabray_exact::decimal::{self, DecimalFault};
+use tabray_exact::formula::Formula;
 
 /// Reads words as values of a type.
 ///

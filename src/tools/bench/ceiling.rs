@@ -1,11 +1,11 @@
 //! The cost of the bare arithmetic of a test: textbook formulas in loops over arrays, without range checks, error
 //! bounds, shading or any care for rounding. No tracer that makes the same tests, packet by packet, is faster.
 
-use crate::geometry::ray_packet::{PACKET_SIZE, RayPacket};
-use crate::simd::cpu::{Cpu, kernels};
-use crate::simd::soa::Vectors;
 use glam::DVec3;
 use std::hint::black_box;
+use tabray_core::geometry::ray_packet::{PACKET_SIZE, RayPacket};
+use tabray_core::simd::cpu::{Cpu, kernels};
+use tabray_core::simd::soa::Vectors;
 
 /// The number of shapes in a round, so that the compiler cannot hoist their constants out of the loop.
 const SHAPES: usize = 8;

@@ -3,28 +3,28 @@
 //! Times are CPU times of the thread that traces (`clock`), the minimum of several rounds.
 
 mod ceiling;
-pub(crate) mod clock;
+pub mod clock;
 mod packets;
 pub mod scenes;
 
 pub use packets::Times;
 
-use crate::render::flaws::Flaws;
-use crate::render::observer::RayKind;
-use crate::render::plan::Plan;
-use crate::render::ray_stats::RayStats;
-use crate::render::renderer::{RenderCallbacks, Renderer};
-use crate::render::tiles::{BAND, Band};
-use crate::scene::model::{Model, Object};
-use crate::simd::cpu::Cpu;
-use crate::world::body::AnyShader;
-use crate::world::material::{Look, Material, Rgb};
-use crate::world::shader::{Sees, Shader, SurfacePoint};
 use ceiling::TextbookTest;
 use glam::{DVec2, DVec3};
 use std::io;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
+use tabray_core::render::flaws::Flaws;
+use tabray_core::render::observer::RayKind;
+use tabray_core::render::plan::Plan;
+use tabray_core::render::ray_stats::RayStats;
+use tabray_core::render::renderer::{RenderCallbacks, Renderer};
+use tabray_core::render::tiles::{BAND, Band};
+use tabray_core::scene::model::{Model, Object};
+use tabray_core::simd::cpu::Cpu;
+use tabray_core::world::body::AnyShader;
+use tabray_core::world::material::{Look, Material, Rgb};
+use tabray_core::world::shader::{Sees, Shader, SurfacePoint};
 
 /// The speed at which a scene is traced.
 #[derive(Clone, Debug)]

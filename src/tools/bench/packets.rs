@@ -1,17 +1,17 @@
 //! Packets of a scene's own rays, to time the functions of its shapes with.
 
 use super::clock;
-use crate::geometry::ray::{MISS, Side};
-use crate::geometry::ray_packet::{Nearest, PACKET_SIZE, RayPacket};
-use crate::render::observer::{Count, DynObserver, RayKind, TraceObserver};
-use crate::render::plan::Plan;
-use crate::render::tiles::{self, TILE};
-use crate::render::trace::{self, Scratch, Tracer};
-use crate::scene::model::Model;
-use crate::simd::cpu::Cpu;
-use crate::simd::soa::Vectors;
 use std::hint::black_box;
 use std::time::Duration;
+use tabray_core::geometry::ray::{MISS, Side};
+use tabray_core::geometry::ray_packet::{Nearest, PACKET_SIZE, RayPacket};
+use tabray_core::render::observer::{Count, DynObserver, RayKind, TraceObserver};
+use tabray_core::render::plan::Plan;
+use tabray_core::render::tiles::{self, TILE};
+use tabray_core::render::trace::{self, Scratch, Tracer};
+use tabray_core::scene::model::Model;
+use tabray_core::simd::cpu::Cpu;
+use tabray_core::simd::soa::Vectors;
 
 /// The maximum number of tiles that are used, spread over the image.
 const TILES: usize = 256;

@@ -1,8 +1,8 @@
 //! Built-in scenes to measure when no scene is given.
 
-use crate::scene::reader::Parsed;
 use glam::{DVec3, dvec3};
 use std::f64::consts::TAU;
+use tabray_lang::reader::Parsed;
 
 /// Returns the built-in scenes with their names.
 pub fn all() -> [(&'static str, Vec<Parsed<'static>>); 4] {

@@ -3,7 +3,7 @@
 
 use super::progress::Progress;
 use super::times::Times;
-use crate::tools::bench::clock;
+use crate::bench::clock;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 

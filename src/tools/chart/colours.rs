@@ -1,8 +1,8 @@
 //! Differences of colours: in their values, and as the eye sees them.
 
-use crate::render::bytes::{shown, to_byte};
-use crate::world::material::Rgb;
 use glam::DVec3;
+use tabray_core::render::bytes::{shown, to_byte};
+use tabray_core::world::material::Rgb;
 
 /// The difference of colours from the true ones.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,20 +4,20 @@
 //! which stands still while other programs run.
 
 use super::places::{self, Pixels};
-use crate::geometry::ray_packet::PACKET_SIZE;
-use crate::parallel;
-use crate::render::flaws::Flaws;
-use crate::render::observer::{Count, DynObserver, RayKind, TraceObserver};
-use crate::render::plan::Plan;
-use crate::render::renderer::Renderer;
-use crate::render::trace::{Scratch, Tracer};
-use crate::simd::cpu::Cpu;
-use crate::tools::bench::clock;
+use crate::bench::clock;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::hint::black_box;
 use std::mem::replace;
 use std::sync::{Mutex, PoisonError};
+use tabray_core::geometry::ray_packet::PACKET_SIZE;
+use tabray_core::parallel;
+use tabray_core::render::flaws::Flaws;
+use tabray_core::render::observer::{Count, DynObserver, RayKind, TraceObserver};
+use tabray_core::render::plan::Plan;
+use tabray_core::render::renderer::Renderer;
+use tabray_core::render::trace::{Scratch, Tracer};
+use tabray_core::simd::cpu::Cpu;
 
 /// The numbers of packets that are timed at first: more only where they are fast.
 const FEWEST: usize = 4;

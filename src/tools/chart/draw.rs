@@ -4,12 +4,12 @@ use super::axis::Axis;
 use super::canvas::{Align, BLUE, Canvas, GREEN, GREY, LIGHT, Letters, Marker, ORANGE, PURPLE, VERMILION};
 use super::data::{Chart, Family, Panel, Point, Subject};
 use super::labels::{self, PlotArea};
-use crate::geometry::ray_packet::PACKET_SIZE;
-use crate::output::deflate::Compression;
-use crate::output::picture::Format;
 use plotters::prelude::{BLACK, BitMapBackend, DrawingBackend, IntoDrawingArea, RGBColor, SVGBackend};
 use std::io;
 use std::iter;
+use tabray_core::geometry::ray_packet::PACKET_SIZE;
+use tabray_core::output::deflate::Compression;
+use tabray_core::output::picture::Format;
 
 const PANEL: (f64, f64) = (720.0, 500.0);
 const HEAD: f64 = 78.0;

@@ -12,15 +12,15 @@ use super::progress::Progress;
 use super::sampled::{Colours, Errors};
 use super::times::Times;
 use super::timings::{self, Cost, Timings, plan};
-use crate::render::plan::Plan;
-use crate::render::renderer::Renderer;
-use crate::scene::choice::Choice;
-use crate::scene::model::Model;
-use crate::world::accuracy::Accuracy;
-use crate::world::film::Film;
-use crate::world::material::Rgb;
 use std::io;
 use std::mem::take;
+use tabray_core::render::plan::Plan;
+use tabray_core::render::renderer::Renderer;
+use tabray_core::scene::choice::Choice;
+use tabray_core::scene::model::Model;
+use tabray_core::world::accuracy::Accuracy;
+use tabray_core::world::film::Film;
+use tabray_core::world::material::Rgb;
 
 /// The numbers of samples to choose from, and the number of samples that they are compared with.
 const STAGES: [(&[u32], u32); 2] = [(&[1, 2, 4, 8, 16, 32, 64], 256), (&[128, 256], 1024)];

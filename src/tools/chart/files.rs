@@ -1,8 +1,8 @@
 //! Writes the numbers of a chart, for other programs.
 
 use super::data::{Chart, Panel, Point, Subject};
-use crate::text;
 use serde::Serialize;
+use tabray_core::text;
 
 /// Writes a header with the names of the columns, and one line for each choice. Times are in seconds.
 pub fn csv(chart: &Chart) -> String {

@@ -46,7 +46,7 @@ impl Chart {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tools::chart::{Family, Times, WrongHits};
+    use crate::chart::{Family, Times, WrongHits};
 
     fn point(time: f64, error: f64, missed: usize) -> Point {
         Point {

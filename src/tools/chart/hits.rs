@@ -9,17 +9,17 @@ use super::packets::Packet;
 use super::places::{spread, tiles};
 use super::progress::Progress;
 use super::study::Study;
-use crate::geometry::ray::{MISS, Ray, RayRange};
-use crate::geometry::ray_packet::PACKET_SIZE;
-use crate::geometry::roots::bisection::bisect;
-use crate::geometry::sight::Sight;
-use crate::parallel;
-use crate::scene::model::Model;
-use crate::simd::cpu::Cpu;
-use crate::world::any_shape::AnyShape;
-use crate::world::certify::{Enclosure, Precision};
 use std::hint::black_box;
 use std::ops::ControlFlow;
+use tabray_core::geometry::ray::{MISS, Ray, RayRange};
+use tabray_core::geometry::ray_packet::PACKET_SIZE;
+use tabray_core::geometry::sight::Sight;
+use tabray_core::parallel;
+use tabray_core::scene::model::Model;
+use tabray_core::simd::cpu::Cpu;
+use tabray_core::world::any_shape::AnyShape;
+use tabray_core::world::certify::{Enclosure, Precision};
+use tabray_exact::roots::bisection::bisect;
 
 /// The approximate numbers of pairs of a ray and an object in a set of camera rays and in one of grazing rays.
 pub const PAIRS: [usize; 2] = [20_000, 4_000];

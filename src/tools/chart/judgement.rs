@@ -5,17 +5,17 @@
 //! the first one if the ray stays on the surface, up to rounding, from the true hit to the found one, and as a later one
 //! only if another root lies between.
 
-use crate::geometry::ray::{MISS, Ray};
-use crate::geometry::sight::{Line, Sight};
-use crate::numeric::double_double::DoubleDouble;
-use crate::numeric::interval::{Float, Interval, Wide};
-use crate::numeric::scalar::Scalar;
-use crate::world::any_shape::AnyShape;
-use crate::world::certify::{self, Enclosure, HitEnclosure, HitProofs, Precision};
-use crate::world::coincidence::ROUNDING;
 use f256::f256;
 use glam::DVec3;
 use std::sync::OnceLock;
+use tabray_core::geometry::ray::{MISS, Ray};
+use tabray_core::geometry::sight::{Line, Sight};
+use tabray_core::world::any_shape::AnyShape;
+use tabray_core::world::certify::{self, Enclosure, HitEnclosure, HitProofs, Precision};
+use tabray_core::world::coincidence::ROUNDING;
+use tabray_exact::double_double::DoubleDouble;
+use tabray_exact::interval::{Float, Interval, Wide};
+use tabray_exact::scalar::Scalar;
 
 /// What is proven about the first hit of a ray and an object.
 pub(super) enum Truth {
@@ -183,10 +183,10 @@ enum Root {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::ray::RayRange;
-    use crate::world::certify::Equation;
-    use crate::world::hittable::{Certified, Hittable};
-    use crate::world::shape::Shape;
+    use tabray_core::geometry::ray::RayRange;
+    use tabray_core::world::certify::Equation;
+    use tabray_core::world::hittable::{Certified, Hittable};
+    use tabray_core::world::shape::Shape;
 
     /// A sphere of radius 1 around the origin, or the plane y = 0.
     enum Surface {

@@ -1,9 +1,9 @@
 //! Where and when a chart was measured.
 
-use crate::simd::cpu::Cpu;
 use std::fs;
 use std::thread;
 use std::time::SystemTime;
+use tabray_core::simd::cpu::Cpu;
 
 /// A machine, a build of the program, and a time.
 #[derive(Clone)]

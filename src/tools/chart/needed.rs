@@ -3,18 +3,18 @@
 use super::cost::Timing;
 use super::pictures::ADAPTIVE;
 use super::places::Pixels;
-use crate::parallel;
-use crate::render::bytes::shown;
-use crate::render::observer::{Count, DynObserver, TraceObserver};
-use crate::render::plan::Plan;
-use crate::render::renderer::Renderer;
-use crate::render::trace::{Scratch, Tracer};
-use crate::scene::model::Model;
-use crate::simd::cpu::Cpu;
-use crate::world::film::Adaptive;
-use crate::world::material::Rgb;
-use crate::world::sample::Sampler;
 use std::ops::Range;
+use tabray_core::parallel;
+use tabray_core::render::bytes::shown;
+use tabray_core::render::observer::{Count, DynObserver, TraceObserver};
+use tabray_core::render::plan::Plan;
+use tabray_core::render::renderer::Renderer;
+use tabray_core::render::trace::{Scratch, Tracer};
+use tabray_core::scene::model::Model;
+use tabray_core::simd::cpu::Cpu;
+use tabray_core::world::film::Adaptive;
+use tabray_core::world::material::Rgb;
+use tabray_core::world::sample::Sampler;
 
 /// About how many rays all choices take of a pixel that is measured alone, with the probes around it.
 pub(super) const RAYS: u32 = 120;

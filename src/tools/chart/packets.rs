@@ -1,12 +1,12 @@
 //! Packets of rays, and their first hits on an object, found as a render finds them.
 
-use crate::geometry::ray::{MISS, Ray, RayRange};
-use crate::geometry::ray_packet::{Nearest, PACKET_SIZE, RayPacket};
-use crate::geometry::sight::Sight;
-use crate::simd::cpu::Cpu;
-use crate::simd::soa::{LANES, Vectors};
-use crate::world::any_shape::AnyShape;
-use crate::world::film::Film;
+use tabray_core::geometry::ray::{MISS, Ray, RayRange};
+use tabray_core::geometry::ray_packet::{Nearest, PACKET_SIZE, RayPacket};
+use tabray_core::geometry::sight::Sight;
+use tabray_core::simd::cpu::Cpu;
+use tabray_core::simd::soa::{LANES, Vectors};
+use tabray_core::world::any_shape::AnyShape;
+use tabray_core::world::film::Film;
 
 /// Rays that are tested against one object.
 pub struct Packet {

@@ -10,22 +10,22 @@ use super::places::{Pixels, spread, tiles};
 use super::progress::Progress;
 use super::study::Study;
 use super::times::Times;
-use crate::geometry::ray_packet::PACKET_SIZE;
-use crate::parallel;
-use crate::render::bytes::shown;
-use crate::render::flaws::Flaws;
-use crate::render::observer::{Event, TraceObserver};
-use crate::render::plan::Plan;
-use crate::render::renderer::Renderer;
-use crate::render::trace::{self, Scratch, Tracer};
-use crate::scene::model::Model;
-use crate::simd::cpu::Cpu;
-use crate::world::film::Adaptive;
-use crate::world::material::Rgb;
-use crate::world::sample::{Sample, Sampler};
 use glam::DVec2;
 use std::hint::black_box;
 use std::ops::{ControlFlow, Range};
+use tabray_core::geometry::ray_packet::PACKET_SIZE;
+use tabray_core::parallel;
+use tabray_core::render::bytes::shown;
+use tabray_core::render::flaws::Flaws;
+use tabray_core::render::observer::{Event, TraceObserver};
+use tabray_core::render::plan::Plan;
+use tabray_core::render::renderer::Renderer;
+use tabray_core::render::trace::{self, Scratch, Tracer};
+use tabray_core::scene::model::Model;
+use tabray_core::simd::cpu::Cpu;
+use tabray_core::world::film::Adaptive;
+use tabray_core::world::material::Rgb;
+use tabray_core::world::sample::{Sample, Sampler};
 
 /// The number of samples per pixel of an image that counts as true. It serves as a reference for up to a quarter as
 /// many samples.

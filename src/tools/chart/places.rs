@@ -1,7 +1,7 @@
 //! The pixels that are measured, spread evenly over an image.
 
-use crate::render::tiles::{self, TILE};
 use glam::DVec2;
+use tabray_core::render::tiles::{self, TILE};
 
 /// Pixels: columns from the left and rows from the bottom.
 pub type Pixels = Vec<[usize; 2]>;

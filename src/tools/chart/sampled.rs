@@ -3,10 +3,10 @@
 use super::pictures::shown_colours;
 use super::places::Pixels;
 use super::progress::Progress;
-use crate::render::plan::Plan;
-use crate::render::renderer::Renderer;
-use crate::world::material::Rgb;
 use std::io;
+use tabray_core::render::plan::Plan;
+use tabray_core::render::renderer::Renderer;
+use tabray_core::world::material::Rgb;
 
 /// The number of standard deviations by which the mean of the squared errors may be off: a normal distribution stays
 /// below 2.33 with a confidence of 99 %.

@@ -1,9 +1,9 @@
 //! All choices of a scene, ready to be measured.
 
 use super::candidate::{self, Candidate, Load};
-use crate::render::renderer::Renderer;
-use crate::world::accuracy::Accuracy;
 use std::io;
+use tabray_core::render::renderer::Renderer;
+use tabray_core::world::accuracy::Accuracy;
 
 /// The inputs of a measurement.
 pub(super) struct Study {

@@ -4,18 +4,18 @@ use super::cost::{Counted, Estimated, Timing};
 use super::pictures::shown_colours;
 use super::places::spread;
 use super::progress::Progress;
-use crate::output::deflate::Compression;
-use crate::output::picture::Format;
-use crate::render::bytes::to_byte;
-use crate::render::plan::Plan;
-use crate::render::renderer::Renderer;
-use crate::scene::model::Model;
-use crate::tools::bench::clock;
-use crate::world::material::Rgb;
-use crate::world::sample::Sampler;
+use crate::bench::clock;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::io;
+use tabray_core::output::deflate::Compression;
+use tabray_core::output::picture::Format;
+use tabray_core::render::bytes::to_byte;
+use tabray_core::render::plan::Plan;
+use tabray_core::render::renderer::Renderer;
+use tabray_core::scene::model::Model;
+use tabray_core::world::material::Rgb;
+use tabray_core::world::sample::Sampler;
 
 /// The numbers of samples with which the times of accuracies are compared, and the number of groups of packets.
 const COMPARED: [u32; 2] = [1, 4];

@@ -2,13 +2,13 @@
 
 use super::scene::{Colour, Number, Path, Place, Scene, coarse};
 use super::surface::{Surface, is_black, tint};
-use crate::geometry::sight::Line;
-use crate::numeric::interval::{Float, Interval};
-use crate::numeric::scalar::{Scalar, dot, per_axis};
-use crate::world::certify::HitEnclosure;
-use crate::world::packets::light::PacketLight;
-use crate::world::shader::PointBounds;
 use glam::DVec2;
+use tabray_core::geometry::sight::Line;
+use tabray_core::world::certify::HitEnclosure;
+use tabray_core::world::packets::light::PacketLight;
+use tabray_core::world::shader::PointBounds;
+use tabray_exact::interval::{Float, Interval};
+use tabray_exact::scalar::{Scalar, dot, per_axis};
 
 /// The number of panes on a shadow ray after which what passes is open.
 const MAX_PANES: usize = 100;

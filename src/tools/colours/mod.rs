@@ -10,19 +10,19 @@ mod rays;
 mod scene;
 mod surface;
 
-use crate::geometry::sight::Sight;
-use crate::numeric::interval::{Float, Fraction, Interval};
-use crate::numeric::scalar::{Scalar, per_axis};
-use crate::render::bytes::to_byte;
-use crate::render::plan::Plan;
-use crate::render::plan::depth::FAINT;
-use crate::render::renderer::Renderer;
-use crate::render::trace;
 use f256::f256;
 use rays::Tracer;
 use scene::{Boxes, Colour, Number, Scene};
 use std::cell::Cell;
 use std::ops::ControlFlow;
+use tabray_core::geometry::sight::Sight;
+use tabray_core::render::bytes::to_byte;
+use tabray_core::render::plan::Plan;
+use tabray_core::render::plan::depth::FAINT;
+use tabray_core::render::renderer::Renderer;
+use tabray_core::render::trace;
+use tabray_exact::interval::{Float, Fraction, Interval};
+use tabray_exact::scalar::{Scalar, per_axis};
 
 /// The verdict on a byte, or on a pixel: the last in this order of those of its bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -201,10 +201,10 @@ fn verdict<F: Float>(channel: Interval<F>, byte: u8, missing: f64) -> Verdict {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::model::Model;
-    use crate::scene::reader;
-    use crate::scene::registry::Registry;
     use std::path::Path;
+    use tabray_core::scene::model::Model;
+    use tabray_lang::reader;
+    use tabray_lang::registry::Registry;
 
     /// The middle pixel of 3 x 3 looks along -z, from 7 units in front of z = -2.
     fn model(objects: &str) -> Model {

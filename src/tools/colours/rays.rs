@@ -3,11 +3,11 @@
 use super::light;
 use super::scene::{Colour, FirstHit, Number, Path, Place, Scene};
 use super::surface::{Surface, is_black, tint};
-use crate::geometry::sight::Line;
-use crate::numeric::interval::Interval;
-use crate::numeric::scalar::{Scalar, dot, per_axis};
-use crate::render::limits::MAX_DIST;
-use crate::world::sample::Sample;
+use tabray_core::geometry::sight::Line;
+use tabray_core::render::limits::MAX_DIST;
+use tabray_core::world::sample::Sample;
+use tabray_exact::interval::Interval;
+use tabray_exact::scalar::{Scalar, dot, per_axis};
 
 /// The number of rays after which a pixel's branches are no longer followed, but bounded.
 const MAX_RAYS: usize = 4000;

@@ -1,15 +1,15 @@
 //! A scene as proofs of colours look at it: what a line may hit.
 
-use crate::geometry::aabb::{Aabb, SLACK};
-use crate::geometry::sight::Line;
-use crate::numeric::interval::Interval;
-use crate::render::plan::Plan;
-use crate::scene::model::Object;
-use crate::world::certify::{HitEnclosure, Precise};
-use crate::world::packets::light::{EncloseLight, PacketLight};
-use crate::world::packets::shader::{EncloseLook, PacketShader};
-use crate::world::shader::{LookBounds, PointBounds};
 use std::cell::Cell;
+use tabray_core::geometry::aabb::{Aabb, SLACK};
+use tabray_core::geometry::sight::Line;
+use tabray_core::render::plan::Plan;
+use tabray_core::scene::model::Object;
+use tabray_core::world::certify::{HitEnclosure, Precise};
+use tabray_core::world::packets::light::{EncloseLight, PacketLight};
+use tabray_core::world::packets::shader::{EncloseLook, PacketShader};
+use tabray_core::world::shader::{LookBounds, PointBounds};
+use tabray_exact::interval::Interval;
 
 /// The number of edges of one object on a line after which its hits are in doubt.
 const MAX_EDGES: usize = 4;

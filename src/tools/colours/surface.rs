@@ -1,11 +1,11 @@
 //! A point of a surface that a ray hits, in intervals.
 
 use super::scene::{Colour, Number, Place, Scene};
-use crate::geometry::sight::Line;
-use crate::numeric::interval::{Float, Interval};
-use crate::numeric::scalar::{Scalar, dot, per_axis};
-use crate::world::certify::gradient;
-use crate::world::shader::PointBounds;
+use tabray_core::geometry::sight::Line;
+use tabray_core::world::certify::gradient;
+use tabray_core::world::shader::PointBounds;
+use tabray_exact::interval::{Float, Interval};
+use tabray_exact::scalar::{Scalar, dot, per_axis};
 
 /// A point that a ray hits, and how it looks there.
 pub(super) struct Surface<F> {

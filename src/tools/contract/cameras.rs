@@ -1,14 +1,14 @@
 //! The contract of cameras.
 
 use super::promise::{Fault, Promise};
-use crate::geometry::image_point::ImagePoint;
-use crate::geometry::ray::Ray;
-use crate::geometry::sight::Line;
-use crate::simd::cpu::Cpu;
-use crate::simd::soa::{LANES, Vectors};
-use crate::world::camera::{Origins, Projected};
-use crate::world::film::Film;
 use glam::{DVec2, DVec3};
+use tabray_core::geometry::image_point::ImagePoint;
+use tabray_core::geometry::ray::Ray;
+use tabray_core::geometry::sight::Line;
+use tabray_core::simd::cpu::Cpu;
+use tabray_core::simd::soa::{LANES, Vectors};
+use tabray_core::world::camera::{Origins, Projected};
+use tabray_core::world::film::Film;
 
 /// Points of the lens, in its radius: the centre, and some of the rim and within.
 const LENSES: [DVec2; 4] =

@@ -1,13 +1,5 @@
 //! Draws values for attributes by their types and rules, the same in every run.
 
-use crate::numeric::formula::variables::HEIGHT;
-use crate::scene::attribute::Attribute;
-use crate::scene::choice::Choices;
-use crate::scene::entity::Entity;
-use crate::scene::kind::Kind;
-use crate::scene::registry::Registry;
-use crate::scene::syntax::Syntax;
-use crate::scene::value::{Datum, Type};
 use glam::DVec3;
 use image::RgbImage;
 use rand_pcg::Pcg32;
@@ -15,6 +7,14 @@ use rand_pcg::rand_core::Rng;
 use std::fs;
 use std::mem::swap;
 use std::path::Path;
+use tabray_core::scene::attribute::Attribute;
+use tabray_core::scene::choice::Choices;
+use tabray_core::scene::entity::Entity;
+use tabray_core::scene::kind::Kind;
+use tabray_core::scene::value::{Datum, Type};
+use tabray_exact::formula::variables::HEIGHT;
+use tabray_lang::registry::Registry;
+use tabray_lang::syntax::Syntax;
 use tempfile::TempDir;
 
 /// The maximum number of draws for a value that satisfies its rule.

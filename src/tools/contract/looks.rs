@@ -2,27 +2,27 @@
 
 use super::draw::Draw;
 use super::promise::{Fault, Promise};
-use crate::geometry::ray::Side;
-use crate::numeric::interval::Interval;
-use crate::scene::dump;
-use crate::scene::model::Model;
-use crate::scene::profile::Profile;
-use crate::scene::reader;
-use crate::scene::registry::Registry;
-use crate::scene::syntax::Syntax;
-use crate::shapes::revolution::{Refinement, Revolution};
-use crate::simd::cpu::Cpu;
-use crate::simd::soa::{LANES, Vectors};
-use crate::world::background::Background;
-use crate::world::body::Paint;
-use crate::world::interface::Crossing;
-use crate::world::light_samples::{LightSamples, ShadingPoints};
-use crate::world::material::{Look, Material, Rgb};
-use crate::world::packets::light::PacketLight;
-use crate::world::packets::shader::{PacketShader, SurfacePoints};
-use crate::world::shader::{Anchor, SurfacePoint};
 use glam::{DVec2, DVec3};
 use std::path::Path;
+use tabray_core::geometry::ray::Side;
+use tabray_core::scene::model::Model;
+use tabray_core::scene::profile::Profile;
+use tabray_core::shapes::revolution::{Refinement, Revolution};
+use tabray_core::simd::cpu::Cpu;
+use tabray_core::simd::soa::{LANES, Vectors};
+use tabray_core::world::background::Background;
+use tabray_core::world::body::Paint;
+use tabray_core::world::interface::Crossing;
+use tabray_core::world::light_samples::{LightSamples, ShadingPoints};
+use tabray_core::world::material::{Look, Material, Rgb};
+use tabray_core::world::packets::light::PacketLight;
+use tabray_core::world::packets::shader::{PacketShader, SurfacePoints};
+use tabray_core::world::shader::{Anchor, SurfacePoint};
+use tabray_exact::interval::Interval;
+use tabray_lang::dump;
+use tabray_lang::reader;
+use tabray_lang::registry::Registry;
+use tabray_lang::syntax::Syntax;
 
 /// The number of points at which lights and procedural shaders are evaluated.
 const PLACES: usize = 100;

@@ -14,19 +14,19 @@ mod surface;
 
 pub use promise::Promise;
 
-use crate::scene::choice::{Choice, ChoiceName};
-use crate::scene::dump;
-use crate::scene::entity::Entity;
-use crate::scene::kind::Kind;
-use crate::scene::model::Model;
-use crate::scene::profile::Profile;
-use crate::scene::reader;
-use crate::scene::registry::Registry;
-use crate::scene::syntax::Syntax;
-use crate::world::accuracy::Accuracy;
 use draw::{Draw, SceneFolder};
 use promise::Fault;
 use std::fmt;
+use tabray_core::scene::choice::{Choice, ChoiceName};
+use tabray_core::scene::entity::Entity;
+use tabray_core::scene::kind::Kind;
+use tabray_core::scene::model::Model;
+use tabray_core::scene::profile::Profile;
+use tabray_core::world::accuracy::Accuracy;
+use tabray_lang::dump;
+use tabray_lang::reader;
+use tabray_lang::registry::Registry;
+use tabray_lang::syntax::Syntax;
 
 /// The number of scenes that are drawn for an entity type.
 const SCENES: usize = 40;
@@ -184,18 +184,18 @@ fn of_profile(profile: &'static Profile) -> Option<Breach> {
 
 fn of_choice(what: &str, choice: ChoiceName, outcome: Result<(), Fault>) -> Option<Breach> {
     let Fault { promise, found } = outcome.err()?;
-    let (plugin, place) = (format!("the {what} `{}`", choice.name), crate::text::place(choice.place));
+    let (plugin, place) = (format!("the {what} `{}`", choice.name), tabray_core::text::place(choice.place));
     Some(Breach { plugin, place, promise, found, scene: String::new() })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::body::Paint;
-    use crate::world::light::Light;
-    use crate::world::material::{Look, Material, Rgb};
-    use crate::world::shader::{Anchor, Plain, Sees, Shader, SurfacePoint};
     use glam::DVec3;
+    use tabray_core::world::body::Paint;
+    use tabray_core::world::light::Light;
+    use tabray_core::world::material::{Look, Material, Rgb};
+    use tabray_core::world::shader::{Anchor, Plain, Sees, Shader, SurfacePoint};
 
     static SOUND: Profile = Profile::new("sound", "a cone", "4 - y");
     static UNBOUNDED: Profile = Profile::new("unbounded", "a horn", "1 / y");

@@ -4,10 +4,10 @@ use super::draw::Draw;
 use super::looks::shader;
 use super::promise::Fault;
 use super::shape::{GRAZING, RayTrial};
-use crate::geometry::ray::{MISS, Ray, RayRange, Side};
-use crate::scene::model::Object;
-use crate::scene::value::Datum;
 use glam::DVec3;
+use tabray_core::geometry::ray::{MISS, Ray, RayRange, Side};
+use tabray_core::scene::model::Object;
+use tabray_core::scene::value::Datum;
 
 /// The number of first rays that are aimed exactly at a point, which may be a corner or the centre of an object.
 const EXACT: usize = 3;

@@ -1,17 +1,17 @@
-//! The contract of [`Hittable`](crate::world::hittable::Hittable), tried with rays.
+//! The contract of [`Hittable`](tabray_core::world::hittable::Hittable), tried with rays.
 
 use super::looks::same_bits;
 use super::promise::{Fault, Promise};
-use crate::geometry::ray::{MISS, Ray, RayRange, Side};
-use crate::geometry::ray_packet::{Nearest, RayPacket};
-use crate::geometry::sight::Sight;
-use crate::numeric::interval::{Float, Wide};
-use crate::simd::cpu::Cpu;
-use crate::simd::soa::{LANES, Vectors};
-use crate::world::any_shape::AnyShape;
-use crate::world::certify::{Enclosure, Precision};
-use crate::world::interaction::SurfaceInteraction;
 use glam::DVec3;
+use tabray_core::geometry::ray::{MISS, Ray, RayRange, Side};
+use tabray_core::geometry::ray_packet::{Nearest, RayPacket};
+use tabray_core::geometry::sight::Sight;
+use tabray_core::simd::cpu::Cpu;
+use tabray_core::simd::soa::{LANES, Vectors};
+use tabray_core::world::any_shape::AnyShape;
+use tabray_core::world::certify::{Enclosure, Precision};
+use tabray_core::world::interaction::SurfaceInteraction;
+use tabray_exact::interval::{Float, Wide};
 
 /// The maximum distance by which rounding may shift a ray sideways, as a fraction of the numbers from which its
 /// distance is computed. It is above 2^-52 to the power of 2/3, about 4e-11, for methods that lose a third of the

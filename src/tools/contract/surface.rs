@@ -1,12 +1,12 @@
-//! The contract of [`Hittable`](crate::world::hittable::Hittable) at the point where a ray has hit it.
+//! The contract of [`Hittable`](tabray_core::world::hittable::Hittable) at the point where a ray has hit it.
 
 use super::draw::Draw;
 use super::promise::{Fault, Promise};
 use super::shape::{GRAZING, RayTrial, SLACK, describe_ray};
-use crate::geometry::aabb::Aabb;
-use crate::geometry::ray::{MISS, Ray, RayRange, Side};
-use crate::world::coincidence;
 use glam::DVec3;
+use tabray_core::geometry::aabb::Aabb;
+use tabray_core::geometry::ray::{MISS, Ray, RayRange, Side};
+use tabray_core::world::coincidence;
 
 /// A step that is far longer than rounding errors, and far shorter than visible details: in world units around a hit,
 /// else as a fraction of [`RayTrial::size`].

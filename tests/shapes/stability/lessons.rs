@@ -3,8 +3,8 @@
 use super::profiles::{FLANGE, Line, NASTY, STAIR, VASE};
 use super::{Random, distance};
 use glam::{DVec3, dvec3};
+use tabray::exact::Interval;
 use tabray::geometry::{MISS, Ray, RayRange, Side};
-use tabray::numeric::Interval;
 
 /// Lesson 1: a rounding margin of 32 eps R^2 for q ignores that the rounding error of y enters q multiplied by the
 /// slope of g.

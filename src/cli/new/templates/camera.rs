@@ -1,7 +1,7 @@
 //! A template: a camera that sees all around, as on a map of the world. Describe it here.
 
 use super::look_at::{self, frame};
-use crate::prelude::*;
+use tabray::prelude::*;
 use std::f64::consts::PI;
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
 //! A template: a light with a shade, which shines downward. Describe it here.
 
 use super::light::{self, PointLight};
-use crate::prelude::*;
+use tabray::prelude::*;
 
 // Each attribute has a name, a meaning, a unit and a rule. One made with `required` must be given, one made with `or`
 // has a default. The parser, its messages and the reference are made from these descriptions.

@@ -1,6 +1,6 @@
 //! A template: a cup 4 high, with rings around it. Describe it here.
 
-use crate::prelude::*;
+use tabray::prelude::*;
 
 // Its name in scenes, its meaning, and the distance from the axis as a formula in the height y, made of numbers,
 // + - * / ^, parentheses and functions such as sin, exp and sqrt.

@@ -1,6 +1,6 @@
 //! A template: rings. Describe it here.
 
-use crate::prelude::*;
+use tabray::prelude::*;
 
 static RINGS: Pparm<f64> =
     Pparm::or("rings", "how many rings there are in the unit of length", 6.0).positive();

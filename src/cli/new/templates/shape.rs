@@ -1,6 +1,6 @@
 //! A template: a cube with rounded edges. Describe it here, and say where its formula comes from.
 
-use crate::prelude::*;
+use tabray::prelude::*;
 
 // Each attribute has a name, a meaning, a unit and a rule. One made with `required` must be given, one made with `or`
 // has a default. The parser, its messages and the reference are made from these descriptions.

@@ -2,8 +2,8 @@
 
 use crate::geometry::aabb::{Aabb, smaller};
 use crate::geometry::bvh::node::finite;
-use crate::numeric::scalar::per_axis;
 use crate::simd::cpu::kernels;
+use tabray_exact::scalar::per_axis;
 
 /// The number of bins along an axis; a set of objects is split between two bins.
 pub const BINS: usize = 16;

@@ -8,13 +8,13 @@
 use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::bins::{BINS, Bin, Grid, Item, Limits, NOTHING, best_cut, binned, half_area, join};
 use crate::geometry::bvh::node::{Node, WIDTH};
-use crate::numeric::scalar::per_axis;
 use crate::parallel;
 use crate::simd::cpu::Cpu;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::array;
 use std::mem::take;
+use tabray_exact::scalar::per_axis;
 
 /// The number of objects from which on a part is built by a thread of its own.
 const LARGE: usize = 4096;

@@ -3,13 +3,13 @@
 use super::scene::{Colour, Path, Place, Scene};
 use super::surface::{Surface, is_black, tint};
 use crate::geometry::sight::Line;
-use crate::numeric::affine::Affine;
-use crate::numeric::interval::Interval;
-use crate::numeric::scalar::{Scalar, cross, dot};
 use crate::world::certify::FootprintHit;
 use crate::world::packets::light::{EncloseLight, PacketLight};
 use crate::world::packets::shader::EncloseLook;
 use crate::world::shader::PointBounds;
+use tabray_exact::affine::Affine;
+use tabray_exact::interval::Interval;
+use tabray_exact::scalar::{Scalar, cross, dot};
 
 /// The variables that stand for the point of a light with a size: two coordinates in a disc of radius 1.
 const ON_LIGHT: [usize; 2] = [2, 3];

@@ -18,9 +18,6 @@ mod surface;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::image_point::ImagePoint;
 use crate::geometry::sight::Line;
-use crate::numeric::affine::Affine;
-use crate::numeric::interval::Interval;
-use crate::numeric::scalar::Scalar;
 use crate::render::bytes::shown;
 use crate::render::plan::depth::{self, Depth};
 use crate::scene::model::Model;
@@ -28,6 +25,9 @@ use crate::world::film::Film;
 use crate::world::material::Rgb;
 use rays::Tracer;
 use scene::Scene;
+use tabray_exact::affine::Affine;
+use tabray_exact::interval::Interval;
+use tabray_exact::scalar::Scalar;
 
 /// The maximum number of footprints that are examined for a pixel.
 pub(crate) const MAX_FOOTPRINTS: usize = 1 + 4 * 256;
@@ -200,6 +200,3 @@ fn lines(camera: &Film, middle: [f64; 2], half: f64) -> Option<Line<Affine>> {
     let at = [0, 1].map(|side| Affine::variable(side, middle[side], half));
     camera.camera.footprint(ImagePoint { at, pixels: camera.pixels })
 }
-
-#[cfg(test)]
-mod tests;

@@ -4,11 +4,11 @@ use super::light;
 use super::scene::{Colour, Path, Place, Scene};
 use super::surface::{Surface, is_black, tint};
 use crate::geometry::sight::Line;
-use crate::numeric::affine::Affine;
-use crate::numeric::interval::Interval;
-use crate::numeric::scalar::{Scalar, dot};
 use crate::render::limits::MAX_DIST;
 use crate::world::certify::FootprintHit;
+use tabray_exact::affine::Affine;
+use tabray_exact::interval::Interval;
+use tabray_exact::scalar::{Scalar, dot};
 
 /// The number of hits in a footprint after which its branches are no longer followed, but bounded.
 const MAX_HITS: usize = 48;

@@ -2,10 +2,10 @@
 
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::sight::Line;
-use crate::numeric::affine::Affine;
 use crate::render::plan::depth::Depth;
 use crate::scene::model::Model;
 use crate::world::certify::{FootprintHit, coarse};
+use tabray_exact::affine::Affine;
 
 /// A colour over a footprint. Where nothing is known, it is unbounded.
 pub(super) type Colour = [Affine; 3];

@@ -2,12 +2,12 @@
 
 use super::scene::{Colour, Place, Scene};
 use crate::geometry::sight::Line;
-use crate::numeric::affine::Affine;
-use crate::numeric::interval::Interval;
-use crate::numeric::scalar::{Scalar, dot};
 use crate::world::certify::{gradient_over, shading_normals};
 use crate::world::packets::shader::EncloseLook;
 use crate::world::shader::PointBounds;
+use tabray_exact::affine::Affine;
+use tabray_exact::interval::Interval;
+use tabray_exact::scalar::{Scalar, dot};
 
 /// The points that lines hit, and how they look there.
 pub(super) struct Surface {

@@ -2,11 +2,11 @@
 
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
 use crate::geometry::sight::Sight;
-use crate::numeric::interval::{Float, Interval, Wide};
 use crate::world::any_shape::AnyShape;
 use crate::world::certify::{self, Enclosure, Precision};
 use crate::world::coincidence::CLOSE;
 use f256::f256;
+use tabray_exact::interval::{Float, Interval, Wide};
 
 /// A rounded ray, and the bounds of the true ray that it stands for.
 pub(super) struct RoundedRay {

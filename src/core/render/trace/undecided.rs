@@ -5,11 +5,11 @@ use super::hit_record::HitRecord;
 use super::one_ray::in_world_units;
 use super::ray_group::RayGroup;
 use crate::geometry::sight::Sight;
-use crate::numeric::interval::Fraction;
 use crate::render::observer::{Count, TraceObserver};
 use crate::world::any_shape::AnyShape;
 use crate::world::certify::{Doubt, HitEnclosure, HitProofs, Proven};
 use std::mem::take;
+use tabray_exact::interval::Fraction;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Notes the pixels of a packet whose undecided hits lie no farther than what their rays hit for certain. Of a shape

@@ -1,8 +1,8 @@
 //! What a plugin says of an implicit surface.
 
-use crate::numeric::interval::Interval;
-use crate::numeric::scalar::Scalar;
 use glam::{DVec2, DVec3};
+use tabray_exact::interval::Interval;
+use tabray_exact::scalar::Scalar;
 
 /// An implicit surface, in coordinates of its own.
 pub trait Implicit: Send + Sync {

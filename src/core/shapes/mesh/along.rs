@@ -4,11 +4,11 @@ use super::face::Face;
 use super::hits::BESIDE;
 use super::surface::Surface;
 use crate::geometry::sight::Line;
-use crate::numeric::affine::Affine;
-use crate::numeric::interval::Interval;
-use crate::numeric::scalar::{Scalar, dot, per_axis};
 use crate::world::accuracy::Bounded;
 use crate::world::certify::{self, FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precise};
+use tabray_exact::affine::Affine;
+use tabray_exact::interval::Interval;
+use tabray_exact::scalar::{Scalar, dot, per_axis};
 
 impl Surface {
     /// Returns what is certain about a line's first hit with t > 0, and the face that is hit. `leaves` is the face on which

@@ -2,11 +2,11 @@
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Drift, Ray};
-use crate::numeric::double_double::exact::exact_sum;
-use crate::numeric::double_double::two_product;
-use crate::numeric::scalar::per_axis;
 use glam::DVec3;
 use std::iter;
+use tabray_exact::double_double::exact::exact_sum;
+use tabray_exact::double_double::two_product;
+use tabray_exact::scalar::per_axis;
 
 /// How many times farther than its size a mesh may be, up to which plain arithmetic finds its faces quickly.
 pub(super) const FAR: f64 = (1_u64 << 30) as f64;

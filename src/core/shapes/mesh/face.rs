@@ -2,12 +2,12 @@
 
 use crate::geometry::aabb::{Aabb, larger};
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray};
-use crate::numeric::double_double::{exponent_to_one, times_power_of_two};
-use crate::numeric::scalar::{Scalar, dot, per_axis};
 use crate::shapes::triangle::Triangle;
 use crate::world::accuracy::Exact;
 use crate::world::certify::Equation;
 use glam::DVec3;
+use tabray_exact::double_double::{exponent_to_one, times_power_of_two};
+use tabray_exact::scalar::{Scalar, dot, per_axis};
 
 /// A bound of the error of the dot product of a face's normal and the vector from a ray's origin to a corner, as a
 /// fraction of the product of the largest components of two edges and of that vector.

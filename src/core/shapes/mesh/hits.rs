@@ -9,7 +9,6 @@ use super::surface::Surface;
 use crate::geometry::aabb::{Aabb, larger};
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange};
 use crate::geometry::sight::Sight;
-use crate::numeric::interval::{Float, Interval, Wide};
 use crate::shapes::plane::Plane;
 use crate::shapes::triangle::{Triangle, plane_for_distances};
 use crate::simd::cpu::Cpu;
@@ -18,6 +17,7 @@ use crate::world::certify::{self, Enclosure, Precision};
 use crate::world::coincidence::{CLOSE, close};
 use f256::f256;
 use glam::DVec3;
+use tabray_exact::interval::{Float, Interval, Wide};
 
 impl Surface {
     /// Finds a bracket of a ray's first hit in a range. If `is_any`, any certain hit in the range will do.

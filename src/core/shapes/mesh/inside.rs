@@ -8,8 +8,6 @@ use super::solid::DIRECTIONS;
 use super::surface::Surface;
 use crate::geometry::orientation::side_of_plane;
 use crate::geometry::sight::Line;
-use crate::numeric::interval::Interval;
-use crate::numeric::scalar::{Scalar, constants, dot, per_axis};
 use crate::parallel;
 use crate::shapes::solid::Crossings;
 use crate::world::accuracy::Exact;
@@ -17,6 +15,8 @@ use crate::world::certify::{Precise, Proven};
 use f256::f256;
 use glam::DVec3;
 use std::cmp::Ordering;
+use tabray_exact::interval::Interval;
+use tabray_exact::scalar::{Scalar, constants, dot, per_axis};
 
 impl Surface {
     /// Says why a closed mesh has no inside, phrased to follow "is not a closed shape: "; `None` if it has one. `shape` is

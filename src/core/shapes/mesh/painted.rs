@@ -1,12 +1,12 @@
 //! The materials of a mesh whose file names them.
 
 use super::surface::Surface;
-use crate::numeric::interval::Interval;
 use crate::world::certify::Precise;
 use crate::world::material::{Look, Material, Rgb};
 use crate::world::shader::{LookBounds, PointBounds, Shader, SurfacePoint};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
+use tabray_exact::interval::Interval;
 
 /// The colours of a mesh whose faces have materials of their own.
 ///

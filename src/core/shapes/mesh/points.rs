@@ -4,11 +4,11 @@ use super::face::distance_to;
 use super::surface::Surface;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::MISS;
-use crate::numeric::interval::Interval;
 use crate::shapes::triangle::Triangle;
 use crate::world::accuracy::Bounded;
 use crate::world::coincidence::CLOSE;
 use glam::DVec3;
+use tabray_exact::interval::Interval;
 
 impl Surface {
     /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file.

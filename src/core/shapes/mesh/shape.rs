@@ -7,10 +7,6 @@ use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::facet::Facet;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
 use crate::geometry::sight::{Line, Sight};
-use crate::numeric::affine::Affine;
-use crate::numeric::double_double::DoubleDouble;
-use crate::numeric::dual::Dual;
-use crate::numeric::interval::Interval;
 use crate::shapes::uv;
 use crate::simd::cpu::Cpu;
 use crate::text;
@@ -26,6 +22,10 @@ use crate::world::shape::{ByPackets, Shape};
 use glam::{DMat3, DVec2, DVec3};
 use std::marker::PhantomData;
 use std::sync::Arc;
+use tabray_exact::affine::Affine;
+use tabray_exact::double_double::DoubleDouble;
+use tabray_exact::dual::Dual;
+use tabray_exact::interval::Interval;
 
 /// A mesh of triangles.
 pub struct Mesh<A> {

@@ -1,10 +1,10 @@
 //! Normals of a mesh that looks smooth.
 
 use super::surface::Surface;
-use crate::numeric::double_double::{exponent_to_one, times_power_of_two};
-use crate::numeric::interval::{Float, Interval};
-use crate::numeric::scalar::{Scalar, cross, dot, per_axis};
 use glam::DVec3;
+use tabray_exact::double_double::{exponent_to_one, times_power_of_two};
+use tabray_exact::interval::{Float, Interval};
+use tabray_exact::scalar::{Scalar, cross, dot, per_axis};
 
 impl Surface {
     /// Returns the normal at a point of a face: the face's own, or the interpolated normals of its corners. `flat` is

@@ -5,7 +5,6 @@ use super::read::Model;
 use super::to_world::ToWorld;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::Bvh;
-use crate::numeric::double_double::{exponent_to_one, times_power_of_two};
 use crate::parallel;
 use crate::scene::attribute::MOST_LENGTH;
 use crate::shapes::triangle::Triangle;
@@ -18,6 +17,7 @@ use std::collections::hash_map::Entry;
 use std::mem::take;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
+use tabray_exact::double_double::{exponent_to_one, times_power_of_two};
 
 /// The largest number of faces.
 const MAX_FACES: usize = 1 << 28;

@@ -2,7 +2,6 @@
 
 use super::shape::{ByPlacement, Placed};
 use crate::geometry::placement::Placement;
-use crate::numeric::interval::{Fine, Fraction};
 use crate::world::body::{AnyShader, Body};
 use crate::world::certify::Precise;
 use crate::world::material::{Look, Material, Rgb};
@@ -11,6 +10,7 @@ use crate::world::shader::{LookBounds, Plain, PointBounds, Sees, Shader, Surface
 use crate::world::shape::{ByPackets, Shape};
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
+use tabray_exact::interval::{Fine, Fraction};
 
 impl Placed {
     /// Makes a copy of an object with this material, which ends at a z of the world if the object is cut off as planes are.

@@ -2,12 +2,12 @@
 
 use super::shape::Placed;
 use crate::geometry::sight::Line;
-use crate::numeric::affine::Affine;
-use crate::numeric::dual::Dual;
-use crate::numeric::interval::Interval;
-use crate::numeric::scalar::{Scalar, constants, dot, per_axis};
 use crate::world::certify::{FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precise};
 use glam::DVec3;
+use tabray_exact::affine::Affine;
+use tabray_exact::dual::Dual;
+use tabray_exact::interval::Interval;
+use tabray_exact::scalar::{Scalar, constants, dot, per_axis};
 
 impl<F: Precise> HitProofs<F> for Placed {
     fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (HitEnclosure<F>, usize) {

@@ -5,10 +5,10 @@
 
 use crate::geometry::ray::{Bracket, MISS, Ray};
 use crate::geometry::sight::{Line, Sight};
-use crate::numeric::affine::Affine;
-use crate::numeric::interval::{Float, Interval, Wide};
-use crate::numeric::scalar::Scalar;
 use crate::world::certify::{Enclosure, FootprintHit, HitEnclosure};
+use tabray_exact::affine::Affine;
+use tabray_exact::interval::{Float, Interval, Wide};
+use tabray_exact::scalar::Scalar;
 
 /// The z, in world units, beyond which a copy is not there, if there is one.
 #[derive(Clone, Copy)]

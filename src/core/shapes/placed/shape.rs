@@ -6,7 +6,6 @@ use crate::geometry::facet::Facet;
 use crate::geometry::placement::Placement;
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::geometry::sight::Sight;
-use crate::numeric::double_double::DoubleDouble;
 use crate::world::body::Body;
 use crate::world::certify::{Enclosure, Precision, Premise, Proven};
 use crate::world::coincidence::{CLOSE, ROUNDING, close};
@@ -15,6 +14,7 @@ use crate::world::packets::shape::Proofs;
 use crate::world::shape::{ByPackets, Shape};
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
+use tabray_exact::double_double::DoubleDouble;
 
 /// A copy of an object's shape.
 pub struct Placed {

@@ -4,11 +4,11 @@ use super::products::quotient;
 use super::surface::Plane;
 use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::geometry::ray_packet::RayPacket;
-use crate::numeric::double_double::exact::exact_sum;
-use crate::numeric::double_double::{DoubleDouble, dot, two_product, two_sum};
-use crate::numeric::scalar::per_axis;
 use crate::simd::soa::LANES;
 use crate::world::accuracy::{Accuracy, Marker};
+use tabray_exact::double_double::exact::exact_sum;
+use tabray_exact::double_double::{DoubleDouble, dot, two_product, two_sum};
+use tabray_exact::scalar::per_axis;
 
 impl<A> Plane<A> {
     /// Returns whether a ray intersects the plane on the viewer's side of the image plane: whether z, which is the

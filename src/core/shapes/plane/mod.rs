@@ -8,6 +8,7 @@
 
 mod crossing;
 mod flat;
+mod hits;
 mod products;
 mod surface;
 

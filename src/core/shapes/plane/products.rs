@@ -13,7 +13,7 @@ pub(super) struct Products {
     pub toward_size: f64,
 }
 
-/// Returns the quotient of two dot products computed by [`dot`](crate::numeric::double_double::dot), each given with the
+/// Returns the quotient of two dot products computed by [`dot`](tabray_exact::double_double::dot), each given with the
 /// size of its terms. The result is [`MISS`] where the divisor is 0, and NaN where a dot product is less than 2^-44 of
 /// its terms: it could then be off by more than half an ulp, or have the other sign.
 #[inline(always)]

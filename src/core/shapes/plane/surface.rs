@@ -3,11 +3,11 @@
 use super::products::{MIN_TOWARD, Products, RECIPROCAL_ERROR, reciprocal};
 use crate::geometry::aabb::{Aabb, SLACK, larger};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
-use crate::numeric::double_double::{DoubleDouble, scaled};
-use crate::numeric::scalar::{Scalar, dot, per_axis};
 use crate::world::certify::Equation;
 use glam::DVec3;
 use std::marker::PhantomData;
+use tabray_exact::double_double::{DoubleDouble, scaled};
+use tabray_exact::scalar::{Scalar, dot, per_axis};
 
 /// A z beyond all hits, in world units, whose products with differences of coordinates are finite.
 const NO_END: f64 = 1e200;

@@ -1,7 +1,7 @@
 //! Hits of a quadric computed exactly, except for the rounding of the roots.
 
 use super::surface::{DD_ERROR, OwnRay, Quadratic};
-use crate::numeric::double_double::{DoubleDouble, exact::Exact};
+use tabray_exact::double_double::{DoubleDouble, exact::Exact};
 
 /// A hit as a double-double, and a bound of its error, both in the quadric's own unit of length.
 #[derive(Clone, Copy)]

@@ -3,10 +3,10 @@
 use super::exact::PreciseHit;
 use super::surface::{DD_ERROR, OwnRay, Quadratic};
 use crate::geometry::ray::{MISS, Side};
-use crate::numeric::double_double::vectors::product;
-use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two};
-use crate::numeric::scalar::{Scalar, per_axis};
 use glam::DVec3;
+use tabray_exact::double_double::vectors::product;
+use tabray_exact::double_double::{DoubleDouble, exponent_to_one, times_power_of_two};
+use tabray_exact::scalar::{Scalar, per_axis};
 
 impl Quadratic {
     /// Returns the unit normal at a point of the world.

@@ -6,6 +6,7 @@
 
 mod exact;
 mod fine;
+mod hits;
 mod quadric;
 mod quick;
 mod surface;

@@ -6,10 +6,10 @@ use super::surface::{OwnRay, Quadratic};
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::clearance;
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
-use crate::numeric::scalar::{Scalar, per_axis};
 use crate::world::accuracy::{Accuracy, Marker};
 use glam::{DMat3, DVec3};
 use std::marker::PhantomData;
+use tabray_exact::scalar::{Scalar, per_axis};
 
 /// A bound of the error of a camera ray, whose direction is off by 3 units of 2^-53 in each component.
 const CAMERA: Drift = Drift { origin: 0.0, dir: 1.5 * f64::EPSILON };

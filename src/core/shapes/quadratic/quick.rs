@@ -3,8 +3,8 @@
 use super::surface::{DD_ERROR, OwnRay, Quadratic};
 use crate::geometry::aabb::smaller;
 use crate::geometry::ray::Drift;
-use crate::numeric::double_double::{two_product, two_sum};
 use glam::DVec3;
+use tabray_exact::double_double::{two_product, two_sum};
 
 /// A ray's first hit in plain arithmetic.
 #[derive(Clone, Copy, Debug)]

@@ -1,8 +1,8 @@
 //! A quadric scaled for the solver, and rays in its coordinates.
 
-use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two, two_sum};
-use crate::numeric::scalar::per_axis;
 use glam::{DMat3, DVec3};
+use tabray_exact::double_double::{DoubleDouble, exponent_to_one, times_power_of_two, two_sum};
+use tabray_exact::scalar::per_axis;
 
 /// The part of the quadric `p·Sp + l·p + c = 0` in a box, scaled.
 ///

@@ -1,6 +1,6 @@
 //! The budget of operations for cutting a profile.
 
-use crate::numeric::formula::Formula;
+use tabray_exact::formula::Formula;
 
 /// The number of formula operations that one profile may take, a function counted as eight: half a second's worth in a
 /// program built without optimization, a tenth of that in an optimized one.

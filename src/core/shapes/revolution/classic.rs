@@ -1,12 +1,12 @@
 //! The course notes' method for surfaces of revolution, which loses some hits.
 
 use crate::geometry::ray::{MISS, Ray, RayRange};
-use crate::geometry::roots::bisection::bisect;
-use crate::numeric::interval::Interval;
-use crate::numeric::scalar::Scalar;
 use crate::scene::profile::ProfileLine;
 use crate::world::certify::Equation;
 use glam::DVec3;
+use tabray_exact::interval::Interval;
+use tabray_exact::roots::bisection::bisect;
+use tabray_exact::scalar::Scalar;
 
 /// A surface of revolution around the y axis, as the course notes' program finds it.
 pub struct ClassicRevolution {

@@ -4,12 +4,12 @@ use super::local::Local;
 use super::surface::Revolution;
 use crate::geometry::frame::BLUR;
 use crate::geometry::ray::Side;
-use crate::geometry::roots::taylor::FunctionOnLine;
-use crate::geometry::roots::twice;
-use crate::numeric::interval::Interval;
-use crate::numeric::jet::Jet;
-use crate::numeric::scalar::{Scalar, per_axis};
 use crate::world::certify::Equation;
+use tabray_exact::interval::Interval;
+use tabray_exact::jet::Jet;
+use tabray_exact::roots::taylor::FunctionOnLine;
+use tabray_exact::roots::twice;
+use tabray_exact::scalar::{Scalar, per_axis};
 
 /// The left side of the surface's equation along a ray, in any number type: above 0 outside, below 0 inside.
 pub(super) struct ProfileOnRay<'s> {

@@ -4,10 +4,10 @@
 use super::quadratic::Quadratic;
 use crate::geometry::frame::{self, BLUR, Frame};
 use crate::geometry::ray::{Ray, RayRange};
-use crate::geometry::roots::stretch::Stretch;
-use crate::numeric::scalar::Scalar;
 use glam::DVec3;
 use std::ops::Range;
+use tabray_exact::roots::stretch::Stretch;
+use tabray_exact::scalar::Scalar;
 
 /// The part of a ray in a bounding cylinder, in the surface's own coordinates and in world units.
 #[derive(Clone, Debug)]

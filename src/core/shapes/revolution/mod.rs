@@ -4,13 +4,13 @@
 //! When a surface is made, it is cut into slabs in which the square of the profile is a parabola to within a proven
 //! error (`pieces`). Along a ray, these are quadrics of revolution with closed-form hits, which bracket the ray's first
 //! hit or prove that there is none (`bracket`, for any number of rays). Where a ray grazes the shell of that error,
-//! bounds of the second derivative decide ([`taylor`](crate::geometry::roots::taylor)) for that ray alone (`walk`), and
+//! bounds of the second derivative decide ([`taylor`](tabray_exact::roots::taylor)) for that ray alone (`walk`), and
 //! where rounding hides what they say, double-double arithmetic ([`twice`]). Nothing has to be tuned. A profile for
 //! which this cannot be proven within a stated number of operations is refused, with the reason
 //! ([`NoSurface`](no_surface::NoSurface)). The margins for a ray's own rounding errors are derived where they stand, or
 //! held by the tests in `tests/slow/truth.rs`, which compare hits with true ones.
 //!
-//! [`twice`]: crate::geometry::roots::twice
+//! [`twice`]: tabray_exact::roots::twice
 
 mod bracket;
 mod budget;

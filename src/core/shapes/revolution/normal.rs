@@ -4,12 +4,12 @@ use super::surface::Revolution;
 use crate::geometry::frame::Frame;
 use crate::geometry::ray::Side;
 use crate::geometry::ray_packet::RayPacket;
-use crate::numeric::dual::Dual;
-use crate::numeric::interval::Interval;
 use crate::simd::cpu::kernels;
 use crate::simd::soa::{LANES, Vectors};
 use crate::world::interaction;
 use glam::DVec3;
+use tabray_exact::dual::Dual;
+use tabray_exact::interval::Interval;
 
 impl Revolution {
     /// Returns the unit normal at a point of the surface, away from the axis; at an apex, along the axis.

@@ -5,10 +5,10 @@ use super::no_surface::NoSurface;
 use super::ranges::Ranges;
 use super::runs::Runs;
 use super::slab::Slab;
-use crate::numeric::formula::Formula;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::ops::Range;
+use tabray_exact::formula::Formula;
 
 /// The error that slabs are cut for, in square world units. Between 1/100 and 1/10000 it makes no difference to the
 /// time per ray; a smaller error costs memory and time.

@@ -6,11 +6,11 @@
 
 use super::budget::Budget;
 use super::no_surface::NoSurface;
-use crate::geometry::roots::bisection::bisect;
-use crate::numeric::dual::Dual;
-use crate::numeric::formula::Formula;
-use crate::numeric::interval::Interval;
-use crate::numeric::scalar::Scalar;
+use tabray_exact::dual::Dual;
+use tabray_exact::formula::Formula;
+use tabray_exact::interval::Interval;
+use tabray_exact::roots::bisection::bisect;
+use tabray_exact::scalar::Scalar;
 
 /// The ranges of a profile, from the bottom up.
 pub(super) struct Ranges {

@@ -4,13 +4,13 @@ use super::surface::{Refinement, Revolution};
 use crate::geometry::frame::Frame;
 use crate::geometry::ray::Ray;
 use crate::geometry::ray_packet::RayPacket;
-use crate::geometry::roots::newton::{self, Functions, Start};
-use crate::numeric::double_double::offset;
-use crate::numeric::dual::Dual;
-use crate::numeric::f64x8::{F64x8, each};
-use crate::numeric::scalar::{Scalar, per_axis};
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::{LANES, View};
+use tabray_exact::double_double::offset;
+use tabray_exact::dual::Dual;
+use tabray_exact::f64x8::{F64x8, each};
+use tabray_exact::roots::newton::{self, Functions, Start};
+use tabray_exact::scalar::{Scalar, per_axis};
 
 /// Rays that start at the near ends of their brackets, in one number type for one ray or for eight.
 struct BracketedRays<'s, N> {

@@ -9,11 +9,7 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::frame::Frame;
 use crate::geometry::ray::{Bracket, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{self, Nearest, RayPacket, split};
-use crate::geometry::roots::Method;
 use crate::geometry::sight::Line;
-use crate::numeric::formula::Formula;
-use crate::numeric::interval::Interval;
-use crate::numeric::scalar::Scalar;
 use crate::shapes::uv;
 use crate::simd::cpu::Cpu;
 use crate::world::certify::{Assumption, Equation};
@@ -22,6 +18,10 @@ use crate::world::interaction::SurfaceInteraction;
 use crate::world::packets::shape::{Packets, Proofs, by_distance};
 use crate::world::shape::{ByPackets, Shape};
 use glam::{DVec2, DVec3};
+use tabray_exact::formula::Formula;
+use tabray_exact::interval::Interval;
+use tabray_exact::roots::Method;
+use tabray_exact::scalar::Scalar;
 
 /// A surface around the y axis of a frame.
 pub struct InFrame<S> {

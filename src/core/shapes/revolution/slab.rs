@@ -1,10 +1,10 @@
 //! A slab: a range of heights in which a profile's square is a parabola to within a proven error.
 
 use super::budget::Budget;
-use crate::numeric::formula::Formula;
-use crate::numeric::interval::Interval;
-use crate::numeric::jet::Jet;
-use crate::numeric::scalar::Scalar;
+use tabray_exact::formula::Formula;
+use tabray_exact::interval::Interval;
+use tabray_exact::jet::Jet;
+use tabray_exact::scalar::Scalar;
 
 /// A range of heights, in world units.
 #[derive(Clone, Copy, Debug)]

@@ -3,14 +3,14 @@
 use super::no_surface::NoSurface;
 use super::pieces::Slabs;
 use crate::geometry::aabb::{Aabb, SLACK};
-use crate::numeric::formula::Formula;
-use crate::numeric::interval::Interval;
-use crate::numeric::scalar::Scalar;
 use crate::shapes::uv;
 use crate::text;
 use crate::world::certify::Equation;
 use glam::DVec3;
 use std::fmt;
+use tabray_exact::formula::Formula;
+use tabray_exact::interval::Interval;
+use tabray_exact::scalar::Scalar;
 
 /// The number of pieces of a profile that are examined to find out whether it crosses the axis.
 const MOST_PIECES: usize = 10_000;

@@ -4,12 +4,12 @@ use super::no_surface::NoSurface;
 use super::*;
 use crate::geometry::frame::Frame;
 use crate::geometry::ray::Ray;
-use crate::numeric::formula::Formula;
-use crate::numeric::interval::Interval;
-use crate::numeric::scalar::Scalar;
 use glam::DVec3;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
+use tabray_exact::formula::Formula;
+use tabray_exact::interval::Interval;
+use tabray_exact::scalar::Scalar;
 
 fn formula(profile: &str) -> Formula {
     Formula::parse(profile).unwrap_or_else(|fault| panic!("{profile}: {fault:?}"))

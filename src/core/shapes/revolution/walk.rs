@@ -11,13 +11,13 @@ use super::surface::Revolution;
 use crate::geometry::frame::Frame;
 use crate::geometry::ray::{MISS, Ray, RayRange, Side};
 use crate::geometry::ray_packet::RayPacket;
-use crate::geometry::roots::Method;
-use crate::geometry::roots::stretch::Stretch;
-use crate::geometry::roots::taylor::{self, FirstRoot};
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::View;
 use glam::DVec3;
 use std::slice::from_ref;
+use tabray_exact::roots::Method;
+use tabray_exact::roots::stretch::Stretch;
+use tabray_exact::roots::taylor::{self, FirstRoot};
 
 /// A unit direction whose component along the axis is below this stays in one slab, and is not divided by.
 const LEVEL: f64 = 1e-200;

@@ -1,10 +1,10 @@
 //! All crossings of a line and a closed shape, proven one after the other.
 
 use crate::geometry::sight::Line;
-use crate::numeric::dual::Dual;
-use crate::numeric::interval::Interval;
-use crate::numeric::scalar::Scalar;
 use crate::world::certify::{HitEnclosure, Precise, Proven};
+use tabray_exact::dual::Dual;
+use tabray_exact::interval::Interval;
+use tabray_exact::scalar::Scalar;
 
 /// A crossing of a line and a closed shape.
 #[derive(Clone, Copy, Debug)]

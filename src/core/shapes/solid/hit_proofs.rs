@@ -3,10 +3,10 @@
 use super::crossings::Crossings;
 use super::trimmed::Trimmed;
 use crate::geometry::sight::Line;
-use crate::numeric::affine::Affine;
-use crate::numeric::dual::Dual;
-use crate::numeric::interval::Interval;
 use crate::world::certify::{FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precise, Proven, coarse};
+use tabray_exact::affine::Affine;
+use tabray_exact::dual::Dual;
+use tabray_exact::interval::Interval;
 
 impl Trimmed {
     fn proven(&self, part: usize) -> Option<&dyn Proven> {

@@ -1,6 +1,5 @@
 //! The reflectivities of a part of a solid.
 
-use crate::numeric::interval::{Fine, Fraction};
 use crate::world::body::Body;
 use crate::world::certify::Precise;
 use crate::world::material::{Look, Material, Rgb};
@@ -8,6 +7,7 @@ use crate::world::packets::shader::EncloseLook;
 use crate::world::shader::{LookBounds, PointBounds, Sees, Shader, SurfacePoint};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
+use tabray_exact::interval::{Fine, Fraction};
 
 /// The reflectivities of the object that is a part.
 pub struct PartShader(pub Arc<Body>);

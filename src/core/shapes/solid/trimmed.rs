@@ -3,7 +3,6 @@
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
 use crate::geometry::sight::Sight;
-use crate::numeric::double_double::DoubleDouble;
 use crate::world::any_shape::AnyShape;
 use crate::world::body::Part;
 use crate::world::certify::{Enclosure, HitProofs, Precision, Premise, Proven};
@@ -15,6 +14,7 @@ use crate::world::solid::Tree;
 use f256::f256;
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
+use tabray_exact::double_double::DoubleDouble;
 
 /// The largest number of hits of a part along a ray that are visited.
 const MOST_HITS: usize = 1024;

@@ -3,7 +3,7 @@
 use super::equation::{Equation, HitEnclosure, Values};
 use super::{closed, search};
 use crate::geometry::sight::Line;
-use crate::numeric::interval::{Float, Interval};
+use tabray_exact::interval::{Float, Interval};
 
 /// The maximum number of pieces of a line that are examined before a search is given up.
 pub(super) const PIECES: usize = 2000;

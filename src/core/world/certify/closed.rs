@@ -2,9 +2,9 @@
 
 use super::equation::{HitEnclosure, Values, is_kept};
 use crate::geometry::sight::Line;
-use crate::numeric::interval::{Float, Interval};
-use crate::numeric::jet::Jet;
-use crate::numeric::scalar::{Scalar, per_axis};
+use tabray_exact::interval::{Float, Interval};
+use tabray_exact::jet::Jet;
+use tabray_exact::scalar::{Scalar, per_axis};
 
 /// A possible hit.
 enum Candidate<F> {

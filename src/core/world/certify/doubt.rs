@@ -2,10 +2,10 @@
 
 use super::hit_proofs::{HitProofs, Proven};
 use crate::geometry::sight::Sight;
-use crate::numeric::dual::Dual;
-use crate::numeric::interval::Wide;
 use f256::f256;
 use std::fmt;
+use tabray_exact::dual::Dual;
+use tabray_exact::interval::Wide;
 
 /// Why a proof with 237 bits leaves a ray's first hit of a shape open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -61,9 +61,9 @@ impl Doubt {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::scalar::Scalar;
     use crate::world::certify::{Enclosure, Equation, Precision, first_hit};
     use glam::{DVec2, DVec3};
+    use tabray_exact::scalar::Scalar;
 
     /// Surfaces across x, cut out of a box.
     #[derive(Clone, Copy)]

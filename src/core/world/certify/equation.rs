@@ -1,11 +1,11 @@
 //! Shapes as the solutions of equations, and what can be proven about their hits.
 
 use crate::geometry::sight::Line;
-use crate::numeric::dual::Dual;
-use crate::numeric::interval::{Float, Interval};
-use crate::numeric::jet::Jet;
-use crate::numeric::scalar::Scalar;
 use glam::DVec3;
+use tabray_exact::dual::Dual;
+use tabray_exact::interval::{Float, Interval};
+use tabray_exact::jet::Jet;
+use tabray_exact::scalar::Scalar;
 
 /// A shape given by an equation, of whose solutions a part is kept.
 ///

@@ -4,11 +4,11 @@
 
 use super::equation::{Equation, Values};
 use crate::geometry::sight::Line;
-use crate::numeric::affine::{Affine, VARIABLES};
-use crate::numeric::dual::Dual;
-use crate::numeric::interval::Interval;
-use crate::numeric::jet::Jet;
-use crate::numeric::scalar::Scalar;
+use tabray_exact::affine::{Affine, VARIABLES};
+use tabray_exact::dual::Dual;
+use tabray_exact::interval::Interval;
+use tabray_exact::jet::Jet;
+use tabray_exact::scalar::Scalar;
 
 /// The variable of [`Affine`] numbers that stands for the place in a piece of the lines.
 const ALONG: usize = VARIABLES - 1;

@@ -7,11 +7,11 @@ use super::along::{PIECES, first_along, most_pieces};
 use super::equation::{Equation, HitEnclosure};
 use super::footprint::OverFootprint;
 use crate::geometry::sight::Line;
-use crate::numeric::affine::Affine;
-use crate::numeric::dual::Dual;
-use crate::numeric::interval::{Fine, Float, Fraction, Interval, Wide};
-use crate::numeric::scalar::{Scalar, per_axis};
 use f256::f256;
+use tabray_exact::affine::Affine;
+use tabray_exact::dual::Dual;
+use tabray_exact::interval::{Fine, Float, Fraction, Interval, Wide};
+use tabray_exact::scalar::{Scalar, per_axis};
 
 /// Proofs about a shape's hits along any line, in one precision.
 pub trait HitProofs<F: Float> {

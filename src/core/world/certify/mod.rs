@@ -22,13 +22,13 @@ pub use premise::{Assumption, Premise};
 
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::sight::{Line, Sight};
-use crate::numeric::double_double::DoubleDouble;
-use crate::numeric::interval::{Float, Interval, Wide};
-use crate::numeric::scalar::Scalar;
 use along::{PIECES, first_along, most_pieces};
 use equation::Values;
 use f256::f256;
 use glam::DVec3;
+use tabray_exact::double_double::DoubleDouble;
+use tabray_exact::interval::{Float, Interval, Wide};
+use tabray_exact::scalar::Scalar;
 
 /// What is proven about a ray's first hit of a shape. Distances are multiples of the length of the sight's direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -152,8 +152,8 @@ fn solve<F: Float>(shape: &dyn Values<Interval<F>>, sight: &Sight, pieces: usize
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::interval::Float;
     use proptest::prelude::*;
+    use tabray_exact::interval::Float;
 
     proptest! {
         #[test]

@@ -2,10 +2,10 @@
 
 use super::equation::{HitEnclosure, Values, is_kept};
 use crate::geometry::sight::Line;
-use crate::numeric::dual::Dual;
-use crate::numeric::interval::{Float, Interval};
-use crate::numeric::jet::Jet;
-use crate::numeric::scalar::per_axis;
+use tabray_exact::dual::Dual;
+use tabray_exact::interval::{Float, Interval};
+use tabray_exact::jet::Jet;
+use tabray_exact::scalar::per_axis;
 
 /// The length below which a piece is not cut where the value jumps, as a fraction of the whole line: a fraction of
 /// an ulp of `f64`. A ray that passes through a jump stays undecided however short the piece is, and 237 bits of exponential
@@ -232,11 +232,11 @@ impl<F: Float> Search<'_, F> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::scalar::Scalar;
     use crate::world::certify::equation::Equation;
     use f256::f256;
     use glam::DVec3;
     use std::cell::Cell;
+    use tabray_exact::scalar::Scalar;
 
     /// A profile's step at x = 0.3, and the number of times that it was evaluated.
     struct Step(Cell<usize>);

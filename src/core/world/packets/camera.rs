@@ -2,11 +2,11 @@
 
 use crate::geometry::image_point::ImagePoint;
 use crate::geometry::sight::Line;
-use crate::numeric::affine::Affine;
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::ViewMut;
 use crate::world::camera::Camera;
 use glam::DVec2;
+use tabray_exact::affine::Affine;
 
 /// A camera for packets. Every [`Camera`] is one.
 pub trait PacketCamera: Camera {

@@ -1,7 +1,6 @@
 //! Lights, sampled from many shading points at once.
 
 use crate::geometry::aabb::larger;
-use crate::numeric::interval::{Fraction, Interval};
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::ViewMut;
 use crate::world::certify::Precise;
@@ -10,6 +9,7 @@ use crate::world::light_samples::{AnyLit, LightSamples, ShadingPoints};
 use crate::world::material::Rgb;
 use f256::f256;
 use glam::DVec3;
+use tabray_exact::interval::{Fraction, Interval};
 
 /// A light for packets. Every [`Light`] is one.
 pub trait PacketLight: Light + EncloseLight<f64> + EncloseLight<f256> + EncloseLight<Fraction> {

@@ -2,14 +2,14 @@
 
 use crate::geometry::facet::Facet;
 use crate::geometry::ray::{MISS, Ray, RayRange};
-use crate::geometry::roots::Method;
 use crate::geometry::sight::Sight;
-use crate::numeric::double_double::DoubleDouble;
 use crate::world::certify::{self, Assumption, Enclosure, Equation, Precision, Premise, Proven};
 use crate::world::coincidence::ROUNDING;
 use crate::world::hittable::{Certified, Hittable, Searched};
 use crate::world::shape::{ByEquation, ByFormula, ByRoots, Shape, Unproven};
 use glam::DVec3;
+use tabray_exact::double_double::DoubleDouble;
+use tabray_exact::roots::Method;
 
 /// A shape about whose hits something may be proven.
 pub trait Proofs: Send + Sync {

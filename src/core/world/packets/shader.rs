@@ -1,12 +1,12 @@
 //! Shaders, evaluated at many points at once.
 
-use crate::numeric::interval::Fraction;
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::{View, ViewMut};
 use crate::world::certify::Precise;
 use crate::world::material::{Material, Rgb};
 use crate::world::shader::{LookBounds, PointBounds, Shader, SurfacePoint};
 use f256::f256;
+use tabray_exact::interval::Fraction;
 
 /// Points of a surface, as a shader sees them.
 #[derive(Clone, Copy)]

@@ -9,15 +9,15 @@ mod values;
 
 use super::project::Group;
 use super::view::View;
-use crate::scene::registry::Registry;
-use crate::scene::syntax::Syntax;
+use crate::registry::Registry;
+use crate::syntax::Syntax;
 use proposal::CompletionContext;
 pub use proposal::{Completion, CompletionKind};
 
 /// Returns the completions at a position of the group's first file.
 pub fn completions(registry: &Registry, group: &Group, at: usize) -> Vec<Completion> {
     let Some((path, view)) = group.first() else { return Vec::new() };
-    let at = crate::text::boundary(view.text.as_str(), at);
+    let at = tabray_core::text::boundary(view.text.as_str(), at);
     let here = CompletionContext { registry, view, group, folder: path.parent().unwrap_or(path), at };
     if in_comment(view, at) {
         return Vec::new();

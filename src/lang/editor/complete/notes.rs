@@ -3,7 +3,7 @@
 use super::proposal::{Completion, CompletionContext};
 use crate::editor::types::{ExpectedValue, expected_value};
 use crate::editor::view::{Entity, Form, Item};
-use crate::scene::reader::keyword::Keyword;
+use crate::reader::keyword::Keyword;
 
 impl CompletionContext<'_> {
     pub(super) fn in_notes(&self) -> Vec<Completion> {

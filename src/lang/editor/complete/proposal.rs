@@ -3,11 +3,11 @@
 use crate::editor::names::Namespace;
 use crate::editor::project::Group;
 use crate::editor::view::View;
-use crate::scene::kind::Kind;
-use crate::scene::registry::Registry;
-use crate::scene::syntax::Syntax;
+use crate::registry::Registry;
+use crate::syntax::Syntax;
 use std::ops::Range;
 use std::path::Path;
+use tabray_core::scene::kind::Kind;
 
 /// The kind of a completion.
 #[derive(Clone, Copy, Debug, PartialEq)]

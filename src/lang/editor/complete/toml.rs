@@ -2,7 +2,7 @@
 
 use super::proposal::{Completion, CompletionContext};
 use crate::editor::view::{Attribute, Entity, Item};
-use crate::scene::reader::keyword::Keyword;
+use crate::reader::keyword::Keyword;
 
 impl CompletionContext<'_> {
     pub(super) fn in_toml(&self) -> Vec<Completion> {

@@ -2,8 +2,8 @@
 
 use super::proposal::{Completion, CompletionContext, CompletionKind, plain};
 use crate::editor::snippet::Snippet;
-use crate::scene::reader::keyword::Keyword;
-use crate::scene::syntax::Syntax;
+use crate::reader::keyword::Keyword;
+use crate::syntax::Syntax;
 
 impl CompletionContext<'_> {
     /// Returns the types of entities, and the words that begin something else.

@@ -6,7 +6,7 @@ use crate::editor::names::Namespace;
 use crate::editor::snippet::Snippet;
 use crate::editor::types::{ExpectedValue, expected_value, truths};
 use crate::editor::view::{Attribute, Entity, Form};
-use crate::numeric::formula::functions;
+use tabray_exact::formula::functions;
 
 impl CompletionContext<'_> {
     /// Returns the attributes that are not given yet.
@@ -58,7 +58,7 @@ impl CompletionContext<'_> {
         // A word is written in quotes if they are not there yet.
         let written = |name: &str| match self.view.syntax {
             _ if is_quoted => name.to_owned(),
-            syntax => syntax.values(&crate::scene::value::Datum::Word(name.to_owned())).concat(),
+            syntax => syntax.values(&tabray_core::scene::value::Datum::Word(name.to_owned())).concat(),
         };
         match expected_value(entity, known) {
             ExpectedValue::Name(kind) => {

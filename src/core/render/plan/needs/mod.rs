@@ -20,8 +20,6 @@
 //! The notes' program tests every ray against every shape, so with `--method classic` nothing is left out.
 
 mod hull;
-#[cfg(test)]
-mod tests;
 mod view;
 
 use crate::geometry::aabb::Aabb;

@@ -2,10 +2,10 @@
 
 use super::hull::Hull;
 use crate::geometry::aabb::Aabb;
-use crate::numeric::scalar::per_axis;
 use crate::scene::model::Object;
 use crate::world::film::Film;
 use glam::DVec3;
+use tabray_exact::scalar::per_axis;
 
 /// Rays that all lead away from one point, between four directions.
 pub(super) struct View {

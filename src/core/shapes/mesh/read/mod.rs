@@ -15,7 +15,7 @@ use model::MemoryBudget;
 pub use model::{FilePosition, Model, ReadError};
 
 use crate::files;
-use crate::heap;
+use crate::memory;
 use crate::text;
 use bytesize::ByteSize;
 use rayon::ThreadPoolBuilder;
@@ -43,7 +43,7 @@ pub fn read(path: &Path, memory: u64) -> Result<Model, ReadError> {
     threads().map_err(ReadError::file)?;
     let mut bytes = Vec::new();
     let is_held =
-        usize::try_from(size).is_ok_and(|size| heap::may_fail(|| bytes.try_reserve_exact(size).is_ok()));
+        usize::try_from(size).is_ok_and(|size| memory::may_fail(|| bytes.try_reserve_exact(size).is_ok()));
     if !is_held {
         return Err(ReadError::file(format!("there is no memory for its {}", ByteSize(size))));
     }

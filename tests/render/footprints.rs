@@ -1,7 +1,10 @@
-use super::*;
-use crate::scene::reader;
-use crate::scene::registry::Registry;
-use std::path::Path;
+//! Bounds on the colour of a pixel, from its footprint.
+
+use crate::common::model;
+use tabray::render::footprint::{Proof, Prover};
+use tabray::render::plan::depth::Depth;
+use tabray::scene::model::Model;
+use tabray::world::material::Rgb;
 
 fn model(scene: &str) -> Model {
     let registry = Registry::get().expect("sound types");

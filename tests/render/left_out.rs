@@ -1,13 +1,13 @@
 //! What is left out is met by no ray, and what is lit stays.
 
-use super::*;
-use crate::render::observer::{Event, LightOutcome, TraceObserver};
-use crate::render::plan::Plan;
-use crate::render::trace;
-use crate::scene::reader;
-use crate::scene::registry::Registry;
+use crate::common::{model_in, root};
 use std::collections::BTreeSet;
-use std::path::Path;
+use tabray::render::observer::{Event, LightOutcome, TraceObserver};
+use tabray::render::plan::Plan;
+use tabray::render::plan::needs::Needs;
+use tabray::render::trace;
+use tabray::scene::model::Model;
+use tabray::world::material::Rgb;
 
 /// The objects that rays meet, and the lights that shine.
 #[derive(Default)]

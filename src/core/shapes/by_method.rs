@@ -1,0 +1,80 @@
+//! Shapes whose hits are found by another root-finding method than their own, for comparison.
+
+use crate::geometry::aabb::Aabb;
+use crate::geometry::ray::{MISS, Ray, RayRange, Side};
+use crate::geometry::sight::Sight;
+use crate::world::any_shape::AnyShape;
+use crate::world::certify::{Enclosure, Precision, Premise};
+use crate::world::hittable::Hittable;
+use crate::world::packets::shape::{Coincidence, Proofs};
+use crate::world::shape::{ByDistance, Shape};
+use glam::DVec3;
+use tabray_exact::double_double::DoubleDouble;
+use tabray_exact::roots::Method;
+
+/// Returns a shape whose hits are found by this method, where they are [searched](is_searched); the proofs of its hits
+/// are those of the original.
+pub fn by_method(shape: AnyShape, method: Method) -> AnyShape {
+    Shape::new(WithMethod { shape, method }).by::<ByDistance, OriginalProofs>().into()
+}
+
+/// Tells whether a shape's hits are roots of a function along a ray.
+pub fn is_searched(shape: &AnyShape) -> bool {
+    let any = Ray { origin: DVec3::ZERO, dir: DVec3::Z };
+    shape.packets().distance_by(Method::Steps, &any, &RayRange::ALL).is_some()
+}
+
+/// A shape whose hits are found by another method.
+struct WithMethod {
+    shape: AnyShape,
+    method: Method,
+}
+
+/// Takes the proofs of its hits from the original shape.
+struct OriginalProofs;
+
+impl Hittable for WithMethod {
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        self.shape.packets().distance_by(self.method, ray, range).unwrap_or(MISS)
+    }
+
+    fn normal(&self, at: DVec3) -> DVec3 {
+        self.shape.normal(at)
+    }
+
+    fn bounds(&self) -> Option<Aabb> {
+        self.shape.bounds()
+    }
+
+    fn can_hit_itself(&self, leaving: Side) -> bool {
+        self.shape.can_hit_itself(leaving)
+    }
+
+    fn is_two_sided(&self) -> bool {
+        self.shape.is_two_sided()
+    }
+}
+
+impl Coincidence for OriginalProofs {}
+
+impl Proofs for Shape<WithMethod, ByDistance, OriginalProofs> {
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        self.shape.shape.touches(at, error)
+    }
+
+    fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
+        None
+    }
+
+    fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
+        self.shape.shape.premises(of, each);
+    }
+
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        self.shape.shape.certify(sight, precision)
+    }
+
+    fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
+        None
+    }
+}

@@ -1,0 +1,93 @@
+//! Hits of quadrics, and what is certain about them.
+
+use super::Quadric;
+use crate::geometry::aabb::Aabb;
+use crate::geometry::ray::{Bracket, Drift, Ray, RayRange, Side};
+use crate::world::accuracy::{Bounded, Marker};
+use crate::world::certify::Equation;
+use crate::world::hittable::{Bracketed, Certified, Hittable};
+use glam::DVec3;
+use tabray_exact::scalar::Scalar;
+
+impl<A: Marker> Hittable for Quadric<A> {
+    /// Returns the nearer of the two roots that lies in the box.
+    #[inline(always)]
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        if A::IS_CLASSIC {
+            return self.classic_distance(ray, range);
+        }
+        let quick = self.fast_distance(ray, range);
+        if quick.is_nan() { range.keep(self.exact_hit(ray, range.near)) } else { quick }
+    }
+
+    #[inline]
+    fn normal(&self, at: DVec3) -> DVec3 {
+        self.unit_normal(at)
+    }
+
+    fn bounds(&self) -> Option<Aabb> {
+        Some(self.around())
+    }
+
+    #[inline]
+    fn can_hit_itself(&self, _leaving: Side) -> bool {
+        !A::IS_CLASSIC
+    }
+
+    fn openness(&self) -> Option<&'static str> {
+        (!self.is_closed())
+            .then_some("it is not an ellipsoid within its box whose equation is below J inside")
+    }
+
+    fn is_two_sided(&self) -> bool {
+        !A::IS_CLASSIC
+    }
+
+    fn method(&self) -> String {
+        Self::METHOD.to_owned()
+    }
+
+    fn clearance(&self, from: DVec3) -> Option<f64> {
+        Some(self.clearance_by_value(from).max(self.clearance_by_box(from)))
+    }
+
+    fn reach(&self) -> f64 {
+        // The box only clips, and may be far larger than what is seen of the surface, so its corners do not count.
+        self.center.abs().max_element()
+    }
+}
+
+impl<A: Bounded> Bracketed for Quadric<A> {
+    #[inline(always)]
+    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        let may_leave = range.origin_error > 0.0 && range.origin_side.is_none();
+        if may_leave && self.touches(ray.origin, range.origin_error) {
+            return Bracket::UNKNOWN;
+        }
+        Quadric::t_bounds(self, ray, range)
+    }
+
+    #[inline(always)]
+    fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
+        Quadric::t_bounds_within(self, ray, range, drift)
+    }
+
+    #[inline(always)]
+    fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
+        self.fast_distance(ray, &RayRange { origin_side, ..RayRange::ALL })
+    }
+}
+
+impl<A: Bounded> Certified for Quadric<A> {}
+
+impl<A> Equation for Quadric<A> {
+    const IS_QUADRATIC: bool = true;
+
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
+        Quadric::value(self, at)
+    }
+
+    fn kept<N: Scalar>(&self, at: [N; 3]) -> N {
+        self.inside_box(at)
+    }
+}
