@@ -1,23 +1,35 @@
-//! Lists the files of `plugins/`, so that a file put there is compiled in, and a file deleted there is left out.
+//! Lists the files of this folder, so that a file put there is compiled in, and a file deleted there is left out.
 //!
-//! Writes `$OUT_DIR/plugins.rs`, a macro with a `mod` for each file in sorted order; `lib.rs` expands it. The modules'
+//! Writes `$OUT_DIR/plugins.rs`, a macro with a `mod` for each plugin in sorted order; `lib.rs` expands it. The modules'
 //! names are raw identifiers, so that a plugin can be named after a keyword of Rust: `box`.
 
 use std::path::Path;
 use std::{env, fs, io};
 
+/// The files of this folder that are no plugins.
+const OWN: [&str; 2] = ["build", "lib"];
+
 fn main() -> io::Result<()> {
-    println!("cargo::rerun-if-changed=plugins");
+    println!("cargo::rerun-if-changed=.");
     let mut names = Vec::new();
-    for file in fs::read_dir("plugins")? {
-        let path = file?.path();
+    for file in fs::read_dir(".")? {
+        let path = Path::new("plugins").join(file?.file_name());
         if path.extension().is_none_or(|extension| extension != "rs") {
             continue;
         }
         let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
-        if is_module_name(name) {
+        let registers =
+            fs::read_to_string(path.file_name().unwrap_or_default())?.contains("inventory::submit!");
+        if OWN.contains(&name) {
+            if registers && name == "lib" {
+                println!(
+                    "cargo::error={}: the file of that name lists the plugins: take another name",
+                    path.display()
+                );
+            }
+        } else if is_module_name(name) {
             names.push(name.to_owned());
-            if !fs::read_to_string(&path)?.contains("inventory::submit!") {
+            if !registers {
                 println!(
                     "cargo::warning={} registers nothing, so no scene can use it: add `inventory::submit! {{ ... }}`",
                     path.display()

@@ -1,5 +1,14 @@
 //! A ray tracer in which a scene is data and every entity type is a plugin.
 //!
+//! This library is all of tabray, with its entity types: what links it can read every scene. It consists of crates that
+//! can be used by themselves, and has nothing of its own:
+//!
+//! - [`exact`] (tabray-exact): intervals, longer numbers, formulas and roots
+//! - [`geometry`], [`world`], [`shapes`], [`render`] and [`output`] (tabray-core): from a model to an image
+//! - [`scene`] (tabray-core, tabray-lang): the tables of entity types, the model, and the reader of scenes
+//! - [`tools`] (tabray-tools) and [`cli`] (tabray-cli): charts, proofs and contract tests; the command line
+//! - `tabray-plugins`: the entity types, a file in `plugins/` for each
+//!
 //! Data flows in one direction: a scene's text becomes entities, checked against the tables of their types, then a
 //! [`Model`](scene::Model), then a [`Plan`](render::Plan), and tile by tile an image ([`Renderer`](render::Renderer),
 //! [`Format`](output::Format)). A model can also be built without any text ([`scene::build`]), and printed again
@@ -9,29 +18,16 @@
 //! [`world`]; [`prelude`] has all that it needs. No other file mentions it. A plugin outside of this package does the
 //! same, and calls [`cli::run`] from its own `main` (see `docs/plugins.md`).
 
-// The vectors of positions and colours.
-pub use glam;
+pub use tabray_cli as cli;
+pub use tabray_core::{geometry, glam, output, prelude, render, shapes, simd, world};
+pub use tabray_exact as exact;
+pub use tabray_tools as tools;
 
-pub mod cli;
-mod editor;
-mod files;
-pub mod geometry;
-mod heap;
-pub mod numeric;
-pub mod output;
-mod parallel;
-pub mod prelude;
-pub mod render;
-pub mod scene;
-pub mod shapes;
-pub mod simd;
-mod text;
-pub mod tools;
-pub mod world;
+// Links the entity types, which register themselves.
+use tabray_plugins as _;
 
-include!(concat!(env!("OUT_DIR"), "/plugins.rs"));
-
-#[path = "../plugins"]
-mod plugins {
-    plugins!();
+/// Scenes: the tables of entity types, the model that a scene becomes, and the language in which it is written.
+pub mod scene {
+    pub use tabray_core::scene::*;
+    pub use tabray_lang::*;
 }

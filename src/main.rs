@@ -1,7 +1,11 @@
 //! The `tabray` program.
 
 use std::process::ExitCode;
+use tabray::cli;
+
+#[global_allocator]
+static HEAP: cli::Heap = cli::Heap;
 
 fn main() -> ExitCode {
-    tabray::cli::run()
+    cli::run()
 }

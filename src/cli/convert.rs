@@ -1,6 +1,7 @@
 //! `tabray convert`: writes a scene in the other syntax.
 
 use crate::files::{input, output};
+use crate::options::named::by_name;
 use crate::options::set;
 use crate::process::failure::{Failure, print};
 use crate::process::messages;
@@ -25,7 +26,7 @@ pub struct Args {
     /// output, and needs --to
     output: PathBuf,
     /// The syntax to write, whatever the file name
-    #[arg(long, value_name = "SYNTAX")]
+    #[arg(long, value_name = "SYNTAX", value_parser = by_name::<Syntax>())]
     to: Option<Syntax>,
 }
 

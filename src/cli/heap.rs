@@ -8,20 +8,14 @@
 )]
 
 use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
 use std::sync::OnceLock;
+use tabray_core::memory::{is_allowed_to_fail, may_fail};
 
-struct Heap;
-
-#[global_allocator]
-static HEAP: Heap = Heap;
+/// The allocator: a program makes it its own with `#[global_allocator]`.
+pub struct Heap;
 
 /// The function that is called with the length, in bytes, of a refused allocation.
 static REFUSED: OnceLock<fn(usize)> = OnceLock::new();
-
-thread_local! {
-    static MAY_FAIL: Cell<bool> = const { Cell::new(false) };
-}
 
 /// Registers the function that is called, with the length of the allocation in bytes, if memory is refused. If it
 /// returns, the program ends with a signal.
@@ -46,14 +40,6 @@ pub fn exit_at_once(status: i32) -> ! {
 /// Tells whether the system would provide so many bytes in one piece.
 pub fn has_room(bytes: usize) -> bool {
     may_fail(|| Vec::<u8>::new().try_reserve_exact(bytes).is_ok())
-}
-
-/// Runs work in which a refused allocation is an ordinary error.
-pub fn may_fail<T>(work: impl FnOnce() -> T) -> T {
-    let before = MAY_FAIL.replace(true);
-    let done = work();
-    MAY_FAIL.set(before);
-    done
 }
 
 // SAFETY: each method hands its arguments on to the system's allocator as they are, and returns what that returns.
@@ -85,7 +71,7 @@ fn checked(memory: *mut u8, bytes: usize) -> *mut u8 {
 
 #[cold]
 fn refused(bytes: usize) {
-    if let Some(call) = REFUSED.get().filter(|_| !MAY_FAIL.get()) {
+    if let Some(call) = REFUSED.get().filter(|_| !is_allowed_to_fail()) {
         call(bytes);
     }
 }

@@ -18,6 +18,7 @@ mod fmt;
 #[doc(hidden)]
 pub mod fuzz;
 mod grammar;
+mod heap;
 mod list;
 mod lsp;
 mod man;
@@ -38,6 +39,8 @@ mod serve;
 mod verify;
 mod watch;
 
+pub use heap::Heap;
+
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 #[cfg(target_os = "linux")]
 use nix::sys::signal::{SigSet, Signal};
@@ -56,7 +59,7 @@ use tabray_lang::registry::Registry;
 /// standard error and writes its image, a PPM, to standard output. It uses the notes' own methods unless the scene's
 /// camera says otherwise. Warnings follow the dump, and `--quiet` leaves them out.
 #[derive(Parser)]
-#[command(version, after_help = EXIT_STATUS, after_long_help = EXAMPLES)]
+#[command(name = "tabray", version, after_help = EXIT_STATUS, after_long_help = EXAMPLES)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -196,3 +199,7 @@ fn chosen() -> ExitCode {
         Err(failure) => report(&failure),
     }
 }
+
+// Tests read scenes, and so need entity types.
+#[cfg(test)]
+use tabray_plugins as _;

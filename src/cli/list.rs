@@ -9,6 +9,7 @@ use tabray_core::text;
 use tabray_lang::list_json::Tables;
 use tabray_lang::reference;
 use tabray_lang::registry::Registry;
+use tabray_lang::syntax::Syntax;
 
 /// List the entity types, or the attributes of one
 #[derive(clap::Args)]
@@ -76,7 +77,7 @@ fn details(entity: &'static Entity) -> String {
 fn condition(attribute: &dyn Attribute) -> String {
     let mut parts = vec![match attribute.default() {
         Some(Datum::Absent) => "optional".to_owned(),
-        Some(default) => format!("default {default}"),
+        Some(default) => format!("default {}", Syntax::Notes.values(&default).join(" ")),
         None => "required".to_owned(),
     }];
     if !attribute.rule().is_empty() {

@@ -4,6 +4,7 @@ use super::course::Differences;
 use crate::files::input::Source;
 use crate::files::output::{Output, format_by_name};
 use crate::files::{input, output, provenance, several};
+use crate::options::named::by_name;
 use crate::options::number::whole;
 use crate::options::size::Part;
 use crate::options::stop::{self, Stop};
@@ -43,10 +44,10 @@ pub struct Args {
     #[arg(short, long, value_name = "FILE|DIR")]
     output: Option<PathBuf>,
     /// The image format, whatever the file's extension
-    #[arg(long)]
+    #[arg(long, value_parser = by_name::<Format>())]
     format: Option<Format>,
     /// The compression of a PNG
-    #[arg(long, value_name = "HOW", default_value = "fast")]
+    #[arg(long, value_name = "HOW", default_value = "fast", value_parser = by_name::<Compression>())]
     compress: Compression,
     #[command(flatten)]
     size: size::Args,

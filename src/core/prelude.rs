@@ -1,4 +1,4 @@
-//! Everything that a plugin needs, in one `use`: `crate::prelude::*` in `plugins/`, `tabray::prelude::*` elsewhere.
+//! Everything that a plugin needs, in one `use`: `tabray::prelude::*`, in `plugins/` as elsewhere.
 //!
 //! Arithmetic that only some shapes share is not included; it is in [`shapes`](crate::shapes) and
 //! [`double_double`](tabray_exact::double_double).

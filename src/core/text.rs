@@ -1,6 +1,5 @@
 //! Small helpers for the text of messages: guesses at misspelt words, lists of words, reasons, and JSON.
 
-use clap::ValueEnum;
 use image::ImageError;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -10,6 +9,8 @@ use std::ops::RangeInclusive;
 use std::panic::Location;
 use std::path::Path;
 
+pub use tabray_exact::text::{count, list, shortest};
+
 /// The longest word for which a guess is made, in bytes. Names are shorter, so a longer word is not a misspelt name.
 const MAX_LENGTH: usize = 128;
 
@@ -17,7 +18,7 @@ const MAX_LENGTH: usize = 128;
 /// of 8 letters, and about a millisecond.
 const BUDGET: usize = 1 << 16;
 
-/// Returns the word of `known` that `word` was most likely meant to be, as far as [`BUDGET`] allows finding it.
+/// Returns the word of `known` that `word` was most likely meant to be, as far as `BUDGET` allows finding it.
 pub fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
     if word.len() > MAX_LENGTH {
         return None;
@@ -108,12 +109,6 @@ pub fn boundary(text: &str, at: usize) -> usize {
     (0..=at.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0)
 }
 
-/// Returns the shortest decimal that reads back as the same number.
-pub fn shortest(number: f64) -> String {
-    let text = format!("{number:?}");
-    text.strip_suffix(".0").unwrap_or(&text).to_owned()
-}
-
 /// Quotes a word of a command for a shell.
 pub fn quoted(word: &OsStr) -> String {
     let word = word.to_string_lossy();
@@ -157,15 +152,9 @@ pub fn picture_reason(error: &ImageError) -> String {
     }
 }
 
-/// Returns the file and line of a source position; for a plugin, the path from the top folder.
+/// Returns the file and line of a source position; for a plugin of this workspace, the path from its top folder.
 pub fn place(location: &Location<'_>) -> String {
-    let file = location.file().replace('\\', "/");
-    format!("{}:{}", file.strip_prefix("src/../").unwrap_or(&file), location.line())
-}
-
-/// Lists words in backticks, separated by commas.
-pub fn list<'w>(words: impl IntoIterator<Item = &'w str>) -> String {
-    words.into_iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")
+    format!("{}:{}", location.file().replace('\\', "/"), location.line())
 }
 
 /// Lists words in prose: `x`, `x and y`, `x, y and z`.
@@ -215,11 +204,6 @@ pub fn short(number: f64) -> String {
     }
 }
 
-/// Writes a count with its noun: `1 error`, `2 errors`.
-pub fn count(count: usize, noun: &str) -> String {
-    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
-}
-
 /// Writes a value as JSON on one line. The fields stand in the order in which its type declares them.
 pub fn json(value: &impl Serialize) -> String {
     serde_json::to_string(value).expect(NAMED)
@@ -238,9 +222,34 @@ pub fn sha256(hash: &[u8]) -> String {
     format!("sha256:{digits}")
 }
 
-/// Returns the name of a value on the command line.
-pub fn name(value: &impl ValueEnum) -> String {
-    value.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
+/// A value that people choose by its name, of a few.
+pub trait Named: Copy + PartialEq + 'static {
+    /// All values, in the order in which they are listed.
+    const ALL: &'static [Self];
+
+    /// Returns the value's name.
+    fn name(self) -> &'static str;
+
+    /// Returns the value of this name.
+    fn of_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|value| value.name() == name)
+    }
+}
+
+/// Names all values of a type, each once, for [`Named`].
+#[macro_export]
+macro_rules! named {
+    ($type:ty { $($value:ident => $name:literal),+ $(,)? }) => {
+        impl $crate::text::Named for $type {
+            const ALL: &'static [Self] = &[$(Self::$value),+];
+
+            fn name(self) -> &'static str {
+                match self {
+                    $(Self::$value => $name),+
+                }
+            }
+        }
+    };
 }
 
 /// Returns a text with its first letter in upper case.

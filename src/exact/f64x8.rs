@@ -4,16 +4,19 @@
 //! where that is possible: the reduction and the polynomials are those of FreeBSD's msun, from which that crate is
 //! ported.
 
-use crate::f64x8::LANES;
 use crate::scalar::Scalar;
 use crate::spline::Spline;
 use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// The number of lanes that are evaluated at a time.
+pub const LANES: usize = 8;
 
 /// Eight independent numbers, one per lane.
 #[derive(Clone, Copy, Debug)]
 pub struct F64x8(pub [f64; LANES]);
 
 /// Evaluates an expression for each lane of one or more vectors: `each!(a = x, b = y => a.hypot(b))`.
+#[macro_export]
 macro_rules! each {
     ($($number:ident = $vector:expr),+ => $value:expr) => {{
         let mut all = [0.0; $crate::f64x8::LANES];
@@ -24,7 +27,7 @@ macro_rules! each {
         $crate::f64x8::F64x8(all)
     }};
 }
-pub(crate) use each;
+pub use each;
 
 impl Add for F64x8 {
     type Output = Self;

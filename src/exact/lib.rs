@@ -9,8 +9,10 @@ pub mod formula;
 pub mod interval;
 pub mod jet;
 pub mod polynomial;
+pub mod roots;
 pub mod scalar;
 pub mod spline;
+pub mod text;
 
 pub use dual::Dual;
 pub use formula::Formula;

@@ -52,7 +52,7 @@ pub fn scene(model: &Model, syntax: Syntax) -> String {
 }
 
 /// Returns an entity of such a scene. `repeated` is true if another entity of its type has the same name.
-pub(crate) fn block(args: &Args, syntax: Syntax, repeated: bool) -> String {
+pub fn block(args: &Args, syntax: Syntax, repeated: bool) -> String {
     let (kind, name) = (args.entity.name, syntax.key(&args.name));
     let width = args.given().map(|(attribute, _)| attribute.name().len()).max().unwrap_or(0);
     let line = |(attribute, datum): (&dyn Attribute, &Datum)| {
@@ -74,7 +74,7 @@ pub(crate) fn block(args: &Args, syntax: Syntax, repeated: bool) -> String {
 }
 
 /// Returns all entities of a model in the order of its scene.
-pub(crate) fn in_order(model: &Model) -> Vec<&Record> {
+pub fn in_order(model: &Model) -> Vec<&Record> {
     let kinds = [
         Kind::Camera,
         Kind::Material,

@@ -1,6 +1,7 @@
 //! The reference of the scene language: the meaning of its words, generated from the tables.
 
 use crate::registry::Registry;
+use crate::syntax::Syntax;
 use tabray_core::scene::attribute::Attribute;
 use tabray_core::scene::choice::{Choice, ChoiceName};
 use tabray_core::scene::counts::OneOf;
@@ -11,7 +12,7 @@ use tabray_core::scene::value::Datum;
 use tabray_core::text;
 
 /// The part of the reference that is the same whatever entity types there are.
-const LANGUAGE: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/language.md"));
+const LANGUAGE: &str = include_str!("../../docs/language.md");
 
 /// Returns the whole reference as one Markdown text.
 pub fn markdown(registry: &Registry) -> String {
@@ -117,7 +118,7 @@ fn attribute_row(attribute: &'static dyn Attribute) -> String {
     let default = match attribute.default() {
         None => "required".to_owned(),
         Some(Datum::Absent) => "none".to_owned(),
-        Some(datum) => format!("`{datum}`"),
+        Some(datum) => format!("`{}`", Syntax::Notes.values(&datum).join(" ")),
     };
     let mut meaning = attribute.meaning().to_owned();
     if !attribute.unit().is_empty() {

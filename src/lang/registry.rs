@@ -104,6 +104,11 @@ impl Registry {
         format!("a scene begins with a camera, {camera}; materials, objects and lights follow")
     }
 
+    /// Returns whether there is no entity type: the program links no plugins.
+    pub fn is_empty(&self) -> bool {
+        self.entities.is_empty()
+    }
+
     /// Returns all entity types, sorted by name.
     pub fn iter(&self) -> impl Iterator<Item = &'static Entity> {
         self.entities.values().copied()
@@ -128,6 +133,8 @@ fn taken(what: &str, name: &str, first: &Entity, second: &Entity) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::reader;
+    use std::path::Path;
     use tabray_core::scene::pparm::{Pparm, Row, Table};
     use tabray_core::scene::value::{Datum, Type};
     use tabray_core::world::body::Body;
@@ -151,6 +158,20 @@ mod tests {
     }
 
     #[test]
+    fn no_scene_is_read_without_entity_types() {
+        let none = Registry::of([]).expect("no contradiction");
+        for scene in ["", "sphere ball { radius 1 }", "[sphere.ball]"] {
+            let Err(report) = reader::read(&none, "scene", Path::new(""), scene.as_bytes(), None) else {
+                panic!("`{scene}` is read");
+            };
+            let told = report.to_string();
+            assert!(told.starts_with("error: this program has no entity types"), "{told}");
+            assert!(told.contains("use tabray_plugins as _;"), "{told}");
+        }
+        assert!(reader::build(&none, []).is_err());
+    }
+
+    #[test]
     fn a_name_taken_twice_is_refused_with_both_places() {
         for order in [[&BOX, &OTHER_BOX], [&OTHER_BOX, &BOX]] {
             let expected = format!(
@@ -160,7 +181,7 @@ mod tests {
             );
             assert_eq!(fault(&order), expected);
         }
-        assert!(BOX.place().starts_with("src/scene/registry.rs:"), "{}", BOX.place());
+        assert!(BOX.place().starts_with("src/lang/registry.rs:"), "{}", BOX.place());
     }
 
     #[test]

@@ -1,29 +1,29 @@
 //! The two syntaxes of a scene: how each writes names, attributes and values.
 
-use clap::ValueEnum;
-use std::fmt;
 use std::path::Path;
 use tabray_core::scene::attribute::Attribute;
 use tabray_core::scene::counts::OneOf;
 use tabray_core::scene::entity::Entity;
 use tabray_core::scene::value::{Datum, Type, yes_or_no};
+use tabray_core::named;
 use tabray_core::text::shortest;
 use tabray_exact::formula::variables::SPACE;
 
 /// A syntax of the scene language.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Syntax {
     /// The syntax of the course notes.
     ///
     /// As `sphere ball { radius 2 }`.
     #[default]
-    #[value(name = "ray")]
     Notes,
     /// TOML.
     ///
     /// As `[sphere.ball]` and below it `radius = 2`.
     Toml,
 }
+
+named!(Syntax { Notes => "ray", Toml => "toml" });
 
 impl Syntax {
     /// Returns the syntax of a file, by its extension.
@@ -136,13 +136,6 @@ impl Syntax {
         let splits = |c: char| c.is_whitespace() || c == '{' || c == '}';
         let bare = !word.is_empty() && !word.starts_with(['#', '"']) && !word.contains(splits);
         if self == Self::Notes && bare { word.to_owned() } else { quoted(word) }
-    }
-}
-
-/// Writes the values in the notes' syntax; every number reads back to its last bit.
-impl fmt::Display for Datum {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&Syntax::Notes.values(self).join(" "))
     }
 }
 

@@ -18,7 +18,7 @@ use tabray_core::parallel;
 use tabray_core::render::tiles::{Band, Strip, TILE, Tiles};
 use tabray_core::scene::choice::Choice;
 use tabray_core::scene::model::Model;
-use tabray_core::text;
+use tabray_core::text::{self, Named};
 use tabray_core::world::film::Adaptive;
 use tabray_lang::dump;
 use tabray_lang::syntax::Syntax;
@@ -79,7 +79,7 @@ impl Identity {
             crop: (!is_whole).then(|| [columns.start, height - rows.end, columns.len(), rows.len()]),
             files: files(model),
             program: program()?,
-            sampler: text::name(&camera.sampler),
+            sampler: camera.sampler.name().to_owned(),
             exposure: (camera.exposure != 0.0).then_some(camera.exposure),
             samples: camera.samples,
             more_samples: camera.adaptive.map(|Adaptive { most, error }| match error {

@@ -1,6 +1,5 @@
 //! The notes' debug lines (`DBG_PIX` and so on), in their order and their format.
 
-use clap::ValueEnum;
 use std::fmt;
 use std::io::{self, Write};
 use tabray_core::geometry::ray::{Ray, RayRange};
@@ -9,9 +8,10 @@ use tabray_core::render::observer::{Event, RayPurpose, TraceObserver};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::trace;
 use tabray_core::scene::model::Model;
+use tabray_core::named;
 
 /// A kind of the notes' debug lines.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LogLine {
     /// The pixel: its row and its column.
     Pix,
@@ -32,6 +32,15 @@ pub enum LogLine {
     /// Each object that a ray finds, and its distance.
     Find,
 }
+
+named!(LogLine {
+    Pix => "pix",
+    Hit => "hit",
+    Drgb => "drgb",
+    Irgb => "irgb",
+    Offset => "offset",
+    Find => "find",
+});
 
 /// Traces one pixel and prints these lines about it, in the order in which the notes' program prints them.
 ///

@@ -4,10 +4,16 @@ pub mod assumptions;
 pub mod bench;
 pub mod certain;
 pub mod chart;
+pub mod checkpoint;
 pub mod colours;
 pub mod contract;
 pub mod debug;
 pub mod navigation;
+pub mod part;
 pub mod probe;
 pub mod sampling;
 pub mod verify;
+
+// Tests read scenes, and so need entity types.
+#[cfg(test)]
+use tabray_plugins as _;

@@ -195,7 +195,7 @@ mod tests {
         let registry = Registry::get().expect("plugins");
         let of_kind = registry.iter().filter(|entity| entity.kind() == Kind::Camera);
         let scene = |name: &str| {
-            let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/entities");
+            let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/entities");
             let text = std::fs::read(folder.join(format!("{name}.ray"))).expect("a scene of the type");
             let read = reader::read(registry, name, &folder, &text, None).expect("a valid scene");
             read.model.camera.args.args()

@@ -5,7 +5,6 @@
 //! its tiles before the pixels, 1 where the tile is rendered.
 
 use crate::checkpoint::Identity;
-use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fs::File;
@@ -49,7 +48,7 @@ pub enum PixelFormat {
 
 /// Compression by its name on the command line.
 mod by_name {
-    use super::{Compression, ValueEnum, text};
+    use super::{Compression, text};
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
     /// A compression, or none.
@@ -60,22 +59,22 @@ mod by_name {
 
     impl Named for Compression {
         fn name(&self) -> Option<String> {
-            Some(text::name(self))
+            Some(text::Named::name(*self).to_owned())
         }
 
         fn of(name: Option<String>) -> Option<Self> {
-            Self::from_str(&name?, false).ok()
+            <Self as text::Named>::of_name(&name?)
         }
     }
 
     impl Named for Option<Compression> {
         fn name(&self) -> Option<String> {
-            self.as_ref().map(text::name)
+            self.map(|of| text::Named::name(of).to_owned())
         }
 
         fn of(name: Option<String>) -> Option<Self> {
             match name {
-                Some(name) => Compression::from_str(&name, false).ok().map(Some),
+                Some(name) => <Compression as text::Named>::of_name(&name).map(Some),
                 None => Some(None),
             }
         }
@@ -163,7 +162,7 @@ impl Label {
             && of <= MOST_PARTS
             && (1..=of).contains(&number)
             && self.tiles[0] < self.tiles[1]
-            && self.tiles[1] <= self.grid().len()
+            && self.tiles[1] <= self.grid().count()
     }
 
     /// Returns the number of bytes between the label and the checksum.

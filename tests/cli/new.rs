@@ -94,6 +94,8 @@ fn a_plugin_that_cannot_be_is_refused_and_nothing_is_written() {
         ("rainbow", "the entity type `rainbow` already exists, at plugins/rainbow.rs:", TAKEN),
         ("cone", "the profile `cone` already exists", TAKEN),
         ("body", "the template already uses the name `Body`", TAKEN),
+        ("lib", "`plugins/lib.rs` is no plugin: the crate of all plugins is made by it", TAKEN),
+        ("build", "`plugins/build.rs` is no plugin", TAKEN),
         ("gem", "`plugins/gem.rs` already exists", IN_THE_WAY),
         ("coil", "`scenes/wrong/coil.ray` already exists", IN_THE_WAY),
     ] {

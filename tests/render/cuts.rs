@@ -6,41 +6,30 @@ use tabray::render::plan::Plan;
 use tabray::render::plan::depth::{Depth, FAINT};
 use tabray::render::ray_stats::RayStats;
 use tabray::render::renderer::Renderer;
-use tabray::render::trace::{RayGroup, Scratch, Tracer, VectorList};
+use tabray::render::trace;
 use tabray::scene::model::Model;
-use tabray::simd::cpu::Cpu;
 use tabray::world::material::Rgb;
 
 const SIDES: [usize; 2] = [5, 4];
 
 fn model(entities: &str) -> Model {
     let text = format!("camera eye {{ pixeldim 5 4 worlddim 8 6 viewpoint 4 3 6 }}\n{entities}");
-    let registry = Registry::get().expect("sound types");
-    match reader::read(registry, "scene", Path::new(""), text.as_bytes(), None) {
-        Ok(loaded) => loaded.model,
-        Err(report) => panic!("{report}"),
-    }
+    loaded(&text)
 }
 
 /// Makes a plan without cuts.
 fn whole(model: &Model) -> Plan<'_> {
-    Plan { depth: Depth::new(model).map(Depth::uncut), ..Plan::new(model) }
+    let mut plan = Plan::new(model);
+    plan.depth = Depth::new(model).map(Depth::uncut);
+    plan
 }
 
 /// Renders all pixels with a ray budget: returns their colours, bounds on what these lack, and the rays that were
 /// cast.
 fn seen(plan: &Plan, rays: u32) -> (Vec<(Rgb, f64)>, RayStats) {
-    let (mut scratch, mut stats, mut colours) =
-        (Scratch::default(), RayStats::default(), VectorList::default());
-    let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut stats);
-    let pixels = (0..SIDES[1]).flat_map(|y| (0..SIDES[0]).map(move |x| (x, y)));
-    let one = |(x, y): (usize, usize)| {
-        let mut group = RayGroup::primary(&plan.camera.sight(x as f64, y as f64), plan.depth.as_ref());
-        group.ray_budget.fill(rays);
-        tracer.colours(&mut group, &mut colours);
-        (colours.get(0), tracer.missing(0))
-    };
-    let pixels = pixels.map(one).collect();
+    let mut stats = RayStats::default();
+    let pixels = (0..SIDES[1]).flat_map(|y| (0..SIDES[0]).map(move |x| [x, y]));
+    let pixels = pixels.map(|pixel| trace::within_budgets(plan, &[pixel], &[rays], &mut stats)[0]).collect();
     (pixels, stats)
 }
 

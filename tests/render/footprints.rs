@@ -6,14 +6,6 @@ use tabray::render::plan::depth::Depth;
 use tabray::scene::model::Model;
 use tabray::world::material::Rgb;
 
-fn model(scene: &str) -> Model {
-    let registry = Registry::get().expect("sound types");
-    match reader::read(registry, "scene", Path::new(""), scene.as_bytes(), None) {
-        Ok(loaded) => loaded.model,
-        Err(report) => panic!("{report}"),
-    }
-}
-
 fn proof(model: &Model, pixel: [usize; 2], error: f64) -> Proof {
     let depth = Depth::new(model);
     Prover::new(model).pixel((model, depth.as_ref()), &model.camera.value, pixel, error)

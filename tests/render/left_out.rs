@@ -34,9 +34,7 @@ impl TraceObserver for ReachedEntities {
 }
 
 fn model(text: &str) -> Model {
-    let registry = Registry::get().expect("sound types");
-    let read = reader::read(registry, "scene", Path::new(""), text.as_bytes(), None);
-    read.unwrap_or_else(|report| panic!("{report}\n{text}")).model
+    model_in(root(), text)
 }
 
 /// Checks that no ray meets what is left out, and returns the numbers of objects and lights that are.

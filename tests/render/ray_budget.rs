@@ -27,12 +27,8 @@ const HEART: &str = "heart heart { material glass center 4 3 -2 size 2 }";
 /// Renders all pixels in packets and one by one, where every step is reported; returns how many rays were cast in
 /// packets, and how many pixels were cut off.
 fn rays(surface: &str) -> (usize, u64) {
-    let registry = Registry::get().expect("sound types");
-    let text = format!("{SCENE}\n{surface}");
-    let Ok(loaded) = reader::read(registry, "scene", Path::new(""), text.as_bytes(), None) else {
-        panic!("a sound scene");
-    };
-    let plan = Plan::new(&loaded.model);
+    let model = model(&format!("{SCENE}\n{surface}"));
+    let plan = Plan::new(&model);
     let pixels: Vec<_> = (0..6).flat_map(|row| (0..8).map(move |column| [column, row])).collect();
     let (mut scratch, mut stats) = (Scratch::default(), RayStats::default());
     let renderer = Renderer::new(1).expect("a thread");
@@ -42,10 +38,9 @@ fn rays(surface: &str) -> (usize, u64) {
         (0..pixels.len()).map(|lane| seen.get(lane)).collect()
     });
     let alone: Vec<Rgb> = renderer.run(|| {
-        let sights = pixels.iter().map(|[x, y]| plan.camera.sight(*x as f64, *y as f64));
-        sights
-            .map(|sight| trace::traced(&plan, &sight, None, None, &mut DynObserver::<true>(&mut ())).0)
-            .collect()
+        let reported =
+            |[x, y]: &[usize; 2]| trace::observe_pixel(&plan, *x, *y, &mut DynObserver::<true>(&mut ()));
+        pixels.iter().map(reported).collect()
     });
     assert_eq!(together, alone, "{surface}");
     (stats.all_rays() as usize, stats.flaws.cuts.pixels)

@@ -35,10 +35,8 @@ struct File {
     path: PathBuf,
     /// Paths to items of this crate from its root, with their lines.
     paths: Vec<(usize, Module)>,
-    /// The re-exported items, and whether they are visible outside the crate.
-    exports: BTreeMap<String, (Module, bool)>,
-    /// The modules that are visible outside the crate.
-    public: BTreeSet<String>,
+    /// The re-exported items.
+    exports: BTreeMap<String, Module>,
     types: BTreeSet<String>,
     /// Methods, with the types that they belong to.
     methods: BTreeSet<(String, String)>,
@@ -46,10 +44,10 @@ struct File {
     calls: BTreeMap<String, usize>,
 }
 
-/// Returns the module of a file: `src/world/light.rs` and `src/world/light/mod.rs` are `world::light`.
+/// Returns the module of a file: `src/core/world/light.rs` and `src/core/world/light/mod.rs` are `world::light`.
 fn module_of(path: &Path) -> Module {
     let parts = path.with_extension("");
-    let mut module: Module = parts.iter().skip(1).map(|part| part.to_string_lossy().into_owned()).collect();
+    let mut module: Module = parts.iter().skip(2).map(|part| part.to_string_lossy().into_owned()).collect();
     if module.last().is_some_and(|last| last == "mod" || last == "lib") {
         module.pop();
     }
@@ -58,16 +56,6 @@ fn module_of(path: &Path) -> Module {
 
 fn tokens(text: &str) -> Vec<TokenTree> {
     text.parse::<TokenStream>().expect("tokens of Rust").into_iter().collect()
-}
-
-/// Returns the paths in a text from the root of its crate, with their lines.
-pub fn crate_paths(text: &str) -> Vec<(usize, Module)> {
-    let (mut file, children) = (File::default(), BTreeSet::new());
-    // The text is read as a module without submodules.
-    Reader { file: &mut file, scope: vec!["plugins".to_owned(), "this".to_owned()], children: &children }
-        .read(&tokens(text));
-    file.paths.retain(|(_, path)| path[0] != "plugins");
-    file.paths
 }
 
 impl Tree {
@@ -91,21 +79,6 @@ impl Tree {
     /// Returns the modules at the root.
     pub fn rooms(&self) -> Vec<String> {
         self.files.keys().filter(|module| module.len() == 1).map(|module| module[0].clone()).collect()
-    }
-
-    /// Tells whether an item is visible outside the crate.
-    pub fn is_public(&self, path: &[String]) -> bool {
-        (1..path.len()).all(|end| match self.files.get(&path[..end]) {
-            Some(file) => {
-                let name = &path[end];
-                let is_module = self.files.contains_key(&path[..=end]);
-                // The module itself says whether the item is visible; a private name would not compile.
-                !is_module && !file.exports.contains_key(name)
-                    || file.public.contains(name)
-                    || file.exports.get(name).is_some_and(|(_, is_seen)| *is_seen)
-            }
-            None => true,
-        })
     }
 
     fn all_imports(&self) -> Vec<Import> {
@@ -140,7 +113,7 @@ impl Tree {
         match handed_on {
             // An item imported through the prelude is imported from the prelude.
             Some(_) if module == ["prelude"] => module.to_vec(),
-            Some((target, _)) if depth < 10 => self.resolve(&[target, &rest[1..]].concat(), depth + 1),
+            Some(target) if depth < 10 => self.resolve(&[target, &rest[1..]].concat(), depth + 1),
             _ => module.to_vec(),
         }
     }
@@ -205,21 +178,16 @@ impl Reader<'_> {
                 Some("use") if !is(at + 1, '<') => {
                     let end = (at..tokens.len()).find(|end| is(*end, ';')).unwrap_or(tokens.len());
                     let before = at.checked_sub(1).and_then(|before| tokens.get(before));
-                    let visible = match before {
-                        Some(TokenTree::Ident(ident)) if ident == "pub" => Some(true),
-                        Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Parenthesis => {
-                            Some(false)
-                        }
-                        _ => None,
+                    let is_export = match before {
+                        Some(TokenTree::Ident(ident)) => ident == "pub",
+                        Some(TokenTree::Group(group)) => group.delimiter() == Delimiter::Parenthesis,
+                        _ => false,
                     };
-                    self.read_use(&[], &tokens[at + 1..end], visible);
+                    self.read_use(&[], &tokens[at + 1..end], is_export);
                     at = end;
                 }
                 Some("mod") => {
                     let name = word(at + 1).unwrap_or_default();
-                    if at > 0 && word(at - 1).as_deref() == Some("pub") {
-                        self.file.public.insert(name.clone());
-                    }
                     if let Some(inner) = group(at + 2, Delimiter::Brace) {
                         self.scope.push(name);
                         self.read(&inner);
@@ -246,7 +214,7 @@ impl Reader<'_> {
     }
 
     /// Reads the tree after `use`.
-    fn read_use(&mut self, before: &[String], tokens: &[TokenTree], visible: Option<bool>) {
+    fn read_use(&mut self, before: &[String], tokens: &[TokenTree], is_export: bool) {
         let is_comma = |token: &TokenTree| matches!(token, TokenTree::Punct(punct) if punct.as_char() == ',');
         for part in tokens.split(is_comma) {
             let (mut path, mut inner) = (before.to_vec(), None);
@@ -259,7 +227,7 @@ impl Reader<'_> {
             }
             let Some(token) = part.first() else { continue };
             if let Some(inner) = inner {
-                self.read_use(&path, &inner, visible);
+                self.read_use(&path, &inner, is_export);
                 continue;
             }
             let name = path.last().cloned().unwrap_or_default();
@@ -270,8 +238,8 @@ impl Reader<'_> {
                 path.pop();
             }
             self.take(token.span().start().line, &path);
-            if let (Some(is_seen), Some(target)) = (visible, self.rooted(&path)) {
-                self.file.exports.insert(name, (target, is_seen));
+            if let (true, Some(target)) = (is_export, self.rooted(&path)) {
+                self.file.exports.insert(name, target);
             }
         }
     }

@@ -1,7 +1,8 @@
-//! The rules of imports: each folder of `src/` imports only from folders below it, and no two files import each other.
+//! The rules of imports that Cargo does not hold: in the core, each folder imports only from folders below it, and in no
+//! crate two files import each other.
 //!
-//! `docs/architecture.md` lists the folders, from the top layer down; it is compared with the tree here, as
-//! `docs/dependencies.md` is with `Cargo.toml`. Imports of a module's tests are left out.
+//! `docs/architecture.md` lists the crates and the folders of the core, from the top layer down; it is compared with the
+//! tree here, as `docs/dependencies.md` is with the manifests. Imports of a module's tests are left out.
 
 mod imports;
 
@@ -31,13 +32,13 @@ fn sources(folder: &str) -> Vec<PathBuf> {
     found
 }
 
-/// Returns the modules of the crate, without separate programs and the templates of `tabray new`.
-fn tree() -> Tree {
-    let is_module = |path: &PathBuf| {
-        let programs = ["src/main.rs", "src/build.rs", "src/cli/new/templates"];
-        !programs.iter().any(|program| path.starts_with(program))
-    };
-    let files = sources("src").into_iter().filter(is_module);
+/// The crates, from the bottom up, but for the program and the plugins, whose files are few or import nothing.
+const CRATES: [&str; 5] = ["exact", "core", "lang", "tools", "cli"];
+
+/// Returns the modules of a crate, without the templates of `tabray new`.
+fn tree(crate_: &str) -> Tree {
+    let files = sources(&format!("src/{crate_}")).into_iter();
+    let files = files.filter(|path| !path.starts_with("src/cli/new/templates"));
     Tree::new(files.map(|path| (path.clone(), fs::read_to_string(root().join(path)).expect("a file"))))
 }
 
@@ -45,12 +46,15 @@ fn architecture() -> String {
     fs::read_to_string(root().join("docs/architecture.md")).expect("the page")
 }
 
-/// Returns the folders of the page's table, from the top layer down.
-fn rooms(page: &str) -> Vec<&str> {
-    let table = page.split("\n## ").find(|part| part.starts_with("Folders\n")).expect("a table of folders");
+/// Returns what a table of the page lists, from the top layer down.
+fn listed<'p>(page: &'p str, title: &str) -> Vec<&'p str> {
+    let table = page.split("\n## ").find(|part| part.starts_with(title)).expect("a table");
     let rows = table.lines().filter_map(|line| line.strip_prefix("| [`"));
     rows.filter_map(|row| row.split('`').next()).collect()
 }
+
+/// The title of the table of the core's folders.
+const ROOMS: &str = "The rooms of the core\n";
 
 /// Describes the imports from folders that do not lie below.
 fn from_above(tree: &Tree, rooms: &[&str]) -> Vec<String> {
@@ -99,40 +103,28 @@ fn circle(tree: &Tree) -> Option<Vec<String>> {
 
 #[test]
 fn rooms_take_from_rooms_below_alone() {
-    let (tree, page) = (tree(), architecture());
-    assert!(tree.imports.len() > 900, "{} imports are found", tree.imports.len());
-    let wrong = from_above(&tree, &rooms(&page));
+    let (tree, page) = (tree("core"), architecture());
+    assert!(tree.imports.len() > 400, "{} imports are found", tree.imports.len());
+    let wrong = from_above(&tree, &listed(&page, ROOMS));
     assert!(wrong.is_empty(), "\n{}\n", wrong.join("\n"));
 }
 
 #[test]
 fn files_take_from_each_other_in_no_circle() {
-    let circle = circle(&tree());
-    assert_eq!(circle, None, "\n{}\n", circle.iter().flatten().cloned().collect::<Vec<_>>().join("\n"));
-}
-
-#[test]
-fn plugins_take_what_others_see_alone() {
-    let tree = tree();
-    let mut hidden = Vec::new();
-    for path in sources("plugins") {
-        let text = fs::read_to_string(root().join(&path)).expect("a plugin");
-        for (line, segments) in imports::crate_paths(&text) {
-            if !tree.is_public(&segments) {
-                hidden.push(format!("{}:{line}: crate::{} is hidden", path.display(), segments.join("::")));
-            }
-        }
+    for crate_ in CRATES {
+        let circle = circle(&tree(crate_));
+        let told = circle.iter().flatten().cloned().collect::<Vec<_>>().join("\n");
+        assert_eq!(circle, None, "\n{crate_}:\n{told}\n");
     }
-    assert!(hidden.is_empty(), "a plugin could not stand outside of the package:\n{}\n", hidden.join("\n"));
 }
 
 #[test]
 fn the_page_lists_the_rooms_that_there_are() {
     let page = architecture();
-    let listed: BTreeSet<_> = rooms(&page).into_iter().map(str::to_owned).collect();
-    let there: BTreeSet<_> = tree().rooms().into_iter().collect();
-    assert_eq!(listed, there);
-    assert_eq!(listed.len(), rooms(&page).len(), "each once");
+    let rooms = listed(&page, ROOMS);
+    let there: BTreeSet<_> = tree("core").rooms().into_iter().collect();
+    assert_eq!(rooms.iter().map(|room| (*room).to_owned()).collect::<BTreeSet<_>>(), there);
+    assert_eq!(rooms.len(), there.len(), "each once");
 }
 
 /// Returns the Markdown files of a folder, by their names.
@@ -170,28 +162,48 @@ fn the_index_lists_the_pages_that_there_are() {
 }
 
 #[test]
-fn the_drawing_names_what_is_there() {
+fn the_drawings_name_what_is_there() {
     let page = architecture();
-    let drawing = page.split("```").nth(1).expect("a drawing");
-    let words = drawing.split([' ', ',', '\n']).filter(|word| word.contains('/') && word.len() > 3);
+    let drawings: String = page.split("```").skip(1).step_by(2).collect();
+    let words =
+        drawings.split([' ', ',', '\n', ':', ';']).filter(|word| word.contains('/') && word.len() > 3);
     for word in words.filter(|word| !word.starts_with("plugins/")) {
-        assert!(root().join("src").join(word).exists(), "src/{word} is not there");
+        let path = root().join("src").join(word.trim_start_matches("src/"));
+        assert!(path.exists(), "src/{word} is not there");
     }
 }
 
-/// Returns the crates in a table of `Cargo.toml` and in the tables of the same name for single systems.
+/// Returns the manifests of the workspace's members.
+fn manifests() -> Vec<toml::Table> {
+    let read = |folder: &str| {
+        let text = fs::read_to_string(root().join(folder).join("Cargo.toml")).expect("a manifest");
+        toml::from_str::<toml::Table>(&text).expect("a manifest in TOML")
+    };
+    let all = read(".");
+    let members = all["workspace"]["members"].as_array().expect("members");
+    members.iter().map(|member| read(member.as_str().expect("a folder"))).collect()
+}
+
+/// Returns the external crates in the tables of this name, also those for single systems.
 fn crates(manifest: &toml::Table, table: &str) -> BTreeSet<String> {
-    let targets = manifest["target"].as_table().expect("targets").values().filter_map(toml::Value::as_table);
+    let targets = manifest.get("target").and_then(toml::Value::as_table);
+    let targets = targets.into_iter().flat_map(toml::Table::values).filter_map(toml::Value::as_table);
     let tables = targets.chain([manifest]).filter_map(|target| target.get(table)?.as_table());
-    tables.flat_map(toml::Table::keys).cloned().collect()
+    let names = tables.flat_map(toml::Table::keys);
+    names.filter(|name| !name.starts_with("tabray")).cloned().collect()
 }
 
 #[test]
 fn every_dependency_has_its_reason() {
-    let read = |file| fs::read_to_string(root().join(file)).expect("a text");
-    let manifest: toml::Table = toml::from_str(&read("Cargo.toml")).expect("a manifest");
-    let page = read("docs/dependencies.md");
-    for (title, table) in [("In the program", "dependencies"), ("In the tests", "dev-dependencies")] {
+    let page = fs::read_to_string(root().join("docs/dependencies.md")).expect("the page");
+    let all = |table: &str| -> BTreeSet<String> {
+        manifests().iter().flat_map(|manifest| crates(manifest, table)).collect()
+    };
+    let program = all("dependencies");
+    // A crate that the program has, tests have too.
+    let tests = all("dev-dependencies").into_iter().filter(|name| name == "nix" || !program.contains(name));
+    let tests = tests.collect();
+    for (title, there) in [("In the program", &program), ("In the tests", &tests)] {
         let section = page.split("\n## ").find(|section| section.starts_with(title)).expect(title);
         let rows = section.lines().filter_map(|line| line.strip_prefix("| `"));
         let mut told = BTreeSet::new();
@@ -200,12 +212,12 @@ fn every_dependency_has_its_reason() {
             assert!(cells.len() == 3 && cells.iter().all(|cell| !cell.is_empty()), "| `{row}");
             assert!(told.insert(cells[0].trim_end_matches('`').to_owned()), "{row} is there twice");
         }
-        assert_eq!(told, crates(&manifest, table), "docs/dependencies.md against the {table} of Cargo.toml");
+        assert_eq!(told, *there, "docs/dependencies.md against the manifests");
     }
 }
 
 fn example(files: &[(&str, &str)]) -> Tree {
-    Tree::new(files.iter().map(|(path, text)| (Path::new("src").join(path), (*text).to_owned())))
+    Tree::new(files.iter().map(|(path, text)| (Path::new("src/core").join(path), (*text).to_owned())))
 }
 
 #[test]
@@ -229,7 +241,7 @@ fn imports_from_above_are_found() {
     ] {
         let wrong = wrong(low);
         assert!(!wrong.is_empty(), "{low}");
-        assert!(wrong[0].starts_with("src/low/b.rs:2: `low::b` takes from `high::a`"), "{wrong:?}");
+        assert!(wrong[0].starts_with("src/core/low/b.rs:2: `low::b` takes from `high::a`"), "{wrong:?}");
     }
     for low in [
         "#[cfg(test)]\nmod tests { use crate::high::a::A; }",

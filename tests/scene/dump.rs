@@ -203,7 +203,7 @@ fn any_values(attribute: &'static dyn Attribute) -> BoxedStrategy<String> {
     };
     datum
         .prop_filter("the rule", |datum| attribute.allows(datum) && attribute.beyond_squares(datum).is_none())
-        .prop_map(|datum| format!("{} {datum}\n", attribute.name()))
+        .prop_map(|datum| format!("{} {}\n", attribute.name(), Syntax::Notes.values(&datum).join(" ")))
         .boxed()
 }
 

@@ -78,7 +78,9 @@ fn with_package(more: Files) -> Files {
     // In one workspace, both crates are built with the same features of their dependencies, and so with the same
     // libraries.
     let manifest = files.get_mut(Path::new("Cargo.toml")).expect("a manifest");
-    manifest.extend_from_slice(b"\n[workspace]\nmembers = [\"docs/example-plugin\"]\n");
+    let text = String::from_utf8_lossy(manifest);
+    let text = text.replace("members = [\".\", ", "members = [\".\", \"docs/example-plugin\", ");
+    *manifest = text.replace("exclude = [\"docs/example-plugin\", ", "exclude = [").into_bytes();
     files.extend(more);
     files
 }

@@ -126,6 +126,15 @@ fn a_file_that_is_no_module_is_refused() {
     assert!(said.contains("Bad-Name.rs: a plugin's file name must be a Rust module name"), "{said}");
 }
 
+#[test]
+fn a_plugin_in_the_place_of_the_crate_is_refused() {
+    LazyLock::force(&BUILT);
+    let mut files = PLUGINS.clone();
+    files.insert(plugin("lib"), brick().into_bytes());
+    let said = copy::cannot_be_built(files);
+    assert!(said.contains("lib.rs: the file of that name lists the plugins: take another name"), "{said}");
+}
+
 // The README's plugin
 
 #[test]
@@ -199,7 +208,7 @@ fn a_constructor_that_asks_for_what_is_not_in_its_table_is_told() {
             "the plugin `{name}` asks for `size`, which is not in the table it registers at plugins/{name}.rs:{line}: add it there"
         )
     };
-    assert!(said.contains("(src/../plugins/block.rs:"), "the plugin's own line is told: {said}");
+    assert!(said.contains("(plugins/block.rs:"), "the plugin's own line is told: {said}");
     assert!(said.contains(&message("block")), "{said}");
     assert!(page().contains(&message("brick")), "the page has the message");
 }
@@ -213,7 +222,7 @@ fn a_constructor_that_asks_for_another_type_is_told() {
     let message = format!(
         "the plugin `slab` asks for `size` with another type than in the table it registers at plugins/slab.rs:{line}: give both the same type"
     );
-    assert!(said.contains("(src/../plugins/slab.rs:") && said.contains(&message), "{said}");
+    assert!(said.contains("(plugins/slab.rs:") && said.contains(&message), "{said}");
 }
 
 #[test]

@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use tabray_core::files;
 use tabray_core::scene::choice::Choice;
 use tabray_core::text;
+use tabray_core::text::Named;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_core::world::film::{Adaptive, Film};
 
@@ -77,7 +78,7 @@ fn options(camera: &Film, part: &Part) -> String {
         words += " --certain";
     }
     if camera.samples > 1 || camera.adaptive.is_some() {
-        words += &format!(" --sampler {}", text::name(&camera.sampler));
+        words += &format!(" --sampler {}", camera.sampler.name());
     }
     if camera.exposure != 0.0 {
         words += &format!(" --exposure {}", text::shortest(camera.exposure));

@@ -133,6 +133,9 @@ fn is_checkout() -> Result<(), Failure> {
     ))
 }
 
+/// The names of the files in `plugins/` that are no plugins.
+const OWN_FILES: [&str; 2] = ["build", "lib"];
+
 /// Checks that a plugin can have this name.
 fn is_free(registry: &Registry, name: &str, template: &str) -> Result<(), Failure> {
     let no_name = |what: String| {
@@ -146,7 +149,9 @@ fn is_free(registry: &Registry, name: &str, template: &str) -> Result<(), Failur
     if KEYWORDS.contains(&name) {
         return no_name(format!("`{name}` is a Rust keyword"));
     }
-    let what = if let Some(entity) = registry.find(name) {
+    let what = if OWN_FILES.contains(&name) {
+        format!("`plugins/{name}.rs` is no plugin: the crate of all plugins is made by it")
+    } else if let Some(entity) = registry.find(name) {
         format!("the entity type `{name}` already exists, at {}", entity.place())
     } else if <&Profile>::all().iter().any(|profile| profile.option().name == name) {
         format!("the profile `{name}` already exists")

@@ -1,8 +1,9 @@
 //! `--cpu`: the level of CPU instructions.
 
+use crate::options::named::by_name;
 use crate::process::failure::Failure;
 use tabray_core::simd::cpu::{Cpu, Level};
-use tabray_core::text;
+use tabray_core::text::Named;
 
 #[derive(clap::Args)]
 #[group(id = "instructions")]
@@ -10,7 +11,7 @@ use tabray_core::text;
 pub struct Args {
     /// The highest level of CPU instructions to use, by default the highest that this machine has; the image does not
     /// depend on it
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", value_parser = by_name::<Level>())]
     cpu: Option<Level>,
 }
 
@@ -21,7 +22,7 @@ impl Args {
         Cpu::of(level).ok_or_else(|| {
             let here: Vec<_> = Cpu::all().map(|cpu| format!("`--cpu {cpu}`")).collect();
             Failure::Usage(
-                format!("this machine does not have the instructions of `{}`", text::name(&level)),
+                format!("this machine does not have the instructions of `{}`", level.name()),
                 Some(format!("it has {}", here.join(", "))),
             )
         })

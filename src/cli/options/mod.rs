@@ -5,6 +5,7 @@ pub mod frames;
 pub mod keep;
 pub mod max_error;
 pub mod method;
+pub mod named;
 pub mod number;
 pub mod samples;
 pub mod set;

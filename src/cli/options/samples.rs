@@ -1,6 +1,7 @@
 //! `--samples`, `--max-error` and `--sampler`: how many samples the pixels of an image take, and where.
 
 use super::max_error::MaxError;
+use crate::options::named::by_name;
 use crate::process::failure::Failure;
 use crate::process::messages;
 use tabray_core::world::accuracy::Accuracy;
@@ -30,7 +31,7 @@ pub struct Args {
     #[arg(long, requires = "max_error")]
     certain: bool,
     /// The distribution of the samples within a pixel
-    #[arg(long, value_name = "NAME", default_value = "sobol")]
+    #[arg(long, value_name = "NAME", default_value = "sobol", value_parser = by_name::<Sampler>())]
     sampler: Sampler,
 }
 

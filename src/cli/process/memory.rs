@@ -10,6 +10,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::Duration;
+use tabray_core::memory::may_fail;
 
 /// The memory that is kept for telling the user that there is no more, in bytes. It is more than what the system's
 /// allocator takes from the system piece by piece, so that giving it up helps every thread.
@@ -30,7 +31,7 @@ pub fn refuse_too_large(bytes: usize, what: &str) -> Result<(), Failure> {
 /// Ends the program with a message, from now on, if the system refuses it memory.
 pub fn report_refused_allocations() {
     if let Ok(mut reserve) = RESERVE.lock() {
-        heap::may_fail(|| reserve.try_reserve_exact(KEPT).ok());
+        may_fail(|| reserve.try_reserve_exact(KEPT).ok());
     }
     heap::when_refused(end);
 }

@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 use tabray_lang::registry::Registry;
 
 /// The name of the library, and of the program with no plugins but those of the library.
-const LIBRARY: &str = env!("CARGO_PKG_NAME");
+const LIBRARY: &str = "tabray";
 
 static NAME: LazyLock<String> = LazyLock::new(|| {
     let started = env::args_os().next().unwrap_or_default();
@@ -27,7 +27,7 @@ pub fn named(command: Command) -> Command {
     if name() == LIBRARY {
         return command;
     }
-    let version = concat!("(", env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION"), ")");
+    let version = concat!("(tabray ", env!("CARGO_PKG_VERSION"), ")");
     with_named_examples(command).name(name()).version(version)
 }
 
@@ -36,8 +36,7 @@ fn with_named_examples(command: Command) -> Command {
     let help = command.get_after_long_help().map(ToString::to_string);
     let command = command.mut_subcommands(with_named_examples);
     match help {
-        Some(help) => command
-            .after_long_help(help.replace(concat!(env!("CARGO_PKG_NAME"), " "), &format!("{} ", name()))),
+        Some(help) => command.after_long_help(help.replace("tabray ", &format!("{} ", name()))),
         None => command,
     }
 }

@@ -1,6 +1,7 @@
 //! `tabray render --aov`: auxiliary images beside the main one, and exact numbers.
 
 use crate::files::output::{self, Output};
+use crate::options::named::by_name;
 use crate::process::failure::Failure;
 use crate::process::messages;
 use crate::process::progress::Progress;
@@ -14,7 +15,7 @@ use tabray_core::output::picture::Format;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::renderer::Renderer;
 use tabray_core::scene::model::Model;
-use tabray_core::text;
+use tabray_core::text::Named;
 use tabray_core::world::sample::{SCRAMBLE, Sampler};
 
 /// The maximum number of pixels of an image with auxiliary images: unlike the main image, they are held in memory as a
@@ -27,7 +28,7 @@ const LARGEST: usize = 1 << 26;
 pub struct Args {
     /// Also write these auxiliary images, beside the main one: `-o a.png --aov depth` writes a-depth.png, and
     /// a-depth.exr with exact numbers
-    #[arg(long, value_name = "IMAGES", value_delimiter = ',')]
+    #[arg(long, value_name = "IMAGES", value_delimiter = ',', value_parser = by_name::<Aov>())]
     aov: Vec<Aov>,
 }
 
@@ -87,7 +88,7 @@ pub fn pictures(args: &Args, main: &Path) -> impl Iterator<Item = (Aov, PathBuf)
 /// Returns the path of an image beside the main one.
 pub fn picture(main: &Path, aov: Aov) -> PathBuf {
     let mut stem = main.file_stem().unwrap_or_default().to_owned();
-    stem.push(format!("-{}", text::name(&aov)));
+    stem.push(format!("-{}", aov.name()));
     let picture = main.with_file_name(stem);
     let with = |extension: &OsStr| output::append_to_path(&output::append_to_path(&picture, "."), extension);
     main.extension().map_or_else(|| picture.clone(), with)

@@ -1,5 +1,6 @@
 //! `tabray render --debug`: the notes' debug lines, for some pixels or for all.
 
+use crate::options::named::by_name;
 use crate::probe;
 use crate::process::failure::Failure;
 use std::io::{self, BufWriter, Write};
@@ -13,7 +14,7 @@ use tabray_tools::debug::{self, LogLine};
 #[command(next_help_heading = "Looking inside")]
 pub struct Args {
     /// Print the course notes' debug lines to standard error before rendering
-    #[arg(long, value_name = "LINES", value_delimiter = ',')]
+    #[arg(long, value_name = "LINES", value_delimiter = ',', value_parser = by_name::<LogLine>())]
     debug: Vec<LogLine>,
     /// Print the debug lines of one pixel or of a rectangle, both corners included: columns count from 0 at the left,
     /// rows from 0 at the bottom

@@ -134,7 +134,7 @@ impl Share<'_> {
 
     /// Returns the tiles of the part.
     fn tiles(&self) -> Result<Range<usize>, Failure> {
-        let ([number, of], [width, height], tiles) = (self.part, self.region.size(), self.grid().len());
+        let ([number, of], [width, height], tiles) = (self.part, self.region.size(), self.grid().count());
         if of > tiles {
             return Err(Failure::Usage(
                 format!("an image of {width} x {height} pixels cannot have {of} parts"),
@@ -262,7 +262,7 @@ impl Share<'_> {
         let rest = self.grid().pixels_of(tiles.start + mask.len()..tiles.end);
         mask.resize(tiles.len(), 0);
         let mut writer = begin(path, &label)?;
-        let mut file = written.read_from(begin_at).map_err(cannot)?;
+        let mut file = read_from(written, begin_at).map_err(cannot)?;
         let mut copied = || -> io::Result<()> {
             writer.put(&mask)?;
             copy(&mut io::Read::take(&mut file, 3 * kept as u64), &mut writer)?;
@@ -370,15 +370,13 @@ fn copy(from: &mut dyn io::Read, to: &mut Writer<BufWriter<Output>>) -> io::Resu
     }
 }
 
-impl Writer<BufWriter<Output>> {
-    /// Opens what was written so far, from this byte on.
-    fn read_from(&mut self, byte: u64) -> io::Result<fs::File> {
-        let out = self.out();
-        out.flush()?;
-        let mut file = out.get_ref().read()?;
-        io::Seek::seek(&mut file, io::SeekFrom::Start(byte))?;
-        Ok(file)
-    }
+/// Opens what was written so far, from this byte on.
+fn read_from(written: &mut Writer<BufWriter<Output>>, byte: u64) -> io::Result<fs::File> {
+    let out = written.out();
+    out.flush()?;
+    let mut file = out.get_ref().read()?;
+    io::Seek::seek(&mut file, io::SeekFrom::Start(byte))?;
+    Ok(file)
 }
 
 fn add_writing_time(path: &Path, label: &Label) {

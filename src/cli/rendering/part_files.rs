@@ -103,7 +103,7 @@ impl Parts {
             }
             next = part.tiles.end;
         }
-        if next != label.grid().len() {
+        if next != label.grid().count() {
             return Err(refuse(
                 format!("part {of} of `{}` ends before the image does", image.display()),
                 "render the parts anew with one build of the program",

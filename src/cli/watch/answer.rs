@@ -11,7 +11,6 @@ use crate::plan;
 use crate::process::crash;
 use crate::process::failure::report;
 use crate::serve::{self, Body, Client, Work};
-use clap::ValueEnum;
 use http_body_util::BodyExt;
 use http_body_util::channel::Channel;
 use hyper::body::Bytes;
@@ -25,6 +24,7 @@ use tabray_core::output::aov::Aov;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::renderer::Renderer;
 use tabray_core::text;
+use tabray_core::text::Named;
 use tabray_lang::registry::Registry;
 use tabray_tools::probe;
 use tokio::time::timeout;
@@ -275,7 +275,7 @@ impl<C: Fn() -> ControlFlow<()>> Write for LimitedText<C> {
 /// Renders an image beside the main one: red, green and blue of each pixel.
 fn layer(frame: Arc<Frame>, name: &str) -> Option<Job> {
     // The error needs a reference image, which is not available here.
-    let aov = Aov::from_str(name, false).ok().filter(|aov| *aov != Aov::Error)?;
+    let aov = Aov::of_name(name).filter(|aov| *aov != Aov::Error)?;
     Some(Box::new(move |client| {
         let plan = Plan::new(&frame.model);
         let layer = aov.render(&Renderer::new(0)?, &plan, &plan, &|| check(&frame, client))?;

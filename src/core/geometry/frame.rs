@@ -8,10 +8,7 @@ use glam::{DMat3, DVec3};
 use tabray_exact::double_double::{DoubleDouble, offset, scaled};
 use tabray_exact::scalar::{Scalar, constants, dot, per_axis};
 
-/// The rounding error of each coordinate of a point that is transformed into a frame, as a fraction of the point's
-/// distance from the frame's origin. In units of EPSILON, the axes contribute 3, the rotation 3/2 and the vector from
-/// the origin 1; the error of a direction is smaller.
-pub const BLUR: f64 = 6.0 * f64::EPSILON;
+pub use tabray_exact::roots::stretch::BLUR;
 
 /// Returns a bound of the rounding error of each coordinate of a point in a frame at this distance along a ray, in
 /// world units: that of [`BLUR`], and that of the direction of a camera ray, which is less than EPSILON.

@@ -9,7 +9,6 @@ pub mod orientation;
 pub mod placement;
 pub mod ray;
 pub mod ray_packet;
-pub mod roots;
 pub mod sight;
 pub mod view_frame;
 

@@ -7,9 +7,9 @@ use crate::render::observer::{Event, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::render::trace::{self, PixelBound};
+use crate::named;
 use crate::world::film::Film;
 use crate::world::material::Rgb;
-use clap::ValueEnum;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::io;
@@ -17,7 +17,7 @@ use std::ops::ControlFlow;
 
 /// An image beside the main one (an arbitrary output variable). All but the colour, the cost, the samples, the colours of
 /// the error and what is undecided are taken along the ray through the centre of each pixel, however many samples the pixel has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Aov {
     /// Distance of the first hit, near ones bright.
@@ -73,6 +73,17 @@ pub struct Layer {
 
 /// The grey of the farthest depth, as a fraction of white, so that it differs from the black where nothing is hit.
 const FARTHEST: f64 = 0.1;
+
+named!(Aov {
+    Depth => "depth",
+    Normal => "normal",
+    Object => "object",
+    Colour => "colour",
+    Cost => "cost",
+    Samples => "samples",
+    Error => "error",
+    Undecided => "undecided",
+});
 
 impl Aov {
     /// Tells whether the image has exact numbers.

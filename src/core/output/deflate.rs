@@ -2,14 +2,14 @@
 //! its own. Their bytes, one after the other, are one zlib stream.
 
 use crate::output::filter::Filter;
-use clap::ValueEnum;
+use crate::named;
 use flate2::write::DeflateEncoder;
 use simd_adler32::Adler32;
 use std::io::{self, Write};
 use std::mem::take;
 
 /// The effort of the compression. The decoded image does not depend on it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Compression {
     /// Fastest.
     #[default]
@@ -17,12 +17,12 @@ pub enum Compression {
     /// Smaller files.
     ///
     /// About half as large; compressing takes longer than most images take to render.
-    #[value(name = "default")]
     Balanced,
     /// Smallest files.
-    #[value(name = "best")]
     High,
 }
+
+named!(Compression { Fast => "fast", Balanced => "default", High => "best" });
 
 /// The first two bytes of a zlib stream: deflate with a window of 32 KiB.
 const HEADER: [u8; 2] = [0x78, 0x01];

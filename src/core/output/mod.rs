@@ -2,13 +2,11 @@
 
 pub mod aov;
 pub mod aov_values;
-pub mod checkpoint;
 pub mod compare;
 pub mod deflate;
 mod filter;
 pub mod full_range;
 pub mod packing;
-pub mod part;
 pub mod picture;
 
 pub use aov::Aov;

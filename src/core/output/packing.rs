@@ -8,7 +8,7 @@ use std::mem::take;
 
 /// The maximum length of a piece in bytes, unless one row has more. A shorter one would make files larger, as each piece
 /// has its own codes: in a black image of such pieces these are a hundredth.
-pub(crate) const PIECE: usize = 1 << 20;
+pub const PIECE: usize = 1 << 20;
 
 /// The maximum number of pieces that wait until they are compressed together, as many as a renderer has rendered at one
 /// time.

@@ -3,8 +3,7 @@
 use crate::output::deflate::Compression;
 use crate::output::packing::Packing;
 use crate::render::renderer::Renderer;
-use clap::ValueEnum;
-use clap::builder::PossibleValue;
+use crate::text::Named;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::path::Path;
@@ -18,24 +17,22 @@ pub enum Format {
     Png(Compression),
 }
 
-/// Parsed from the extension of the format's files. A PNG is then compressed for speed.
-impl ValueEnum for Format {
-    fn value_variants<'a>() -> &'a [Self] {
-        &[Self::Ppm, Self::Png(Compression::Fast)]
-    }
+/// The name is the extension of the format's files. A PNG of that name is compressed for speed.
+impl Named for Format {
+    const ALL: &'static [Self] = &[Self::Ppm, Self::Png(Compression::Fast)];
 
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        Some(PossibleValue::new(match self {
+    fn name(self) -> &'static str {
+        match self {
             Self::Ppm => "ppm",
             Self::Png(_) => "png",
-        }))
+        }
     }
 }
 
 impl Format {
     /// Returns the format that a file's extension names, in upper or lower case.
     pub fn of(path: &Path) -> Option<Self> {
-        Self::from_str(path.extension()?.to_str()?, true).ok()
+        Self::of_name(&path.extension()?.to_str()?.to_ascii_lowercase())
     }
 
     /// Writes a whole image: `rows` yields its bytes, some rows at a time from the top, with red, green and blue of
@@ -143,7 +140,7 @@ fn write_ppm(
 /// were made and viewed: their numbers were chosen for a display that takes the bytes as they are. `gAMA` 1 would
 /// declare the bytes proportional to light, and a viewer that honours it would show the same scene far brighter than
 /// its PPM.
-pub(crate) const AS_SHOWN: png::SrgbRenderingIntent = png::SrgbRenderingIntent::RelativeColorimetric;
+pub const AS_SHOWN: png::SrgbRenderingIntent = png::SrgbRenderingIntent::RelativeColorimetric;
 
 fn write_png(
     out: &mut dyn Write,

@@ -26,7 +26,7 @@ impl Grid {
     }
 
     /// Returns the number of all tiles.
-    pub fn len(self) -> usize {
+    pub fn count(self) -> usize {
         self.across() * self.size[1].div_ceil(TILE)
     }
 
@@ -95,18 +95,18 @@ pub fn divide(
 ) -> Vec<usize> {
     let grid = Grid { size: [columns.len(), rows.len()] };
     let look = WorkSamples::new(renderer, plan, [columns, rows], parts);
-    let all: u128 = (0..grid.len()).map(|index| u128::from(look.work(grid, index))).sum();
+    let all: u128 = (0..grid.count()).map(|index| u128::from(look.work(grid, index))).sum();
     let (mut ends, mut done) = (vec![0], 0);
-    for index in 0..grid.len() {
+    for index in 0..grid.count() {
         done += u128::from(look.work(grid, index));
         let (next, ended) = (index + 1, ends.len());
         // The parts that are left must have a tile each.
-        let must = grid.len() - next == parts - ended;
+        let must = grid.count() - next == parts - ended;
         if ended < parts && (must || done * parts as u128 >= all * ended as u128) {
             ends.push(next);
         }
     }
-    ends.push(grid.len());
+    ends.push(grid.count());
     ends
 }
 
@@ -181,12 +181,12 @@ mod tests {
         for size in [[1, 1], [16, 16], [37, 50], [320, 17]] {
             let grid = Grid { size };
             let mut seen = vec![0; size[0] * size[1]];
-            for [columns, rows] in (0..grid.len()).map(|index| grid.tile(index)) {
+            for [columns, rows] in (0..grid.count()).map(|index| grid.tile(index)) {
                 rows.for_each(|row| columns.clone().for_each(|column| seen[row * size[0] + column] += 1));
             }
             assert!(seen.iter().all(|count| *count == 1));
-            assert_eq!(grid.pixels_of(0..grid.len()), size[0] * size[1]);
-            for tiles in (0..grid.len()).flat_map(|from| (from + 1..=grid.len()).map(move |to| from..to)) {
+            assert_eq!(grid.pixels_of(0..grid.count()), size[0] * size[1]);
+            for tiles in (0..grid.count()).flat_map(|from| (from + 1..=grid.count()).map(move |to| from..to)) {
                 let mut next = tiles.start;
                 for run in grid.rectangles(&tiles, 2) {
                     let [first, last] = [grid.tile(run.start), grid.tile(run.end - 1)];

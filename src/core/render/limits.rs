@@ -1,12 +1,12 @@
 //! The limits of how far light is followed, and of how many rays a primary ray may cost.
 
 /// The path length from the viewer, in world units, beyond which no reflected or transmitted ray is followed.
-pub(crate) const MAX_DIST: f64 = 20.0;
+pub const MAX_DIST: f64 = 20.0;
 
 /// The ray budget: the number of simple rays whose work one primary ray may cost, itself included; the rays beyond are
 /// black. Without a limit, mirrors that nearly touch would reflect each other almost endlessly. A ray whose hit takes as
 /// long to find as those of many simple rays counts as many.
-pub(crate) const MAX_RAYS: usize = 20_000;
+pub const MAX_RAYS: usize = 20_000;
 
 /// The depth of the reflections that are traced even where the rays that were transmitted before them have used up the
 /// ray budget: that of primary rays, and that of the rays which these continue as.

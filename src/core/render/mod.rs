@@ -6,7 +6,7 @@ pub mod decisions;
 pub mod division;
 mod features;
 pub mod flaws;
-mod footprint;
+pub mod footprint;
 mod frusta;
 pub mod limits;
 pub mod observer;

@@ -27,10 +27,10 @@ impl TraceObserver for () {
 
 /// An observer behind `dyn`. Such observers share two compiled tracers: one for those that see events, and one for those that
 /// do not.
-pub(crate) struct DynObserver<'o, const SEES: bool>(pub &'o mut dyn Receiver);
+pub struct DynObserver<'o, const SEES: bool>(pub &'o mut dyn Receiver);
 
 /// The interface of a [`TraceObserver`] behind `dyn`.
-pub(crate) trait Receiver {
+pub trait Receiver {
     /// Receives an event.
     fn see(&mut self, event: Event);
 

@@ -43,13 +43,13 @@ pub struct Plan<'m> {
     /// What proves the colours of pixels, where that is wanted.
     pub(crate) prover: Option<Prover>,
     /// How deep rays are followed; `None` where no object reflects or transmits rays.
-    pub(crate) depth: Option<Depth>,
+    pub depth: Option<Depth>,
     /// The objects whose hits may take long to find, where rays continue.
     pub(crate) costly: Option<CostlyObjects>,
     /// The maximum number of reflections and transmissions on a path.
-    pub(crate) bounces: usize,
+    pub bounces: usize,
     /// The lights that are sampled, and what is left out.
-    pub(crate) needs: Needs,
+    pub needs: Needs,
     /// The lights that a closed object keeps from all that is seen, each with the index of that object.
     pub(crate) shut_out: Vec<(usize, usize)>,
 }
@@ -132,7 +132,7 @@ impl<'m> Plan<'m> {
     }
 
     /// Lets pixels take different numbers of samples, or all the same. The plan must be one for any ray.
-    pub(crate) fn set_adaptive(&mut self, adaptive: Option<Adaptive>) {
+    pub fn set_adaptive(&mut self, adaptive: Option<Adaptive>) {
         self.camera.adaptive = adaptive;
         if adaptive.is_some() && self.features.is_none() {
             self.features = Some(Features::new(&self.camera, &self.model.objects));

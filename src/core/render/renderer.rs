@@ -192,7 +192,7 @@ impl Renderer {
 
     /// Computes a value for each pixel, in rows counted from the top, each from the left. Returns `None` if `done`,
     /// called after each row, breaks.
-    pub(crate) fn pixels<T: Clone + Default + Send>(
+    pub fn pixels<T: Clone + Default + Send>(
         &self,
         plan: &Plan,
         rows: Range<usize>,

@@ -7,11 +7,11 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// The width and height of a tile in pixels, whose rays are traced together. Tiles at the right and lower edges may be
 /// smaller.
-pub(crate) const TILE: usize = 16;
+pub const TILE: usize = 16;
 
 /// The number of tiles that are traced together where pixels differ in their numbers of samples: few pixels of a tile may
 /// go on, and packets are to be full.
-pub(crate) const TOGETHER: usize = 8;
+pub const TOGETHER: usize = 8;
 
 /// Lists the pixels of a tile as runs of up to eight pixels, each by its columns and its row. The runs go through
 /// blocks of 8 x 8 pixels, so that pixels that follow each other are close together.
@@ -26,8 +26,8 @@ pub(crate) fn runs(columns: Range<usize>, rows: Range<usize>) -> impl Iterator<I
     })
 }
 
-/// Adds the pixels of all [`runs`] to `pixels`, by column and row.
-pub(crate) fn list(columns: Range<usize>, rows: Range<usize>, pixels: &mut Vec<[usize; 2]>) {
+/// Adds the pixels of all `runs` to `pixels`, by column and row.
+pub fn list(columns: Range<usize>, rows: Range<usize>, pixels: &mut Vec<[usize; 2]>) {
     for (columns, y) in runs(columns, rows) {
         pixels.extend(columns.map(|x| [x, y]));
     }

@@ -82,7 +82,7 @@ fn sorted<T: Choice>() -> Vec<ChoiceName> {
 
 /// Returns an error message for each name or number that two plugins register, with both source positions; not for the
 /// names of alternatives that are entity types.
-pub(crate) fn contradictions<T: Choice>() -> Vec<String> {
+pub fn contradictions<T: Choice>() -> Vec<String> {
     let all = sorted::<T>();
     let mut faults = Vec::new();
     for (index, second) in all.iter().enumerate() {

@@ -49,7 +49,7 @@ impl Counts {
 
     /// Says how many values of a type there are, whose name ends the phrase: "1 or 3 numbers", "2 to 64 pairs of
     /// numbers".
-    pub(super) fn describe(self, noun: &str) -> String {
+    pub fn describe(self, noun: &str) -> String {
         match self {
             Self::Of([1]) => format!("1 {noun}"),
             Self::Of(counts) => {
@@ -69,7 +69,7 @@ impl Counts {
     }
 
     /// Says what an attribute was given in place of that.
-    pub(super) fn not(self, given: &str) -> String {
+    pub fn not(self, given: &str) -> String {
         match self {
             Self::Of(_) => given.to_owned(),
             Self::List { .. } => format!("{given} {}", if given == "1" { "value" } else { "values" }),
@@ -88,13 +88,13 @@ pub struct OneOf {
 
 impl OneOf {
     /// Lists the names for messages: `surfer` or `profile`.
-    pub(super) fn describe(&self, conjunction: &str) -> String {
+    pub fn describe(&self, conjunction: &str) -> String {
         let names: Vec<_> = self.names.iter().map(|name| format!("`{name}`")).collect();
         names.join(&format!(" {conjunction} "))
     }
 
     /// Says that a scene gives several of the attributes: "both a `surfer` and a `profile`".
-    pub(super) fn several(&self, given: &[&str]) -> String {
+    pub fn several(&self, given: &[&str]) -> String {
         let given: Vec<_> = given.iter().map(|name| format!("{} `{name}`", text::article(name))).collect();
         let both = if given.len() == 2 { "both " } else { "" };
         format!("{both}{}", given.join(" and "))

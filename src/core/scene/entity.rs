@@ -37,7 +37,7 @@ pub struct Entity {
     /// The name that the notes' dump prints.
     pub dump_name: &'static str,
     /// The numbers that the notes give a shader on planes and on spheres.
-    pub(crate) numbers: [Option<i64>; 2],
+    pub numbers: [Option<i64>; 2],
     tables: &'static [Table],
     /// The attributes that it has before and after those of its tables.
     common: [Table; 2],
@@ -241,7 +241,7 @@ impl Entity {
     }
 
     /// Tells whether a constructor reads files that the entity names.
-    pub(crate) fn reads_files(&self) -> bool {
+    pub fn reads_files(&self) -> bool {
         self.attributes().any(|attribute| matches!(attribute.value_type(), Type::File))
     }
 
@@ -284,7 +284,7 @@ pub struct Args {
 impl Args {
     /// Makes the arguments of an entity. `values` holds one value for each attribute of the entity type, in table
     /// order.
-    pub(crate) fn new(
+    pub fn new(
         entity: &'static Entity,
         name: String,
         order: usize,
@@ -303,9 +303,7 @@ impl Args {
     }
 
     /// Returns every attribute with its value and whether the scene gives it, in the order of the table.
-    pub(crate) fn values_mut(
-        &mut self,
-    ) -> impl Iterator<Item = (&'static dyn Attribute, &mut Datum, &mut bool)> {
+    pub fn values_mut(&mut self) -> impl Iterator<Item = (&'static dyn Attribute, &mut Datum, &mut bool)> {
         self.attributes.values_mut()
     }
 
@@ -321,7 +319,7 @@ impl Args {
     }
 
     /// Returns the film of a camera with this entity's attributes.
-    pub(crate) fn film(&self, camera: AnyCamera) -> Film {
+    pub fn film(&self, camera: AnyCamera) -> Film {
         Film {
             // The attributes' rules ensure that these casts are lossless.
             samples: self.get(&SAMPLES) as u32,
@@ -350,7 +348,7 @@ impl Args {
     }
 
     /// Tells whether the entity refers to an object that could not be made.
-    pub(crate) fn refers_to_nothing(&self) -> bool {
+    pub fn refers_to_nothing(&self) -> bool {
         self.values().any(|(_, datum)| match datum {
             Datum::Object { body, .. } => body.get().is_none(),
             Datum::Objects(all) => all.iter().any(|(_, body)| body.get().is_none()),
@@ -359,7 +357,7 @@ impl Args {
     }
 
     /// Tells whether the attribute that a refusal marks is in the type's table. It is if the refusal marks none.
-    pub(crate) fn has_what_is_refused(&self, refusal: &Refusal) -> bool {
+    pub fn has_what_is_refused(&self, refusal: &Refusal) -> bool {
         refusal.attribute.is_none_or(|attribute| self.find(attribute).is_some())
     }
 }

@@ -1,28 +1,19 @@
-//! From a scene's text to a model, and back: the tables of entity types, and the documents generated from them.
+//! Scenes as data: the tables of entity types, the values of attributes, and the model that is made of them.
 
 pub mod attribute;
 pub mod choice;
 mod common;
 pub mod counts;
-pub mod dump;
 pub mod entity;
-pub mod grammar;
-mod json_schema;
 pub mod kind;
 pub mod list;
-pub mod list_json;
 pub mod model;
 pub mod pparm;
 pub mod procedural;
 pub mod profile;
-pub mod reader;
-pub mod reference;
 pub mod references;
-pub mod registry;
 pub mod rotation;
-pub mod schema;
 pub mod store;
-pub mod syntax;
 pub mod value;
 
 pub use attribute::{Attribute, Pose};
@@ -34,8 +25,5 @@ pub use list::List;
 pub use model::Model;
 pub use pparm::{Derived, Pparm, Row, Table};
 pub use profile::Profile;
-pub use reader::{Fault, Loaded, Parsed, Place, Report, Severity, build, read};
-pub use registry::Registry;
 pub use store::Record;
-pub use syntax::Syntax;
 pub use value::{COLOUR, Datum, Type};

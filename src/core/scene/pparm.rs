@@ -82,7 +82,7 @@ impl<T: Value> Pparm<T> {
         self
     }
 
-    /// Sets the names of the values of a row, where they are not those of its type: [`COLOUR`](crate::scene::COLOUR)
+    /// Sets the names of the values of a row, where they are not those of its type: [`COLOUR`]
     /// for a colour.
     pub const fn each(mut self, names: &'static [&'static str]) -> Self {
         self.each = names;
@@ -255,7 +255,7 @@ impl Row for OneOf {
 }
 
 /// The values of an attribute, and whether the scene gives them; if not, they are the default.
-pub(crate) type AttributeValue = (Datum, bool);
+pub type AttributeValue = (Datum, bool);
 
 /// The attributes of an entity of a scene, each with its checked value.
 #[derive(Clone)]
@@ -350,7 +350,7 @@ impl Attributes {
     }
 
     /// Finds the value of the attribute of this name.
-    pub(crate) fn find(&self, attribute: &str) -> Option<&Datum> {
+    pub fn find(&self, attribute: &str) -> Option<&Datum> {
         self.values().find(|(known, _)| known.name() == attribute).map(|(_, datum)| datum)
     }
 

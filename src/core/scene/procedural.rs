@@ -26,7 +26,7 @@ pub fn of_type(name: &str) -> Option<&'static Paint> {
 }
 
 /// Returns the types of shader that objects can name.
-pub(crate) fn types() -> impl Iterator<Item = &'static Entity> {
+pub fn types() -> impl Iterator<Item = &'static Entity> {
     inventory::iter::<Entity>().filter(|entity| has_defaults(entity))
 }
 
@@ -34,7 +34,7 @@ pub(crate) fn types() -> impl Iterator<Item = &'static Entity> {
 ///
 /// # Errors
 /// If the constructor refuses the object.
-pub(crate) fn body(args: &Args, construct: fn(&Args) -> Result<Body, Refusal>) -> Result<Body, Refusal> {
+pub fn body(args: &Args, construct: fn(&Args) -> Result<Body, Refusal>) -> Result<Body, Refusal> {
     let body = construct(args)?;
     let paint = match args.find(SHADER.name()) {
         Some(Datum::Shader { paint, .. }) => Some(paint),

@@ -47,7 +47,7 @@ impl Profile {
     }
 
     /// Returns the error of the formulas, if there is one.
-    pub(crate) fn fault(&self) -> Option<String> {
+    pub fn fault(&self) -> Option<String> {
         let fault = |text| Formula::parse(text).err().map(|fault| (text, fault));
         let (text, fault) = fault(self.formula).or_else(|| self.slope.and_then(fault))?;
         let place = text::place(self.place);

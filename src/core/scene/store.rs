@@ -45,7 +45,7 @@ struct Block {
 
 impl Store {
     /// Returns the number of entities.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.blocks.len() * TOGETHER + self.starts.len()
     }
 
@@ -332,7 +332,7 @@ pub struct Record {
 
 impl Record {
     /// Refers to the entity of a store that has this order.
-    pub(crate) fn new(store: &Arc<Store>, order: usize) -> Self {
+    pub fn new(store: &Arc<Store>, order: usize) -> Self {
         Self { store: store.clone(), order: order as u32 }
     }
 
@@ -357,7 +357,7 @@ impl Record {
     }
 
     /// Returns the material of an object.
-    pub(crate) fn material(&self) -> Option<Arc<Material>> {
+    pub fn material(&self) -> Option<Arc<Material>> {
         match self.store.first_datum(self.order())? {
             Datum::Material { material, .. } => Some(material.clone()),
             _ => None,
@@ -370,7 +370,7 @@ impl Record {
     }
 
     /// Returns the entity with all its values, in the memory of another one of the same model.
-    pub(crate) fn args_in<'m>(&self, memory: &'m mut Option<Args>) -> &'m Args {
+    pub fn args_in<'m>(&self, memory: &'m mut Option<Args>) -> &'m Args {
         self.store.args_in(self.order(), memory)
     }
 }

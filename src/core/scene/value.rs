@@ -369,7 +369,7 @@ impl Value for bool {
 }
 
 /// Writes a truth as the notes' syntax does.
-pub(crate) fn yes_or_no(truth: bool) -> &'static str {
+pub fn yes_or_no(truth: bool) -> &'static str {
     if truth { "yes" } else { "no" }
 }
 

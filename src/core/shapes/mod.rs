@@ -1,5 +1,6 @@
 //! Arithmetic that several shapes share.
 
+pub mod by_method;
 mod ellipsoid;
 pub mod field;
 mod finite_plane;

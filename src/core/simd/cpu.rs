@@ -3,8 +3,8 @@
 //!
 //! The same operations in the same order give the same bits on every level: Rust neither reorders nor fuses them.
 
-use clap::ValueEnum;
-use clap::builder::PossibleValue;
+use crate::named;
+use crate::text::Named;
 use std::fmt;
 
 /// A level of instructions that this machine has. A `Cpu` cannot be made for a level that the machine lacks.
@@ -12,8 +12,7 @@ use std::fmt;
 pub struct Cpu(Level);
 
 /// Levels of instructions; each includes those before it.
-// The levels' own comments are shown by `--help`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
     /// What every machine has: SSE2 on x86-64.
     Baseline,
@@ -22,6 +21,8 @@ pub enum Level {
     /// AVX-512: eight numbers at a time.
     Avx512,
 }
+
+named!(Level { Baseline => "baseline", Avx2 => "avx2", Avx512 => "avx512" });
 
 impl Level {
     #[cfg(target_arch = "x86_64")]
@@ -47,7 +48,7 @@ impl Level {
 impl Cpu {
     /// Returns the levels that this machine has, from the lowest to the highest.
     pub fn all() -> impl DoubleEndedIterator<Item = Self> {
-        Level::value_variants().iter().filter(|level| level.is_here()).copied().map(Self)
+        Level::ALL.iter().filter(|level| level.is_here()).copied().map(Self)
     }
 
     /// Returns this level, or `None` if the machine lacks it.
@@ -69,7 +70,7 @@ impl Cpu {
 
 impl fmt::Display for Cpu {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.0.to_possible_value().as_ref().map_or("", PossibleValue::get_name))
+        f.pad(self.0.name())
     }
 }
 
@@ -106,6 +107,7 @@ impl fmt::Display for Cpu {
 /// after `=>` and are the kernel's last arguments. In the body, their arrays are arguments of their own, which tells
 /// the compiler that they do not overlap: otherwise it checks for overlap at every call, and takes small counts of rays
 /// one by one.
+#[macro_export]
 macro_rules! kernels {
     ($(
         $(#[$attribute:meta])*
@@ -178,6 +180,7 @@ macro_rules! kernels {
 }
 
 /// Defines a kernel's body and, for each level, the function that the body is inlined into.
+#[macro_export]
 macro_rules! levels {
     (($($generics:tt)*) ($($arguments:tt)*) ($($result:tt)*) $body:block $call:block) => {
         #[inline(always)]
@@ -197,8 +200,9 @@ macro_rules! levels {
 }
 
 /// Expands to its second argument; repeats it for each vector that a kernel writes.
+#[macro_export]
 macro_rules! beside {
     ($out:ident, $($what:tt)*) => { $($what)* };
 }
 
-pub(crate) use {beside, kernels, levels};
+pub use {beside, kernels, levels};

@@ -4,7 +4,7 @@ use glam::DVec3;
 use std::ops::Range;
 
 /// The number of lanes that kernels take at a time; arrays are as long as a multiple of it.
-pub const LANES: usize = 8;
+pub use tabray_exact::f64x8::LANES;
 
 /// Vectors as one array per coordinate.
 #[derive(Clone)]

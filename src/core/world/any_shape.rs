@@ -18,7 +18,7 @@ pub struct AnyShape(Box<dyn PacketShape>);
 impl AnyShape {
     /// Returns the shape's interface for packets of rays.
     #[inline]
-    pub(crate) fn packets(&self) -> &dyn PacketShape {
+    pub fn packets(&self) -> &dyn PacketShape {
         &*self.0
     }
 
@@ -70,7 +70,7 @@ impl AnyShape {
     }
 
     /// Returns the functions for proofs about other rays than primary ones; `None` for a shape without an equation.
-    pub(crate) fn proven(&self) -> Option<&dyn Proven> {
+    pub fn proven(&self) -> Option<&dyn Proven> {
         self.0.proven()
     }
 

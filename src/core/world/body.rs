@@ -65,7 +65,7 @@ impl NamedBody {
     }
 
     /// Sets the body, once.
-    pub(crate) fn set(&self, body: Body) {
+    pub fn set(&self, body: Body) {
         let _ = self.0.set(Arc::new(body));
     }
 }

@@ -18,7 +18,7 @@ use tabray_exact::scalar::Scalar;
 
 /// A bound on the rounding error of a hit point, as a fraction of the coordinates that it is computed from: 8 ulps for
 /// the distance along the ray and 1.5 ulps for each of the two operations that follow, together 11, rounded up to 16.
-pub(crate) const ROUNDING: f64 = 16.0 * f64::EPSILON;
+pub const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The least cosine by which an error is divided: the square root of `f64::EPSILON`. At a grazing hit, the distance to
 /// a curved surface is off by about the square root of the rounding error, however small the cosine is.

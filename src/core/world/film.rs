@@ -88,7 +88,7 @@ impl Film {
 
     /// Returns the image positions of the first `count` of a pixel's primary rays, in pixels as [`ray`](Self::ray) takes
     /// them, each with its random numbers. If all pixels have a single ray, it goes through the centre and needs none.
-    pub(crate) fn places(
+    pub fn places(
         &self,
         x: usize,
         y: usize,
@@ -180,18 +180,18 @@ impl Film {
     }
 
     /// Returns the ray of a sample at an image position, in pixels, before anything is rounded.
-    pub(crate) fn sight_of(&self, place: DVec2, sample: Option<&Sample>) -> Sight {
+    pub fn sight_of(&self, place: DVec2, sample: Option<&Sample>) -> Sight {
         let sample = sample.filter(|_| self.camera.has_lens());
         self.sight_through(place.x, place.y, sample.map_or(DVec2::ZERO, Sample::on_lens))
     }
 
     /// Returns the image position that shows a point in world coordinates.
-    pub(crate) fn project(&self, point: DVec3) -> Projected {
+    pub fn project(&self, point: DVec3) -> Projected {
         self.camera.project(point, self.pixels)
     }
 
     /// Returns a ball that contains the origins of all primary rays.
-    pub(crate) fn origins(&self) -> Origins {
+    pub fn origins(&self) -> Origins {
         self.camera.origins(self.pixels)
     }
 
@@ -202,14 +202,14 @@ impl Film {
     }
 
     /// Tells whether proofs about all rays through a pixel are possible.
-    pub(crate) fn is_enclosed(&self) -> bool {
+    pub fn is_enclosed(&self) -> bool {
         let [x, y] = [0, 1].map(|side| Affine::variable(side, 0.0, 0.5));
         self.camera.footprint(ImagePoint { at: [x, y], pixels: self.pixels }).is_some()
     }
 
     /// Returns points of the image for the camera, each with its point of the lens, in units of its radius, if the lens
     /// has a size.
-    pub(crate) fn places_of<'p>(&self, [x, y]: [&'p [f64]; 2], lens: [&'p [f64]; 2]) -> Places<'p> {
+    pub fn places_of<'p>(&self, [x, y]: [&'p [f64]; 2], lens: [&'p [f64]; 2]) -> Places<'p> {
         Places { pixels: self.pixels, x, y, lens }
     }
 }

@@ -1,7 +1,7 @@
 //! The random numbers of a pixel's samples: the same for any number of threads.
 
 use crate::simd::cpu::{Cpu, kernels};
-use clap::ValueEnum;
+use crate::named;
 use glam::DVec2;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
 /// The distribution of a pixel's samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sampler {
     /// Evenly spread (a Sobol sequence).
     ///
@@ -24,13 +24,15 @@ pub enum Sampler {
     Random,
 }
 
+named!(Sampler { Sobol => "sobol", Random => "random" });
+
 impl Sampler {
     /// The maximum number of samples per pixel: the length of the sequence of `sobol_burley`.
     pub const MOST: u32 = 1 << 16;
 }
 
 /// The number that scrambles the sequences of an image that shares no samples with a render.
-pub(crate) const SCRAMBLE: u32 = 0x5bd1_e995;
+pub const SCRAMBLE: u32 = 0x5bd1_e995;
 
 /// A sample of a pixel.
 #[derive(Clone, Copy, Debug)]

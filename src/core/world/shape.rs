@@ -21,7 +21,7 @@ impl<T: Hittable> Shape<T> {
 
 impl<T, S, P> Shape<T, S, P> {
     /// Returns the same shape, with hits found and proven in other ways.
-    pub(crate) fn by<U, Q>(self) -> Shape<T, U, Q> {
+    pub fn by<U, Q>(self) -> Shape<T, U, Q> {
         Shape { shape: self.shape, how: PhantomData }
     }
 }

@@ -7,7 +7,7 @@ mod spline;
 mod step;
 pub mod variables;
 
-pub(crate) use parser::functions;
+pub use parser::functions;
 pub use parser::{FormulaFault, Named, is_taken};
 
 use crate::dual::Dual;

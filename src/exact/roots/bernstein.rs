@@ -23,9 +23,19 @@ pub enum Roots {
     /// There is none.
     None,
     /// There is one, at which the sign changes, and the ends are no roots. It is near this part of the piece, from 0 to 1.
-    One { rises: bool, near: f64 },
+    One {
+        /// Whether the polynomial rises there.
+        rises: bool,
+        /// The part of the piece.
+        near: f64,
+    },
     /// The polynomial is monotone: there is at most one.
-    Monotone { rises: bool, near: f64 },
+    Monotone {
+        /// Whether the polynomial rises.
+        rises: bool,
+        /// The part of the piece near which the root would be, from 0 to 1.
+        near: f64,
+    },
     /// Nothing is known, but would be of shorter pieces.
     Unknown,
     /// Rounding hides the polynomial.

@@ -1,7 +1,7 @@
 //! Methods that find the first root of a function along a line, one per file, which `tabray chart` compares.
 //!
 //! Scenes are traced with two of them. [`taylor`] finds the hits of shapes that are one formula, and decides where a
-//! ray grazes a surface of revolution, whose other hits come from quadrics ([`revolution`](tabray_core::shapes::revolution));
+//! ray grazes a surface of revolution, whose other hits come from quadrics (`revolution` of tabray-core);
 //! [`newton`] refines the roots of both. The others are what other programs use; each file says where its method is
 //! from and where it fails.
 
@@ -10,6 +10,7 @@ pub mod bisection;
 mod chandrupatla;
 mod intervals;
 pub mod newton;
+pub mod range;
 mod refiner;
 mod samples;
 mod steps;

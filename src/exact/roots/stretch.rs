@@ -1,7 +1,11 @@
 //! The part of a line that is searched for roots.
 
-use crate::roots::stretch::BLUR;
 use std::ops::Range;
+
+/// The rounding error of each coordinate of a point that is transformed into a frame, as a fraction of the point's
+/// distance from the frame's origin. In units of EPSILON, the axes contribute 3, the rotation 3/2 and the vector from
+/// the origin 1; the error of a direction is smaller.
+pub const BLUR: f64 = 6.0 * f64::EPSILON;
 
 /// The part of a line that is searched.
 #[derive(Clone, Debug)]

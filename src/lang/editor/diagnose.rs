@@ -13,6 +13,7 @@ use tabray_core::files::plain;
 pub struct Diagnosis {
     /// The file.
     pub path: PathBuf,
+    /// Whether it is an error or a warning.
     pub severity: Severity,
     /// The error and its correction.
     pub message: String,

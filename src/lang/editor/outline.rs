@@ -7,11 +7,13 @@ use tabray_core::scene::kind::Kind;
 /// An entry of the outline.
 #[derive(Clone, Debug)]
 pub struct Symbol {
+    /// The name that is shown.
     pub name: String,
     /// The type of an entity, or the keyword.
     pub detail: String,
     /// The kind of an entity; `None` of what is none.
     pub kind: Option<Kind>,
+    /// The range of its text.
     pub place: Range<usize>,
     /// The range of the name.
     pub name_place: Range<usize>,

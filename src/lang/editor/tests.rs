@@ -1,8 +1,10 @@
 //! Tests of all answers together: on the scenes of the repository, and on texts that random edits make of them.
 
 use super::*;
+use crate::dump;
 use crate::reader;
 use crate::registry::Registry;
+use crate::syntax::Syntax;
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::collections::BTreeMap;
@@ -10,7 +12,6 @@ use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use tabray_core::scene::{Syntax, dump};
 
 fn registry() -> &'static Registry {
     Registry::get().expect("no two plugins claim one name")
@@ -33,7 +34,7 @@ fn files(folder: &Path) -> Vec<PathBuf> {
 
 /// Returns the scenes of the repository that are texts, with what they say.
 fn scenes() -> Vec<(PathBuf, String)> {
-    let all = files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes"));
+    let all = files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes"));
     let is_scene = |path: &PathBuf| path.extension().is_some_and(|end| end == "ray" || end == "toml");
     let text = |path: PathBuf| Some((path.clone(), fs::read_to_string(path).ok()?));
     all.into_iter().filter(is_scene).filter_map(text).collect()
@@ -58,7 +59,7 @@ fn formatting_changes_neither_meaning_nor_comments_and_ends_at_once() {
     for (path, text) in scenes() {
         let Some(new) = formatted(&view(&path, &text)) else {
             assert!(
-                path.starts_with(Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/wrong")),
+                path.starts_with(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/wrong")),
                 "{}",
                 path.display()
             );

@@ -57,11 +57,13 @@ pub struct Entity {
 
 /// An attribute and its values.
 pub struct Attribute {
+    /// Its name.
     pub name: Word,
     /// The attribute in the table of the entity's type, if it has one of this name.
     pub known: Option<&'static dyn attribute::Attribute>,
     /// The first byte after the `=` in TOML, or after the name otherwise; `None` where there is no `=` yet.
     pub values_from: Option<usize>,
+    /// Its values, as they are written.
     pub values: Vec<Word>,
     /// The first byte after it.
     pub end: usize,
@@ -95,6 +97,7 @@ pub struct Repeat {
     /// The other places of its name.
     pub again: Vec<Word>,
     pub count: Option<Word>,
+    /// What it says, in the order of the text.
     pub items: Vec<Item>,
     pub place: Range<usize>,
     /// The range in which its entities stand or may stand.
@@ -107,8 +110,11 @@ pub type Break = (Range<usize>, String);
 /// The items of a text.
 #[derive(Debug)]
 pub struct View {
+    /// The text.
     pub text: Text,
+    /// The syntax in which it is read.
     pub syntax: Syntax,
+    /// What it says, in the order of the text.
     pub items: Vec<Item>,
     /// The places where the text is not in the form of a scene; empty if there are none.
     pub breaks: Vec<Break>,
@@ -117,6 +123,7 @@ pub struct View {
 }
 
 impl View {
+    /// Makes the view of a text from what was read of it.
     pub fn new(text: Text, syntax: Syntax, (items, breaks): (Vec<Item>, Vec<Break>)) -> Self {
         Self { text, syntax, items, breaks, names: OnceLock::new() }
     }

@@ -217,7 +217,7 @@ impl Check<'_, '_> {
 
     /// Checks an entity against its table. An entity that others can refer to is constructed at once; the others wait.
     fn entity(&mut self, parsed: &Parsed<'_>) {
-        let order = self.store.len();
+        let order = self.store.count();
         self.places.add(&parsed.place);
         let Some(entity) = self.registry.find(&parsed.kind.text) else {
             self.unknown.add((), &parsed.kind, self.names.hash_of(&parsed.kind.text));

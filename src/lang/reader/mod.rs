@@ -10,7 +10,7 @@ mod excerpt;
 mod fault;
 mod foreign;
 mod guesses;
-pub mod keyword;
+pub(crate) mod keyword;
 mod languages;
 mod levels;
 mod listed;
@@ -31,7 +31,7 @@ mod sources;
 mod statements;
 mod textures;
 mod threads;
-pub mod tokens;
+pub(crate) mod tokens;
 mod toml;
 mod toml_document;
 mod toml_faults;
@@ -101,6 +101,7 @@ pub fn read_by(
     bytes: &[u8],
     accuracy: ReadOptions<'_>,
 ) -> Result<Loaded, Report> {
+    has_types(registry, name)?;
     let text = decode(name, bytes)?;
     let syntax = match Syntax::of_name(name) {
         Some(Syntax::Toml) => Syntax::Toml,
@@ -115,6 +116,21 @@ pub fn read_by(
         }
         Err(report) => report,
     })
+}
+
+/// Checks that the program has entity types.
+fn has_types(registry: &Registry, name: &str) -> Result<(), Report> {
+    if !registry.is_empty() {
+        return Ok(());
+    }
+    let mut report = Report::new(name, "", Syntax::Notes);
+    let fault = Fault::error(None, "this program has no entity types".to_owned());
+    report.add(
+        fault.help(
+            "they register themselves where they are linked: write `use tabray_plugins as _;`".to_owned(),
+        ),
+    );
+    Err(report)
 }
 
 /// Reads a scene's text.
@@ -175,9 +191,11 @@ fn read_text(
 /// are relative to the working directory.
 ///
 /// ```
-/// use tabray::scene::{self, Parsed, Registry};
+/// use tabray_lang::{Parsed, Registry, build};
+/// // Links the entity types, which register themselves.
+/// use tabray_plugins as _;
 ///
-/// let built = scene::build(Registry::get()?, [
+/// let built = build(Registry::get()?, [
 ///     Parsed::new("camera", "cam1")
 ///         .set("pixeldim", [640, 480])
 ///         .set("worlddim", [8.0, 6.0])
@@ -198,6 +216,7 @@ pub fn build(
     registry: &Registry,
     parsed: impl IntoIterator<Item = Parsed<'static>>,
 ) -> Result<Loaded, Report> {
+    has_types(registry, "model")?;
     let mut report = Report::new("model", "", Syntax::Notes);
     let parsed: Vec<_> = parsed.into_iter().collect();
     let mut source = Source::List(&parsed);

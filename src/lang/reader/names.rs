@@ -90,7 +90,7 @@ impl Names {
                     .help("a name must not contain newlines or other control characters"),
             );
         }
-        let order = store.len();
+        let order = store.count();
         let is_same = |first: &(u32, u32)| is_of(store, *first, hash, kind, text);
         let first = match self.firsts.entry(spread(hash), is_same, |(hash, _)| spread(*hash)) {
             Entry::Occupied(first) => first.get().1 as usize,
@@ -263,7 +263,7 @@ impl Names {
         unresolved.sort_by_key(|(_, (place, _))| place.as_ref().map(|place| place.start));
         let mut known: BTreeMap<Kind, Vec<&str>> = BTreeMap::new();
         known.extend(unresolved.iter().map(|((kind, _), _)| (*kind, Vec::new())));
-        let orders = if unresolved.is_empty() { 0..0 } else { 0..store.len() };
+        let orders = if unresolved.is_empty() { 0..0 } else { 0..store.count() };
         for (entity, order) in orders.filter_map(|order| Some((store.entity(order)?, order))) {
             if let Some(known) = known.get_mut(&entity.kind()) {
                 known.push(store.name(order));
@@ -335,7 +335,7 @@ fn is_of(store: &Store, first: (u32, u32), hash: u32, kind: Kind, name: &str) ->
     let order = first.1 as usize;
     // An entity that is being checked has its name, and is not in the store yet.
     first.0 == hash
-        && order < store.len()
+        && order < store.count()
         && store.entity(order).is_some_and(|entity| entity.kind() == kind)
         && store.name(order) == name
 }

@@ -50,8 +50,8 @@ impl Check<'_, '_> {
         if self.setting.camera.accuracy != accuracy {
             Arc::make_mut(&mut self.setting).camera.accuracy = accuracy;
         }
-        for start in (0..store.len()).step_by(8 * TOGETHER) {
-            let orders = start..store.len().min(start + 8 * TOGETHER);
+        for start in (0..store.count()).step_by(8 * TOGETHER) {
+            let orders = start..store.count().min(start + 8 * TOGETHER);
             let constructed = self.threads.map(orders.len().div_ceil(PIECE), |piece| {
                 let start = start + piece * PIECE;
                 constructed(&store, start..orders.end.min(start + PIECE), &patterns)

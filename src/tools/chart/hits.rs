@@ -1,7 +1,7 @@
 //! Which hits each choice finds, at which distances, and in what time: for rays through the image, and for rays that
 //! graze silhouettes.
 
-use super::candidate::{Candidate, is_searched};
+use super::candidate::Candidate;
 use super::clock;
 use super::data::{Panel, Point, Subject, WrongHits, WrongHitsOf};
 use super::judgement::{Judgement, Known, Pair, Truth};
@@ -16,6 +16,7 @@ use tabray_core::geometry::ray_packet::PACKET_SIZE;
 use tabray_core::geometry::sight::Sight;
 use tabray_core::parallel;
 use tabray_core::scene::model::Model;
+use tabray_core::shapes::by_method::is_searched;
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::world::any_shape::AnyShape;
 use tabray_core::world::certify::{Enclosure, Precision};

@@ -127,7 +127,11 @@ pub fn bounces(study: &Study, progress: &mut dyn Progress) -> ControlFlow<(), Op
     let own = model.camera.value.pixels;
     let pixels = spread(own, (METHOD_TESTS as f64 / tests) as usize);
     let timed = timed(own, tests);
-    let plan = |bounces: usize| Plan { bounces, ..one_ray(model) };
+    let plan = |bounces: usize| {
+        let mut plan = one_ray(model);
+        plan.bounces = bounces;
+        plan
+    };
     let plans: Vec<_> = BOUNCES.into_iter().chain([usize::MAX]).map(plan).collect();
     let mut colours = Vec::new();
     for plan in &plans {
@@ -201,7 +205,7 @@ pub fn samples(
         choices.iter().zip(differences).zip(times?).map(|(((samples, sampler, adaptive), off), times)| {
             let (name, family, most) = match adaptive {
                 Some(Adaptive { most, .. }) => (format!("{samples}..{most}"), Family::Adaptive, *most),
-                None => (format!("{} {samples}", name(*sampler)), sampler.family(), *samples),
+                None => (format!("{} {samples}", name(*sampler)), family(*sampler), *samples),
             };
             let is_default = adaptive.is_none() && *samples == own.samples && *sampler == own.sampler;
             Point { is_default, ..point(name, family, times, off, (pixels.len(), most)) }
@@ -386,11 +390,9 @@ pub(super) fn tests(plan: &Plan, threads: &Renderer) -> f64 {
     (all as f64 / (pixels.len() * samples) as f64).max(1.0)
 }
 
-impl Sampler {
-    fn family(self) -> Family {
-        match self {
-            Self::Random => Family::Random,
-            Self::Sobol => Family::Sobol,
-        }
+fn family(sampler: Sampler) -> Family {
+    match sampler {
+        Sampler::Random => Family::Random,
+        Sampler::Sobol => Family::Sobol,
     }
 }

@@ -43,11 +43,11 @@ const ROUNDING: f64 = 1e-14;
 
 /// Proven bounds of a pixel's colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Proof {
+pub struct Proof {
     /// The least colour that it may be, before exposure; infinite where nothing is known.
-    low: Rgb,
+    pub low: Rgb,
     /// The greatest colour that it may be, before exposure.
-    high: Rgb,
+    pub high: Rgb,
     /// The number of footprints that were examined.
     pub footprints: u32,
 }
@@ -86,7 +86,7 @@ impl Proof {
     }
 
     /// Returns half the distance of the bounds as they are shown, the largest of the channels, where 1 is white.
-    fn half_width(&self, gain: f64) -> f64 {
+    pub fn half_width(&self, gain: f64) -> f64 {
         0.5 * (shown(gain * self.high) - shown(gain * self.low)).max_element() + ROUNDING
     }
 
@@ -122,7 +122,7 @@ impl Footprint {
 }
 
 /// Proves the colours of a model's pixels.
-pub(crate) struct Prover {
+pub struct Prover {
     boxes: Vec<Option<Aabb>>,
     most: f64,
     passes_fractions: bool,

@@ -18,7 +18,7 @@ use crate::world::hittable::Hittable;
 const DEEP: usize = 24;
 
 /// Traces packets of rays through a plan.
-pub(crate) struct Tracer<'m, 'w, W> {
+pub struct Tracer<'m, 'w, W> {
     pub(super) model: &'m Model,
     pub(super) plan: &'m Plan<'m>,
     pub(super) cpu: Cpu,
@@ -31,7 +31,8 @@ pub(crate) struct Tracer<'m, 'w, W> {
 }
 
 impl<'m, 'w, W: TraceObserver> Tracer<'m, 'w, W> {
-    pub(crate) fn new(plan: &'m Plan, cpu: Cpu, scratch: &'w mut Scratch, observer: &'w mut W) -> Self {
+    /// Makes a tracer of a plan, which reports to an observer.
+    pub fn new(plan: &'m Plan, cpu: Cpu, scratch: &'w mut Scratch, observer: &'w mut W) -> Self {
         Self { model: plan.model, plan, cpu, viewer: 0.0, depth: 0, scratch, observer }
     }
 

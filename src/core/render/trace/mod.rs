@@ -30,8 +30,8 @@ mod trail;
 mod transmittance;
 mod undecided;
 
-pub(crate) use context::Tracer;
-pub(crate) use scratch::Scratch;
+pub use context::Tracer;
+pub use scratch::Scratch;
 
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::geometry::sight::Sight;
@@ -53,6 +53,27 @@ use scratch::PrimaryScratch;
 /// `y` from the bottom.
 pub fn pixel(plan: &Plan, x: usize, y: usize) -> Rgb {
     observe_pixel(plan, x, y, &mut ())
+}
+
+/// Computes the colours that rays through the centres of pixels return, up to [`PACKET_SIZE`] together, of which each may
+/// cost a number of rays. Returns with each colour a bound on what the limit cut off of it.
+pub fn within_budgets(
+    plan: &Plan,
+    pixels: &[[usize; 2]],
+    budgets: &[u32],
+    observer: &mut impl TraceObserver,
+) -> Vec<(Rgb, f64)> {
+    let (mut scratch, mut group, mut colours) =
+        (Scratch::default(), RayGroup::default(), VectorList::default());
+    let [x, y] = [0, 1].map(|axis| pixels.iter().map(move |pixel| pixel[axis] as f64));
+    scratch.places = [x.collect(), y.collect()];
+    scratch.places.iter_mut().for_each(|places| places.resize(PACKET_SIZE, 0.0));
+    let Scratch { places, lens, .. } = &mut scratch;
+    group.look(Cpu::best(), &plan.camera, plan.depth.as_ref(), places, lens, pixels.len());
+    group.ray_budget[..budgets.len()].copy_from_slice(budgets);
+    let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, observer);
+    tracer.colours(&mut group, &mut colours);
+    (0..pixels.len()).map(|lane| (colours.get(lane), tracer.missing(lane))).collect()
 }
 
 /// Computes the colour of a pixel as [`pixel`] does, and reports each step to `observer`.
@@ -182,7 +203,7 @@ pub fn first_hit<'m>(plan: &Plan<'m>, sight: &Sight) -> Option<Hit<'m>> {
 impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Computes the colours of pixels, given by column and row from the bottom. Up to [`PACKET_SIZE`] rays are traced
     /// together.
-    pub(crate) fn pixels(&mut self, pixels: &[[usize; 2]]) -> View<'_> {
+    pub fn pixels(&mut self, pixels: &[[usize; 2]]) -> View<'_> {
         let camera = &self.plan.camera;
         let mut primary = self.scratch.primary.take().unwrap_or_default();
         self.scratch.places.iter_mut().for_each(|places| places.resize(PACKET_SIZE, 0.0));

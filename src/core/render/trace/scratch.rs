@@ -14,7 +14,7 @@ use f256::f256;
 
 /// The scratch space of one thread.
 #[derive(Default)]
-pub(crate) struct Scratch {
+pub struct Scratch {
     pub(super) primary: Option<Box<PrimaryScratch>>,
     /// The image positions of the current primary rays, x and y in pixels.
     pub(super) places: [Vec<f64>; 2],

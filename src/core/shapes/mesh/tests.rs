@@ -19,6 +19,7 @@ use crate::world::coincidence;
 use crate::world::interaction::SurfaceInteraction;
 use glam::DVec3;
 use proptest::prelude::*;
+use proptest::test_runner::FileFailurePersistence;
 use std::sync::Arc;
 
 pub(super) const PLAIN: DVec3 = DVec3::ONE;
@@ -80,7 +81,10 @@ fn direction() -> impl Strategy<Value = DVec3> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(ProptestConfig {
+        failure_persistence: Some(Box::new(FileFailurePersistence::SourceParallel("../tests/proptest-regressions"))),
+        ..ProptestConfig::with_cases(24)
+    })]
 
     #[test]
     fn no_ray_from_inside_escapes(

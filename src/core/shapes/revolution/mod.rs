@@ -7,7 +7,7 @@
 //! bounds of the second derivative decide ([`taylor`](tabray_exact::roots::taylor)) for that ray alone (`walk`), and
 //! where rounding hides what they say, double-double arithmetic ([`twice`]). Nothing has to be tuned. A profile for
 //! which this cannot be proven within a stated number of operations is refused, with the reason
-//! ([`NoSurface`](no_surface::NoSurface)). The margins for a ray's own rounding errors are derived where they stand, or
+//! (`NoSurface`). The margins for a ray's own rounding errors are derived where they stand, or
 //! held by the tests in `tests/slow/truth.rs`, which compare hits with true ones.
 //!
 //! [`twice`]: tabray_exact::roots::twice

@@ -12,14 +12,23 @@ use tabray_core::scene::kind::Kind;
 /// The kind of a completion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CompletionKind {
+    /// The name of an entity type.
     Type,
+    /// The name of an attribute.
     Attribute,
+    /// One of the values from which an attribute chooses.
     Choice,
+    /// The name of an entity or of a number.
     Name,
+    /// The name of a file.
     File,
+    /// The name of a folder.
     Folder,
+    /// A number.
     Number,
+    /// A function in a formula.
     Function,
+    /// A word of the language, such as `repeat`.
     Keyword,
 }
 
@@ -28,6 +37,7 @@ pub enum CompletionKind {
 pub struct Completion {
     /// The text that is shown, and compared with what was typed.
     pub label: String,
+    /// What it is.
     pub kind: CompletionKind,
     /// A few words beside the label.
     pub detail: String,

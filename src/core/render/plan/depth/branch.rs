@@ -1,7 +1,7 @@
 //! How rays continue from an object, and when they are cut.
 
 /// The most that cuts may take from a channel of a primary ray's colour: 1/1024 of a level of 1/255.
-pub(crate) const FAINT: f64 = 1.0 / (1024.0 * 255.0);
+pub const FAINT: f64 = 1.0 / (1024.0 * 255.0);
 
 /// The number of rays that a primary ray may cost before branches are cut one by one, each without regard to the
 /// others.
@@ -9,7 +9,7 @@ pub(crate) const MANY: u32 = 4000;
 
 /// Bounds on what can be returned from where rays hit an object.
 #[derive(Clone, Copy)]
-pub(crate) struct ContinuationBounds {
+pub struct ContinuationBounds {
     /// A bound on the light of the object's own surface, times the path length to the surface.
     pub own: f64,
     /// A bound on what rays that hit the object return, times the path length to the object.
@@ -24,14 +24,14 @@ pub(crate) struct ContinuationBounds {
 
 /// How rays continue in one way.
 #[derive(Clone, Copy)]
-pub(crate) struct Branch {
+pub struct Branch {
     /// The largest factor by which the rays' light is multiplied.
     pub weight: f64,
     /// The fraction of the allowance for cuts that the rays get.
     pub share: f64,
     /// The rays are cut where the path's weight times this number is less than its share times its length.
     pub faint: f64,
-    /// After [`MANY`] rays, the rays are also cut where the path's weight times this number is less than its length.
+    /// After `MANY` rays, the rays are also cut where the path's weight times this number is less than its length.
     pub faint_alone: f64,
 }
 
@@ -65,7 +65,7 @@ pub(crate) fn step(reflected: f64) -> Option<i32> {
 }
 
 impl Branch {
-    /// Returns the branch of the rays at an interface whose reflected fraction is of this [`step`]. Where all is reflected,
+    /// Returns the branch of the rays at an interface whose reflected fraction is of this `step`. Where all is reflected,
     /// no other ray continues, and the reflected one gets the whole allowance.
     pub fn reduced(self, step: i32) -> Self {
         if step == 0 {

@@ -32,7 +32,7 @@
 //! largest `r` of a channel, rounded up to a power of two.
 //!
 //! The background counts as an object around everything, whose own light `S` is its brightest channel times
-//! [`MAX_DIST`](crate::render::limits::MAX_DIST): it is not divided by the path length `d`, but no ray leaves an object
+//! [`MAX_DIST`]: it is not divided by the path length `d`, but no ray leaves an object
 //! where `d` is more than that.
 //!
 //! Any solution of these inequalities is at least the least one, which is at least every sum of finitely many branches.
@@ -49,7 +49,7 @@
 //! a branch's weight falls by more than its share does, so each branch ends; and the cuts in a ray's colour add up to
 //! less than [`FAINT`].
 //!
-//! Where glass and mirrors pass on nearly all that they receive, that takes very many rays. From the [`MANY`]th ray on,
+//! Where glass and mirrors pass on nearly all that they receive, that takes very many rays. From the `MANY`th ray on,
 //! a branch is also cut where `weight * beyond / d < FAINT` by itself.
 
 mod branch;
@@ -57,7 +57,8 @@ mod sides;
 mod solve;
 mod surface;
 
-pub(crate) use branch::{Branch, ContinuationBounds, FAINT, MANY, STEPS, step};
+pub use branch::{Branch, ContinuationBounds, FAINT};
+pub(crate) use branch::{MANY, STEPS, step};
 pub(crate) use surface::clearance;
 
 use crate::parallel;
@@ -69,7 +70,7 @@ use solve::Scene;
 use surface::Surface;
 
 /// Bounds on what the branches of a scene with mirrors or glass can return.
-pub(crate) struct Depth {
+pub struct Depth {
     /// A bound on any channel of what a primary ray returns that hits an object, times the path length; infinite where there is none.
     pub most: f64,
     /// The bounds for each object, by the object's index.
@@ -99,7 +100,6 @@ impl Depth {
     }
 
     /// Disables all cuts.
-    #[cfg(test)]
     pub fn uncut(mut self) -> Self {
         for object in &mut self.objects {
             for branch in [&mut object.through, &mut object.mirrored] {

@@ -3,7 +3,7 @@
 //! **Views.** Primary rays lead away from the viewer, between the edges of the image. Where they may meet a mirror in a
 //! plane, the rays that it reflects lead away from the viewer's mirror image, in front of the mirror; and so on from
 //! mirror to mirror. Glass does not turn rays, unless its material has an interface. Such glass and curved mirrors may
-//! show everything, and so may more than [`MAX_VIEWS`] views: then no object is left out.
+//! show everything, and so may more than `MAX_VIEWS` views: then no object is left out.
 //!
 //! **Lights.** A light is left out where it adds nothing to anything that a view may meet: it lies behind the object's
 //! plane, it does not shine on the object's region ([`is_clear_of`](crate::world::light::Light::is_clear_of)), or the
@@ -39,7 +39,7 @@ const MAX_VIEWS: usize = 16;
 const MANY: usize = 1 << 12;
 
 /// What an image needs.
-pub(crate) struct Needs {
+pub struct Needs {
     /// The indices of the lights that are needed.
     pub lights: Vec<usize>,
     /// The indices of the lights that are not, each with the reason.
@@ -52,7 +52,7 @@ pub(crate) struct Needs {
 
 /// Why a light is not needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum UnlitReason {
+pub enum UnlitReason {
     /// What is seen reflects none of its light.
     Black,
     /// All that is seen turns away from it.
