@@ -1,11 +1,11 @@
 //! The two syntaxes of a scene: how each writes names, attributes and values.
 
 use std::path::Path;
+use tabray_core::named;
 use tabray_core::scene::attribute::Attribute;
 use tabray_core::scene::counts::OneOf;
 use tabray_core::scene::entity::Entity;
 use tabray_core::scene::value::{Datum, Type, yes_or_no};
-use tabray_core::named;
 use tabray_core::text::shortest;
 use tabray_exact::formula::variables::SPACE;
 

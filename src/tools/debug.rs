@@ -3,12 +3,12 @@
 use std::fmt;
 use std::io::{self, Write};
 use tabray_core::geometry::ray::{Ray, RayRange};
+use tabray_core::named;
 use tabray_core::render::bytes::to_byte;
 use tabray_core::render::observer::{Event, RayPurpose, TraceObserver};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::trace;
 use tabray_core::scene::model::Model;
-use tabray_core::named;
 
 /// A kind of the notes' debug lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,13 +1,13 @@
 //! Images of what a renderer computes beside colours: depth, normals, objects, the cost of each pixel and its error.
 
 use crate::geometry::sight::Sight;
+use crate::named;
 use crate::output::full_range::FullRange;
 use crate::render::bytes::{shown, to_byte};
 use crate::render::observer::{Event, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::render::trace::{self, PixelBound};
-use crate::named;
 use crate::world::film::Film;
 use crate::world::material::Rgb;
 use glam::DVec3;

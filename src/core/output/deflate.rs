@@ -1,8 +1,8 @@
 //! Compresses the rows of a PNG in pieces that do not depend on each other, so that each can be compressed on a thread of
 //! its own. Their bytes, one after the other, are one zlib stream.
 
-use crate::output::filter::Filter;
 use crate::named;
+use crate::output::filter::Filter;
 use flate2::write::DeflateEncoder;
 use simd_adler32::Adler32;
 use std::io::{self, Write};

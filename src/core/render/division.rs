@@ -186,7 +186,8 @@ mod tests {
             }
             assert!(seen.iter().all(|count| *count == 1));
             assert_eq!(grid.pixels_of(0..grid.count()), size[0] * size[1]);
-            for tiles in (0..grid.count()).flat_map(|from| (from + 1..=grid.count()).map(move |to| from..to)) {
+            for tiles in (0..grid.count()).flat_map(|from| (from + 1..=grid.count()).map(move |to| from..to))
+            {
                 let mut next = tiles.start;
                 for run in grid.rectangles(&tiles, 2) {
                     let [first, last] = [grid.tile(run.start), grid.tile(run.end - 1)];

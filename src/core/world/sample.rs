@@ -1,7 +1,7 @@
 //! The random numbers of a pixel's samples: the same for any number of threads.
 
-use crate::simd::cpu::{Cpu, kernels};
 use crate::named;
+use crate::simd::cpu::{Cpu, kernels};
 use glam::DVec2;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;

@@ -37,7 +37,7 @@ impl<'m, 'w, W: TraceObserver> Tracer<'m, 'w, W> {
     }
 
     /// Returns how many tiles are best traced together.
-    pub(crate) fn tiles_together(&self) -> usize {
+    pub fn tiles_together(&self) -> usize {
         if self.plan.camera.adaptive.is_some() && self.plan.prover.is_none() { TOGETHER } else { 1 }
     }
 

@@ -29,7 +29,7 @@ const SINGLY: usize = 64;
 impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Returns how many pixels' rays are traced together: those of a packet, or of tiles where pixels differ in their
     /// numbers of samples. Where one sample is traced after the other, it is a part of a packet that takes hardly longer.
-    pub(crate) fn pixels_together(&self) -> usize {
+    pub fn pixels_together(&self) -> usize {
         let camera = &self.plan.camera;
         match camera.adaptive {
             Some(_) => self.tiles_together() * TILE * TILE,
