@@ -248,7 +248,7 @@ mod tests {
             ("sin y", 0..3, "`sin` needs its argument in parentheses"),
             ("min(y)", 0..3, "`min` takes 2 values, separated by commas"),
             ("2 * 1.2.3", 4..9, "`1.2.3` is not a number"),
-            ("2 * 1e999", 4..9, "`1e999` is not a number"),
+            ("2 * 1e999", 4..9, "`1e999` is too large"),
             ("ü", 0..2, "unknown name `ü` in a formula"),
         ] {
             let fault = Formula::parse(text).expect_err(text);

@@ -49,6 +49,7 @@ pub(super) fn shut_out(model: &Model, objects: &Objects) -> Vec<(usize, usize)> 
         let is_inside = is_inside(object, viewer.middle, viewer.radius);
         // Whether a mesh is closed may take long to find out.
         object.material.transparency == 0.0
+            && !is_behind_glass(model, *index)
             && is_inside.is_some_and(|is_inside| self::is_inside(object, at, size) == Some(!is_inside))
             && object.shape.openness().is_none()
     };
@@ -60,6 +61,17 @@ pub(super) fn shut_out(model: &Model, objects: &Objects) -> Vec<(usize, usize)> 
         Some((light, *candidates.filter(|index| separates(index, at, size)).min()?))
     });
     by.collect()
+}
+
+/// Tells whether an earlier object of glass may lie in the place of some of an object's surface. There the glass is hit,
+/// and the object is not.
+fn is_behind_glass(model: &Model, index: usize) -> bool {
+    let object = &model.objects[index];
+    let may_touch = |other: &Object| match (object.shape.bounds(), other.shape.bounds()) {
+        (Some(bounds), Some(of_other)) => bounds.overlaps(&of_other),
+        _ => true,
+    };
+    model.objects[..index].iter().any(|other| other.material.transparency != 0.0 && may_touch(other))
 }
 
 /// Tells whether a ball lies inside of a closed object, rather than outside; `None` where that is not certain.
