@@ -354,9 +354,10 @@ inventory::submit! { Profile::new(\"crooked\", \"no formula\", \"2 +\") }
 inventory::submit! { Entity::shader(\"checks\", \"its number is that of tiles\", &[], |_| unreachable!()).on_plane(0) }
 ";
 
+/// A plugin in `plugins/` may call the core `crate`.
 const BARREL: &str = "//! A barrel.
 
-use tabray::prelude::*;
+use crate::prelude::*;
 
 inventory::submit! {
     Profile::new(\"barrel\", \"a barrel 4 high\", \"1.5 - 0.1 * (y - 2)^2\")
