@@ -5,10 +5,10 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use tabray_core::output::compare::Pixel;
 use tabray_core::render::plan::Plan;
-use tabray_core::render::renderer::Renderer;
 use tabray_core::scene::model::Model;
 use tabray_core::text;
 use tabray_tools::probe;
+use tabray_tools::threads::renderer_with;
 
 /// An explanation of how a pixel got its colour, as far as possible.
 pub struct Explanation {
@@ -50,7 +50,7 @@ impl Place<'_> {
         plan.camera.pixels = self.size();
         let (x, y) = (self.pixel.x as usize, self.pixel.y as usize);
         let mut out = Vec::new();
-        Renderer::new(1)
+        renderer_with(1)
             .and_then(|renderer| renderer.run(|| probe::pixel(&plan, x, y, &mut out)))
             .map_err(|error| text::reason(&error))?;
         Ok(String::from_utf8_lossy(&out).into_owned())

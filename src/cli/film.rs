@@ -1,6 +1,7 @@
 //! `tabray film`: puts frames together to a contact sheet and to an animation.
 
 use crate::files::output::{self, Output};
+use crate::files::paths::are_same;
 use crate::files::picture;
 use crate::options::number::whole;
 use crate::process::failure::Failure;
@@ -12,7 +13,6 @@ use std::ffi::OsStr;
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
-use tabray_core::files::are_same;
 use tabray_core::output::deflate::Compression;
 use tabray_core::output::picture::Format;
 use tabray_core::text;

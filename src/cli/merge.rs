@@ -1,6 +1,7 @@
 //! `tabray merge`: puts an image together from its parts.
 
 use crate::files::output::{self, Output};
+use crate::files::paths::are_same;
 use crate::options::number::whole;
 use crate::process::failure::Failure;
 use crate::process::progress::Progress;
@@ -12,7 +13,6 @@ use std::io::{self, BufWriter, Write};
 use std::iter;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use tabray_core::files::are_same;
 use tabray_core::output::aov::Aov;
 use tabray_core::output::aov_values::Values;
 use tabray_core::output::full_range::FullRange;
@@ -21,6 +21,7 @@ use tabray_core::render::renderer::Renderer;
 use tabray_core::render::tiles::TILE;
 use tabray_core::text;
 use tabray_tools::part::{PixelFormat, Reader, put_tile};
+use tabray_tools::threads::renderer_with;
 
 /// The maximum number of parts that are named in a message.
 const NAMED: usize = 12;
@@ -52,7 +53,7 @@ Examples:
 
 pub fn run(args: &Args) -> Result<(), Failure> {
     let is_full_range = FullRange::of(&args.image).is_some();
-    let renderer = Renderer::new(args.threads.unwrap_or(0).into())?;
+    let renderer = renderer_with(args.threads.unwrap_or(0).into())?;
     let is_main = |what: PixelFormat| !matches!(what, PixelFormat::Beside(..));
     let main = Parts::gather(&args.image, &args.parts, is_main)?;
     main.refuse_name(&args.image)?;

@@ -13,12 +13,12 @@ use std::io::Write;
 use std::path::Path;
 use tabray_core::output::picture::Format;
 use tabray_core::render::plan::Plan;
-use tabray_core::render::renderer::Renderer;
 use tabray_core::render::tiles::BAND;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::dump;
 use tabray_lang::reader::{Loaded, ReadOptions};
 use tabray_lang::registry::Registry;
+use tabray_tools::threads::renderer_with;
 
 pub fn run(registry: &Registry) -> Result<(), Failure> {
     let standard = Path::new("-");
@@ -35,7 +35,7 @@ pub fn run(registry: &Registry) -> Result<(), Failure> {
     let job = Job {
         plan: &Plan::new(&model),
         part: &Part::whole(&model.camera.value),
-        renderer: &Renderer::new(0)?,
+        renderer: &renderer_with(0)?,
         format: Format::Ppm,
         path: standard,
         made: &[],

@@ -6,10 +6,10 @@ use crate::process::failure::Failure;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tabray_core::render::plan::Plan;
-use tabray_core::render::renderer::Renderer;
 use tabray_core::scene::model::Model;
 use tabray_lang::registry::Registry;
 use tabray_tools::probe;
+use tabray_tools::threads::renderer_with;
 
 /// Explain how a pixel gets its colour
 #[derive(clap::Args)]
@@ -44,7 +44,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let [x, y] = inside(&model, [args.x, args.y])?;
     let mut out = BufWriter::new(io::stdout());
     let printed =
-        Renderer::new(1)?.run(|| probe::pixel(&Plan::new(&model), x, y, &mut out).and_then(|()| out.flush()));
+        renderer_with(1)?.run(|| probe::pixel(&Plan::new(&model), x, y, &mut out).and_then(|()| out.flush()));
     match printed {
         // A reader that closes the pipe is no failure.
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {

@@ -16,17 +16,18 @@ use crate::rendering::resume::ResumedImage;
 use crate::rendering::stats::{self, Stats};
 use crate::rendering::{aov, debug, full_range, part, resume};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::sync::LazyLock;
+use std::time::{Duration, Instant};
 use tabray_core::output::aov::Aov;
 use tabray_core::output::deflate::Compression;
 use tabray_core::output::full_range::FullRange;
 use tabray_core::output::picture::Format;
-use tabray_core::render::renderer::Renderer;
 use tabray_core::scene::model::Model;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::reader::{Loaded, ReadOptions};
 use tabray_lang::registry::Registry;
 use tabray_tools::part::PixelFormat;
+use tabray_tools::threads::renderer_with;
 
 /// Render scenes to images
 #[derive(clap::Args)]
@@ -205,7 +206,8 @@ fn one(
     let accuracy = args.method.accuracy()?;
     let source = Source::read(scene, &args.set)?;
     let memory = args.stop.memory_left();
-    let chosen = |accuracy| ReadOptions { above_all: accuracy, memory, ..ReadOptions::default() };
+    let chosen =
+        |accuracy| ReadOptions { above_all: accuracy, memory, clock: Some(clock), ..ReadOptions::default() };
     let Loaded { mut model, building, warnings, .. } =
         input::print_warnings(source.load_by(registry, chosen(accuracy)))?;
     let mut stats = Stats { reading: start.elapsed() - building, building, ..Stats::default() };
@@ -243,7 +245,7 @@ fn one(
     let start = Instant::now();
     let plan = args.keep.plan(&model);
     stats.building += start.elapsed();
-    let renderer = Renderer::new(threads)?.on(cpu);
+    let renderer = renderer_with(threads)?.on(cpu);
     let whole = Instant::now();
     if let Some(format) = full_range {
         args.stop.refuse_too_large(full_range::PIXEL * part.columns.len() * part.rows.len())?;
@@ -309,7 +311,7 @@ fn share(
         made,
         plan: &plan,
         region,
-        renderer: &Renderer::new(args.threads.unwrap_or(0).into())?.on(args.cpu.cpu()?),
+        renderer: &renderer_with(args.threads.unwrap_or(0).into())?.on(args.cpu.cpu()?),
         paths: [path, &main],
         what: full_range.map_or(PixelFormat::picture(format), PixelFormat::full_range),
         beside: &beside,
@@ -332,6 +334,12 @@ fn share(
     stats.writing = whole.elapsed().saturating_sub(stats.rendering.get());
     args.stats.print(&stats, model);
     Ok(())
+}
+
+/// The time since some moment.
+fn clock() -> Duration {
+    static START: LazyLock<Instant> = LazyLock::new(Instant::now);
+    START.elapsed()
 }
 
 fn exposure(text: &str) -> Result<f64, String> {

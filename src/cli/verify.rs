@@ -15,8 +15,8 @@ use form::{Form, Premises};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use tabray_core::render::plan::Plan;
-use tabray_core::render::renderer::Renderer;
 use tabray_lang::registry::Registry;
+use tabray_tools::threads::renderer_with;
 use tabray_tools::verify;
 
 /// Prove for each pixel which object is seen, or the bytes of its colour
@@ -84,7 +84,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     };
     let size = model.camera.value.pixels;
     let progress = Progress::new(size[1]);
-    let renderer = Renderer::new(args.threads.unwrap_or(0).into())?;
+    let renderer = renderer_with(args.threads.unwrap_or(0).into())?;
     let plan = Plan::new(&model);
     let premises = Premises::of(&plan, args.colours);
     let form = Form { size, premises, is_json: args.json };

@@ -1,19 +1,38 @@
-//! Loops on all threads of the current pool.
+//! Loops on the threads of the caller.
+//!
+//! These are the threads of the rayon pool that the caller is in (`pool.install(...)`), and otherwise rayon's own, one for
+//! each core. Where there are none, as on a system that refuses them or in a browser, the calling thread does all of the
+//! work.
 //!
 //! What rayon offers is generic in all that a loop does, and each loop so written is some thousand lines for the compiler.
 //! Here that code is compiled once, and only what a loop does itself for each.
 
-use rayon::ThreadPool;
 use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::error::Error;
 use std::ops::{ControlFlow, Range};
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, OnceLock};
 
 /// The number of parts per thread that many indices are divided into, so that no thread waits long for the last one.
 const PARTS: usize = 32;
 
 /// The number of places that are filled by one thread together.
 const FILLED: usize = 1 << 12;
+
+/// Returns the number of threads that loops run on here.
+pub fn threads() -> usize {
+    static HAS_OWN: OnceLock<bool> = OnceLock::new();
+    let has_own = || {
+        // An error without a source says that they have been started already.
+        ThreadPoolBuilder::new().build_global().map_or_else(|error| error.source().is_none(), |()| true)
+    };
+    if rayon::current_thread_index().is_some() || *HAS_OWN.get_or_init(has_own) {
+        rayon::current_num_threads()
+    } else {
+        1
+    }
+}
 
 /// Runs work on the threads of a pool, and returns its result.
 pub fn run_on<T: Send>(pool: &ThreadPool, work: impl FnOnce() -> T + Send) -> T {
@@ -27,16 +46,29 @@ fn install(pool: &ThreadPool, work: &mut (dyn FnMut() + Send)) {
     pool.install(work);
 }
 
+/// Does two pieces of work, at the same time if both are large.
+pub fn join<A: Send, B: Send>(
+    are_large: bool,
+    one: impl FnOnce() -> A + Send,
+    other: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    if are_large && threads() > 1 { rayon::join(one, other) } else { (one(), other()) }
+}
+
 /// Runs work for each index below a number.
 pub fn for_each(count: usize, work: &(dyn Fn(usize) + Sync)) {
-    (0..count).into_par_iter().with_max_len(1).for_each(work);
+    if threads() == 1 {
+        (0..count).for_each(work);
+    } else {
+        (0..count).into_par_iter().with_max_len(1).for_each(work);
+    }
 }
 
 /// Runs work for each index below a number, in their order: each thread takes the next index when it is free. Each
 /// thread makes the state that the work needs once.
 pub fn for_each_in_order<S: Default>(count: usize, work: &(dyn Fn(&mut S, usize) + Sync)) {
     let next = AtomicUsize::new(0);
-    for_each(rayon::current_num_threads(), &|_| {
+    for_each(threads(), &|_| {
         let mut own = S::default();
         loop {
             let index = next.fetch_add(1, Ordering::Relaxed);
@@ -63,7 +95,7 @@ pub fn map_ranges<T: Send>(
     if count < many {
         return work(0..count);
     }
-    let length = count.div_ceil(PARTS * rayon::current_num_threads()).max(1);
+    let length = count.div_ceil(PARTS * threads()).max(1);
     let mut parts = Vec::new();
     parts.resize_with(count.div_ceil(length), || Mutex::new(Vec::new()));
     for_each(parts.len(), &|index| {
@@ -75,6 +107,11 @@ pub fn map_ranges<T: Send>(
         all.append(&mut part.into_inner().expect("no thread panicked"));
     }
     all
+}
+
+/// Sorts what has no order among equals.
+pub fn sort<T: Ord + Send>(all: &mut [T]) {
+    if threads() == 1 { all.sort_unstable() } else { all.par_sort_unstable() }
 }
 
 /// Returns the first index below a number for which some question is answered with yes.

@@ -160,6 +160,7 @@ fn render(renderer: &Renderer, model: &Model) -> (Vec<Rgb>, Vec<PixelBound>, f64
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::threads::renderer_with;
     use std::path::Path;
     use tabray_lang::reader;
     use tabray_lang::registry::Registry;
@@ -185,7 +186,7 @@ mod tests {
             Ok(loaded) => loaded.model,
             Err(report) => panic!("{report}"),
         };
-        let renderer = Renderer::new(0).expect("threads");
+        let renderer = renderer_with(0).expect("threads");
         let truth = truth(&renderer, &mut model);
         let outcome = measure(&renderer, &mut model, 2.0 / 255.0, &truth);
         assert_eq!(outcome.contradicted, 0, "{outcome:?}");

@@ -12,6 +12,7 @@ pub mod navigation;
 pub mod part;
 pub mod probe;
 pub mod sampling;
+pub mod threads;
 pub mod verify;
 
 // Tests read scenes, and so need entity types.

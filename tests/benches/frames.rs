@@ -3,9 +3,10 @@
 
 use divan::{Bencher, black_box, counter::ItemsCount};
 use tabray::output::{Compression, Format};
-use tabray::render::{Plan, Renderer};
+use tabray::render::Plan;
 use tabray::scene::{self, Model, Registry};
 use tabray::tools::bench::scenes;
+use tabray::tools::threads::renderer_with;
 
 fn main() {
     divan::main();
@@ -26,7 +27,7 @@ fn model(name: &str) -> Model {
 /// Measures frames; the items are the primary rays.
 #[divan::bench(args = SCENES, consts = [1, 2])]
 fn frame<const THREADS: usize>(bencher: Bencher, name: &str) {
-    let (renderer, model) = (Renderer::new(THREADS).expect("threads"), model(name));
+    let (renderer, model) = (renderer_with(THREADS).expect("threads"), model(name));
     let plan = Plan::new(&model);
     let [width, height] = plan.camera.pixels;
     bencher.counter(ItemsCount::new(width * height)).bench_local(|| renderer.picture(&plan));
@@ -36,7 +37,7 @@ fn frame<const THREADS: usize>(bencher: Bencher, name: &str) {
 #[divan::bench(args = ["ppm", "png fast", "png default", "png best"])]
 fn encode(bencher: Bencher, format: &str) {
     let model = model(SCENES[0]);
-    let picture = Renderer::new(0).expect("threads").picture(&Plan::new(&model));
+    let picture = renderer_with(0).expect("threads").picture(&Plan::new(&model));
     let format = match format {
         "ppm" => Format::Ppm,
         "png fast" => Format::Png(Compression::Fast),

@@ -8,8 +8,9 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
-use tabray::render::{Plan, Renderer};
+use tabray::render::Plan;
 use tabray::scene::{self, Model, Registry};
+use tabray::tools::threads::renderer_with;
 use tabray::world::Accuracy;
 
 /// Returns the entity types of the program.
@@ -88,7 +89,7 @@ pub fn assert_tells_fields(page: &str, value: &Value) {
 /// Renders the image of a model.
 pub fn render(model: &Model) -> RgbImage {
     let [width, height] = model.camera.value.pixels.map(|side| side as u32);
-    let bytes = Renderer::new(0).expect("threads").picture(&Plan::new(model));
+    let bytes = renderer_with(0).expect("threads").picture(&Plan::new(model));
     RgbImage::from_raw(width, height, bytes).expect("three bytes for each pixel")
 }
 

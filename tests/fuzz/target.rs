@@ -12,6 +12,7 @@ use tabray::exact::{Dual, Formula, Interval, Jet, Scalar, Wide};
 use tabray::render::{Plan, Renderer, to_byte, trace};
 use tabray::scene::{self, Loaded, Registry, Syntax, dump};
 use tabray::simd::Cpu;
+use tabray::tools::threads::renderer_with;
 use tabray::world::{Accuracy, Material};
 use tempfile::{NamedTempFile, TempDir, tempfile_in};
 
@@ -146,7 +147,7 @@ pub fn mesh(bytes: &[u8]) {
 
 /// A renderer for each instruction set of this machine.
 static RENDERERS: LazyLock<Vec<Renderer>> =
-    LazyLock::new(|| Cpu::all().map(|cpu| Renderer::new(1).expect("a thread").on(cpu)).collect());
+    LazyLock::new(|| Cpu::all().map(|cpu| renderer_with(1).expect("a thread").on(cpu)).collect());
 
 /// Renders a small image of a scene: packets of rays, with every instruction set, give the same bytes as single rays,
 /// and no colour is NaN.

@@ -5,9 +5,9 @@ use tabray::render::limits::MAX_RAYS;
 use tabray::render::plan::Plan;
 use tabray::render::plan::depth::{Depth, FAINT};
 use tabray::render::ray_stats::RayStats;
-use tabray::render::renderer::Renderer;
 use tabray::render::trace;
 use tabray::scene::model::Model;
+use tabray::tools::threads::renderer_with;
 use tabray::world::material::Rgb;
 
 const SIDES: [usize; 2] = [5, 4];
@@ -35,7 +35,7 @@ fn seen(plan: &Plan, rays: u32) -> (Vec<(Rgb, f64)>, RayStats) {
 
 /// Runs work on a thread whose stack is large enough for deep reflections.
 fn deep<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    Renderer::new(1).expect("a thread").run(work)
+    renderer_with(1).expect("a thread").run(work)
 }
 
 fn error(one: Rgb, other: Rgb) -> f64 {

@@ -9,6 +9,7 @@ use std::path::Path;
 use tabray::render::{Plan, RayStats, Renderer, trace};
 use tabray::tools::debug::{self, LogLine};
 use tabray::tools::probe;
+use tabray::tools::threads::renderer_with;
 use tempfile::TempDir;
 
 const ALL: [LogLine; 6] =
@@ -62,7 +63,7 @@ fn bytes(renderer: &Renderer, plan: &Plan, x: usize, y: usize) -> [u8; 3] {
 
 #[test]
 fn an_explanation_ends_with_the_bytes_of_the_picture() {
-    let renderer = Renderer::new(0).expect("threads");
+    let renderer = renderer_with(0).expect("threads");
     for path in scenes() {
         let model = load(&path);
         let [width, height] = model.camera.value.pixels;

@@ -6,6 +6,7 @@ use std::fs;
 use std::path::Path;
 use tabray::render::{Plan, Renderer, decisions};
 use tabray::scene::{self, Model};
+use tabray::tools::threads::renderer_with;
 use tabray::world::Accuracy;
 
 /// Tells whether the pictures with and without what is not needed are the same, and how many decisions leave something
@@ -19,7 +20,7 @@ fn compared(renderer: &Renderer, model: &Model) -> (bool, usize) {
 
 #[test]
 fn pictures_without_what_they_do_not_need_are_the_same() {
-    let renderer = Renderer::new(2).expect("threads");
+    let renderer = renderer_with(2).expect("threads");
     for path in scenes() {
         for accuracy in [None, Some(Accuracy::Draft)] {
             assert!(compared(&renderer, &small(&path, accuracy)).0, "{}", path.display());
@@ -51,7 +52,7 @@ fn small_size(path: &Path) -> ([usize; 2], u32) {
 
 #[test]
 fn pictures_of_scenes_with_more_behind_the_viewer_are_the_same() {
-    let renderer = Renderer::new(2).expect("threads");
+    let renderer = renderer_with(2).expect("threads");
     let (mut tried, mut left_out) = (0, 0);
     for path in scenes().iter().filter(|path| path.extension().is_some_and(|extension| extension == "ray")) {
         let Some(model) = with_more(path) else { continue };

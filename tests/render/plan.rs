@@ -9,9 +9,10 @@ use std::fs;
 use std::path::Path;
 use std::sync::Mutex;
 use tabray::render::RayKind::{Primary, Reflected, Shadow, Transmitted};
-use tabray::render::{Plan, RayStats, Renderer, TestCounts, decisions, trace};
+use tabray::render::{Plan, RayStats, TestCounts, decisions, trace};
 use tabray::scene::{self, Model};
 use tabray::simd::Cpu;
+use tabray::tools::threads::renderer_with;
 use tabray::world::Accuracy;
 use tempfile::TempDir;
 
@@ -29,7 +30,7 @@ fn counted(entities: &str) -> (Model, RayStats) {
 fn count(model: &Model, threads: usize) -> RayStats {
     let sum = Mutex::new(RayStats::default());
     let add = |part: RayStats| sum.lock().expect("no thread panics").add(&part);
-    let renderer = Renderer::new(threads).expect("threads");
+    let renderer = renderer_with(threads).expect("threads");
     let plan = Plan::new(model);
     let [width, height] = plan.camera.pixels;
     let bands = renderer.bands(&plan, 0..width, 0..height, &add);

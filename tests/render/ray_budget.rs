@@ -4,9 +4,9 @@ use crate::common::model;
 use tabray::render::observer::DynObserver;
 use tabray::render::plan::Plan;
 use tabray::render::ray_stats::RayStats;
-use tabray::render::renderer::Renderer;
 use tabray::render::trace::{self, Scratch, Tracer};
 use tabray::simd::cpu::Cpu;
+use tabray::tools::threads::renderer_with;
 use tabray::world::material::Rgb;
 
 const SCENE: &str = "camera eye { pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 }
@@ -31,7 +31,7 @@ fn rays(surface: &str) -> (usize, u64) {
     let plan = Plan::new(&model);
     let pixels: Vec<_> = (0..6).flat_map(|row| (0..8).map(move |column| [column, row])).collect();
     let (mut scratch, mut stats) = (Scratch::default(), RayStats::default());
-    let renderer = Renderer::new(1).expect("a thread");
+    let renderer = renderer_with(1).expect("a thread");
     let together: Vec<Rgb> = renderer.run(|| {
         let mut tracer = Tracer::new(&plan, Cpu::best(), &mut scratch, &mut stats);
         let seen = tracer.pixels(&pixels);

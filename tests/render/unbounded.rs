@@ -3,10 +3,10 @@
 use crate::common::model;
 use tabray::render::plan::Plan;
 use tabray::render::ray_stats::RayStats;
-use tabray::render::renderer::Renderer;
 use tabray::render::trace::{self, Scratch, Tracer};
 use tabray::scene::model::Model;
 use tabray::simd::cpu::Cpu;
+use tabray::tools::threads::renderer_with;
 use tabray::world::film::Adaptive;
 use tabray::world::material::Rgb;
 
@@ -26,7 +26,7 @@ fn loaded() -> Model {
 /// Renders all pixels in one packet, with what that took, and checks that their number is that of those cut short.
 fn together(plan: &Plan) -> (Vec<Rgb>, u64) {
     let (mut scratch, mut stats) = (Scratch::default(), RayStats::default());
-    let colours = Renderer::new(1).expect("a thread").run(|| {
+    let colours = renderer_with(1).expect("a thread").run(|| {
         let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut stats);
         let seen = tracer.pixels(&pixels());
         (0..20).map(|lane| seen.get(lane)).collect()
@@ -37,7 +37,7 @@ fn together(plan: &Plan) -> (Vec<Rgb>, u64) {
 
 /// Renders one pixel after the other.
 fn alone(plan: &Plan) -> Vec<Rgb> {
-    let renderer = Renderer::new(1).expect("a thread");
+    let renderer = renderer_with(1).expect("a thread");
     renderer.run(|| pixels().iter().map(|[x, y]| trace::pixel(plan, *x, *y)).collect())
 }
 

@@ -4,7 +4,8 @@ use crate::common::model;
 use glam::{DVec2, DVec3};
 use tabray::exact::double_double::DoubleDouble;
 use tabray::geometry::{ImagePoint, Ray};
-use tabray::render::{Plan, Renderer, to_byte, trace};
+use tabray::render::{Plan, to_byte, trace};
+use tabray::tools::threads::renderer_with;
 use tabray::world::Film;
 
 fn film(camera: &str) -> Film {
@@ -161,7 +162,7 @@ fn samples_of_a_lens_are_the_same_in_packets_and_alone() {
         fplane leaf { material m normal 0 0 1 point 3 2 2 xdir 1 0 0 dimensions 2 2 }",
     );
     let plan = Plan::new(&model);
-    let renderer = Renderer::new(2).expect("threads");
+    let renderer = renderer_with(2).expect("threads");
     let mut sharp = Plan::new(&model);
     sharp.camera.samples = 1;
     let mut blurred = 0;

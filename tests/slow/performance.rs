@@ -11,10 +11,11 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
-use tabray::render::{Plan, Renderer};
+use tabray::render::Plan;
 use tabray::scene::{self, Parsed, Syntax, dump};
 use tabray::simd::Cpu;
 use tabray::tools::bench::{Speed, scenes};
+use tabray::tools::threads::renderer_with;
 
 /// The number of times that each of two compared commands is run. The commands alternate.
 const ROUNDS: usize = 15;
@@ -85,7 +86,7 @@ fn many_objects() {
                     drop(Plan::new(&model));
                     1e3 * (now() - start)
                 };
-                let renderer = Renderer::new(threads).expect("threads");
+                let renderer = renderer_with(threads).expect("threads");
                 (0..5).map(|_| renderer.run(plan)).fold(f64::INFINITY, f64::min)
             });
             let rival = embree(name, exponent);

@@ -3,9 +3,10 @@
 
 use crate::common::program::{folder, outcome, scene, tabray};
 use crate::common::{model, scenes, small};
-use tabray::render::{Plan, Renderer, TraceObserver, to_byte, trace};
+use tabray::render::{Plan, TraceObserver, to_byte, trace};
 use tabray::scene::Model;
 use tabray::simd::Cpu;
+use tabray::tools::threads::renderer_with;
 use tabray::world::Accuracy;
 
 #[test]
@@ -32,8 +33,8 @@ fn any_number_of_threads_gives_the_same_bytes() {
 #[test]
 fn a_picture_depends_neither_on_instructions_nor_on_threads_nor_on_tiles() {
     let renderers: Vec<_> = Cpu::all()
-        .map(|cpu| (format!("{cpu}"), Renderer::new(2).expect("threads").on(cpu)))
-        .chain([1, 5].map(|threads| (format!("{threads} threads"), Renderer::new(threads).expect("threads"))))
+        .map(|cpu| (format!("{cpu}"), renderer_with(2).expect("threads").on(cpu)))
+        .chain([1, 5].map(|threads| (format!("{threads} threads"), renderer_with(threads).expect("threads"))))
         .collect();
     let mut faults = Vec::new();
     for path in scenes() {
@@ -80,7 +81,7 @@ fn whoever_looks_on_sees_the_colours_of_the_picture() {
     impl TraceObserver for Onlooker {
         const SEES: bool = true;
     }
-    let thread = Renderer::new(1).expect("a thread with room for deep reflections");
+    let thread = renderer_with(1).expect("a thread with room for deep reflections");
     let check = |name: &str, model: &Model| {
         let plan = Plan::new(model);
         let [width, height] = plan.camera.pixels;

@@ -2,17 +2,17 @@
 
 use crate::process::failure::{Failure, print};
 use std::path::Path;
-use tabray_core::render::renderer::Renderer;
 use tabray_core::scene::model::Model;
 use tabray_core::text::short;
 use tabray_tools::certain::{self, Outcome};
+use tabray_tools::threads::renderer_with;
 
 /// The limits that are measured, in levels.
 const LIMITS: [f64; 3] = [1.0, 2.0, 4.0];
 
 /// Measures the scenes, and prints a table in Markdown.
 pub fn run(models: Vec<(String, Model)>, size: Option<[usize; 2]>) -> Result<(), Failure> {
-    let renderer = Renderer::new(0)?;
+    let renderer = renderer_with(0)?;
     print(
         "| scene | levels | pixels certified | worst of them | contradicted | bound of the others, mean | most | footprints per pixel | CPU seconds | without |\n\
          |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",

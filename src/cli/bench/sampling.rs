@@ -5,13 +5,13 @@ use crate::process::failure::{Failure, print};
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
-use tabray_core::render::renderer::Renderer;
 use tabray_core::scene::model::Model;
 use tabray_core::text::{self, short};
 use tabray_core::world::film::Adaptive;
 use tabray_core::world::sample::Sampler;
 use tabray_tools::chart::{self, Chart, Family, Machine, Panel, Point, Subject, Times, WrongHits};
 use tabray_tools::sampling::{self, LEVELS, Measured, Samples};
+use tabray_tools::threads::renderer_with;
 
 /// The number of samples per pixel of the images that count as true.
 const TRUTH: u32 = 1024;
@@ -45,7 +45,7 @@ pub fn run(
     file: Option<&Path>,
     keep: Option<&Path>,
 ) -> Result<(), Failure> {
-    let renderer = Renderer::new(0)?;
+    let renderer = renderer_with(0)?;
     let mut chart = Chart {
         scene: "samples per pixel".to_owned(),
         machine: Machine::here(),

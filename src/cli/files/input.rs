@@ -1,5 +1,6 @@
 //! Reads scenes from files and from standard input.
 
+use crate::files::paths::open_stream;
 use crate::options::set;
 use crate::process::failure::Failure;
 use crate::process::{crash, memory, messages};
@@ -7,7 +8,6 @@ use sha2::{Digest, Sha256};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
-use tabray_core::files;
 use tabray_core::scene::model::Model;
 use tabray_core::text;
 use tabray_core::world::accuracy::Accuracy;
@@ -96,7 +96,7 @@ pub fn read(path: &Path) -> Result<(String, Vec<u8>), Failure> {
     let (name, bytes) = if is_standard(path) {
         ("<stdin>".to_owned(), to_first_nul(io::stdin().lock()))
     } else {
-        (path.display().to_string(), files::open_stream(path).and_then(to_first_nul))
+        (path.display().to_string(), open_stream(path).and_then(to_first_nul))
     };
     crash::set_scene(&name);
     match bytes {

@@ -2,6 +2,7 @@
 
 pub mod input;
 pub mod output;
+pub mod paths;
 pub mod picture;
 pub mod provenance;
 pub mod several;

@@ -1,6 +1,7 @@
 //! Writes images beside their targets first and then replaces the targets, so that a target never holds half an image.
 
 use crate::files::input;
+use crate::files::paths::{are_same, open_sink};
 use crate::process::failure::Failure;
 use crate::process::messages;
 use crate::process::temporary::Temporary;
@@ -10,7 +11,6 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, IsTerminal, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use tabray_core::files::{self, are_same};
 use tabray_core::output::picture::Format;
 use tabray_core::scene::model::{Item, Model};
 use tabray_core::scene::store::Record;
@@ -181,7 +181,7 @@ impl Output {
         };
         match fs::metadata(&target) {
             Ok(meta) if meta.is_dir() => Err(cannot(io::ErrorKind::IsADirectory.into())),
-            Ok(meta) if !meta.is_file() => Ok(Self::Special(files::open_sink(&target).map_err(cannot)?)),
+            Ok(meta) if !meta.is_file() => Ok(Self::Special(open_sink(&target).map_err(cannot)?)),
             Ok(meta) if meta.permissions().readonly() => Err(cannot(io::ErrorKind::PermissionDenied.into())),
             Ok(meta) => {
                 let file = Temporary::new(folder).map_err(cannot)?;

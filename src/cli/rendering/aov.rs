@@ -13,10 +13,10 @@ use std::path::{Path, PathBuf};
 use tabray_core::output::aov::{Aov, Layer};
 use tabray_core::output::picture::Format;
 use tabray_core::render::plan::Plan;
-use tabray_core::render::renderer::Renderer;
 use tabray_core::scene::model::Model;
 use tabray_core::text::Named;
 use tabray_core::world::sample::{SCRAMBLE, Sampler};
+use tabray_tools::threads::renderer_with;
 
 /// The maximum number of pixels of an image with auxiliary images: unlike the main image, they are held in memory as a
 /// whole.
@@ -144,7 +144,7 @@ pub fn write(
 }
 
 fn all(plan: &Plan, truth: &Plan, threads: usize, format: Format, files: Vec<Files>) -> Result<(), Failure> {
-    let renderer = Renderer::new(threads)?;
+    let renderer = renderer_with(threads)?;
     let size = plan.camera.pixels;
     for Files { aov, picture, exact } in files {
         let progress = Progress::new(size[1]);

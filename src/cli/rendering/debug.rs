@@ -5,9 +5,9 @@ use crate::probe;
 use crate::process::failure::Failure;
 use std::io::{self, BufWriter, Write};
 use tabray_core::render::plan::Plan;
-use tabray_core::render::renderer::Renderer;
 use tabray_core::scene::model::Model;
 use tabray_tools::debug::{self, LogLine};
+use tabray_tools::threads::renderer_with;
 
 #[derive(clap::Args)]
 #[group(id = "debug lines")]
@@ -35,7 +35,7 @@ pub fn print(model: &Model, args: &Args) -> Result<(), Failure> {
     };
     let plan = Plan::new(model);
     // If standard error is closed, no one can be told.
-    let _: io::Result<()> = Renderer::new(1)?.run(|| {
+    let _: io::Result<()> = renderer_with(1)?.run(|| {
         let mut out = BufWriter::new(io::stderr());
         // The notes' order of pixels.
         for y in a[1].min(b[1])..=a[1].max(b[1]) {

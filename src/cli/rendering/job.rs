@@ -8,11 +8,13 @@ use crate::process::progress::Progress;
 use crate::process::{memory, messages};
 use crate::rendering::resume::{self, ResumedImage};
 use crate::rendering::stats::Stats;
+use crate::rendering::unfinished;
 use std::io::{self, BufWriter};
 use std::mem::{replace, take};
 use std::ops::Range;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
+use std::thread;
 use std::time::Instant;
 use tabray_core::output::packing::PIECE;
 use tabray_core::output::picture::Format;
@@ -64,13 +66,14 @@ impl Job<'_> {
             flawed(tally.flaws);
         };
         let overseer = RenderCallbacks { stops: &|| self.stop.is_due(), row: &|| progress.step() };
-        let (plan, plain, counted) = (self.plan, &flawed, &add);
+        let (plan, renders) = (self.plan, (self.renderer, self.plan));
+        let (plain, counted): (&(dyn Fn(Flaws) + Sync), &(dyn Fn(RayStats) + Sync)) = (&flawed, &add);
         self.stop.begin();
-        self.renderer.unfinished(|renders| {
+        thread::scope(|scope| {
             let fill = |band: &mut Band| match self.stats {
-                None if plan.camera.certain => renders.fill(plan, band, overseer, counted),
-                None => renders.fill(plan, band, overseer, plain),
-                Some(stats) => stats.timed(|| renders.fill(plan, band, overseer, counted)),
+                None if plan.camera.certain => unfinished::fill(scope, renders, band, overseer, counted),
+                None => unfinished::fill(scope, renders, band, overseer, plain),
+                Some(stats) => stats.timed(|| unfinished::fill(scope, renders, band, overseer, counted)),
             };
             let outcome = self.write(output, begun, &progress, fill);
             progress.end();

@@ -9,3 +9,4 @@ pub mod part_begun;
 pub mod part_files;
 pub mod resume;
 pub mod stats;
+pub mod unfinished;

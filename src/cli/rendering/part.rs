@@ -9,11 +9,12 @@ use crate::process::{memory, messages};
 use crate::rendering::job::{report_proofs, warn_of};
 use crate::rendering::part_begun::{UnfinishedPart, is_complete, remove};
 use crate::rendering::stats::Stats;
-use crate::rendering::{aov, full_range, resume};
+use crate::rendering::{aov, full_range, resume, unfinished};
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::thread;
 use tabray_core::output::aov::{Aov, Setting};
 use tabray_core::output::aov_values::Values;
 use tabray_core::output::picture::Format;
@@ -161,7 +162,7 @@ impl Share<'_> {
         let mut writer = begin(path, label)?;
         let mut mask = Vec::new();
         self.stop.begin();
-        self.renderer.unfinished(|renders| {
+        thread::scope(|scope| {
             let (all, mut bytes) = (self.region.columns.len(), Vec::new());
             for rows in Band::split(&(0..all), &self.grid().rows(&tiles), self.at_once) {
                 if self.stop.is_due() && begun.is_none() {
@@ -172,7 +173,8 @@ impl Share<'_> {
                 if begun.as_ref().is_some_and(UnfinishedPart::is_over) {
                     begun = None;
                 }
-                self.stats.timed(|| renders.fill(self.plan, &mut band, overseer, &add));
+                self.stats
+                    .timed(|| unfinished::fill(scope, (self.renderer, self.plan), &mut band, overseer, &add));
                 for index in self.of_rows(&tiles, &rows) {
                     let (columns, at) = self.place(index);
                     let strip = band.strip((at.start - rows.start) / TILE);

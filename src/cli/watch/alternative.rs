@@ -7,12 +7,12 @@ use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::progressive::{self, Area};
-use tabray_core::render::renderer::Renderer;
 use tabray_core::scene::choice::Choice;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::Sampler;
 use tabray_lang::registry::Registry;
+use tabray_tools::threads::renderer_with;
 
 /// A setting that replaces that of the scene.
 #[derive(Clone, Copy)]
@@ -69,7 +69,7 @@ pub fn image(
             all[start..start + wide].copy_from_slice(colours);
         }
     };
-    let rendered = progressive::render(&Renderer::new(0)?, &mut Plan::for_picture(&model), part, check);
+    let rendered = progressive::render(&renderer_with(0)?, &mut Plan::for_picture(&model), part, check);
     if rendered.is_break() {
         return Err(io::ErrorKind::Interrupted.into());
     }

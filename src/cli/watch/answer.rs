@@ -22,11 +22,11 @@ use std::sync::Arc;
 use std::time::Duration;
 use tabray_core::output::aov::Aov;
 use tabray_core::render::plan::Plan;
-use tabray_core::render::renderer::Renderer;
 use tabray_core::text;
 use tabray_core::text::Named;
 use tabray_lang::registry::Registry;
 use tabray_tools::probe;
+use tabray_tools::threads::renderer_with;
 use tokio::time::timeout;
 
 /// The page is one file, so that nothing of it can be missing.
@@ -222,7 +222,7 @@ fn entity(registry: &'static Registry, frame: Arc<Frame>, order: &str) -> Option
 fn pixel(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
     let [x, y] = place(&frame, x, y)?;
     Some(Box::new(move |client| {
-        Renderer::new(1)?.run(|| {
+        renderer_with(1)?.run(|| {
             let mut told = LimitedText { text: Vec::new(), check: || check(&frame, client) };
             match probe::pixel(&Plan::new(&frame.model), x, y, &mut told) {
                 Err(error) if error.kind() == io::ErrorKind::StorageFull => {
@@ -278,7 +278,7 @@ fn layer(frame: Arc<Frame>, name: &str) -> Option<Job> {
     let aov = Aov::of_name(name).filter(|aov| *aov != Aov::Error)?;
     Some(Box::new(move |client| {
         let plan = Plan::new(&frame.model);
-        let layer = aov.render(&Renderer::new(0)?, &plan, &plan, &|| check(&frame, client))?;
+        let layer = aov.render(&renderer_with(0)?, &plan, &plan, &|| check(&frame, client))?;
         Ok(("application/octet-stream", layer.bytes))
     }))
 }

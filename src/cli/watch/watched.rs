@@ -18,17 +18,17 @@ use std::thread;
 use std::time::{Instant, SystemTime};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::progressive;
-use tabray_core::render::renderer::Renderer;
 use tabray_core::scene::model::Model;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::reader::{self, Loaded, ReadOptions};
+use tabray_tools::threads::renderer_with;
 
 /// The maximum number of pixels of an image on a page: all of it is in memory, here and in the browser.
 const MAX_PIXELS: usize = 1 << 24;
 
 /// Starts the thread that renders the images of a scene, one after another.
 fn painter(session: Arc<Session>) -> Result<Sender<Arc<Frame>>, Failure> {
-    let renderer = Renderer::new(0)?;
+    let renderer = renderer_with(0)?;
     let (sender, frames) = mpsc::channel::<Arc<Frame>>();
     thread::spawn(move || {
         let feed = &session.feed;

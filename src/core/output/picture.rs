@@ -173,10 +173,14 @@ mod tests {
     use crate::output::packing::PIECE;
     use std::io::Seek;
 
+    fn pool(threads: usize) -> rayon::ThreadPool {
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads")
+    }
+
     #[test]
     fn a_png_is_the_same_file_however_its_rows_come_and_on_any_threads() {
         let renderers =
-            [None, Some(1), Some(3)].map(|threads| threads.map(|n| Renderer::new(n).expect("threads")));
+            [None, Some(1), Some(3)].map(|threads| threads.map(|n| Renderer::on_threads(pool(n))));
         for (width, height) in [(37, 29), (640, 640), (700, 2100)] {
             let pixels: Vec<u8> = (0..3 * width * height).map(|byte| (byte * byte / 977) as u8).collect();
             for compression in [Compression::Fast, Compression::Balanced, Compression::High] {

@@ -1,4 +1,4 @@
-//! The tile loop: renders a model's pixels, on all threads.
+//! The tile loop: renders a model's pixels, on the threads of the caller.
 
 use crate::parallel;
 use crate::render::bytes::to_bytes;
@@ -8,17 +8,13 @@ use crate::render::plan::Plan;
 use crate::render::tiles::{self, BAND, Band, Strip, TILE, locked};
 use crate::render::trace::{Scratch, Tracer};
 use crate::simd::cpu::Cpu;
-use crate::text;
-use std::io;
+use rayon::ThreadPool;
 use std::ops::{ControlFlow, Range};
-use std::panic;
-use std::sync::mpsc::{self, RecvTimeoutError};
-use std::sync::{Arc, Mutex};
-use std::time::{Duration, Instant};
+use std::sync::Mutex;
 
-/// The stack size of a thread in bytes, enough for the deepest chain of reflections that the ray budget allows. The
+/// The stack size of a thread in bytes that is enough for the deepest chain of reflections that the ray budget allows. The
 /// system commits only what is used.
-const STACK: usize = 128 << 20;
+pub const STACK: usize = 128 << 20;
 
 /// Callbacks that stop a renderer and report its progress.
 #[derive(Clone, Copy)]
@@ -30,24 +26,34 @@ pub struct RenderCallbacks<'o> {
     pub row: &'o (dyn Fn() + Sync),
 }
 
-/// A pool of threads that render.
+/// Renders on threads of the caller.
+///
+/// By default these are those of the rayon pool that the caller is in, or rayon's own, or the calling thread where there
+/// are none. Mirrors that face each other take a thread with a stack of [`STACK`] bytes.
+///
+/// ```
+/// use tabray_core::render::{Renderer, renderer::STACK};
+///
+/// let pool = rayon::ThreadPoolBuilder::new().num_threads(2).stack_size(STACK).build()?;
+/// let renderer = Renderer::on_threads(pool);
+/// assert_eq!(renderer.run(rayon::current_num_threads), 2);
+/// # Ok::<(), rayon::ThreadPoolBuildError>(())
+/// ```
 pub struct Renderer {
-    pool: rayon::ThreadPool,
+    pool: Option<ThreadPool>,
     cpu: Cpu,
 }
 
+impl Default for Renderer {
+    fn default() -> Self {
+        Self { pool: None, cpu: Cpu::best() }
+    }
+}
+
 impl Renderer {
-    /// Makes a renderer with this many threads; 0 for one on each core.
-    ///
-    /// # Errors
-    /// If the threads cannot be started.
-    pub fn new(threads: usize) -> io::Result<Self> {
-        let builder = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK);
-        let cannot = |error| {
-            let reason = text::reason(&io::Error::other(error));
-            io::Error::other(format!("cannot start threads to render with: {reason}"))
-        };
-        Ok(Self { pool: builder.build().map_err(cannot)?, cpu: Cpu::best() })
+    /// Makes a renderer that runs on the threads of this pool.
+    pub fn on_threads(pool: ThreadPool) -> Self {
+        Self { pool: Some(pool), ..Self::default() }
     }
 
     /// Uses this instruction set in place of the best that this machine has. The image is the same.
@@ -185,11 +191,6 @@ impl Renderer {
         finished.is_continue().then_some(all)
     }
 
-    /// Lets `work` render bands with `Unfinished::fill`, which may leave threads at work.
-    pub fn unfinished<'s, T>(&'s self, work: impl FnOnce(&Unfinished<'_, 's>) -> T) -> T {
-        self.pool.in_place_scope(|scope| work(&Unfinished { renderer: self, scope }))
-    }
-
     /// Computes a value for each pixel, in rows counted from the top, each from the left. Returns `None` if `done`,
     /// called after each row, breaks.
     pub fn pixels<T: Clone + Default + Send>(
@@ -212,57 +213,11 @@ impl Renderer {
         finished.is_continue().then_some(pixels)
     }
 
-    /// Runs other work on one of the threads, whose stacks are large enough for deep reflections.
+    /// Runs other work on the threads.
     pub fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
-        parallel::run_on(&self.pool, work)
-    }
-}
-
-/// The time between two questions whether rendering is to stop, while no tile is finished that would ask.
-const ASK: Duration = Duration::from_millis(20);
-
-/// The time that unfinished tiles may take when rendering stops.
-const GRACE: Duration = Duration::from_millis(100);
-
-/// Renders that do not wait for the last tile when they stop: one packet of rays may take minutes.
-pub struct Unfinished<'a, 's> {
-    renderer: &'s Renderer,
-    scope: &'a rayon::Scope<'s>,
-}
-
-impl<'s> Unfinished<'_, 's> {
-    /// Renders as [`Renderer::fill`] does, until the overseer has stopped it for a moment: then threads may be left that
-    /// are at work on tiles, which the band does not get any more. [`Renderer::unfinished`] returns when they are done, so
-    /// that whoever does not want to wait ends the program before.
-    pub fn fill<W: TraceObserver + Default>(
-        &self,
-        plan: &'s Plan,
-        band: &mut Band,
-        overseer: RenderCallbacks<'s>,
-        watched: &'s (dyn Fn(W) + Sync),
-    ) {
-        if (overseer.stops)() {
-            return;
-        }
-        let (renderer, (done, is_done)) = (self.renderer, mpsc::channel());
-        let theirs =
-            Band { columns: band.columns.clone(), rows: band.rows.clone(), strips: Arc::clone(&band.strips) };
-        self.scope.spawn(move |_| {
-            renderer.fill(plan, &theirs, overseer, watched);
-            let _ = done.send(());
-        });
-        let mut stopped = None;
-        loop {
-            match is_done.recv_timeout(ASK) {
-                Err(RecvTimeoutError::Timeout) => {}
-                Ok(()) => return,
-                // A thread panicked, and has said so.
-                Err(RecvTimeoutError::Disconnected) => panic::resume_unwind(Box::new(())),
-            }
-            if (overseer.stops)() && stopped.get_or_insert_with(Instant::now).elapsed() >= GRACE {
-                *band = band.copied();
-                return;
-            }
+        match &self.pool {
+            Some(pool) => parallel::run_on(pool, work),
+            None => work(),
         }
     }
 }

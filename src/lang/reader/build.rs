@@ -4,12 +4,12 @@ use super::check::{Check, ReadOptions, Source, TOGETHER};
 use super::fault::{Fault, Places, Severity};
 use super::names::suggestion;
 use super::report::Report;
-use super::threads::Threads;
 use crate::registry::Registry;
 use std::mem::{swap, take};
 use std::path::Path;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use tabray_core::parallel;
 use tabray_core::scene::kind::Kind;
 use tabray_core::scene::model::{Item, Model};
 use tabray_core::scene::store::{Record, Store};
@@ -27,14 +27,14 @@ pub fn model(
     source: &mut Source<'_, '_>,
     report: &mut Report<'_>,
 ) -> Checked {
-    let threads = Threads::default();
-    let mut check = Check::new(registry, folder, accuracy, report, &threads);
+    let now = accuracy.clock.unwrap_or(|| Duration::ZERO);
+    let mut check = Check::new(registry, folder, accuracy, report);
     let mut time = Duration::ZERO;
     match source {
         Source::List(parsed) => {
-            let start = Instant::now();
+            let start = now();
             parsed.chunks(TOGETHER).for_each(|parsed| check.entities(&parsed.iter().collect::<Vec<_>>()));
-            time += start.elapsed();
+            time += now() - start;
         }
         Source::Text(_, parser) => {
             // While some are checked, the next ones are parsed.
@@ -44,21 +44,21 @@ pub fn model(
                 parser.rounds.take_repeated().into_iter().for_each(|range| check.report.repeat(range));
                 let entities: Vec<_> = memory[..count].iter().flatten().collect();
                 let work = || {
-                    let start = Instant::now();
+                    let start = now();
                     check.entities(&entities);
-                    time += start.elapsed();
+                    time += now() - start;
                 };
-                (_, count) = threads.join(count == TOGETHER, work, || parser.entities(&mut other));
+                (_, count) = parallel::join(count == TOGETHER, work, || parser.entities(&mut other));
                 swap(&mut memory, &mut other);
             }
         }
     }
-    let start = Instant::now();
+    let start = now();
     // Objects and lights may ask for the camera, wherever it stands in the text, so they are constructed last.
     let store = check.construct_waiting(source);
     check.textures_can_be_read(&store, source);
     let (model, places) = check.finish(&store, source);
-    (model, places, time + start.elapsed())
+    (model, places, time + (now() - start))
 }
 
 impl Check<'_, '_> {

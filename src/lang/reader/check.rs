@@ -10,7 +10,6 @@ use super::notes;
 use super::parsed::{Parsed, Word};
 use super::quick::Quick;
 use super::report::Report;
-use super::threads::Threads;
 use crate::registry::Registry;
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -18,6 +17,8 @@ use std::collections::hash_map::Entry;
 use std::mem::replace;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
+use tabray_core::parallel;
 use tabray_core::scene::entity::{Args, Construct, Entity, Refusal, Setting};
 use tabray_core::scene::kind::Kind;
 use tabray_core::scene::model::{Item, Object};
@@ -78,6 +79,8 @@ pub struct ReadOptions<'s> {
     /// The limit on the memory of the scene's textures and of its objects' files, in bytes; by default 1 GiB for the
     /// textures, and none for the objects, which take little more than their files do.
     pub memory: Option<u64>,
+    /// The caller's clock, for the time that making a model takes: the time since some moment.
+    pub clock: Option<fn() -> Duration>,
     /// The values that are set beside the text, each as `NAME.ATTRIBUTE=VALUES` or `NUMBER=VALUE`.
     pub sets: &'s [String],
     /// What messages call the last of these values, where these are not given by options `--set` of their own.
@@ -122,7 +125,6 @@ pub(super) struct Check<'r, 't> {
     pub(super) levels: Option<Fault>,
     pub(super) background: Option<(usize, AnyBackground)>,
     quick: Quick<'r>,
-    pub(super) threads: &'r Threads,
 }
 
 impl<'r, 't> Check<'r, 't> {
@@ -132,7 +134,6 @@ impl<'r, 't> Check<'r, 't> {
         folder: &Path,
         accuracy: ReadOptions<'_>,
         report: &'r mut Report<'t>,
-        threads: &'r Threads,
     ) -> Self {
         let camera = Film { accuracy: accuracy.by_default, ..Film::default() };
         let memory = accuracy.memory.unwrap_or(u64::MAX);
@@ -161,7 +162,6 @@ impl<'r, 't> Check<'r, 't> {
             levels: None,
             background: None,
             quick: Quick::new(registry),
-            threads,
         }
     }
 }
@@ -189,7 +189,7 @@ impl Check<'_, '_> {
             }
             let (registry, names, store) = (self.registry, &self.names, &self.store);
             let pieces: Vec<_> = run.chunks(PIECE).collect();
-            let checked = self.threads.map(pieces.len(), |piece| {
+            let checked = parallel::map(pieces.len(), |piece| {
                 let mut quick = Quick::new(registry);
                 quick.check(names, store, pieces[piece]);
                 quick

@@ -30,7 +30,6 @@ mod sets;
 mod sources;
 mod statements;
 mod textures;
-mod threads;
 pub(crate) mod tokens;
 mod toml;
 mod toml_document;
@@ -68,7 +67,7 @@ pub struct Loaded {
     /// The warnings: places that may not mean what was intended.
     pub warnings: Report,
     /// The time taken to check the entities and to construct the model, textures included, but without parsing the
-    /// text.
+    /// text; zero without a [clock](ReadOptions::clock).
     pub building: Duration,
     /// The place of each entity.
     pub places: Places,

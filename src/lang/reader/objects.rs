@@ -6,6 +6,7 @@ use super::fault::Fault;
 use std::iter;
 use std::mem::take;
 use std::sync::Arc;
+use tabray_core::parallel;
 use tabray_core::scene::entity::{Args, Construct, Refusal};
 use tabray_core::scene::model::{Item, Object};
 use tabray_core::scene::procedural;
@@ -52,7 +53,7 @@ impl Check<'_, '_> {
         }
         for start in (0..store.count()).step_by(8 * TOGETHER) {
             let orders = start..store.count().min(start + 8 * TOGETHER);
-            let constructed = self.threads.map(orders.len().div_ceil(PIECE), |piece| {
+            let constructed = parallel::map(orders.len().div_ceil(PIECE), |piece| {
                 let start = start + piece * PIECE;
                 constructed(&store, start..orders.end.min(start + PIECE), &patterns)
             });

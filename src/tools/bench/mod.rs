@@ -9,6 +9,7 @@ pub mod scenes;
 
 pub use packets::Times;
 
+use crate::threads::renderer_with;
 use ceiling::TextbookTest;
 use glam::{DVec2, DVec3};
 use std::io;
@@ -90,7 +91,7 @@ impl Speed {
     /// # Errors
     /// If the system cannot start a thread.
     pub fn measure(model: Model, cpu: Cpu, patience: Duration) -> io::Result<Self> {
-        let renderer = Renderer::new(1)?.on(cpu);
+        let renderer = renderer_with(1)?.on(cpu);
         Ok(renderer.run(|| Self::measure_with(&renderer, model, cpu, patience)))
     }
 

@@ -12,6 +12,7 @@ use super::progress::Progress;
 use super::sampled::{Colours, Errors};
 use super::times::Times;
 use super::timings::{self, Cost, Timings, plan};
+use crate::threads::renderer_with;
 use std::io;
 use std::mem::take;
 use tabray_core::render::plan::Plan;
@@ -134,7 +135,7 @@ pub fn estimates(
     beginning: f64,
     progress: &mut dyn Progress,
 ) -> io::Result<Estimates> {
-    let threads = Renderer::new(0)?;
+    let threads = renderer_with(0)?;
     let model = load(None)?;
     let own = model.camera.value.accuracy;
     let timings = Timings::new(&model, &threads, beginning);

@@ -1,6 +1,7 @@
 //! All choices of a scene, ready to be measured.
 
 use super::candidate::{self, Candidate, Load};
+use crate::threads::renderer_with;
 use std::io;
 use tabray_core::render::renderer::Renderer;
 use tabray_core::world::accuracy::Accuracy;
@@ -25,6 +26,6 @@ impl Study {
         let position = |wanted: &dyn Fn(&Candidate) -> bool| candidates.iter().position(wanted).unwrap_or(0);
         let default = position(&|candidate| candidate.is_default);
         let strict = position(&|candidate| candidate.accuracy == Some(Accuracy::Strict));
-        Ok(Self { default, strict, candidates, threads: Renderer::new(0)?, thread: Renderer::new(1)? })
+        Ok(Self { default, strict, candidates, threads: renderer_with(0)?, thread: renderer_with(1)? })
     }
 }

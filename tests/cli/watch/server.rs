@@ -12,8 +12,9 @@ use std::process::{Command, Stdio};
 use std::thread;
 use std::time::Duration;
 use tabray::output::Aov;
-use tabray::render::{Plan, Renderer, to_byte};
+use tabray::render::{Plan, to_byte};
 use tabray::tools::probe;
+use tabray::tools::threads::renderer_with;
 use tempfile::TempDir;
 
 /// Sends a request exactly as given; returns the whole answer.
@@ -209,7 +210,7 @@ fn an_object_in_toml_has_its_lines_too() {
 fn the_layers_are_those_of_aov() {
     let watching = Watching::text(&ball("9 0 0"));
     watching.events().until("done");
-    let renderer = Renderer::new(1).expect("a thread");
+    let renderer = renderer_with(1).expect("a thread");
     for aov in [Aov::Depth, Aov::Normal, Aov::Object, Aov::Cost] {
         let model = model(&ball("9 0 0"));
         let plan = Plan::new(&model);

@@ -5,6 +5,7 @@ use super::program::Program;
 use super::random::{Point, Random, cross, dot, moved, unit};
 use super::scenes::numbers;
 use tabray::render::Renderer;
+use tabray::tools::threads::renderer_with;
 
 /// A kind of scene, and the function that checks the image of a random scene of it.
 struct Kind {
@@ -30,7 +31,7 @@ const KINDS: [Kind; 6] = [
 
 /// Checks `scenes` scenes of each kind. Returns a message for each kind in which something is wrong.
 pub fn all(scenes: u64) -> Vec<String> {
-    let renderer = Renderer::new(0).expect("threads");
+    let renderer = renderer_with(0).expect("threads");
     println!("| scenes | pictures | pixels | wrong |\n|---|--:|--:|--:|");
     let mut faults = Vec::new();
     for kind in &KINDS {

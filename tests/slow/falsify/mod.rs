@@ -33,6 +33,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::Instant;
 use tabray::render::Renderer;
+use tabray::tools::threads::renderer_with;
 use tally::Tally;
 
 /// Returns the number that an environment variable is set to, or the default if it is not set.
@@ -48,7 +49,7 @@ fn run(class: &Class, rays: usize, seed: u64, proofs: u64) -> Tally {
     thread::scope(|scope| {
         for _ in 0..threads {
             scope.spawn(|| {
-                let renderer = Renderer::new(1).expect("a thread");
+                let renderer = renderer_with(1).expect("a thread");
                 let mut tally = Tally::default();
                 while asked.load(Ordering::Relaxed) < rays {
                     let number = next.fetch_add(1, Ordering::Relaxed) as u64;
@@ -116,7 +117,7 @@ fn surfaces_meet_their_own_rays_in_many_scenes() {
 fn hits_and_proofs_of_given_scenes_are_right() {
     let Ok(scenes) = env::var("FALSIFY_SCENES") else { return };
     println!("{}", tally::HEADING);
-    let renderer = Renderer::new(0).expect("threads");
+    let renderer = renderer_with(0).expect("threads");
     let mut wrong = Vec::new();
     for path in scenes.split_whitespace() {
         let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"));

@@ -11,9 +11,9 @@ use crate::geometry::bvh::node::{Node, WIDTH};
 use crate::parallel;
 use crate::simd::cpu::Cpu;
 use glam::DVec3;
-use rayon::prelude::*;
 use std::array;
 use std::mem::take;
+use std::sync::Mutex;
 use tabray_exact::scalar::per_axis;
 
 /// The number of objects from which on a part is built by a thread of its own.
@@ -32,11 +32,7 @@ pub struct Parts {
 /// Builds the nodes of a hierarchy of objects, whose boxes `bounds` returns.
 pub fn build(count: usize, bounds: impl Fn(usize) -> Aabb + Sync) -> Parts {
     let item = |index| Item::new(index, &bounds(index));
-    let mut items: Vec<_> = if count < LARGE {
-        (0..count).map(item).collect()
-    } else {
-        (0..count).into_par_iter().map(item).collect()
-    };
+    let mut items = parallel::map_ranges(count, LARGE, &|range| range.map(item).collect());
     let mut parts = Parts::default();
     if !items.is_empty() {
         parts.nodes.push(Node::EMPTY);
@@ -98,12 +94,13 @@ impl Parts {
         self.nodes.resize_with(first + single, || Node::EMPTY);
         self.nodes[index] = node;
         if inner.iter().filter(|part| part.items.len() >= LARGE).count() > 1 {
-            let built = inner.into_par_iter().map(|part| {
+            let inner: Vec<_> = inner.into_iter().map(Mutex::new).collect();
+            let built = parallel::map(inner.len(), |child| {
                 let mut parts = Self { nodes: vec![Node::EMPTY], objects: Vec::new() };
-                parts.add(part, 0, depth + 1);
+                parts.add(take(&mut *inner[child].lock().expect("no thread panicked")), 0, depth + 1);
                 parts
             });
-            for (child, part) in built.collect::<Vec<_>>().into_iter().enumerate() {
+            for (child, part) in built.into_iter().enumerate() {
                 self.append(part, first + child);
             }
         } else {

@@ -11,7 +11,6 @@ use crate::shapes::triangle::Triangle;
 use crate::simd::soa::{LANES, Vectors};
 use crate::world::accuracy::Exact;
 use glam::DVec3;
-use rayon::slice::ParallelSliceMut;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::mem::take;
@@ -242,7 +241,7 @@ fn open_edges(faces: &[[u32; 3]]) -> usize {
     let edges = |[a, b, c]: &[u32; 3]| [edge(*a, *b), edge(*b, *c), edge(*c, *a)];
     let mut edges =
         parallel::map_ranges(faces.len(), 2, &|range| faces[range].iter().flat_map(edges).collect());
-    edges.par_sort_unstable();
+    parallel::sort(&mut edges);
     edges
         .chunk_by(|one, other| one >> 1 == other >> 1)
         .filter(|same| 2 * same.iter().filter(|edge| **edge & 1 == 1).count() != same.len())

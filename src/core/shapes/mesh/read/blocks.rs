@@ -48,7 +48,7 @@ pub(super) fn read<T: Send>(
     let mut blocks = Blocks { rest: text, continues };
     let mut before = 0;
     loop {
-        let some: Vec<_> = blocks.by_ref().take(BLOCKS_PER_THREAD * rayon::current_num_threads()).collect();
+        let some: Vec<_> = blocks.by_ref().take(BLOCKS_PER_THREAD * parallel::threads()).collect();
         if some.is_empty() {
             return Ok(());
         }

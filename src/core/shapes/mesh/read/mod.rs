@@ -18,11 +18,8 @@ use crate::files;
 use crate::memory;
 use crate::text;
 use bytesize::ByteSize;
-use rayon::ThreadPoolBuilder;
-use std::error::Error;
 use std::io::{self, Read};
 use std::path::Path;
-use std::sync::OnceLock;
 
 /// Reads a file by the format of its name or, if that names none, by how it begins. Takes no more memory than so many
 /// bytes, roughly.
@@ -40,7 +37,6 @@ pub fn read(path: &Path, memory: u64) -> Result<Model, ReadError> {
     let mut file = files::open(path).map_err(cannot)?;
     let size = file.metadata().map_err(cannot)?.len();
     let budget = MemoryBudget::new(memory, size).map_err(ReadError::file)?;
-    threads().map_err(ReadError::file)?;
     let mut bytes = Vec::new();
     let is_held =
         usize::try_from(size).is_ok_and(|size| memory::may_fail(|| bytes.try_reserve_exact(size).is_ok()));
@@ -61,16 +57,4 @@ pub fn read(path: &Path, memory: u64) -> Result<Model, ReadError> {
         return Err(ReadError::file("it has no faces"));
     }
     Ok(model)
-}
-
-/// Starts the threads that read files and build trees, once. Without this, a system that refuses them would be met where
-/// no error can be returned.
-fn threads() -> Result<(), String> {
-    static STARTED: OnceLock<Result<(), String>> = OnceLock::new();
-    let start = || match ThreadPoolBuilder::new().build_global() {
-        // An error without a source says that they have been started already.
-        Err(error) if error.source().is_some() => Err(format!("cannot start threads to read it: {error}")),
-        _ => Ok(()),
-    };
-    STARTED.get_or_init(start).clone()
 }

@@ -1,0 +1,57 @@
+//! Paths that lead to pipes and devices, or to the same file as others.
+
+use std::fs::{self, File, OpenOptions};
+use std::io;
+use std::path::Path;
+use std::sync::mpsc;
+use std::thread;
+use std::time::Duration;
+
+/// The time that a program may take to open the other end of a named pipe.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// Opens a file, a device or a pipe to read it once. At a pipe it waits up to 5 s for a program to write.
+///
+/// # Errors
+/// Those of the system, and an error where no program writes to the pipe.
+pub fn open_stream(path: &Path) -> io::Result<File> {
+    patiently(path, "writes to", OpenOptions::new().read(true))
+}
+
+/// Opens a device or a pipe to write to it. At a pipe it waits up to 5 s for a program to read.
+///
+/// # Errors
+/// Those of the system, and an error where no program reads the pipe.
+pub fn open_sink(path: &Path) -> io::Result<File> {
+    patiently(path, "reads", OpenOptions::new().write(true))
+}
+
+/// Opens a path, at a pipe no longer than [`PATIENCE`]; `does` is what the program at its other end does with it.
+fn patiently(path: &Path, does: &str, options: &OpenOptions) -> io::Result<File> {
+    if !is_pipe(path) {
+        return options.open(path);
+    }
+    let (sender, opened) = mpsc::channel();
+    let (path, options) = (path.to_owned(), options.clone());
+    // If no program ever opens the other end, the thread ends with this process.
+    thread::Builder::new().name("pipe".to_owned()).spawn(move || sender.send(options.open(path)))?;
+    opened.recv_timeout(PATIENCE).unwrap_or_else(|_| {
+        Err(io::Error::other(format!("no program {does} this pipe (waited {} s)", PATIENCE.as_secs())))
+    })
+}
+
+#[cfg(unix)]
+fn is_pipe(path: &Path) -> bool {
+    use std::os::unix::fs::FileTypeExt;
+    fs::metadata(path).is_ok_and(|kind| kind.file_type().is_fifo())
+}
+
+#[cfg(not(unix))]
+fn is_pipe(_: &Path) -> bool {
+    false
+}
+
+/// Returns whether two paths lead to the same file. A pipe is not opened to compare it, because that might wait for ever.
+pub fn are_same(one: &Path, other: &Path) -> bool {
+    one.is_file() && other.is_file() && same_file::is_same_file(one, other).unwrap_or(false)
+}
