@@ -38,7 +38,7 @@ impl Camera for Orthographic {
     fn origins(&self, pixels: [usize; 2]) -> Origins {
         let [wide, high] = pixels.map(|side| side as f64);
         // From the middle to a corner four pixels outside of the image.
-        let radius = 0.5 * self.width * (wide + 8.0).hypot(high + 8.0) / wide;
+        let radius = 0.5 * self.width * DVec2::new(wide + 8.0, high + 8.0).length() / wide;
         Origins { middle: self.frame.position(), radius }
     }
 

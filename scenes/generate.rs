@@ -3,6 +3,7 @@
 
 use clap::{Parser, ValueEnum};
 use glam::DVec3;
+use libm::{cos, sin};
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::f64::consts::TAU;
@@ -90,14 +91,14 @@ fn shell(folder: &Path) -> io::Result<()> {
     let mut surface = Surface::default();
     surface.grid(1600, 320, |along, around| {
         let (turns, angle) = (TURNS * (along - 1.0), TAU * around);
-        let size = GROWTH.powf(turns);
-        let ribs = 0.02 * (TAU * 30.0 * turns).cos();
-        let knobs = 0.5 + 0.5 * (TAU * 11.0 * turns).cos();
-        let shoulder = (-((angle - 0.9) / 0.33).powi(2)).exp();
-        let tube = 1.0 + ribs + 0.28 * knobs.powi(3) * shoulder;
-        let from_axis = size * (0.95 + 0.9 * tube * angle.cos());
-        let height = size * (-2.3 + 1.15 * tube * angle.sin());
-        let (sin, cos) = (TAU * turns).sin_cos();
+        let size = libm::pow(GROWTH, turns);
+        let ribs = 0.02 * cos(TAU * 30.0 * turns);
+        let knobs = 0.5 + 0.5 * cos(TAU * 11.0 * turns);
+        let shoulder = libm::exp(-libm::pow((angle - 0.9) / 0.33, 2.0));
+        let tube = 1.0 + ribs + 0.28 * libm::pow(knobs, 3.0) * shoulder;
+        let from_axis = size * (0.95 + 0.9 * tube * cos(angle));
+        let height = size * (-2.3 + 1.15 * tube * sin(angle));
+        let (sin, cos) = libm::sincos(TAU * turns);
         DVec3::new(from_axis * cos, height, from_axis * sin)
     });
     let mut out = create(folder, "shell.obj")?;
@@ -147,28 +148,28 @@ const TREES: usize = 1000;
 
 /// Returns the height of the ground.
 fn ground(x: f64, z: f64) -> f64 {
-    let hills = (0.11 * x + 0.4).sin() * (0.09 * z).cos() + 0.4 * (0.23 * x - 0.19 * z).sin();
+    let hills = sin(0.11 * x + 0.4) * cos(0.09 * z) + 0.4 * sin(0.23 * x - 0.19 * z);
     let far = (-z / 100.0).clamp(0.0, 1.0);
-    1.3 * hills + 14.0 * far.powi(2) * (0.6 + 0.4 * (0.06 * x - 1.0).sin()) - 0.8
+    1.3 * hills + 14.0 * far * far * (0.6 + 0.4 * sin(0.06 * x - 1.0)) - 0.8
 }
 
 /// A million trees on hills: places of one mesh, which is not copied.
 fn forest(folder: &Path) -> io::Result<()> {
     let mut tree = Surface::default();
     tree.grid(1, 8, |along, around| {
-        let (sin, cos) = (TAU * around).sin_cos();
+        let (sin, cos) = libm::sincos(TAU * around);
         DVec3::new(0.035 * cos, 0.3 * along, -0.035 * sin)
     });
     for tier in 0..5 {
         let tier = f64::from(tier);
         let (low, high, radius) = (0.15 + 0.15 * tier, 0.42 + 0.15 * tier, 0.27 - 0.045 * tier);
         tree.grid(2, 18, |along, around| {
-            let (sin, cos) = (TAU * around + tier).sin_cos();
+            let (sin, cos) = libm::sincos(TAU * around + tier);
             // The tips of the branches hang down between the others.
             let tip = if ((around * 18.0).round() as usize).is_multiple_of(2) { 1.0 } else { 0.6 };
             let out = 1.0 - 0.98 * along;
             let from_axis = radius * out * (1.0 + (tip - 1.0) * out);
-            let droop = 0.05 * tip * out.powi(3);
+            let droop = 0.05 * tip * libm::pow(out, 3.0);
             DVec3::new(from_axis * cos, low + (high - low) * along - droop, -from_axis * sin)
         });
     }

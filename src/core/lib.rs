@@ -6,6 +6,8 @@
 //! plugin registers as an [`Entity`](scene::Entity). Texts of scenes are read by `tabray-lang`, and the entity types of
 //! tabray are in `tabray-plugins`.
 
+#![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the system's functions"))]
+
 // The vectors of positions and colours, and the numbers of formulas.
 pub use glam;
 pub use tabray_exact as exact;

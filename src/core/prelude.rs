@@ -51,5 +51,6 @@ pub use tabray_exact::dual::Dual;
 pub use tabray_exact::interval::{Interval, Wide};
 pub use tabray_exact::scalar::{Scalar, constants, cross, dot, per_axis};
 
-// Vectors and matrices.
+// Vectors and matrices, and functions with the same bits on every machine, unlike `f64::sin`.
 pub use glam::{DMat3, DVec2, DVec3};
+pub use libm;

@@ -79,11 +79,11 @@ pub fn scaled(vector: DVec3) -> DVec3 {
     vector.map(|part| times_power_of_two(part, exponent))
 }
 
-/// Returns 2^`exponent`; infinity or 0 where that is too large or too small.
+/// Returns 2^`exponent`, which may be subnormal; infinity or 0 where that is too large or too small.
 #[inline]
-fn power_of_two(exponent: i32) -> f64 {
+pub fn power_of_two(exponent: i32) -> f64 {
     let is_normal = (-1022..=1023).contains(&exponent);
-    if is_normal { f64::from_bits(((exponent + 1023) as u64) << 52) } else { 2_f64.powi(exponent) }
+    if is_normal { f64::from_bits(((exponent + 1023) as u64) << 52) } else { libm::ldexp(1.0, exponent) }
 }
 
 /// A double-double: the unevaluated sum of two numbers, of which the second is about 2^-53 of the first.

@@ -1,5 +1,7 @@
 //! Number types that formulas are evaluated with, and formulas.
 
+#![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the system's functions"))]
+
 pub mod affine;
 pub mod decimal;
 pub mod double_double;

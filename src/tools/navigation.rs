@@ -107,7 +107,7 @@ impl<'c> OrbitCamera<'c> {
     fn moved(&self, movement: &Movement) -> CameraPose {
         let hand = if self.target.is_some() { -1.0 } else { 1.0 };
         let [turn, rise] = movement.orbit.map(|degrees| hand * degrees);
-        let elevation = self.forward.dot(self.up).clamp(-1.0, 1.0).asin().to_degrees();
+        let elevation = libm::asin(self.forward.dot(self.up).clamp(-1.0, 1.0)).to_degrees();
         let most = MOST_ELEVATION.max(elevation.abs());
         let rise = elevation - (elevation - rise).clamp(-most, most);
         let right = self.forward.cross(self.up).try_normalize().unwrap_or(DVec3::X);
@@ -145,12 +145,12 @@ impl<'c> OrbitCamera<'c> {
 
 /// Rounds a number before the last of the digits that a size has, unless it is as good as what it was before.
 fn rounded(value: f64, before: f64, size: f64) -> f64 {
-    let exponent = |of: f64| of.abs().log10().floor() as i32;
+    let exponent = |of: f64| libm::log10(of.abs()).floor() as i32;
     if !size.is_normal() || !value.is_normal() {
         return value;
     }
     let last = exponent(size) + 1 - DIGITS;
-    if (value - before).abs() < 0.5 * 10f64.powi(last) {
+    if (value - before).abs() < 0.5 * libm::exp10(f64::from(last)) {
         return before;
     }
     match usize::try_from(exponent(value) - last) {

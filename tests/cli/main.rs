@@ -1,5 +1,7 @@
 //! The program as users run it, command by command.
 
+#![allow(clippy::disallowed_methods, reason = "no picture depends on what a test computes")]
+
 #[path = "../common/mod.rs"]
 mod common;
 

@@ -1,5 +1,7 @@
 //! Images of every scene, by each way to render them, and the reports about their pixels.
 
+#![allow(clippy::disallowed_methods, reason = "no picture depends on what a test computes")]
+
 #[path = "../common/mod.rs"]
 mod common;
 

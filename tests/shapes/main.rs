@@ -1,5 +1,7 @@
 //! The hits of rays, compared with the notes' numbers, with true hits, and with the contract that every plugin keeps.
 
+#![allow(clippy::disallowed_methods, reason = "no picture depends on what a test computes")]
+
 #[path = "../common/mod.rs"]
 mod common;
 #[path = "../oracle/mod.rs"]

@@ -3,6 +3,7 @@
 use crate::simd::cpu::kernels;
 use crate::simd::soa::View;
 use glam::DVec3;
+use tabray_exact::double_double::power_of_two;
 
 /// The slack for rounding errors, as a fraction of a point's distance from the world's origin: 4500 EPSILON, far more
 /// than the few roundings that a coordinate goes through.
@@ -81,7 +82,7 @@ pub fn clearance(from: DVec3, bounds: Option<Aabb>, is_clear_of: impl Fn(&Aabb) 
     // coordinates, so that rounding moves its sides by less than 1e-6 of it.
     let clear = |half: &f64| is_clear_of(&Aabb { low: from - *half, high: from + *half });
     let min_half = (1e4 * SLACK * scale).max(1e-12);
-    let sizes = (-40..60).rev().map(|power| f64::from(power).exp2()).take_while(|half| *half > min_half);
+    let sizes = (-40..60).rev().map(power_of_two).take_while(|half| *half > min_half);
     sizes.into_iter().find(clear).map_or(0.0, |half| {
         let eighths = (9..16).rev().map(|eighths| half * f64::from(eighths) / 8.0);
         eighths.into_iter().find(clear).unwrap_or(half) * (1.0 - 1e-6)

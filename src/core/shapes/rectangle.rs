@@ -6,7 +6,7 @@ use crate::shapes::plane::Plane;
 use crate::world::accuracy::Marker;
 use glam::{DMat3, DVec2, DVec3};
 use tabray_exact::double_double::vectors::{cross, product, unit};
-use tabray_exact::double_double::{DoubleDouble, scaled};
+use tabray_exact::double_double::{DoubleDouble, power_of_two, scaled};
 use tabray_exact::scalar::{self, Scalar, constants, dot, per_axis};
 
 /// The place and the size of a rectangle.
@@ -164,7 +164,7 @@ impl<A: Marker> FinitePlane<A> {
             let past = DoubleDouble::from(self.rectangle.dimensions[side]) - along;
             // Each of about ten operations is off by at most 2^-102 of its terms, which are no larger than `size`.
             let size = from.iter().map(|part| part.high.abs()).sum::<f64>() + distance.high.abs();
-            let lowest = -(2_f64.powi(-97)) * (size + self.rectangle.dimensions[side]);
+            let lowest = -power_of_two(-97) * (size + self.rectangle.dimensions[side]);
             along.high >= lowest && past.high >= lowest
         })
     }

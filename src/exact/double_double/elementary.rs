@@ -1,15 +1,9 @@
 //! The functions of formulas in double-double arithmetic, by their series: for what `f64` leaves undecided, and for the
 //! true hits that tests compare with.
 
-use super::{DoubleDouble, two_product};
+use super::{DoubleDouble, power_of_two, two_product};
 use crate::scalar::{Scalar, of_cubic};
 use crate::spline::Spline;
-
-/// Returns 2^`exponent`, which may be subnormal.
-fn power_of_two(exponent: i32) -> f64 {
-    let half = exponent / 2;
-    2_f64.powi(half) * 2_f64.powi(exponent - half)
-}
 
 /// π / 2 as an unevaluated sum; each part has the next 53 bits.
 const HALF_PI: [f64; 4] = [
@@ -118,7 +112,7 @@ impl Scalar for DoubleDouble {
             return f64::NAN.into();
         }
         // With x = 2^n m, where m is around 1: ln m = 2 artanh((m - 1) / (m + 1)).
-        let doublings = self.high.log2().round();
+        let doublings = libm::log2(self.high).round();
         let m = self.scaled(-(doublings as i32));
         let ratio = (m - Self::ONE) / (m + Self::ONE);
         let square = ratio * ratio;

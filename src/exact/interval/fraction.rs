@@ -5,6 +5,7 @@
 //! quotients and roots of squares are computed without rounding, and an interval of such a number is the number itself.
 
 use super::float::Float;
+use crate::double_double::power_of_two;
 use f256::f256;
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -24,7 +25,7 @@ pub struct Fraction {
 
 /// 2^-230: far more than the relative error of a few operations.
 fn rounding() -> f256 {
-    f256::from(2_f64.powi(-230))
+    f256::from(power_of_two(-230))
 }
 
 impl Fraction {

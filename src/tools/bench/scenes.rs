@@ -62,8 +62,8 @@ pub fn triangles(count: usize) -> Vec<Parsed<'static>> {
     let around = count / 2 / rings.max(1);
     let at = |ring: usize, step: usize| {
         let (y, angle) = (6.25 * ring as f64 / rings as f64, TAU * (step % around) as f64 / around as f64);
-        let radius = 2.0 + y.sin();
-        dvec3(4.0 + radius * angle.cos(), y, -4.0 + radius * angle.sin())
+        let radius = 2.0 + libm::sin(y);
+        dvec3(4.0 + radius * libm::cos(angle), y, -4.0 + radius * libm::sin(angle))
     };
     let mut scene = setting(dvec3(4.0, 3.0, 7.0));
     for index in 0..rings * around {

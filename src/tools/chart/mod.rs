@@ -4,6 +4,8 @@
 //! Errors are measured against the truth (proven hits, with distances to 30 digits; images of a thousand samples), and
 //! depend on the scene alone. The choices are timed by turns, in CPU time of the one thread that does the work.
 
+#![allow(clippy::disallowed_methods, reason = "charts are of measured times and errors")]
+
 mod axis;
 mod candidate;
 mod canvas;

@@ -33,7 +33,8 @@ impl Camera for Template {
         let [x, y, z] = self.frame.axes();
         // From -1 to 1 across the width of the image, and as far per pixel up.
         let [right, up] = at.from_middle().map(|part| part * self.half);
-        let dir = up.cos() * (right.sin() * x + right.cos() * z) + up.sin() * y;
+        let ((sin, cos), (sin_up, cos_up)) = (libm::sincos(right), libm::sincos(up));
+        let dir = cos_up * (sin * x + cos * z) + sin_up * y;
         Ray { origin: self.frame.position(), dir: dir.normalize() }
     }
 

@@ -34,7 +34,7 @@ impl Light for Template {
     #[inline]
     fn emissivity(&self, toward: DVec3) -> Option<Rgb> {
         let down = (self.bulb.location - toward).normalize_or_zero().y;
-        (down > 0.0).then(|| self.bulb.emissivity * down.powf(self.narrow))
+        (down > 0.0).then(|| self.bulb.emissivity * libm::pow(down, self.narrow))
     }
 
     fn size(&self) -> f64 {

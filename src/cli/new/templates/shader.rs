@@ -26,7 +26,7 @@ impl Template {
     #[inline]
     fn brightness(&self, at: &SurfacePoint) -> f64 {
         let height = (at.position - self.anchor.origin).y / self.anchor.unit;
-        0.6 + 0.4 * (std::f64::consts::TAU * self.rings * height).sin()
+        0.6 + 0.4 * libm::sin(std::f64::consts::TAU * self.rings * height)
     }
 }
 

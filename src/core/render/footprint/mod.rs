@@ -26,6 +26,7 @@ use crate::world::material::Rgb;
 use rays::Tracer;
 use scene::Scene;
 use tabray_exact::affine::Affine;
+use tabray_exact::double_double::power_of_two;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::Scalar;
 
@@ -109,7 +110,7 @@ struct Footprint {
 impl Footprint {
     /// Returns its part of the pixel.
     fn area(&self) -> f64 {
-        0.25_f64.powi(self.cuts as i32)
+        power_of_two(-2 * self.cuts as i32)
     }
 
     /// Returns how much of the pixel's colour it leaves open.
@@ -148,7 +149,7 @@ impl Prover {
         let scene = Scene { model, depth, boxes: &self.boxes, most, passes_fractions };
         let gain = camera.gain();
         let footprint = |middle: [f64; 2], cuts: u32| {
-            let colour = match lines(camera, middle, 0.5_f64.powi(cuts as i32 + 1)) {
+            let colour = match lines(camera, middle, power_of_two(-(cuts as i32) - 1)) {
                 Some(lines) => Tracer::new(&scene).primary(&lines),
                 None => [Affine::WHOLE; 3],
             };
@@ -170,7 +171,7 @@ impl Prover {
             let widest = (0..all.len()).max_by(|one, other| open(one).total_cmp(&open(other)));
             let Some(widest) = widest.filter(|index| open(index) > 0.0) else { return proof };
             let Footprint { middle: [x, y], cuts, .. } = all.swap_remove(widest);
-            let quarter = 0.5_f64.powi(cuts as i32 + 2);
+            let quarter = power_of_two(-(cuts as i32) - 2);
             let corners = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]];
             all.extend(
                 corners.map(|[right, up]| footprint([x + right * quarter, y + up * quarter], cuts + 1)),

@@ -7,7 +7,7 @@ use crate::geometry::ray_packet::RayPacket;
 use crate::simd::soa::LANES;
 use crate::world::accuracy::{Accuracy, Marker};
 use tabray_exact::double_double::exact::exact_sum;
-use tabray_exact::double_double::{DoubleDouble, dot, two_product, two_sum};
+use tabray_exact::double_double::{DoubleDouble, dot, power_of_two, two_product, two_sum};
 use tabray_exact::scalar::per_axis;
 
 impl<A> Plane<A> {
@@ -23,7 +23,7 @@ impl<A> Plane<A> {
         let beyond = (one + other).high * toward.high.signum();
         // Double-double products and sums are off by 2^-103 of their terms; an intersection as near as that is on the
         // image plane itself.
-        beyond > 2_f64.powi(-98) * (one.high.abs() + other.high.abs())
+        beyond > power_of_two(-98) * (one.high.abs() + other.high.abs())
     }
 
     /// Computes the dot product of the normal and the vector from the ray's origin to the plane, off by a few ulps and

@@ -87,7 +87,7 @@ impl<A> Quadric<A> {
     /// Tells whether the quadric is an ellipsoid that lies in its box, with values below 0 inside.
     pub fn is_closed(&self) -> bool {
         let Self { square, linear, constant, low, high, .. } = self;
-        let minors = [square.x_axis.x, square.x_axis.x * square.y_axis.y - square.x_axis.y.powi(2)];
+        let minors = [square.x_axis.x, square.x_axis.x * square.y_axis.y - square.x_axis.y * square.x_axis.y];
         if minors.into_iter().chain([square.determinant()]).any(|minor| minor <= 0.0) {
             return false;
         }

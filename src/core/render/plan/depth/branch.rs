@@ -1,5 +1,6 @@
 //! How rays continue from an object, and when they are cut.
 
+use tabray_exact::double_double::power_of_two;
 /// The most that cuts may take from a channel of a primary ray's colour: 1/1024 of a level of 1/255.
 pub const FAINT: f64 = 1.0 / (1024.0 * 255.0);
 
@@ -71,7 +72,7 @@ impl Branch {
         if step == 0 {
             return Self { share: 1.0, faint: REFLECTED * self.faint, ..self };
         }
-        let most = 0.5_f64.powi(step - 1);
+        let most = power_of_two(1 - step);
         let times = |light: f64| if light == f64::INFINITY { light } else { most * light };
         let Self { weight, share, faint, faint_alone } = self;
         Self { weight: times(weight), share, faint: times(faint), faint_alone: times(faint_alone) }
