@@ -3,7 +3,7 @@
 use super::measuring::{Time, Work, wait};
 use crate::files::input::{self, Source};
 use crate::files::output::{self, Output};
-use crate::options::{set, stop};
+use crate::options::{scene, stop};
 use crate::process::failure::{self, Failure, print};
 use crate::process::interrupt::{self, InterruptAction};
 use crate::process::{messages, progress};
@@ -27,10 +27,8 @@ use tabray_tools::chart::{self, Chart};
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
-    /// The scene; `-` reads it from standard input
-    scene: PathBuf,
     #[command(flatten)]
-    set: set::Args,
+    scene: scene::Args,
     /// Directory for the chart (SCENE-chart.svg and .png), its numbers (.csv and .json) and the verdict in words (.txt), by
     /// default the working directory; or one of these files, such as `a.svg`, of any name
     #[arg(short, long, value_name = "DIR|FILE", default_value = ".", hide_default_value = true)]
@@ -54,14 +52,14 @@ const NOTHING: &str = "nothing has been measured yet";
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let limit = args.time_limit.unwrap_or(LIMIT).min(Duration::from_secs(1 << 30));
     let (mut work, start) = (Work::within(limit), Instant::now());
-    let source = Source::read(&args.scene, &args.set)?;
+    let source = args.scene.read()?;
     let model = input::print_warnings(source.load(registry, None))?.model;
     let load = all_accuracies(registry, &source)?;
-    let name = match args.scene.file_stem() {
-        Some(stem) if !input::is_standard(&args.scene) => stem.to_string_lossy().into_owned(),
+    let name = match args.scene.path.file_stem() {
+        Some(stem) if !input::is_standard(&args.scene.path) => stem.to_string_lossy().into_owned(),
         _ => "stdin".to_owned(),
     };
-    let files = files(&args.output, &name, |path| output::refuse_source(path, &args.scene, &model))?;
+    let files = files(&args.output, &name, |path| output::refuse_source(path, &args.scene.path, &model))?;
     drop(model);
     interrupt::catch(InterruptAction::SetFlagThenExit(NOTHING))?;
     let (kept, units) = (work.panels(), work.units());

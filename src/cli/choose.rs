@@ -2,9 +2,9 @@
 
 use super::chart::all_accuracies;
 use super::measuring::{Work, wait};
-use crate::files::input::{self, Source};
+use crate::files::input;
 use crate::options::max_error::{LEVELS, MaxError, levels};
-use crate::options::{set, stop};
+use crate::options::{scene, set, stop};
 use crate::process::failure::{self, Failure, print};
 use crate::process::interrupt::{self, InterruptAction};
 use crate::process::program;
@@ -13,7 +13,7 @@ use std::cmp::Ordering;
 use std::fmt::Write;
 use std::io;
 use std::panic;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -35,10 +35,8 @@ use tabray_tools::chart::{self, Cost, Estimate, Estimates, Goal};
 #[command(group = ArgGroup::new("limit").args(["max_error", "max_time"]).required(true))]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
-    /// The scene; `-` reads it from standard input
-    scene: PathBuf,
     #[command(flatten)]
-    set: set::Args,
+    scene: scene::Args,
     /// Maximum error: the root mean square error of the colours, such as `2` (levels of 255) or `0.5%` (of white)
     #[arg(long, value_name = "LEVELS|PERCENT%", allow_negative_numbers = true)]
     max_error: Option<MaxError>,
@@ -79,7 +77,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let limit = args.time_limit.unwrap_or(LIMIT).min(Duration::from_secs(1 << 30));
     let (mut work, start) = (Work::within(limit), Instant::now());
     let units = work.units();
-    let source = Source::read(&args.scene, &args.set)?;
+    let source = args.scene.read()?;
     let model = input::print_warnings(source.load(registry, None))?.model;
     drop(Plan::for_picture(&model));
     // A render begins with the same work as this program.
@@ -119,7 +117,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         };
         let cores = thread::available_parallelism().map_or(1, usize::from);
         let choice = Selection { estimates: &estimates, cores, goal, asked };
-        print(&choice.words(choice.chosen()?, &args.scene, &args.set))
+        print(&choice.words(choice.chosen()?, &args.scene.path, &args.scene.set))
     })
 }
 

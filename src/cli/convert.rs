@@ -2,7 +2,7 @@
 
 use crate::files::{input, output};
 use crate::options::named::by_name;
-use crate::options::set;
+use crate::options::scene;
 use crate::process::failure::{Failure, print};
 use crate::process::messages;
 use std::path::{Path, PathBuf};
@@ -18,10 +18,8 @@ use tabray_lang::syntax::Syntax;
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
-    /// The scene; `-` reads it from standard input
-    scene: PathBuf,
     #[command(flatten)]
-    set: set::Args,
+    scene: scene::Args,
     /// The file to write: TOML if its name ends in .toml, the course notes' syntax otherwise; `-` writes to standard
     /// output, and needs --to
     output: PathBuf,
@@ -37,12 +35,12 @@ Examples:
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let syntax = syntax(&args)?;
-    let model = input::load(registry, &args.scene, &args.set, None)?;
+    let model = args.scene.load(registry, None)?;
     let text = dump::scene(&model, syntax);
     if input::is_standard(&args.output) {
         return print(&text);
     }
-    if let Some(what) = output::source(&args.output, &args.scene, &model) {
+    if let Some(what) = output::source(&args.output, &args.scene.path, &model) {
         return Err(Failure::Usage(
             format!("`{}` is {what}, which the copy would replace", args.output.display()),
             Some("name another file: a copy has no comments and no formulas".to_owned()),

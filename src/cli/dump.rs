@@ -1,9 +1,7 @@
 //! `tabray dump`: a scene as the program understands it.
 
-use crate::files::input;
-use crate::options::set;
+use crate::options::scene;
 use crate::process::failure::{Failure, print};
-use std::path::PathBuf;
 use tabray_lang::dump;
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
@@ -12,10 +10,8 @@ use tabray_lang::syntax::Syntax;
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
-    /// The scene; `-` reads it from standard input
-    scene: PathBuf,
     #[command(flatten)]
-    set: set::Args,
+    scene: scene::Args,
     /// The format to print
     #[arg(long, default_value = "notes")]
     format: Format,
@@ -38,7 +34,7 @@ enum Format {
 }
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
-    let model = input::load(registry, &args.scene, &args.set, None)?;
+    let model = args.scene.load(registry, None)?;
     print(&match args.format {
         Format::Notes => dump::notes(&model),
         Format::Ray => dump::scene(&model, Syntax::Notes),

@@ -1,9 +1,7 @@
 //! `tabray plan`: how a scene would be rendered, and why.
 
-use crate::files::input;
-use crate::options::{keep, method, samples, set};
+use crate::options::{keep, method, samples, scene};
 use crate::process::failure::{Failure, print};
-use std::path::PathBuf;
 use tabray_core::render::decisions::{self, Decision};
 use tabray_core::render::plan::Plan;
 use tabray_core::simd::cpu::Cpu;
@@ -13,10 +11,8 @@ use tabray_lang::registry::Registry;
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
-    /// The scene; `-` reads it from standard input
-    scene: PathBuf,
     #[command(flatten)]
-    set: set::Args,
+    scene: scene::Args,
     #[command(flatten)]
     samples: samples::Args,
     #[command(flatten)]
@@ -31,7 +27,7 @@ Examples:
   tabray plan ball.ray --samples 4..64";
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
-    let mut model = input::load(registry, &args.scene, &args.set, args.method.accuracy()?)?;
+    let mut model = args.scene.load(registry, args.method.accuracy()?)?;
     args.samples.apply(&mut model.camera.value)?;
     print(&text(&args.keep.plan(&model)))
 }

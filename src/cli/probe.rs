@@ -1,10 +1,9 @@
 //! `tabray probe`: explains one pixel.
 
-use crate::files::input;
-use crate::options::{method, set};
+use crate::options::{method, scene};
 use crate::process::failure::Failure;
 use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use tabray_core::render::plan::Plan;
 use tabray_core::scene::model::Model;
 use tabray_lang::registry::Registry;
@@ -15,10 +14,8 @@ use tabray_tools::threads::renderer_with;
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
-    /// The scene; `-` reads it from standard input
-    scene: PathBuf,
     #[command(flatten)]
-    set: set::Args,
+    scene: scene::Args,
     /// The pixel's column, from 0 at the left
     #[arg(allow_negative_numbers = true, value_parser = place)]
     x: i64,
@@ -40,7 +37,7 @@ fn place(text: &str) -> Result<i64, String> {
 }
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
-    let model = input::load(registry, &args.scene, &args.set, args.method.accuracy()?)?;
+    let model = args.scene.load(registry, args.method.accuracy()?)?;
     let [x, y] = inside(&model, [args.x, args.y])?;
     let mut out = BufWriter::new(io::stdout());
     let printed =

@@ -4,10 +4,9 @@ mod colours;
 mod form;
 mod objects;
 
-use crate::files::input;
 use crate::files::output::{self, Output, format_by_name};
 use crate::options::number::whole;
-use crate::options::{method, set};
+use crate::options::{method, scene};
 use crate::process::failure::Failure;
 use crate::process::interrupt::{self, InterruptAction};
 use crate::process::progress::Progress;
@@ -39,10 +38,8 @@ use tabray_tools::verify;
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
-    /// The scene; `-` reads it from standard input
-    scene: PathBuf,
     #[command(flatten)]
-    set: set::Args,
+    scene: scene::Args,
     /// Write an image of the result: black for proven pixels, white for ties, blue for pixels that are not certified, red
     /// where the tracer finds another object; a .png or .ppm file. With --colours, white for open pixels, and grey where
     /// the image differs by rounding
@@ -71,12 +68,12 @@ Examples:
   tabray verify ball.ray --colours";
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
-    let model = input::load(registry, &args.scene, &args.set, args.method.accuracy()?)?;
+    let model = args.scene.load(registry, args.method.accuracy()?)?;
     interrupt::catch(InterruptAction::Exit("the image was not finished"))?;
     let picture = match args.output {
         Some(path) => {
             let format = format_by_name(&path, "end it in .png or .ppm")?;
-            output::refuse_source(&path, &args.scene, &model)?;
+            output::refuse_source(&path, &args.scene.path, &model)?;
             let output = Output::open(&path)?;
             Some((path, format, output))
         }

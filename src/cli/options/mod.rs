@@ -8,6 +8,7 @@ pub mod method;
 pub mod named;
 pub mod number;
 pub mod samples;
+pub mod scene;
 pub mod set;
 pub mod size;
 pub mod stop;
