@@ -15,7 +15,9 @@ mod farm;
 mod files;
 mod film;
 mod fmt;
+#[cfg(feature = "fuzz")]
 #[doc(hidden)]
+#[path = "../../tests/fuzz/entries.rs"]
 pub mod fuzz;
 mod grammar;
 mod heap;

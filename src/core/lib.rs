@@ -5,6 +5,30 @@
 //! ([`Renderer`](render::Renderer), [`Format`](output::Format)). [`prelude`] has all that an entity type needs, which a
 //! plugin registers as an [`Entity`](scene::Entity). Texts of scenes are read by `tabray-lang`, and the entity types of
 //! tabray are in `tabray-plugins`.
+//!
+//! The core starts no threads and reads no clock: its loops run on the rayon pool that the caller is in ([`parallel`]).
+//!
+//! ```
+//! use tabray_core::prelude::*;
+//!
+//! struct Ball;
+//!
+//! impl Implicit for Ball {
+//!     fn value<N: Scalar>(&self, at: [N; 3]) -> N {
+//!         dot(at, at) - N::constant(4.0)
+//!     }
+//!
+//!     fn bounds(&self) -> [DVec3; 2] {
+//!         [DVec3::splat(-2.0), DVec3::splat(2.0)]
+//!     }
+//! }
+//!
+//! let ball = Body::implicit(Ball, Frame::at(DVec3::new(4.0, 2.0, -4.0))).shape;
+//! let ray = Ray { origin: DVec3::new(4.0, 2.0, 6.0), dir: DVec3::NEG_Z };
+//! assert_eq!(ball.distance(&ray, &RayRange::ALL), 8.0);
+//! ```
+//!
+//! `cargo run -p tabray-core --example torus` draws a shape; examples of `tabray-lang` render scenes.
 
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the system's functions"))]
 
@@ -24,3 +48,11 @@ pub mod shapes;
 pub mod simd;
 pub mod text;
 pub mod world;
+
+/// How properties are tested: cases that failed are kept below `tests/`.
+#[cfg(test)]
+pub(crate) fn properties() -> proptest::prelude::ProptestConfig {
+    use proptest::test_runner::{Config, FileFailurePersistence};
+    let kept = FileFailurePersistence::SourceParallel("../tests/proptest-regressions");
+    Config { failure_persistence: Some(Box::new(kept)), ..Config::default() }
+}

@@ -1,4 +1,21 @@
-//! Number types that formulas are evaluated with, and formulas.
+//! Number types that formulas are evaluated with, formulas, and proven roots.
+//!
+//! One formula is evaluated with any [`Scalar`]: `f64`, an [`Interval`] that encloses all values, a [`Dual`] number or a
+//! [`Jet`] for derivatives, or [`Wide`] intervals whose endpoints have 237 bits.
+//!
+//! ```
+//! use tabray_exact::{Dual, Formula, Interval};
+//!
+//! let wave = Formula::parse("1.5 + sin(y) - y/4").map_err(|fault| fault.message)?;
+//! assert_eq!(wave.at(0.0), 1.5);
+//! assert_eq!(wave.at(Dual { value: 0.0, slope: 1.0 }).slope, 0.75);
+//! // It has no root from 0 to 1, whatever rounding does.
+//! let over = wave.at(Interval { low: 0.0, high: 1.0 });
+//! assert!(!over.has_zero() && over.low > 1.2 && over.high < 2.5);
+//! # Ok::<(), String>(())
+//! ```
+//!
+//! `cargo run -p tabray-exact --example bounds` proves where that formula is first 0.
 
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the system's functions"))]
 
@@ -21,3 +38,11 @@ pub use formula::Formula;
 pub use interval::{Float, Interval, Wide};
 pub use jet::Jet;
 pub use scalar::Scalar;
+
+/// How properties are tested: cases that failed are kept below `tests/`.
+#[cfg(test)]
+pub(crate) fn properties() -> proptest::prelude::ProptestConfig {
+    use proptest::test_runner::{Config, FileFailurePersistence};
+    let kept = FileFailurePersistence::SourceParallel("../tests/proptest-regressions");
+    Config { failure_persistence: Some(Box::new(kept)), ..Config::default() }
+}

@@ -1,5 +1,26 @@
 //! The scene language: from a scene's text to a [`Model`](tabray_core::scene::Model) and back, the documents generated
 //! from the tables of entity types, and what an [`editor`] asks about a scene.
+//!
+//! ```
+//! use std::path::Path;
+//! use tabray_core::render::{Plan, Renderer};
+//! use tabray_lang::{Registry, read};
+//! // Links the entity types, which register themselves.
+//! use tabray_plugins as _;
+//!
+//! let text = "camera eye { pixeldim 32 24  worlddim 8 6  viewpoint 4 3 6 }
+//!     material red { ambient 9 0 0 }
+//!     sphere ball { material red  center 4 3 -2  radius 2 }";
+//! let loaded = read(Registry::get()?, "ball", Path::new(""), text.as_bytes(), None).map_err(|report| report.to_string())?;
+//! let pixels = Renderer::default().picture(&Plan::new(&loaded.model));
+//! // Red, green and blue, from the upper left.
+//! assert_eq!(pixels.len(), 3 * 32 * 24);
+//! assert_eq!(pixels[..3], [0, 0, 0]);
+//! assert!(pixels[3 * (12 * 32 + 16)] > 200);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Without any text, [`build`] makes a model. `cargo run -p tabray-lang --example scene` asks what a ray hits, too.
 
 pub mod dump;
 pub mod editor;
@@ -19,3 +40,11 @@ pub use syntax::Syntax;
 // Tests read scenes, and so need entity types.
 #[cfg(test)]
 use tabray_plugins as _;
+
+/// How properties are tested: cases that failed are kept below `tests/`.
+#[cfg(test)]
+pub(crate) fn properties() -> proptest::prelude::ProptestConfig {
+    use proptest::test_runner::{Config, FileFailurePersistence};
+    let kept = FileFailurePersistence::SourceParallel("../tests/proptest-regressions");
+    Config { failure_persistence: Some(Box::new(kept)), ..Config::default() }
+}

@@ -10,6 +10,7 @@ mod accuracy;
 mod chart;
 mod copy;
 mod falsify;
+#[cfg(feature = "fuzz")]
 mod fuzz;
 mod gallery;
 mod performance;

@@ -169,6 +169,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::properties())]
+
         #[test]
         fn a_part_one_of_whose_rays_comes_into_a_box_is_told(
             ways in prop::collection::vec((vector(), vector()), 1..PACKET_SIZE),

@@ -66,7 +66,7 @@ impl<A> Triangle<A> {
     }
 
     /// Returns a normal whose length is twice the triangle's area.
-    pub fn area_normal<N: Scalar>(&self) -> [N; 3] {
+    pub(crate) fn area_normal<N: Scalar>(&self) -> [N; 3] {
         let [a, b, c] = self.given_corners();
         let from_a = |corner: [N; 3]| per_axis(|axis| corner[axis] - a[axis]);
         cross(from_a(b), from_a(c))
@@ -102,7 +102,7 @@ impl<A> Triangle<A> {
     /// For an edge that two triangles share, both compute the same number except for its sign, so that no ray falls
     /// through between them (Woop, Benthin and Wald 2013).
     #[inline(always)]
-    pub fn is_passed_by(&self, ray: &Ray) -> bool {
+    pub(crate) fn is_passed_by(&self, ray: &Ray) -> bool {
         self.passed(ray).unwrap_or_else(|| {
             let [a, b, c] = self.corners;
             let sides = [(a, b), (b, c), (c, a)].map(|(from, to)| exact_side(from, to, ray));
@@ -143,7 +143,7 @@ fn exact_side(from: DVec3, to: DVec3, ray: &Ray) -> f64 {
 /// Returns the plane through the corners of a triangle with an area, for distances only: its unit normal, which takes
 /// longer than all else of it, is left 0.
 #[inline]
-pub fn plane_for_distances<A>(corners: [DVec3; 3]) -> Plane<A> {
+pub(crate) fn plane_for_distances<A>(corners: [DVec3; 3]) -> Plane<A> {
     Plane::new(DVec3::ZERO, exact_normal(corners), corners[0])
 }
 
@@ -223,7 +223,7 @@ pub fn crossings<A: Bounded>(corners: &[Vectors<LANES>; 3], rays: RayPacket, dis
 ///
 /// They are those of [`Triangle::new`], to the bit.
 #[inline(always)]
-pub fn unit_normals(corners: &[Vectors<LANES>; 3]) -> Vectors<LANES> {
+pub(crate) fn unit_normals(corners: &[Vectors<LANES>; 3]) -> Vectors<LANES> {
     let (mut normals, mut is_known) = (Vectors::ZERO, [0; LANES]);
     let Vectors { x, y, z } = &mut normals;
     let corners_of = |lane: usize| [corners[0].get(lane), corners[1].get(lane), corners[2].get(lane)];
@@ -291,7 +291,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(4096))]
+        #![proptest_config(ProptestConfig { cases: 4096, ..crate::properties() })]
 
         #[test]
         fn a_normal_is_the_same_by_the_quick_way(

@@ -107,6 +107,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::properties())]
+
         #[test]
         fn the_most_error_is_no_less_than_any(
             points in prop::collection::vec((0.0..1e3, prop_oneof![-1.0..1.0, -1e-7..1e-7, Just(0.0), Just(f64::NAN)]), 1..20),

@@ -354,6 +354,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::properties())]
+
         /// Fractions that no longer fit are enclosed as the numbers of 237 bits are.
         #[test]
         fn fractions_and_wide_numbers_enclose_the_same(a in -1e3..1e3, b in 0.1..1e3, c in 1e-6..1e3, power in -60..20) {

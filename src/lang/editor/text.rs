@@ -109,6 +109,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::properties())]
+
         #[test]
         fn positions_are_those_of_the_text_in_utf_16(words in prop::collection::vec("[a-zß\u{10000}-\u{10010}\u{301}]{0,4}", 1..20), ends in prop::collection::vec(0..3_usize, 20)) {
             let mut text = String::new();

@@ -6,19 +6,23 @@
 
 #![allow(clippy::disallowed_methods, reason = "charts are of measured times and errors")]
 
+#[cfg(feature = "drawing")]
 mod axis;
 mod candidate;
+#[cfg(feature = "drawing")]
 mod canvas;
 mod clock;
 mod colours;
 mod cost;
 mod data;
+#[cfg(feature = "drawing")]
 mod draw;
 mod estimate;
 mod files;
 mod front;
 mod hits;
 mod judgement;
+#[cfg(feature = "drawing")]
 mod labels;
 mod machine;
 mod needed;
@@ -35,6 +39,7 @@ mod verdict;
 pub use candidate::Load;
 pub use cost::Estimated;
 pub use data::{Chart, Family, Panel, Point, Subject, WrongHits, WrongHitsOf};
+#[cfg(feature = "drawing")]
 pub use draw::{png, svg};
 pub use estimate::{Estimate, Estimates, Goal, estimates};
 pub use files::{csv, json};

@@ -307,6 +307,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::properties())]
+
         #[test]
         fn an_object_is_visited_once_where_a_ray_enters_its_box(
             boxes in prop::collection::vec(bounds(), 0..200),

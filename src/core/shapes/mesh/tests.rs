@@ -19,7 +19,6 @@ use crate::world::coincidence;
 use crate::world::interaction::SurfaceInteraction;
 use glam::DVec3;
 use proptest::prelude::*;
-use proptest::test_runner::FileFailurePersistence;
 use std::sync::Arc;
 
 pub(super) const PLAIN: DVec3 = DVec3::ONE;
@@ -81,10 +80,7 @@ fn direction() -> impl Strategy<Value = DVec3> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        failure_persistence: Some(Box::new(FileFailurePersistence::SourceParallel("../tests/proptest-regressions"))),
-        ..ProptestConfig::with_cases(24)
-    })]
+    #![proptest_config(ProptestConfig { cases: 24, ..crate::properties() })]
 
     #[test]
     fn no_ray_from_inside_escapes(
@@ -191,6 +187,8 @@ fn equal_vertices_are_one_and_faces_without_an_area_are_left_out() {
 }
 
 proptest! {
+    #![proptest_config(crate::properties())]
+
     #[test]
     fn a_face_that_the_search_knows_is_that_of_the_hit_point(
         bumps in prop::collection::vec(0.6..1.5, 1..9),
@@ -411,6 +409,8 @@ fn the_distance_of_a_sliver_keeps_its_digits() {
 }
 
 proptest! {
+    #![proptest_config(crate::properties())]
+
     #[test]
     fn the_distance_of_a_triangle_is_that_of_its_nearest_point(
         coordinates in prop::array::uniform9(-3.0..3.0_f64), at in prop::array::uniform3(-5.0..5.0_f64),

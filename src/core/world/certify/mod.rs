@@ -72,7 +72,7 @@ pub fn in_world_units(distance: Wide, sight: &Sight) -> DoubleDouble {
 }
 
 /// Converts the bounds of an enclosed distance from lengths of a sight's direction to world units, rounded outward.
-pub fn bounds_in_world_units(distance: Wide, sight: &Sight) -> Interval {
+pub(crate) fn bounds_in_world_units(distance: Wide, sight: &Sight) -> Interval {
     let length = root(sight.squared_length::<Wide>().middle());
     // One ulp of `f64` covers the rounding errors of arithmetic with some 200 bits.
     Interval {
@@ -123,7 +123,7 @@ pub fn first_hit(shape: &impl Equation, sight: &Sight, precision: Precision) -> 
 
 /// Returns what a bounding box says about a line's first hit of a shape without an equation: nothing nearer than the box,
 /// and nothing where the line misses it. The box is rounded, and so widened a little.
-pub fn first_hit_in(bounds: Option<Aabb>, line: &Line<Interval>) -> HitEnclosure<f64> {
+pub(crate) fn first_hit_in(bounds: Option<Aabb>, line: &Line<Interval>) -> HitEnclosure<f64> {
     let Some(Aabb { low, high }) = bounds else { return HitEnclosure::Doubtful(0.0) };
     let slack = SLACK * low.abs().max(high.abs()).max_element();
     match line.clip(low - slack, high + slack) {
@@ -156,6 +156,8 @@ mod tests {
     use tabray_exact::interval::Float;
 
     proptest! {
+        #![proptest_config(crate::properties())]
+
         #[test]
         fn roots_have_far_more_digits_than_twice_the_precision(high in 1.0..4.0, low in 0.0..1e-20, power in -1000..1000) {
             let scale = 2_f64.powi(power);

@@ -94,6 +94,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::properties())]
+
         #[test]
         fn what_is_clear_of_a_hull_holds_none_of_its_points(
             points in prop::collection::vec(vector(), 1..7),

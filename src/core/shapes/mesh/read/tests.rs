@@ -349,6 +349,8 @@ fn a_model_takes_no_more_memory_than_there_is() {
 }
 
 proptest! {
+    #![proptest_config(crate::properties())]
+
     #[test]
     fn a_file_with_some_bytes_changed_never_panics(
         which in 0..6_usize,

@@ -1,8 +1,8 @@
 //! Entries for fuzzing (`tests/fuzz/`): what the program reads from its files and from its clients, handed in as bytes.
 //!
-//! The module is public but hidden. The targets call what the library does not offer otherwise: the servers without
-//! sockets, and checkpoints without an image. They are compiled without `cfg(fuzzing)`, under which the decoder of PNGs
-//! would check nothing, and `cargo test --test slow fuzz` runs them with the library as it is published.
+//! A module of `tabray-cli` with the feature `fuzz`. The targets call what the library does not offer otherwise: the
+//! servers without sockets, and checkpoints without an image. They are compiled without `cfg(fuzzing)`, under which the
+//! decoder of PNGs would check nothing.
 
 use super::review::decide::Review;
 use super::serve::Work;
