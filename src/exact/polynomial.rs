@@ -10,7 +10,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// The highest degree; a product of a higher one is unknown. A polynomial of this degree takes 128 bytes, more than which
 /// compilers do not copy inline.
-pub const MAX_DEGREE: usize = 12;
+pub(crate) const MAX_DEGREE: usize = 12;
 
 /// What a bound is multiplied by, so that it is one although up to eight operations on numbers above 0 were rounded.
 const ROUNDED_UP: f64 = 1.0 + 8.0 * f64::EPSILON;

@@ -123,7 +123,7 @@ pub fn per_axis<T>(mut of: impl FnMut(usize) -> T) -> [T; 3] {
 
 /// Returns the value of a piece of a spline, or of its derivative of an order from 0.
 #[inline]
-pub fn of_cubic<N: Scalar>(y: N, spline: &Spline, piece: usize, order: usize) -> N {
+pub(crate) fn of_cubic<N: Scalar>(y: N, spline: &Spline, piece: usize, order: usize) -> N {
     let (from, [c0, c1, c2, c3]) = spline.cubic(piece, order);
     let t = y.shifted(-from);
     (((N::constant(c3) * t).shifted(c2) * t).shifted(c1) * t).shifted(c0)

@@ -64,7 +64,7 @@ impl Syntax {
     }
 
     /// Shows how a scene writes an entity of a type, with the attributes that it must have.
-    pub fn entity_usage(self, entity: &Entity, name: &str) -> String {
+    pub(crate) fn entity_usage(self, entity: &Entity, name: &str) -> String {
         let required = entity.attributes().filter(|attribute| attribute.default().is_none());
         let mut body: Vec<_> = required.map(|attribute| self.usage(attribute)).collect();
         let first = |group: &OneOf| {

@@ -51,12 +51,6 @@ impl Aabb {
         0.5 * (self.high - self.low)
     }
 
-    /// Returns half the surface area of the box, in square world units.
-    pub fn half_area(&self) -> f64 {
-        let size = (self.high - self.low).max(DVec3::ZERO);
-        size.x * size.y + size.y * size.z + size.z * size.x
-    }
-
     /// Returns the box grown by the rounding error of the coordinates of points in it, and of points at this distance.
     #[inline(always)]
     pub fn with_slack(&self, distance: f64) -> Self {

@@ -27,7 +27,7 @@ enum Plane {
 impl Facet {
     /// Returns the facet of a triangle with this outward normal, which need not be exact; `None` where the triangle is not
     /// across an axis.
-    pub fn of_triangle([a, b, c]: [DVec3; 3], normal: DVec3) -> Option<Self> {
+    pub(crate) fn of_triangle([a, b, c]: [DVec3; 3], normal: DVec3) -> Option<Self> {
         let axis = (0..3).find(|axis| a[*axis] == b[*axis] && b[*axis] == c[*axis])?;
         Some(Self::across(axis, (a[axis], 0.0), normal[axis] > 0.0))
     }

@@ -20,7 +20,7 @@ const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 /// Returns on which side of the plane through three points another one lies: `Less` where they run counterclockwise as
 /// seen from it, and `Equal` where all four are in one plane.
 #[inline]
-pub fn side_of_plane(plane: [DVec3; 3], at: DVec3) -> Ordering {
+pub(crate) fn side_of_plane(plane: [DVec3; 3], at: DVec3) -> Ordering {
     let [a, b, c] = plane.map(|corner| corner - at);
     // All four are in one plane across an axis, as the corners of a box's side are.
     if (0..3).any(|axis| a[axis] == 0.0 && b[axis] == 0.0 && c[axis] == 0.0) {
@@ -50,7 +50,7 @@ pub fn turn([from, to]: [DVec3; 2], at: DVec3, axis: usize) -> Ordering {
 }
 
 /// Returns the index of an axis along which three points that do not lie on one line are seen apart.
-pub fn axis_across([a, b, c]: [DVec3; 3]) -> usize {
+pub(crate) fn axis_across([a, b, c]: [DVec3; 3]) -> usize {
     let normal = cross(between(a, b), between(a, c)).map(|part| part.high.abs());
     (0..3).max_by(|one, other| normal[*one].total_cmp(&normal[*other])).unwrap_or(0)
 }

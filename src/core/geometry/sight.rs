@@ -166,7 +166,7 @@ impl Sight {
     }
 
     /// Returns the squared length of the direction of [`line`](Self::line), in square world units.
-    pub fn squared_length<N: Scalar>(&self) -> N {
+    pub(crate) fn squared_length<N: Scalar>(&self) -> N {
         let [x, y, z] = self.line::<N>().dir;
         x.powi(2) + y.powi(2) + z.powi(2)
     }

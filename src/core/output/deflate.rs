@@ -169,7 +169,7 @@ impl Checksum {
     }
 
     /// Returns the last bytes of the stream.
-    pub fn trailer(&self) -> [u8; TRAILER] {
+    pub(crate) fn trailer(&self) -> [u8; TRAILER] {
         (self.sums << 16 | self.sum).to_be_bytes()
     }
 }

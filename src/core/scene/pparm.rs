@@ -297,7 +297,7 @@ impl Attributes {
     /// # Panics
     /// If the plugin asks for an attribute that is not in the table it registered.
     #[track_caller]
-    pub fn get_given<T: Value>(&self, key: &Pparm<T>) -> Option<T> {
+    pub(crate) fn get_given<T: Value>(&self, key: &Pparm<T>) -> Option<T> {
         let value = self.get(key);
         self.given().any(|(attribute, _)| attribute.name() == key.name()).then_some(value)
     }

@@ -130,7 +130,7 @@ impl Store {
     }
 
     /// Returns the first value of an entity that is neither numbers nor a default.
-    pub fn first_datum(&self, order: usize) -> Option<&Datum> {
+    pub(crate) fn first_datum(&self, order: usize) -> Option<&Datum> {
         let mut packed = self.packed(order);
         packed.kind();
         packed.name();

@@ -134,7 +134,7 @@ impl<A: Marker> FinitePlane<A> {
 
     /// Returns whether the rectangle contains the point where a ray intersects its plane; the sides belong to it.
     #[inline(always)]
-    pub fn has_crossing(&self, ray: &Ray, distance: f64) -> bool {
+    pub(crate) fn has_crossing(&self, ray: &Ray, distance: f64) -> bool {
         if A::IS_CLASSIC {
             return self.inside(ray, distance) >= 0.0;
         }
@@ -143,7 +143,7 @@ impl<A: Marker> FinitePlane<A> {
 
     /// Computes [`has_crossing`](Self::has_crossing), or `None` where the point is on a side to within rounding.
     #[inline(always)]
-    pub fn quickly_has_crossing(&self, ray: &Ray, distance: f64) -> Option<bool> {
+    pub(crate) fn quickly_has_crossing(&self, ray: &Ray, distance: f64) -> Option<bool> {
         let slack = self.slack(ray, distance);
         let inside = self.inside(ray, distance);
         let is_doubtful = (inside.abs() <= slack) & (slack > 0.0) & (distance < MISS);
@@ -185,7 +185,7 @@ pub fn rounded_sides(upright: [DoubleDouble; 3], xdir: DVec3) -> [DVec3; 2] {
 
 /// Returns the directions of the two sides of a rectangle with this normal, as double-double unit vectors; the first is
 /// along the projection of `xdir` onto the plane.
-pub fn exact_sides(upright: [DoubleDouble; 3], xdir: DVec3) -> [[DoubleDouble; 3]; 2] {
+pub(crate) fn exact_sides(upright: [DoubleDouble; 3], xdir: DVec3) -> [[DoubleDouble; 3]; 2] {
     let xdir = scaled(xdir).to_array().map(DoubleDouble::from);
     let second = cross(upright, xdir);
     [unit(cross(second, upright)), unit(second)]

@@ -86,7 +86,7 @@ pub fn first_hit<A: Marker>(line: &SphereLine, radius: f64) -> f64 {
 
 /// Computes [`first_hit`], or NaN where rounding could decide it.
 #[inline(always)]
-pub fn quick_hit<A: Marker>(line: &SphereLine, radius: f64) -> f64 {
+pub(crate) fn quick_hit<A: Marker>(line: &SphereLine, radius: f64) -> f64 {
     let (from, dir) = (high(&line.from), high(&line.dir));
     let a = dir.dot(dir);
     let toward = -from.dot(dir);
@@ -132,7 +132,7 @@ pub fn quick_hit<A: Marker>(line: &SphereLine, radius: f64) -> f64 {
 /// discriminant, the start is taken for a point of the sphere, whose far root is twice as far as the midpoint of the
 /// chord.
 #[inline(always)]
-pub fn far_hit<A: Marker>(line: &SphereLine, radius: f64) -> f64 {
+pub(crate) fn far_hit<A: Marker>(line: &SphereLine, radius: f64) -> f64 {
     let (from, dir) = (high(&line.from), high(&line.dir));
     let a = dir.dot(dir);
     let toward = -from.dot(dir);

@@ -23,7 +23,7 @@ pub fn on_height(at: DVec3, height: f64) -> DVec2 {
 
 /// Returns the barycentric coordinates of a point of a triangle: the weights of its second and its third corner, from 0 to
 /// 1.
-pub fn on_triangle([a, b, c]: [DVec3; 3], at: DVec3) -> DVec2 {
+pub(crate) fn on_triangle([a, b, c]: [DVec3; 3], at: DVec3) -> DVec2 {
     let (first, second, from) = (b - a, c - a, at - a);
     let upright = first.cross(second);
     let area = upright.length_squared();
@@ -49,7 +49,7 @@ pub fn bounds_on_height(at: [Interval; 3], height: f64) -> [Interval; 2] {
 }
 
 /// Encloses what [`on_triangle`] returns for the points of a box, as mathematics has it.
-pub fn bounds_on_triangle(corners: [DVec3; 3], at: [Interval; 3]) -> [Interval; 2] {
+pub(crate) fn bounds_on_triangle(corners: [DVec3; 3], at: [Interval; 3]) -> [Interval; 2] {
     let [a, b, c] = corners.map(constants::<Interval>);
     let from = |to: [Interval; 3]| per_axis(|axis| to[axis] - a[axis]);
     let (first, second, at) = (from(b), from(c), from(at));

@@ -95,7 +95,7 @@ impl View<'_> {
 
     /// Adds the vectors to a sum, one after the other.
     #[inline(always)]
-    pub fn added_to(&self, sum: DVec3) -> DVec3 {
+    pub(crate) fn added_to(&self, sum: DVec3) -> DVec3 {
         let vectors = self.x.iter().zip(self.y).zip(self.z);
         vectors.fold(sum, |sum, ((x, y), z)| sum + DVec3::new(*x, *y, *z))
     }
@@ -137,7 +137,7 @@ impl ViewMut<'_> {
     }
 
     /// Copies vectors to the indices from `first` on.
-    pub fn copy_at(&mut self, first: usize, vectors: View) {
+    pub(crate) fn copy_at(&mut self, first: usize, vectors: View) {
         let end = first + vectors.len();
         self.x[first..end].copy_from_slice(vectors.x);
         self.y[first..end].copy_from_slice(vectors.y);

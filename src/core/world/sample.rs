@@ -58,7 +58,7 @@ impl Sample {
     }
 
     /// Returns the point of the unit disc that chooses a point of the camera's lens.
-    pub fn on_lens(&self) -> DVec2 {
+    pub(crate) fn on_lens(&self) -> DVec2 {
         on_disc(self.draw(ON_LENS))
     }
 

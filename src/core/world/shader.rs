@@ -63,7 +63,7 @@ impl Sees {
 
     /// Tells whether the position is all that is seen.
     #[inline(always)]
-    pub fn is_position(self) -> bool {
+    pub(crate) fn is_position(self) -> bool {
         self == Self::POSITION
     }
 }

@@ -122,7 +122,7 @@ impl Tree {
     /// Returns the path to a part through the condition, and whether the solid lies on the outer side of the part;
     /// `None` if the condition does not name the part. The path has, for each operation from the innermost one outward,
     /// the index of the operand that contains the part.
-    pub fn path_to(&self, part: usize) -> Option<(Vec<usize>, bool)> {
+    pub(crate) fn path_to(&self, part: usize) -> Option<(Vec<usize>, bool)> {
         let (operation, of) = match self {
             Self::Known(_) => return None,
             Self::Part(own) => return (*own == part).then_some((Vec::new(), false)),
@@ -136,7 +136,11 @@ impl Tree {
 
     /// Tells whether a point on the surface of the part at the end of a [path](Self::path_to) lies on the surface of the
     /// solid; `None` where that is undecided. `inside` tells whether the point lies in another part.
-    pub fn is_on_solid(&self, path: &[usize], inside: &mut dyn FnMut(usize) -> Option<bool>) -> Option<bool> {
+    pub(crate) fn is_on_solid(
+        &self,
+        path: &[usize],
+        inside: &mut dyn FnMut(usize) -> Option<bool>,
+    ) -> Option<bool> {
         let (Self::Combined(operation, of), Some((own, inner))) = (self, path.split_last()) else {
             return Some(true);
         };

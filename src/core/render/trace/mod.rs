@@ -57,6 +57,7 @@ pub fn pixel(plan: &Plan, x: usize, y: usize) -> Rgb {
 
 /// Computes the colours that rays through the centres of pixels return, up to [`PACKET_SIZE`] together, of which each may
 /// cost a number of rays. Returns with each colour a bound on what the limit cut off of it.
+#[doc(hidden)]
 pub fn within_budgets(
     plan: &Plan,
     pixels: &[[usize; 2]],
@@ -132,7 +133,7 @@ pub fn samples(plan: &Plan, x: usize, y: usize) -> (u32, Option<f64>) {
 }
 
 /// Tells whether any of a pixel's camera rays has a first hit that could not be decided.
-pub fn is_undecided(plan: &Plan, x: usize, y: usize) -> bool {
+pub(crate) fn is_undecided(plan: &Plan, x: usize, y: usize) -> bool {
     let (mut scratch, mut flaws) = (Scratch::default(), Flaws::default());
     Tracer::new(plan, Cpu::best(), &mut scratch, &mut flaws).pixels(&[[x, y]]);
     flaws.undecided.pixels() > 0

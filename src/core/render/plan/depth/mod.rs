@@ -100,6 +100,7 @@ impl Depth {
     }
 
     /// Disables all cuts.
+    #[doc(hidden)]
     pub fn uncut(mut self) -> Self {
         for object in &mut self.objects {
             for branch in [&mut object.through, &mut object.mirrored] {

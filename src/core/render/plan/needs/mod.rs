@@ -86,7 +86,7 @@ impl Needs {
     }
 
     /// Leaves out a light, if it is not left out already.
-    pub fn leave_out(&mut self, light: usize, reason: UnlitReason) {
+    pub(crate) fn leave_out(&mut self, light: usize, reason: UnlitReason) {
         if let Some(place) = self.lights.iter().position(|needed| *needed == light) {
             self.lights.remove(place);
             self.dark.push((light, reason));
