@@ -35,10 +35,11 @@ fn sources(folder: &str) -> Vec<PathBuf> {
 /// The crates, from the bottom up, but for the program and the plugins, whose files are few or import nothing.
 const CRATES: [&str; 5] = ["exact", "core", "lang", "tools", "cli"];
 
-/// Returns the modules of a crate, without the templates of `tabray new`.
+/// Returns the modules of a crate, without its examples and the templates of `tabray new`.
 fn tree(crate_: &str) -> Tree {
     let files = sources(&format!("src/{crate_}")).into_iter();
-    let files = files.filter(|path| !path.starts_with("src/cli/new/templates"));
+    let is_example = |path: &PathBuf| path.components().any(|part| part.as_os_str() == "examples");
+    let files = files.filter(|path| !path.starts_with("src/cli/new/templates") && !is_example(path));
     Tree::new(files.map(|path| (path.clone(), fs::read_to_string(root().join(path)).expect("a file"))))
 }
 

@@ -5,6 +5,7 @@ mod common;
 
 mod computed;
 mod dump;
+mod examples;
 mod extremes;
 mod grammar;
 mod many;
