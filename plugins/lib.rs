@@ -10,3 +10,8 @@ use tabray::*;
 include!(concat!(env!("OUT_DIR"), "/plugins.rs"));
 
 plugins!();
+
+/// Links the entity types. For most systems, `use tabray_plugins as _;` does that alone; for WebAssembly, a program calls this
+/// and compiles this crate as one unit (`codegen-units = 1`).
+#[inline(never)]
+pub fn link() {}

@@ -16,6 +16,7 @@ unsafe extern "C" {
 pub extern "C" fn answer() -> *const c_char {
     // SAFETY: it takes nothing, and is called once.
     unsafe { __wasm_call_ctors() };
+    tabray_plugins::link();
     let names = match Registry::get() {
         Ok(registry) => registry.iter().map(|entity| entity.name).collect::<Vec<_>>().join(" "),
         Err(faults) => faults.to_string(),
