@@ -82,7 +82,7 @@ impl Frame {
     /// Returns the vector in the world from the frame's origin to the point at a distance along a ray: rounded about
     /// once, however far away the ray's origin is.
     #[inline(always)]
-    pub(crate) fn from_origin(&self, ray: &Ray, distance: f64) -> DVec3 {
+    pub fn from_origin(&self, ray: &Ray, distance: f64) -> DVec3 {
         let along = |axis: usize| offset(ray.origin[axis], distance, ray.dir[axis], self.origin[axis]);
         DVec3::new(along(0), along(1), along(2))
     }

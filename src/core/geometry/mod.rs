@@ -1,11 +1,11 @@
 //! Geometry without shapes: rays, bounding boxes and frames.
 
 pub mod aabb;
-pub mod bvh;
+pub(crate) mod bvh;
 pub mod facet;
 pub mod frame;
 pub mod image_point;
-pub mod orientation;
+pub(crate) mod orientation;
 pub mod placement;
 pub mod ray;
 pub mod ray_packet;

@@ -64,7 +64,7 @@ pub struct Placement {
 impl Placement {
     /// Returns the matrix that takes a vector from the world to the shape's own coordinates, rounded. Its transpose takes
     /// normals to the world, up to their length.
-    pub(crate) fn to_object_space(&self) -> DMat3 {
+    pub fn to_object_space(&self) -> DMat3 {
         let own = |vector: DVec3| DVec3::from(self.vector::<f64>(vector.to_array()));
         DMat3::from_cols(own(DVec3::X), own(DVec3::Y), own(DVec3::Z))
     }

@@ -12,7 +12,7 @@ pub mod pparm;
 pub mod procedural;
 pub mod profile;
 pub mod references;
-pub mod rotation;
+pub(crate) mod rotation;
 pub mod store;
 pub mod value;
 
