@@ -29,7 +29,7 @@ pub struct RenderCallbacks<'o> {
 /// Renders on threads of the caller.
 ///
 /// By default these are those of the rayon pool that the caller is in, or rayon's own, or the calling thread where there
-/// are none. Mirrors that face each other take a thread with a stack of [`STACK`] bytes.
+/// are none. The deepest chains of reflections may take a stack of [`STACK`] bytes.
 ///
 /// ```
 /// use tabray_core::render::{Renderer, renderer::STACK};
