@@ -4,7 +4,7 @@
 //! One formula evaluated with one type after the other gives values, derivatives and proven bounds. The functions are
 //! those of the `libm` crate, whose results do not depend on the machine.
 
-use crate::spline::Spline;
+use crate::spline::{Coefficient, Spline};
 use glam::DVec3;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -121,12 +121,19 @@ pub fn per_axis<T>(mut of: impl FnMut(usize) -> T) -> [T; 3] {
     [of(0), of(1), of(2)]
 }
 
-/// Returns the value of a piece of a spline, or of its derivative of an order from 0.
+/// Returns the value of a piece of a spline, or of its derivative of an order from 0, with coefficients as `number` takes
+/// them.
 #[inline]
-pub(crate) fn of_cubic<N: Scalar>(y: N, spline: &Spline, piece: usize, order: usize) -> N {
-    let (from, [c0, c1, c2, c3]) = spline.cubic(piece, order);
+pub(crate) fn of_cubic<N: Scalar>(
+    y: N,
+    spline: &Spline,
+    (piece, order): (usize, usize),
+    number: impl Fn(&Coefficient) -> N,
+) -> N {
+    let (from, of) = spline.cubic(piece, order);
     let t = y.shifted(-from);
-    (((N::constant(c3) * t).shifted(c2) * t).shifted(c1) * t).shifted(c0)
+    let [c0, c1, c2, c3] = of.each_ref().map(number);
+    ((c3 * t + c2) * t + c1) * t + c0
 }
 
 /// Returns a vector of constants.
@@ -215,7 +222,7 @@ impl Scalar for f64 {
     }
 
     fn spline(self, spline: &Spline, order: usize) -> Self {
-        of_cubic(self, spline, spline.piece(self), order)
+        of_cubic(self, spline, (spline.piece(self), order), |of| of.near)
     }
 
     #[inline(always)]

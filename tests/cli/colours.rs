@@ -75,17 +75,17 @@ fn the_colours_of_the_classic_method_are_refused() {
 fn proofs_of_objects_are_printed_as_json_with_what_they_assume() {
     let folder = folder();
     let mut command = tabray(&folder);
-    let (status, out, err) = outcome(command.args(["verify", "--json"]).arg(scene("entities/lathe.ray")));
+    let (status, out, err) = outcome(command.args(["verify", "--json"]).arg(scene("entities/box.ray")));
     assert_eq!(status, 0, "{err}");
     let numbers: Value = serde_json::from_slice(&out).expect("JSON");
     let of = |kind: &str| numbers["pixels"][kind].as_u64().expect("a number");
     assert_eq!(of("proven") + of("ties"), of("all"), "{numbers}");
     assert_eq!((of("not_certified"), of("contradicted")), (0, 0), "{numbers}");
     assert_eq!(numbers["uncertified"], Value::Array(Vec::new()));
-    assert_eq!(numbers["assumptions"][0]["assumed"], "spline coefficients as computed, rounded to f64");
-    assert_eq!(numbers["assumptions"][0]["of"][0], "lathe");
+    assert_eq!(numbers["assumptions"][0]["assumed"], "vertices as placed, rounded to f64");
+    assert_eq!(numbers["assumptions"][0]["of"][0], "box");
     let mut command = tabray(&folder);
-    let (_, out, _) = outcome(command.arg("verify").arg(scene("entities/lathe.ray")));
+    let (_, out, _) = outcome(command.arg("verify").arg(scene("entities/box.ray")));
     let out = String::from_utf8(out).expect("text");
-    assert!(out.ends_with("\nassumed: spline coefficients as computed, rounded to f64 (`lathe`)\n"), "{out}");
+    assert!(out.ends_with("\nassumed: vertices as placed, rounded to f64 (`box`)\n"), "{out}");
 }

@@ -2,7 +2,9 @@
 
 use crate::common::{load, model, render, root, scenes};
 use assert_cmd::cargo::cargo_bin_cmd;
+use dashu_int::IBig;
 use glam::DVec3;
+use std::cmp::Ordering;
 use tabray::geometry::{Aabb, Ray, RayRange};
 use tabray::render::{Plan, trace};
 use tabray::tools::assumptions;
@@ -156,6 +158,7 @@ fn what_was_rounded_before_a_proof_is_named() {
         let objects = "sphere s { material m center 0.1 0.2 0.3 radius 1 }
             box b { material m center 0 1 -4 size 2 2 2 }
             torus t { material m center 0 0 0 direction 1 2 3 radius 2 tube 0.5 }
+            lathe l { material m points 0 1 2 3 4 1 base 4 0 -4 }
             place p { object t rotation 10 20 30 translation 0.1 0.2 0.3 }";
         assert_eq!(assumed(exact, objects), [""; 0], "{exact}");
     }
@@ -169,14 +172,54 @@ fn what_was_rounded_before_a_proof_is_named() {
     ] {
         assert_eq!(assumed(&camera, ""), [of]);
     }
-    let lathe = "lathe l { material m points 0 1 2 3 4 1 base 4 0 -4 }";
-    let spline = "spline coefficients as computed, rounded to f64 (`lathe`)";
-    assert_eq!(assumed(pinhole, lathe), [spline]);
-    assert_eq!(assumed(pinhole, &format!("{lathe} place p {{ object l translation 1 0 0 }}")), [spline]);
     let boxes =
         "box a { material m center 0.1 1 -4 size 0.7 2 2 } box b { material m center 0 0 0 size 2 2 2 }
         mesh c { material m file \"scenes/models/knot.obj\" rotation 0 30 0 } intersection i { objects b c }";
     assert_eq!(assumed(pinhole, boxes), ["vertices as placed, rounded to f64 (`box`, `mesh`)"]);
+}
+
+/// Returns a number times 2^1074, which is whole.
+fn scaled(of: f64) -> IBig {
+    let (bits, sign) = (of.to_bits(), if of < 0.0 { -1 } else { 1 });
+    let (exponent, fraction) = ((bits >> 52 & 0x7ff) as usize, bits & ((1 << 52) - 1));
+    let whole = if exponent == 0 { fraction } else { fraction | 1 << 52 };
+    (IBig::from(whole) << (exponent.max(1) - 1)) * sign
+}
+
+/// A lathe whose rim lies in the image plane, around pixels that are closer to each other than the rounding of the
+/// spline's coefficients. It widens from the rim on, so that rays outside of the rim hit it, and others pass through.
+#[test]
+fn hits_at_the_rim_of_a_lathe_are_those_of_the_curve_through_its_points() {
+    let (pixels, width) = (9, 2_f64.powi(-52));
+    for case in 0..12 {
+        let (rim, height) = (0.3 + 0.0371 * f64::from(case), 1.7 + 0.013 * f64::from(case));
+        let base = -(rim - 0.5 * width);
+        let model = model(&format!(
+            "camera eye {{ pixeldim {pixels} 2 worlddim {width:?} 1e-30 viewpoint 0 0 5 }} material m {{ ambient 9 9 9 }}
+             lathe l {{ material m base {base:?} 0 {:?} direction 0 0 1
+             points 0 {:?} {:?} {:?} {:?} {:?} {height:?} {rim:?} }}",
+            -height,
+            rim + 2.0,
+            0.31 * height,
+            rim + 1.1,
+            0.77 * height,
+            rim + 0.9,
+        ));
+        let plan = Plan::new(&model);
+        for x in 0..pixels {
+            // The pixel's place is a multiple of a power of two: that and what follows are exact.
+            let place = scaled(width * x as f64 / (pixels - 1) as f64) - scaled(base);
+            let is_outside = match place.cmp(&scaled(rim)) {
+                Ordering::Greater => true,
+                Ordering::Less => false,
+                // The edge is in the picture, and 237 bits do not tell it from a miss.
+                Ordering::Equal => continue,
+            };
+            let hit = trace::first_hit(&plan, &plan.camera.sight(x as f64, 0.0));
+            assert_eq!(hit.is_some(), is_outside, "pixel {x} of lathe {case}");
+            assert_eq!(verify::pixel(&plan, x, 0), Verdict::Proven, "pixel {x} of lathe {case}");
+        }
+    }
 }
 
 #[test]

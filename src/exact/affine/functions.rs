@@ -122,7 +122,7 @@ impl Scalar for Affine {
         let range = self.range();
         let [first, last] = [range.low, range.high].map(|end| spline.piece(end));
         if first == last {
-            of_cubic(self, spline, first, order)
+            of_cubic(self, spline, (first, order), |of| Self::about(of.near, of.error))
         } else {
             self.by_range(|range| range.spline(spline, order))
         }

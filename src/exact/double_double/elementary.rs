@@ -161,7 +161,7 @@ impl Scalar for DoubleDouble {
     }
 
     fn spline(self, spline: &Spline, order: usize) -> Self {
-        of_cubic(self, spline, spline.piece(self.high), order)
+        of_cubic(self, spline, (spline.piece(self.high), order), |of| Self::from(of.near) + of.rest.into())
     }
 
     fn step(self) -> Self {

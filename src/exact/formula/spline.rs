@@ -2,8 +2,14 @@
 
 use super::step::Step;
 use super::{Formula, HEIGHT};
-use crate::spline::Spline;
+use crate::interval::{Fine, Float, Wide};
+use crate::scalar::Scalar;
+use crate::spline::{Coefficient, Spline};
+use std::array;
 use std::sync::Arc;
+
+/// The factorials of 0 to 3.
+const FACTORIALS: [f64; 4] = [1.0, 1.0, 2.0, 6.0];
 
 impl Formula {
     /// Returns the natural cubic spline through points (y, value), at least two, of which each y is above the one
@@ -13,11 +19,63 @@ impl Formula {
         // Eight y at a time may lie on eight pieces.
         Self { spline: Some(Arc::new(Spline::new(points))), is_plain: false, ..formula }
     }
+}
 
-    /// Tells whether this is a spline, or its square: its coefficients were computed from the points, and rounded.
-    pub fn is_spline(&self) -> bool {
-        self.spline.is_some()
+impl From<Wide> for Coefficient {
+    fn from(bounds: Wide) -> Self {
+        let near = bounds.middle().to_f64();
+        let rest = bounds - Wide::constant(near);
+        let error = rest.magnitude();
+        Self {
+            near,
+            rest: rest.middle().to_f64(),
+            error: if error.eq_zero() { 0.0 } else { error.to_f64().next_up() },
+            bounds: [bounds.low, bounds.high],
+        }
     }
+}
+
+impl Spline {
+    /// Makes the natural spline through points (y, value), at least two, of which each y is above the one before: it
+    /// has no curvature at its ends.
+    pub fn new(points: &[[f64; 2]]) -> Self {
+        let knots = points.iter().map(|[y, _]| *y).collect();
+        let points: Vec<_> = points.iter().map(|point| point.map(Fine::constant)).collect();
+        let curvature = curvatures(&points);
+        let constant = Fine::constant;
+        let cubics = points.windows(2).zip(curvature.windows(2)).map(|(ends, curvatures)| {
+            let (&[[y, value], [next, after]], &[bend, last]) = (ends, curvatures) else { unreachable!() };
+            let width = next - y;
+            let slope = (after - value) / width - width * (constant(2.0) * bend + last) / constant(6.0);
+            // The value and the first three derivatives at the lower point.
+            let derivatives = [value, slope, bend, (last - bend) / width];
+            array::from_fn(|order| {
+                array::from_fn(|power| {
+                    let of = derivatives.get(order + power).copied().unwrap_or(constant(0.0));
+                    (of / constant(FACTORIALS[power])).wide().into()
+                })
+            })
+        });
+        let cubics = cubics.collect();
+        Self { knots, cubics }
+    }
+}
+
+/// Returns the second derivatives of the spline at its points: Thomas's algorithm for a diagonally dominant system.
+fn curvatures(points: &[[Fine; 2]]) -> Vec<Fine> {
+    let (count, constant) = (points.len(), Fine::constant);
+    let width = |piece: usize| points[piece + 1][0] - points[piece][0];
+    let rise = |piece: usize| (points[piece + 1][1] - points[piece][1]) / width(piece);
+    let (mut above, mut right) = (vec![constant(0.0); count], vec![constant(0.0); count]);
+    for at in 1..count - 1 {
+        let pivot = constant(2.0) * (width(at - 1) + width(at)) - width(at - 1) * above[at - 1];
+        above[at] = width(at) / pivot;
+        right[at] = (constant(6.0) * (rise(at) - rise(at - 1)) - width(at - 1) * right[at - 1]) / pivot;
+    }
+    for at in (1..count - 1).rev() {
+        right[at] = right[at] - above[at] * right[at + 1];
+    }
+    right
 }
 
 #[cfg(test)]

@@ -42,6 +42,8 @@ pub trait Float:
     /// Returns the smallest and the largest product of the endpoints of two intervals, rounded to nearest; `None` for
     /// cases that need more care, such as endpoints that are 0 or infinite.
     fn product_ends(one: [Self; 2], other: [Self; 2]) -> Option<(Self, Self)>;
+    /// Converts endpoints, rounded outward.
+    fn enclosing(low: f256, high: f256) -> (Self, Self);
     /// Returns the square root of a number that is not negative.
     fn sqrt(self) -> Self;
     /// Returns the sine and the cosine of an angle in radians.
@@ -132,6 +134,10 @@ impl Float for f64 {
     fn around(low: Self, high: Self) -> (Self, Self) {
         let (low, high) = Self::outward(low, high);
         Self::outward(low, high)
+    }
+
+    fn enclosing(low: f256, high: f256) -> (Self, Self) {
+        (low.to_f64().next_down(), high.to_f64().next_up())
     }
 
     #[inline(always)]
@@ -231,6 +237,10 @@ impl Float for f256 {
     fn around(low: Self, high: Self) -> (Self, Self) {
         let steps = |of: Self| Self::from(8.0) * of.abs() * Self::EPSILON;
         ((low - steps(low)).next_down(), (high + steps(high)).next_up())
+    }
+
+    fn enclosing(low: Self, high: Self) -> (Self, Self) {
+        (low, high)
     }
 
     fn sqrt(self) -> Self {

@@ -205,7 +205,8 @@ impl Div for Fraction {
 impl Float for Fraction {
     const IS_LONG: bool = true;
     const INFINITY: Self = Self::whole(f256::INFINITY);
-    const PI: Self = Self::whole(::f256::consts::PI);
+    // It is rounded by at most half of its last bit.
+    const PI: Self = Self { error: f256::EPSILON, ..Self::whole(::f256::consts::PI) };
     const EPSILON: Self = Self::whole(f256::EPSILON);
 
     fn of(value: f64) -> Self {
@@ -237,6 +238,10 @@ impl Float for Fraction {
 
     fn product_ends(_: [Self; 2], _: [Self; 2]) -> Option<(Self, Self)> {
         None
+    }
+
+    fn enclosing(low: f256, high: f256) -> (Self, Self) {
+        (low.into(), high.into())
     }
 
     fn sqrt(self) -> Self {

@@ -2,7 +2,7 @@
 
 use super::{Float, Interval};
 use crate::scalar::{Scalar, apart_if, of_cubic};
-use crate::spline::Spline;
+use crate::spline::{Coefficient, Spline};
 
 impl<F: Float> Interval<F> {
     /// Returns whether the interval may contain `start` plus any multiple of 2π radians.
@@ -14,6 +14,19 @@ impl<F: Float> Interval<F> {
         let turn = F::of(2.0) * F::PI;
         let turns = -(-((self.low - slack - start) / turn)).floor();
         start + turns * turn <= self.high + slack
+    }
+
+    /// Encloses a coefficient of a spline.
+    #[inline]
+    fn of_coefficient(of: &Coefficient) -> Self {
+        if of.error == 0.0 {
+            Self::constant(of.near)
+        } else if F::IS_LONG {
+            let (low, high) = F::enclosing(of.bounds[0], of.bounds[1]);
+            Self { low, high }
+        } else {
+            Self::about(of.near, of.error)
+        }
     }
 
     /// Returns whether the interval is narrower than a bound in radians, and below 1e15 radians, where sines still mean
@@ -221,7 +234,8 @@ impl<F: Float> Scalar for Interval<F> {
             let [low, high] = spline.ends(piece).map(F::of);
             let (low, high) = (self.low.max(low), self.high.min(high));
             // The piece before may be met only by the rounding of an end.
-            of_cubic(Self { low: low.min(high), high: low.max(high) }, spline, piece, order)
+            let y = Self { low: low.min(high), high: low.max(high) };
+            of_cubic(y, spline, (piece, order), Self::of_coefficient)
         };
         (first + 1..=last).fold(part(first), |all, piece| all.hull(part(piece)))
     }

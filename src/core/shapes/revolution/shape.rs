@@ -12,13 +12,12 @@ use crate::geometry::ray_packet::{self, Nearest, RayPacket, split};
 use crate::geometry::sight::Line;
 use crate::shapes::uv;
 use crate::simd::cpu::Cpu;
-use crate::world::certify::{Assumption, Equation};
+use crate::world::certify::Equation;
 use crate::world::hittable::{Certified, Hittable, Searched};
 use crate::world::interaction::SurfaceInteraction;
 use crate::world::packets::shape::{Packets, Proofs, by_distance};
 use crate::world::shape::{ByPackets, Shape};
 use glam::{DVec2, DVec3};
-use tabray_exact::formula::Formula;
 use tabray_exact::interval::Interval;
 use tabray_exact::roots::Method;
 use tabray_exact::scalar::Scalar;
@@ -79,10 +78,6 @@ impl Hittable for InFrame<ClassicRevolution> {
         Some(self.frame.bounds(&Aabb { low, high }))
     }
 
-    fn assumes(&self, each: &mut dyn FnMut(Assumption)) {
-        assumes(&self.surface.line.radius, each);
-    }
-
     fn method(&self) -> String {
         "bisection to 1e-4, from the ray's origin to its point closest to the axis".to_owned()
     }
@@ -121,19 +116,8 @@ impl Hittable for InFrame<Revolution> {
         self.surface.search_cost(&self.frame, ray, origin_side)
     }
 
-    fn assumes(&self, each: &mut dyn FnMut(Assumption)) {
-        assumes(&self.surface.profile, each);
-    }
-
     fn method(&self) -> String {
         self.surface.to_string()
-    }
-}
-
-/// Passes on what proofs about the surface of a profile assume.
-fn assumes(profile: &Formula, each: &mut dyn FnMut(Assumption)) {
-    if profile.is_spline() {
-        each(Assumption::Spline);
     }
 }
 

@@ -18,8 +18,6 @@ pub enum Assumption {
     Rays,
     /// The points where camera rays start; their directions are exact.
     Starts,
-    /// The coefficients of a spline through points of the scene.
-    Spline,
     /// The vertices of triangles, which were moved, scaled or turned.
     Vertices,
     /// The normals at the vertices of a mesh that looks smooth. Only proofs of colours ask for them.
@@ -34,7 +32,6 @@ impl fmt::Display for Assumption {
         f.pad(match self {
             Self::Rays => "rays as computed, rounded to f64",
             Self::Starts => "starts of rays as computed, rounded to f64",
-            Self::Spline => "spline coefficients as computed, rounded to f64",
             Self::Vertices => "vertices as placed, rounded to f64",
             Self::Normals => "normals at vertices as computed, rounded to f32",
             Self::Bounds => "the bounding box as the plugin gives it",
