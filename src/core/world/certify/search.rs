@@ -5,7 +5,7 @@ use crate::geometry::sight::Line;
 use tabray_exact::dual::Dual;
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::jet::Jet;
-use tabray_exact::scalar::per_axis;
+use tabray_exact::scalar::{Scalar, per_axis};
 
 /// The length below which a piece is not cut where the value jumps, as a fraction of the whole line: a fraction of
 /// an ulp of `f64`. A ray that passes through a jump stays undecided however short the piece is, and 237 bits of exponential
@@ -78,6 +78,11 @@ pub fn first_hit<F: Float>(
                     return HitEnclosure::Doubtful(start());
                 }
             }
+            Judgement::Touch(at) => {
+                if is_kept(shape, &near, at) != Some(false) {
+                    return HitEnclosure::Doubtful((base + at).low.max(zero));
+                }
+            }
         }
     }
     HitEnclosure::Doubtful(
@@ -125,6 +130,8 @@ enum Judgement<F> {
     Free,
     /// The piece has exactly one root, enclosed by this interval.
     Root(Interval<F>),
+    /// The value may be 0 in this interval alone, where its slope is 0, and no shorter pieces tell whether it is.
+    Touch(Interval<F>),
     /// Neither is certain.
     Open,
     /// Neither is certain, and the slope has no bound, as where the value jumps.
@@ -169,11 +176,50 @@ impl<F: Float> Search<'_, F> {
             return self.only(piece, slope);
         }
         // The slope on the whole piece, by the second derivative.
-        let mean_slope = at_middle.slope + self.bend(piece) * around;
+        let bend = self.bend(piece);
+        let mean_slope = at_middle.slope + bend * around;
         if !(at_middle.value + mean_slope * around).has_zero() {
             return Judgement::Free;
         }
-        if mean_slope.has_zero() { Judgement::Open } else { self.only(piece, mean_slope) }
+        if !mean_slope.has_zero() {
+            return self.only(piece, mean_slope);
+        }
+        if bend.has_zero() || !bend.is_bounded() { Judgement::Open } else { self.turning(piece, bend) }
+    }
+
+    /// Judges a piece on which the second derivative has these bounds, which do not contain 0, so that the slope is 0 at one
+    /// place at most. If it is, the value there decides, and where no digits tell that from 0, shorter pieces would not.
+    fn turning(&self, piece: Interval<F>, bend: Interval<F>) -> Judgement<F> {
+        let (mut place, mut exists) = (piece, false);
+        loop {
+            let middle = Interval::point(place.middle());
+            let step = middle - self.slope(middle).slope / bend;
+            exists |= step.low > place.low && step.high < place.high;
+            let next = Interval { low: step.low.max(place.low), high: step.high.min(place.high) };
+            // Written so that a NaN ends the loop, too.
+            if !(next.low <= next.high && next.width() < F::of(0.75) * place.width()) {
+                break;
+            }
+            place = next;
+        }
+        if !exists {
+            return Judgement::Open;
+        }
+        let (middle, zero) = (Interval::point(place.middle()), F::of(0.0));
+        let Dual { value, slope } = self.slope(middle);
+        let around = place - middle;
+        let extreme = value + (slope + bend * around) * around;
+        if !extreme.has_zero() {
+            // Else there is a root on each side of it.
+            let is_away = (extreme.low > zero) == (bend.low > zero);
+            return if is_away { Judgement::Free } else { Judgement::Open };
+        }
+        // The value is at least that far from its extreme: bend / 2 times the square of the distance.
+        let least = Interval::point(bend.low.abs().min(bend.high.abs()));
+        let reach = (Interval::constant(2.0) * Interval::point(extreme.magnitude()) / least).sqrt().high;
+        let reach = Interval { low: -reach, high: reach };
+        let at = place + reach;
+        Judgement::Touch(Interval { low: at.low.max(piece.low), high: at.high.min(piece.high) })
     }
 
     /// Judges a piece on which the value is strictly monotonic, with these slopes, and which so has at most one root.
@@ -236,7 +282,6 @@ mod tests {
     use f256::f256;
     use glam::DVec3;
     use std::cell::Cell;
-    use tabray_exact::scalar::Scalar;
 
     /// A profile's step at x = 0.3, and the number of times that it was evaluated.
     struct Step(Cell<usize>);
@@ -274,5 +319,31 @@ mod tests {
         };
         assert!((from.to_f64() - 2.3).abs() < 1e-15, "{from:?}");
         assert!(step.0.get() < 200, "{} evaluations", step.0.get());
+    }
+
+    /// A plane whose equation is squared, at x = 1/3, and the number of times that it was evaluated.
+    struct Squared(Cell<usize>);
+
+    impl Equation for Squared {
+        fn value<N: Scalar>(&self, [x, y, _]: [N; 3]) -> N {
+            self.0.set(self.0.get() + 1);
+            (x - N::constant(1.0) / N::constant(3.0)).powi(2) * (y + N::constant(7.0))
+        }
+
+        fn extent(&self) -> [DVec3; 2] {
+            [DVec3::NEG_ONE, DVec3::ONE]
+        }
+    }
+
+    #[test]
+    fn a_touch_is_left_in_doubt_after_a_few_pieces() {
+        let squared = Squared(Cell::new(0));
+        let [origin, dir] = [[-2.0, 0.5, 0.5], [1.0, 0.1, 0.0]].map(|of| of.map(Interval::<f256>::constant));
+        let HitEnclosure::Doubtful(from) = first_hit(&squared, &Line { origin, dir }, false, 2000) else {
+            panic!("no digits tell a touch from a miss")
+        };
+        let third = f256::from(7.0) / f256::from(3.0);
+        assert!(from <= third && third - from < f256::from(1e-30), "{from:?}");
+        assert!(squared.0.get() < 100, "{} evaluations", squared.0.get());
     }
 }
