@@ -5,12 +5,13 @@ use crate::geometry::ray::{Bracket, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{Nearest, RayPacket};
 use crate::geometry::sight::Sight;
 use crate::simd::cpu::Cpu;
-use crate::world::certify::{Enclosure, Precision, Premise, Proven};
+use crate::world::certify::{Enclosure, HitEnclosure, HitProofs, Precision, Premise, Proven};
 use crate::world::hittable::Hittable;
 use crate::world::packets::shape::{PacketShape, Packets, Proofs};
 use crate::world::shape::Shape;
 use glam::DVec3;
 use std::ops::Deref;
+use tabray_exact::interval::Fraction;
 
 /// The shape of an object, of any type. It dereferences to [`Hittable`].
 pub struct AnyShape(Box<dyn PacketShape>);
@@ -66,7 +67,16 @@ impl AnyShape {
 
     /// Returns what is proven about a ray's first hit.
     pub fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        self.0.certify(sight, precision)
+        let found = self.0.certify(sight, precision);
+        let is_open = precision == Precision::Octuple && matches!(found, Enclosure::Doubtful(_));
+        if is_open && self.is_parallel(sight) { Enclosure::Misses } else { found }
+    }
+
+    /// Tells whether a ray is parallel to an unbounded shape, as a plane is to the rays of a row of pixels at the horizon.
+    /// No number of digits tells that of numbers such as a third, but fractions do.
+    fn is_parallel(&self, sight: &Sight) -> bool {
+        let found = |proven| HitProofs::<Fraction>::first_hit(proven, &sight.line(), None).0;
+        self.bounds().is_none() && self.proven().is_some_and(|proven| found(proven) == HitEnclosure::Misses)
     }
 
     /// Returns the functions for proofs about other rays than primary ones; `None` for a shape without an equation.

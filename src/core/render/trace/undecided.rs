@@ -4,12 +4,9 @@ use super::context::Tracer;
 use super::hit_record::HitRecord;
 use super::one_ray::in_world_units;
 use super::ray_group::RayGroup;
-use crate::geometry::sight::Sight;
 use crate::render::observer::{Count, TraceObserver};
-use crate::world::any_shape::AnyShape;
-use crate::world::certify::{Doubt, HitEnclosure, HitProofs, Proven};
+use crate::world::certify::Doubt;
 use std::mem::take;
-use tabray_exact::interval::Fraction;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Notes the pixels of a packet whose undecided hits lie no farther than what their rays hit for certain. Of a shape
@@ -25,7 +22,6 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let Some(sight) = self.start(group, lane).sight else { continue };
             if let Some(proven) = shape.proven()
                 && shape.is_certified()
-                && !is_parallel(shape, proven, &sight)
                 && (hits.met[lane] == index as u64 + 1 || in_world_units(from, &sight) <= hits.far[lane])
             {
                 let pixel = self.pixel_of(lane);
@@ -53,11 +49,4 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             self.observer.count(Count::Undecided(object, doubt));
         }
     }
-}
-
-/// Tells whether a ray is parallel to an unbounded shape, as a plane is to the rays of a row of pixels at the horizon. No
-/// number of digits tells that of numbers such as a third, but fractions do.
-fn is_parallel(shape: &AnyShape, proven: &dyn Proven, sight: &Sight) -> bool {
-    let found = || HitProofs::<Fraction>::first_hit(proven, &sight.line(), None).0;
-    shape.bounds().is_none() && found() == HitEnclosure::Misses
 }
