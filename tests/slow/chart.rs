@@ -157,6 +157,28 @@ fn no_method_that_proofs_do_not_contradict_has_a_wrong_hit_in_a_chart() {
     assert!(sets > 200 && classic > 10, "{sets} sets, {classic} with hits that the notes' methods lose");
 }
 
+/// Rays through the rim of a tube pass through the wall where it is cut off, and hit it inside.
+#[test]
+fn methods_with_bounds_go_on_behind_a_root_that_is_cut_off() {
+    let tube = "camera eye { pixeldim 64 48 worlddim 8 6 viewpoint 4 3.6 7 } material m { ambient 1 1 1 }
+        cylinder tube { material m base 5 0.9 -3.6 direction -0.7 0.35 0.8 height 2 radius 0.9 open yes }";
+    let load = |accuracy: Option<Accuracy>| -> io::Result<Model> {
+        let loaded = scene::read(registry(), "scene", Path::new(""), tube.as_bytes(), accuracy);
+        Ok(loaded.map_err(|report| io::Error::other(report.to_string()))?.model)
+    };
+    let sets = chart::wrong_hits(&load, [1000, 2000], &mut Patience(usize::MAX)).expect("counts");
+    let mut bounded = 0;
+    for WrongHitsOf { title, counts } in sets {
+        for (name, wrong) in counts {
+            if ["intervals", "Taylor bounds", "exact"].contains(&name.as_str()) {
+                assert_eq!(wrong.count(), 0, "{title}: {name}: {wrong:?}");
+                bounded += 1;
+            }
+        }
+    }
+    assert_eq!(bounded, 6);
+}
+
 #[test]
 fn sobol_reaches_with_24_samples_what_random_reaches_with_64() {
     let samples = panel(&OF_EDGE, "edges");
@@ -297,6 +319,44 @@ fn what_is_chosen_is_a_command_line_that_renders() {
     {
         assert_eq!(choose(wrong).status.code(), Some(2), "{wrong:?}");
     }
+}
+
+#[test]
+fn the_number_of_rays_that_is_stated_is_what_the_render_counts() {
+    let folder = TempDir::new().expect("a folder");
+    let mirror = "material mirror { ambient 1 0 0 diffuse 2 0 0 specular 0.5 }
+        light lamp { location 1 7 3 emissivity 9 9 9 } sphere";
+    std::fs::write(
+        folder.path().join("edge.ray"),
+        EDGE.replacen("sphere", mirror, 1).replace("red center", "mirror center"),
+    )
+    .expect("a file");
+    let run = |args: &[&str]| {
+        let mut tabray = cargo_bin_cmd!("tabray");
+        let output = tabray.current_dir(folder.path()).args(args).output().expect("it runs");
+        assert!(output.status.success(), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
+        [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned())
+    };
+    // So long that what is chosen does not depend on the clock.
+    let [said, _] = run(&["choose", "edge.ray", "--max-time", "1000", "--time-limit", "1h"]);
+    let (stated, _) = said.split_once(" rays of all kinds").expect("a number of rays");
+    let mut words = stated.rsplit(' ');
+    let unit = match words.next() {
+        Some("thousand") => 1e3,
+        Some("million") => 1e6,
+        other => panic!("{other:?}: {said}"),
+    };
+    let stated = unit * words.next().and_then(|number| number.parse::<f64>().ok()).expect("a number");
+    let mut render: Vec<_> = said.lines().last().expect("a command line").split(' ').skip(1).collect();
+    render.push("--stats");
+    let [_, stats] = run(&render);
+    let cast = |kind: &str| {
+        let line = stats.lines().find(|line| line.starts_with(kind)).unwrap_or_else(|| panic!("{stats}"));
+        line.rsplit(' ').next().and_then(|count| count.parse::<f64>().ok()).expect("a count")
+    };
+    let counted: f64 = ["primary", "shadow", "reflected", "transmitted"].map(cast).iter().sum();
+    // One sample in each pixel was counted, in its middle, and the render takes many.
+    assert!(cast("reflected") > 0.0 && (stated / counted - 1.0).abs() < 0.02, "{stated} of {counted}");
 }
 
 /// Makes a scene with a mesh of many triangles, whose every pixel is expensive for methods that take rays one by one.

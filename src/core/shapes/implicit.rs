@@ -41,6 +41,9 @@ const FEW_PIECES: usize = 32;
 /// proven.
 const MOST_DRIFTING: usize = 256;
 
+/// The maximum number of roots along a ray where the surface is cut away, for another method than the shape's own.
+const MOST_CUT: usize = 64;
+
 /// The maximum number of times that the bracket of a root is made four times as wide, until the function has certain
 /// signs at both ends.
 const WIDENINGS: usize = 8;
@@ -157,9 +160,20 @@ impl<T: Implicit> Certified for ImplicitShape<T> {
 impl<T: Implicit> Searched for ImplicitShape<T> {
     fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> f64 {
         let line = FormulaOnRay::new(self, ray);
-        let Stretch { outer, .. } = line.stretch();
-        let root = method.first_root(&line, outer.clone(), line.closest, range, shortest(&outer));
-        line.distance(root.filter(|root| !T::IS_CUT || line.kept(*root).0), range)
+        let (Stretch { outer, .. }, mut left) = (line.stretch(), *range);
+        for _ in 0..MOST_CUT {
+            let root = method.first_root(&line, outer.clone(), line.closest, &left, shortest(&outer));
+            match root {
+                Some(root) if T::IS_CUT && !line.kept(root).0 => {
+                    // A method may find the root where it starts again, unless it knows that the line leaves there.
+                    let rises = taylor::FunctionOnLine::at(&line, Dual::variable(root)).slope > 0.0;
+                    left.origin_side = Some(if rises { Side::Outside } else { Side::Inside });
+                    left.near = line.closest + root;
+                }
+                root => return line.distance(root, range),
+            }
+        }
+        MISS
     }
 }
 

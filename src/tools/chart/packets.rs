@@ -1,8 +1,9 @@
 //! Packets of rays, and their first hits on an object, found as a render finds them.
 
-use tabray_core::geometry::ray::{MISS, Ray, RayRange};
+use tabray_core::geometry::ray::{MISS, Ray};
 use tabray_core::geometry::ray_packet::{Nearest, PACKET_SIZE, RayPacket};
 use tabray_core::geometry::sight::Sight;
+use tabray_core::render::trace;
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::simd::soa::{LANES, Vectors};
 use tabray_core::world::any_shape::AnyShape;
@@ -60,7 +61,8 @@ impl Packet {
     /// Returns the distances at which the rays first hit the object, in world units; [`MISS`] where they do not.
     pub fn hits(&self, shape: &AnyShape, cpu: Cpu) -> [f64; PACKET_SIZE] {
         let (rays, len) = (self.all(), self.len);
-        let exactly = |lane: usize| shape.distance(&rays.get(lane), &RayRange::ALL);
+        // As the tracer decides what a packet leaves open.
+        let exactly = |lane: usize| trace::primary_distance(shape, rays.get(lane), &self.sights[lane]);
         let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
         let (mut met, mut doubt) = ([0; PACKET_SIZE], [0; PACKET_SIZE]);
         let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
@@ -76,11 +78,12 @@ impl Packet {
             let brackets = (&near[..count], &far[..count]);
             shape.packets().refine(cpu, rays, None, brackets, &mut hits[..count]);
             for lane in 0..len {
-                if near[lane] == far[lane] {
-                    hits[lane] = near[lane];
-                } else if hits[lane].is_nan() {
-                    hits[lane] = exactly(lane);
-                }
+                hits[lane] = if near[lane] == far[lane] {
+                    near[lane]
+                } else {
+                    let found = if hits[lane].is_nan() { exactly(lane) } else { hits[lane] };
+                    found.max(near[lane]).min(far[lane])
+                };
             }
         }
         hits

@@ -31,6 +31,7 @@ mod transmittance;
 mod undecided;
 
 pub use context::Tracer;
+pub use one_ray::primary_distance;
 pub use scratch::Scratch;
 
 use crate::geometry::ray_packet::PACKET_SIZE;

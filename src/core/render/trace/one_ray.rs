@@ -48,6 +48,12 @@ impl Located {
     const MISS: Self = Self { distance: MISS, bracket: Bracket::MISS, open: None };
 }
 
+/// Returns the distance, in world units, of a primary ray's hit of a shape as the tracer finds it where a packet leaves it
+/// in doubt, or [`MISS`]. `ray` is the rounded ray, and `sight` the one before anything is rounded.
+pub fn primary_distance(shape: &AnyShape, ray: Ray, sight: &Sight) -> f64 {
+    exact(shape, &RoundedRay { ray, error: 0.0, sight: Some(sight.clone()) }, None, MISS)
+}
+
 /// Returns the exact distance of one ray's hit of a shape before `far`, in world units, or [`MISS`]. `origin_side` is
 /// the side of the shape that the ray leaves, if the shape belongs to the object that the packet leaves.
 pub(super) fn exact(shape: &AnyShape, start: &RoundedRay, origin_side: Option<Side>, far: f64) -> f64 {
