@@ -149,9 +149,11 @@ impl Tally {
     ) {
         self.proofs += 1;
         let is_tie = truth.is_touch || truth.is_shared;
+        // Parts of a solid are told apart by their materials.
+        let is_hit = found.first == truth.first && (is_tie || found.material == truth.material);
         let is_wrong = match program.claim(pixel) {
-            Claim::Right => found.first != truth.first && !truth.is_touch,
-            Claim::Wrong => found.first == truth.first && !is_tie,
+            Claim::Right => !is_hit && !truth.is_touch,
+            Claim::Wrong => is_hit && !is_tie,
             Claim::Unknown => {
                 if !is_tie {
                     self.undecided += 1;
