@@ -1,7 +1,8 @@
 //! The notes' shading of a sphere: colours that change with the angle around its centre.
 
-use super::rainbow::{CosinePalette, FREQUENCY, PHASE};
+use super::rainbow::{self, FREQUENCY, PHASE};
 use tabray::prelude::*;
+use tabray::shapes::cosine_palette::CosinePalette;
 
 static BRIGHTNESS: Pparm<f64> = Pparm::or("brightness", "half of the strongest colour", 1.0)
     .must("0 or more", |brightness| *brightness >= 0.0);
@@ -10,7 +11,7 @@ const TABLE: Table = &[&FREQUENCY, &PHASE, &BRIGHTNESS];
 
 inventory::submit! {
     Entity::shader("angular", "hues around the centre, independent of the material", &[TABLE], |args| {
-        let hues = CosinePalette::new(args, args.get(&BRIGHTNESS));
+        let hues = rainbow::palette(args, args.get(&BRIGHTNESS));
         Ok(match hues.are_of_the_notes() {
             true => Paint::new(move |anchor| Angular::<true> { hues, anchor }),
             false => Paint::new(move |anchor| Angular::<false> { hues, anchor }),

@@ -1,8 +1,9 @@
 //! Continuous modulation combined with tiles, as the notes suggest for their third shader.
 
-use super::rainbow::{self, CosinePalette};
+use super::rainbow;
 use super::tiles::{Grid, WIDTH};
 use tabray::prelude::*;
+use tabray::shapes::cosine_palette::CosinePalette;
 
 static BRIGHTNESS: Pparm<f64> = Pparm::or("brightness", "half of the strongest colour", 6.0)
     .must("0 or more", |brightness| *brightness >= 0.0);
@@ -11,7 +12,7 @@ const TABLE: Table = &[&WIDTH, &rainbow::FREQUENCY, &rainbow::PHASE, &BRIGHTNESS
 
 inventory::submit! {
     Entity::shader("rainbow_tiles", "tiles along x and z: the material's colour and hues around a point in turn", &[TABLE], |args| {
-        let (grid, hues) = (Grid::new(args), CosinePalette::new(args, args.get(&BRIGHTNESS)));
+        let (grid, hues) = (Grid::new(args), rainbow::palette(args, args.get(&BRIGHTNESS)));
         Ok(match hues.are_of_the_notes() {
             true => Paint::new(move |anchor| RainbowTiles::<true> { grid, hues, anchor }),
             false => Paint::new(move |anchor| RainbowTiles::<false> { grid, hues, anchor }),

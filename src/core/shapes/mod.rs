@@ -1,6 +1,7 @@
-//! Arithmetic that several shapes share.
+//! Arithmetic that several shapes, or shaders, share.
 
 pub mod by_method;
+pub mod cosine_palette;
 mod ellipsoid;
 pub mod field;
 mod finite_plane;
