@@ -4,6 +4,7 @@
 use super::copy::{self, Built, Files};
 use crate::common::{block_with, root};
 use image::RgbImage;
+use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -51,6 +52,7 @@ static PLUGINS: LazyLock<Files> = LazyLock::new(|| {
         ("slab", confused),
         ("barrel", BARREL.to_owned()),
         ("stripes", STRIPES.to_owned()),
+        ("pill", PILL.to_owned()),
         ("empty", String::new()),
     ];
     let mut files = Files::new();
@@ -263,6 +265,42 @@ fn a_shader_dropped_in_is_known_by_its_name() {
     assert!(BUILT.says(&["check", "-"], scene).contains("-: no errors"));
 }
 
+// A shape without an equation
+
+#[test]
+fn pixels_that_a_shape_without_an_equation_may_cover_are_not_certified() {
+    let scene = BUILT.scene(
+        "pill",
+        "camera eye { pixeldim 40 30 worlddim 8 6 viewpoint 4 3 6 } material m { ambient 5 5 5 }
+        material w { ambient 0 0 5 } plane wall { material w normal 0 0 1 point 0 0 -8 }
+        pill p { material m from 3 2 -3 to 5 4 -3 radius 0.7 }
+        sphere s { material w center 3 2 0 radius 0.8 }",
+    );
+    let scene = scene.to_str().expect("a path in UTF-8");
+    let numbers: Value = serde_json::from_str(&BUILT.prints(&["verify", scene, "--json"])).expect("JSON");
+    assert_eq!(numbers["uncertified"], Value::from(["pill"].to_vec()));
+    let of = |kind: &str| numbers["pixels"][kind].as_u64().expect("a number");
+    assert_eq!((of("ties"), of("contradicted"), of("proven") + of("not_certified")), (0, 0, 1200));
+    // Those whose rays meet the box around the pill, and not the sphere, which is in front of it.
+    let open = (0..1200).filter(|pixel| {
+        let dir = [f64::from(pixel % 40) / 39.0 * 8.0 - 4.0, f64::from(pixel / 40) / 29.0 * 6.0 - 3.0, -6.0];
+        let slab = |axis: usize, low: f64, high: f64| {
+            let [one, other] = [low, high].map(|end| (end - [4.0, 3.0, 6.0][axis]) / dir[axis]);
+            (one.min(other), one.max(other))
+        };
+        let slabs = [slab(0, 2.3, 5.7), slab(1, 1.3, 4.7), slab(2, -3.7, -2.3)];
+        let [from, to] =
+            slabs.iter().fold([0.0, f64::INFINITY], |[from, to], slab| [slab.0.max(from), slab.1.min(to)]);
+        let (along, square) =
+            (-dir[0] - dir[1] - 6.0 * dir[2], dir.iter().map(|part| part * part).sum::<f64>());
+        from < to && along * along < square * (1.0 + 1.0 + 36.0 - 0.64)
+    });
+    assert_eq!(of("not_certified"), open.count() as u64);
+    let said = BUILT.prints(&["verify", scene]);
+    let counted = format!(", 0 ties, {} not certified: `pill`, 0 contradicted\n", of("not_certified"));
+    assert!(said.ends_with(&counted), "{said}");
+}
+
 // What `tabray new plugin` writes
 
 #[test]
@@ -378,6 +416,60 @@ impl Shader for Stripes {
     fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
         let stripe = (10.0 * (at.position - self.0.origin).y / self.0.unit).floor();
         if stripe.rem_euclid(2.0) == 0.0 { material.ambient } else { Rgb::ZERO }
+    }
+}
+";
+
+/// A shape without an equation.
+const PILL: &str = "//! A cylinder with round ends.
+
+use tabray::prelude::*;
+
+static FROM: Pparm<DVec3> = Pparm::required(\"from\", \"the middle of one end\").unit(\"world coordinates\");
+static TO: Pparm<DVec3> = Pparm::required(\"to\", \"the middle of the other end\").unit(\"world coordinates\");
+static RADIUS: Pparm<f64> = Pparm::required(\"radius\", \"half of its width\").unit(\"world units\").positive();
+
+inventory::submit! {
+    Entity::shape(\"pill\", \"a cylinder with round ends\", &[&[&FROM, &TO, &RADIUS]], |args| {
+        Ok(Body::plain(Pill { from: args.get(&FROM), to: args.get(&TO), radius: args.get(&RADIUS) }))
+    })
+}
+
+struct Pill {
+    from: DVec3,
+    to: DVec3,
+    radius: f64,
+}
+
+impl Pill {
+    /// Returns the vector from its axis to a point.
+    fn out(&self, at: DVec3) -> DVec3 {
+        let axis = self.to - self.from;
+        at - self.from - axis * ((at - self.from).dot(axis) / axis.length_squared()).clamp(0.0, 1.0)
+    }
+}
+
+impl Hittable for Pill {
+    /// Steps along the ray, each time by the distance from the surface.
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        let mut distance = 0.0;
+        for _ in 0..1000 {
+            let step = (self.out(ray.at(distance)).length() - self.radius).abs();
+            if step < 1e-9 {
+                return range.keep(distance);
+            }
+            distance += step;
+        }
+        MISS
+    }
+
+    fn normal(&self, at: DVec3) -> DVec3 {
+        self.out(at).normalize()
+    }
+
+    fn bounds(&self) -> Option<Aabb> {
+        let out = DVec3::splat(self.radius);
+        Some(Aabb { low: self.from.min(self.to) - out, high: self.from.max(self.to) + out })
     }
 }
 ";
