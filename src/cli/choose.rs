@@ -272,12 +272,27 @@ fn seconds(seconds: f64) -> String {
     if seconds.is_finite() { format!("{seconds:.digits$} s") } else { "an unknown time".to_owned() }
 }
 
-/// Writes a number of rays to about three digits.
+/// Writes a number of rays: a small one as it is, others to about three digits.
 fn rounded(rays: f64) -> String {
-    if rays < 1e6 { format!("{:.0} thousand", rays / 1e3) } else { format!("{} million", short(rays / 1e6)) }
+    match rays {
+        ..1e3 => format!("{rays:.0}"),
+        ..1e6 => format!("{:.0} thousand", rays / 1e3),
+        _ => format!("{} million", short(rays / 1e6)),
+    }
 }
 
 /// Tells whether two estimates are of the same choice.
 fn is_same(one: &Estimate, other: &Estimate) -> bool {
     (one.accuracy, one.samples, one.most) == (other.accuracy, other.samples, other.most)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_rays_are_told_as_they_are() {
+        let told = [48.0, 999.0, 1500.0, 1.234e6].map(rounded);
+        assert_eq!(told, ["48", "999", "2 thousand", "1.23 million"]);
+    }
 }
