@@ -1,9 +1,10 @@
 //! A mesh of triangles from a file.
 
+use std::panic::Location;
 use std::path::PathBuf;
 use std::sync::Arc;
 use tabray::prelude::*;
-use tabray::shapes::mesh::{Mesh, Painted, Surface, SurfaceError, ToWorld, read};
+use tabray::shapes::mesh::{Look, Mesh, Painted, Surface, SurfaceError, ToWorld, read};
 use tabray::text;
 
 static FILE: Pparm<PathBuf> =
@@ -23,8 +24,9 @@ static TRANSLATION: Pparm<DVec3> =
 static SMOOTH: Pparm<i64> =
     Pparm::or("smooth", "1 shades the mesh as if it were smooth, 0 shades each face flat", 0)
         .must("0 or 1", |smooth| (0..=1).contains(smooth));
+static SIDES: Pparm<Sides> = Pparm::or("sides", "which sides of its faces are lit", Sides::Both);
 
-const TABLE: Table = &[&FILE, &SCALE, &ROTATION, &TRANSLATION, &SMOOTH];
+const TABLE: Table = &[&FILE, &SCALE, &ROTATION, &TRANSLATION, &SMOOTH, &SIDES];
 
 inventory::submit! {
     Entity::shape("mesh", "a surface of triangles from a file", &[TABLE], |args| {
@@ -33,7 +35,12 @@ inventory::submit! {
             Accuracy::Strict => Mesh::<Strict>::shape(surface.clone(), args.accuracy()).into(),
             _ => Mesh::<Exact>::shape(surface.clone(), args.accuracy()).into(),
         };
-        let mut warnings: Vec<_> = degenerate(&surface).into_iter().collect();
+        let told = |remark: &read::Remark| Warning {
+            attribute: "file",
+            message: remark.message.clone(),
+            help: remark.help.to_owned(),
+        };
+        let mut warnings: Vec<_> = surface.remarks.iter().map(told).collect();
         let body = if surface.materials.is_empty() {
             Body::plain(shape)
         } else {
@@ -45,6 +52,32 @@ inventory::submit! {
         };
         Ok(Body { warnings, bytes: surface.bytes(), ..body })
     })
+}
+
+/// Which sides of faces are lit.
+#[derive(Clone, Copy, PartialEq)]
+enum Sides {
+    Both,
+    One,
+}
+
+impl Choice for Sides {
+    const WHAT: &'static str = "choice of sides";
+
+    fn all() -> Vec<Self> {
+        vec![Self::Both, Self::One]
+    }
+
+    fn option(&self) -> ChoiceName {
+        const PLACE: &Location<'static> = Location::caller();
+        let (name, meaning) = match self {
+            Self::Both => ("both", "both, after faces are turned to agree"),
+            Self::One => {
+                ("one", "of an open mesh the side from which the file's corners run counterclockwise")
+            }
+        };
+        ChoiceName { name, number: None, meaning, place: PLACE }
+    }
 }
 
 /// Reads and places the surface.
@@ -60,7 +93,8 @@ fn surface(args: &Args) -> Result<Surface, Refusal> {
         )
     })?;
     let placement = ToWorld::new(args.get(&SCALE), args.get(&ROTATION), args.get(&TRANSLATION));
-    Surface::new(model, &placement, args.get(&SMOOTH) == 1).map_err(|error| match error {
+    let look = Look { is_smooth: args.get(&SMOOTH) == 1, is_two_sided: args.get(&SIDES) == Sides::Both };
+    Surface::new(model, &placement, look).map_err(|error| match error {
         SurfaceError::TooLarge => refusal(
             "has coordinates so large that their squares overflow".to_owned(),
             "the coordinates in the world must not exceed 1e152",
@@ -71,15 +105,6 @@ fn surface(args: &Args) -> Result<Surface, Refusal> {
         SurfaceError::NoArea => {
             refusal("has no face with an area".to_owned(), "the corners of a face must not lie on one line")
         }
-    })
-}
-
-fn degenerate(surface: &Surface) -> Option<Warning> {
-    let count = surface.degenerate;
-    (count > 0).then(|| Warning {
-        attribute: "file",
-        message: format!("leaves out {} without an area", text::count(count, "face")),
-        help: "the corners of such a face lie on one line: no ray hits it".to_owned(),
     })
 }
 

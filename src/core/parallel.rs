@@ -109,11 +109,6 @@ pub fn map_ranges<T: Send>(
     all
 }
 
-/// Sorts what has no order among equals.
-pub fn sort<T: Ord + Send>(all: &mut [T]) {
-    if threads() == 1 { all.sort_unstable() } else { all.par_sort_unstable() }
-}
-
 /// Returns the first index below a number for which some question is answered with yes.
 pub fn find_first(count: usize, is: impl Fn(usize) -> bool + Sync) -> Option<usize> {
     map_ranges(count, 2, &|mut range| range.find(|index| is(*index)).into_iter().collect()).first().copied()

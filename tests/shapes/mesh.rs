@@ -101,10 +101,10 @@ fn a_file_that_cannot_be_read_is_watched_all_the_same() {
     let report = read(text).expect("there is no file");
     assert_eq!(report.files(), [folder.path().join("wall.obj")]);
     for (content, said) in [
-        ("", "has a file that cannot be read, `wall.obj`: it has no faces"),
+        ("", "has a file that cannot be read, `wall.obj`: it is empty"),
         ("v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\n", "has no face with an area"),
         ("v 0 0 0\nv 1 0 0\nv 0 1e200 0\nf 1 2 3\n", "has coordinates so large that their squares overflow"),
-        ("v 0 0 0\nf 1 2 3\n", "`wall.obj`, line 2: there is no vertex 2: 1 vertex precedes this face"),
+        ("v 0 0 0\nf 1 2 3\n", "`wall.obj`, line 2: there is no vertex 3: the file has 1"),
     ] {
         fs::write(folder.path().join("wall.obj"), content).expect("a file");
         let report = read(text).expect("a broken file").to_string();
@@ -168,7 +168,7 @@ fn a_smooth_mesh_is_lit_only_where_the_light_is_before_its_faces() {
     let valley = |smooth| {
         let text = "look_at eye { pixeldim 60 60 position 0 5 -9 target 0 0.5 0 angle 30 }
             material m { diffuse 1 1 1 } light lamp { location 0 5 9 emissivity 100 100 100 }";
-        is_black(VALLEY, &format!("{text} mesh o {{ material m file mesh.obj smooth {smooth} }}"))
+        is_black(VALLEY, &format!("{text} mesh o {{ material m file mesh.obj smooth {smooth} sides one }}"))
     };
     let (flat, smooth) = (valley(0), valley(1));
     assert!(flat.iter().zip(&smooth).all(|(flat, smooth)| !flat || *smooth));
@@ -261,9 +261,10 @@ v 0.5456287876001579 0.6052763605586136 0.2394981430549564
 fn a_mesh_is_a_solid_where_its_faces_meet_at_shared_corners_and_bound_it_once() {
     let big = ([0.0; 3], 4.0, false);
     let fault = |other| fault_as_part(&tetrahedra(&[big, other]));
-    // Apart, a cavity, and at a corner that both have.
+    // Apart, also inside out, a cavity, and at a corner that both have.
     for sound in [
         ([5.0, 0.0, 0.0], 1.0, false),
+        ([5.0, 0.0, 0.0], 1.0, true),
         ([0.5; 3], 1.0, true),
         ([4.0, 0.0, 0.0], 1.0, false),
         ([0.0, 0.0, -4.0], 4.0, false),
@@ -279,9 +280,44 @@ fn a_mesh_is_a_solid_where_its_faces_meet_at_shared_corners_and_bound_it_once() 
         (([0.0; 3], 1.0, false), "cross, or touch"),
         (big, "are in one place"),
         (([0.5; 3], 1.0, false), "lies within others, but is not turned inward as that of a cavity"),
-        (([5.0, 0.0, 0.0], 1.0, true), "is turned inside out"),
     ] {
         let fault = fault(wrong).unwrap_or_else(|| panic!("{wrong:?} is sound"));
         assert!(fault.contains(told), "{wrong:?}: {fault}");
     }
+}
+
+#[test]
+fn both_sides_of_an_open_mesh_are_lit_unless_a_scene_wants_one() {
+    let text = "look_at eye { pixeldim 20 20 position 0 0 5 target 0 0 0 angle 20 }
+        material m { diffuse 1 1 1 } light lamp { location 0 0 5.1 emissivity 9 9 9 }
+        mesh o { material m file mesh.obj";
+    for (face, is_dark) in [("f 1 2 3 4", false), ("f 4 3 2 1", true)] {
+        let obj = format!("v -2 -2 0\nv 2 -2 0\nv 2 2 0\nv -2 2 0\n{face}\n");
+        assert!(!is_black(&obj, &format!("{text} }}")).contains(&true));
+        assert!(!is_black(&obj, &format!("{text} sides one }}")).contains(&!is_dark));
+    }
+}
+
+#[test]
+fn a_mesh_that_is_inside_out_refracts_as_one_that_is_not() {
+    let picture = |turned: fn(usize) -> bool| {
+        let folder = TempDir::new().expect("a folder");
+        let lines = OCTAHEDRON.lines().enumerate().map(|(index, line)| {
+            match line.trim().split(' ').collect::<Vec<_>>()[..] {
+                ["f", a, b, c] if turned(index) => format!("f {a} {c} {b}"),
+                _ => line.to_owned(),
+            }
+        });
+        let obj = lines.collect::<Vec<_>>().join("\n");
+        fs::write(folder.path().join("mesh.obj"), obj).expect("a file");
+        render(&model_in(
+            folder.path(),
+            &format!(
+                "{WORLD} glass clear {{ index 1.5 }} mesh o {{ material clear file mesh.obj translation 4 3 -2 scale 2 2 2 }}"
+            ),
+        ))
+    };
+    let right = picture(|_| false);
+    assert!(right == picture(|_| true));
+    assert!(right == picture(|face| face % 3 == 0));
 }

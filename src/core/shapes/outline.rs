@@ -2,7 +2,7 @@
 
 use crate::geometry::placement::Rotation;
 use crate::shapes::mesh::read::Model;
-use crate::shapes::mesh::{Mesh, Surface, SurfaceError, ToWorld};
+use crate::shapes::mesh::{Look, Mesh, Surface, SurfaceError, ToWorld};
 use crate::world::accuracy::{Accuracy, Exact, Strict};
 use crate::world::body::Body;
 use glam::{DVec2, DVec3};
@@ -129,7 +129,7 @@ pub fn sum(one: DVec3, other: DVec3, is_rounded: &mut bool) -> DVec3 {
 /// The reason why the triangles make none.
 pub fn body(model: Model, are_rounded: bool, accuracy: Accuracy) -> Result<Body, SurfaceError> {
     let in_place = ToWorld::new(DVec3::ONE, Rotation::NONE, DVec3::ZERO);
-    let mut surface = Surface::new(model, &in_place, false)?;
+    let mut surface = Surface::new(model, &in_place, Look::default())?;
     surface.are_rounded = are_rounded;
     let surface = Arc::new(surface);
     Ok(match accuracy {

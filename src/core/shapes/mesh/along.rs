@@ -77,7 +77,7 @@ impl Surface {
         at: Interval<F>,
         leaves: Option<usize>,
     ) -> Option<bool> {
-        if self.open_edges > 0 {
+        if !self.is_closed() {
             return Some(false);
         }
         let ([a, b, c], met) = (self.corners(face), line.at(at));
@@ -118,7 +118,7 @@ impl Surface {
         face: usize,
         line: &Line<Interval<F>>,
     ) -> Option<bool> {
-        if self.open_edges > 0 {
+        if !self.is_closed() {
             return Some(true);
         }
         let slope = dot(self.triangle::<A>(face).area_normal(), line.dir);

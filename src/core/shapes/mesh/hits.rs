@@ -198,15 +198,15 @@ impl Surface {
     /// Tells whether a ray along a direction hits the outside of a face, in plain arithmetic.
     fn is_outside_hit(&self, face: usize, dir: DVec3) -> bool {
         let [a, b, c] = self.corners(face);
-        // An open mesh is lit on one side, and shows nothing of the other.
-        self.open_edges > 0 || (b - a).cross(c - a).dot(dir) < 0.0
+        // An open mesh has no outside.
+        !self.is_closed() || (b - a).cross(c - a).dot(dir) < 0.0
     }
 
     /// Tells whether the part of a face of a closed mesh beside a point of it is certainly hidden from where a ray starts.
     fn is_hidden(&self, face: usize, ray: &Ray, at: DVec3) -> bool {
         let farthest = 64.0 * f64::EPSILON * (ray.origin.abs().max_element() + (at - ray.origin).length());
         // From so far away, no face of the mesh is certainly nearer than another.
-        if self.open_edges > 0 || 4.0 * (self.bounds.high - self.bounds.low).length() < farthest {
+        if !self.is_closed() || 4.0 * (self.bounds.high - self.bounds.low).length() < farthest {
             return false;
         }
         let [a, b, c] = self.corners(face);

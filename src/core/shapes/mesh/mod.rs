@@ -8,6 +8,7 @@
 
 mod along;
 mod approach;
+mod edges;
 mod face;
 mod hits;
 mod inside;
@@ -26,8 +27,10 @@ mod surface;
 #[cfg(test)]
 mod tests;
 mod to_world;
+mod winding;
 
 pub use painted::Painted;
 pub use shape::Mesh;
-pub use surface::{Surface, SurfaceError};
+pub use surface::{Look, Surface, SurfaceError};
 pub use to_world::ToWorld;
+pub use winding::Openness;

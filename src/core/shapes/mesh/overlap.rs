@@ -101,8 +101,8 @@ fn is_one_side(sides: [Ordering; 3]) -> bool {
 mod tests {
     use super::*;
     use crate::geometry::placement::Rotation;
-    use crate::shapes::mesh::ToWorld;
     use crate::shapes::mesh::read::Model;
+    use crate::shapes::mesh::{Look, ToWorld};
 
     type Whole = [i64; 3];
 
@@ -139,8 +139,9 @@ mod tests {
             points.iter().map(|at| DVec3::from(at.map(|part| 94_906_267.0 * part as f64))).collect();
         let model = Model { vertices, faces: faces.to_vec(), ..Model::default() };
         let placement = ToWorld::new(DVec3::ONE, Rotation::NONE, DVec3::ZERO);
-        let surface =
-            Surface::new(model, &placement, false).ok().filter(|surface| surface.face_count() == 2)?;
+        let surface = Surface::new(model, &placement, Look::default())
+            .ok()
+            .filter(|surface| surface.face_count() == 2)?;
         Some(surface.do_overlap(0, 1))
     }
 

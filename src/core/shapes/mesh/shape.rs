@@ -3,6 +3,7 @@
 use super::face::{Face, Leaving};
 use super::hits::NOTHING;
 use super::surface::Surface;
+use super::winding::Openness;
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::facet::Facet;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
@@ -131,15 +132,15 @@ impl<A: Bounded> Hittable for Mesh<A> {
     }
 
     fn openness(&self) -> Option<&str> {
-        if self.surface.open_edges > 0 {
-            Some("some of its edges belong to one face only")
-        } else {
-            self.surface.fault(self)
+        match self.surface.openness {
+            Openness { open: 0, clashing: 0 } => self.surface.fault(self),
+            Openness { open: 0, .. } => Some("some of its faces are turned against their neighbours"),
+            _ => Some("some of its edges belong to one face only"),
         }
     }
 
     fn is_two_sided(&self) -> bool {
-        self.surface.open_edges == 0
+        self.surface.is_two_sided || self.surface.is_closed()
     }
 
     fn may_be_costly(&self) -> bool {
@@ -151,11 +152,14 @@ impl<A: Bounded> Hittable for Mesh<A> {
     }
 
     fn method(&self) -> String {
-        let Surface { open_edges, tree, .. } = &*self.surface;
-        let sides = match open_edges {
-            0 => "closed, and so lit on both sides".to_owned(),
-            1 => "open at 1 edge, and so lit on one side".to_owned(),
-            _ => format!("open at {open_edges} edges, and so lit on one side"),
+        let Surface { openness: Openness { open, clashing }, tree, .. } = &*self.surface;
+        let lit = if self.is_two_sided() { "lit on both sides" } else { "lit on one side" };
+        let sides = match (open, clashing) {
+            (0, 0) => format!("closed, and so {lit}"),
+            (0, _) => {
+                format!("with faces turned against each other at {}, {lit}", text::count(*clashing, "edge"))
+            }
+            _ => format!("open at {}, {lit}", text::count(*open, "edge")),
         };
         let nodes = text::count(tree.size(), "node");
         format!("a BVH of {nodes} over {}; {sides}", text::count(self.surface.face_count(), "face"))

@@ -1,14 +1,17 @@
 //! The surface of a mesh: its vertices, its faces, and the tree in which rays find them.
 
+use super::edges::Edges;
 use super::face;
-use super::read::Model;
+use super::read::{Model, Remark};
 use super::to_world::ToWorld;
+use super::winding::{self, Openness};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::Bvh;
 use crate::parallel;
 use crate::scene::attribute::MOST_LENGTH;
 use crate::shapes::triangle::Triangle;
 use crate::simd::soa::{LANES, Vectors};
+use crate::text;
 use crate::world::accuracy::Exact;
 use glam::DVec3;
 use std::collections::HashMap;
@@ -50,12 +53,24 @@ pub struct Surface {
     pub(super) planes: OnceLock<Option<Box<[[DVec3; 2]]>>>,
     /// Why the mesh has no inside although it is closed, if it has none; found when it is first asked for.
     pub(super) fault: OnceLock<Option<String>>,
-    /// The number of edges that do not join two faces. Where it is 0, the surface is closed.
-    pub open_edges: usize,
-    /// The number of faces of the file without an area, which are left out.
-    pub degenerate: usize,
+    /// The edges that keep the surface from being closed.
+    pub openness: Openness,
+    /// Whether both sides of an open surface are lit.
+    pub(super) is_two_sided: bool,
+    /// What was not taken as the file says it.
+    pub remarks: Vec<Remark>,
     /// The names of materials, as the file gives them.
     pub materials: Vec<String>,
+}
+
+/// How the triangles of a file become a surface.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Look {
+    /// Whether the surface looks smooth.
+    pub is_smooth: bool,
+    /// Whether faces are turned to agree, and are lit on both sides. Otherwise, an open surface is lit on the side from which
+    /// the corners of a face run counterclockwise.
+    pub is_two_sided: bool,
 }
 
 /// The reason why no surface can be made of a file's triangles.
@@ -73,11 +88,11 @@ impl Surface {
     ///
     /// # Errors
     /// Why there is none.
-    pub fn new(model: Model, placement: &ToWorld, is_smooth: bool) -> Result<Self, SurfaceError> {
+    pub fn new(model: Model, placement: &ToWorld, look: Look) -> Result<Self, SurfaceError> {
         if model.faces.len() > MAX_FACES {
             return Err(SurfaceError::TooMany);
         }
-        let Model { vertices, mut faces, materials, slots, sides } = model;
+        let Model { vertices, mut faces, materials, slots, sides, mut remarks } = model;
         let vertices = merge(vertices, &mut faces, placement);
         let is_far = |at: DVec3| !at.is_finite() || at.abs().max_element() > MOST_LENGTH;
         if parallel::find_first(vertices.len(), |vertex| is_far(vertices[vertex])).is_some() {
@@ -89,14 +104,23 @@ impl Surface {
         let total = order.len();
         order =
             parallel::map_ranges(total, 2, &|range| order[range].iter().copied().filter(has_area).collect());
-        let degenerate = total - order.len();
         if order.is_empty() {
             return Err(SurfaceError::NoArea);
         }
-        let kept: Vec<_> = order.iter().map(|face| faces[*face as usize]).collect();
+        remarks.extend(degenerate(total - order.len()));
+        let mut kept: Vec<_> = order.iter().map(|face| faces[*face as usize]).collect();
         drop(take(&mut faces));
-        let open_edges = open_edges(&kept);
-        let normals = if is_smooth { smooth(&vertices, &kept) } else { Vec::new() };
+        let mut edges = Edges::of(&kept, vertices.len());
+        if look.is_two_sided {
+            let count = winding::turn(&vertices, &mut kept, &edges);
+            remarks.extend(turned(count, kept.len()));
+            if count > 0 {
+                edges = Edges::of(&kept, vertices.len());
+            }
+        }
+        let openness = winding::openness(&edges);
+        drop(edges);
+        let normals = if look.is_smooth { smooth(&vertices, &kept) } else { Vec::new() };
         let mut tree =
             Bvh::of(kept.len(), |face| Aabb::around(&kept[face].map(|corner| vertices[corner as usize])));
         let sorted = tree.take_order();
@@ -122,10 +146,17 @@ impl Surface {
             bounds,
             planes: OnceLock::new(),
             fault: OnceLock::new(),
-            open_edges,
-            degenerate,
+            openness,
+            is_two_sided: look.is_two_sided,
+            remarks,
             materials,
         })
+    }
+
+    /// Tells whether each edge joins faces in pairs that are turned alike.
+    #[inline]
+    pub fn is_closed(&self) -> bool {
+        self.openness == Openness::default()
     }
 
     /// Returns the number of faces.
@@ -232,20 +263,20 @@ fn in_order_of_use(
     (sorted, normals)
 }
 
-/// Counts the edges that are not passed as often in one direction as in the other.
-fn open_edges(faces: &[[u32; 3]]) -> usize {
-    // Both ends, the smaller one first, and the direction.
-    let edge = |from: u32, to: u32| {
-        (u64::from(from.min(to)) << 32) | (u64::from(from.max(to)) << 1) | u64::from(from > to)
-    };
-    let edges = |[a, b, c]: &[u32; 3]| [edge(*a, *b), edge(*b, *c), edge(*c, *a)];
-    let mut edges =
-        parallel::map_ranges(faces.len(), 2, &|range| faces[range].iter().flat_map(edges).collect());
-    parallel::sort(&mut edges);
-    edges
-        .chunk_by(|one, other| one >> 1 == other >> 1)
-        .filter(|same| 2 * same.iter().filter(|edge| **edge & 1 == 1).count() != same.len())
-        .count()
+/// Tells of faces without an area, if there are any.
+fn degenerate(count: usize) -> Option<Remark> {
+    (count > 0).then(|| Remark {
+        message: format!("leaves out {} without an area", text::count(count, "face")),
+        help: "the corners of such a face lie on one line: no ray hits it",
+    })
+}
+
+/// Tells of faces that were turned, if any were.
+fn turned(count: usize, all: usize) -> Option<Remark> {
+    (count > 0).then(|| Remark {
+        message: format!("turns {count} of {}", text::count(all, "face")),
+        help: "its faces now agree, with the outside of closed parts outside; `sides one` leaves them as the file has them",
+    })
 }
 
 /// Computes normals at the vertices: the sums of the normals of the faces around each, weighted by their angles there.

@@ -4,7 +4,7 @@ use super::face::{Leaving, distance_to};
 use super::hits::NOTHING;
 use super::known::Known;
 use super::search::Aims;
-use super::{Mesh, Surface, ToWorld, read::Model};
+use super::{Look, Mesh, Openness, Surface, ToWorld, read::Model};
 use crate::geometry::placement::Rotation;
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{PACKET_SIZE, RayPacket};
@@ -52,7 +52,7 @@ pub(super) fn closed(bumps: &[f64], rows: u32) -> Model {
 }
 
 pub(super) fn surface(model: Model, placement: &ToWorld) -> Surface {
-    Surface::new(model, placement, false).unwrap_or_else(|_| panic!("a surface"))
+    Surface::new(model, placement, Look::default()).unwrap_or_else(|_| panic!("a surface"))
 }
 
 fn shape(surface: &Arc<Surface>) -> AnyShape {
@@ -90,7 +90,7 @@ proptest! {
     ) {
         let placement = ToWorld::new(scale, Rotation::Angles(DVec3::splat(rotation)), DVec3::new(3.0, 2.0, -1.0));
         let surface = Arc::new(surface(closed(&bumps, rows), &placement));
-        prop_assert_eq!(surface.open_edges, 0);
+        prop_assert!(surface.is_closed());
         let (inside, shape) = (placement.place(DVec3::ZERO), shape(&surface));
         for (index, part, dir) in toward {
             let [a, b, c] = surface.corners(index.index(surface.face_count()));
@@ -161,7 +161,7 @@ fn a_ray_through_a_vertex_hits_the_first_face_of_the_file() {
         let model =
             Model { vertices: vertices.map(DVec3::from).to_vec(), faces: faces.clone(), ..Model::default() };
         let surface = Arc::new(surface(model, &ToWorld::new(PLAIN, Rotation::NONE, DVec3::ZERO)));
-        assert_eq!(surface.open_edges, 4);
+        assert_eq!(surface.openness, Openness { open: 4, clashing: 0 });
         let ray = Ray { origin: DVec3::Z, dir: -DVec3::Z };
         assert_eq!(shape(&surface).distance(&ray, &RayRange::ALL), 1.0);
         assert_eq!(shape(&surface).part(&ray, 1.0).as_deref(), Some("face 1"));
@@ -182,7 +182,8 @@ fn equal_vertices_are_one_and_faces_without_an_area_are_left_out() {
     let alone = (0..vertices.len() as u32 / 3).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]).collect();
     let model = Model { vertices, faces: alone, ..Model::default() };
     let surface = surface(model, &ToWorld::new(PLAIN, Rotation::NONE, DVec3::ZERO));
-    assert_eq!((surface.face_count(), surface.degenerate, surface.open_edges), (faces.len(), 2, 0));
+    assert_eq!((surface.face_count(), surface.is_closed()), (faces.len(), true));
+    assert_eq!(surface.remarks[0].message, "leaves out 2 faces without an area");
     assert!(surface.vertices.len() < faces.len());
 }
 

@@ -85,14 +85,43 @@ pub(super) fn lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
     })
 }
 
-/// Returns the words of a line, between blanks.
-pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
-    let mut rest = line;
-    std::iter::from_fn(move || {
-        let start = rest.iter().position(|byte| !byte.is_ascii_whitespace())?;
-        let word = &rest[start..];
-        let end = word.iter().position(u8::is_ascii_whitespace).unwrap_or(word.len());
-        rest = &word[end..];
-        Some(&word[..end])
-    })
+/// Tells whether a byte is white space; a vertical tab is, too.
+pub(super) fn is_blank(byte: &u8) -> bool {
+    matches!(byte, b' ' | b'\t'..=b'\r')
+}
+
+/// The words of a text, between blanks.
+#[derive(Clone)]
+pub(super) struct Words<'w> {
+    /// What comes after the last word.
+    pub rest: &'w [u8],
+}
+
+impl<'w> Iterator for Words<'w> {
+    type Item = &'w [u8];
+
+    #[inline]
+    fn next(&mut self) -> Option<&'w [u8]> {
+        let start = self.rest.iter().position(|byte| !is_blank(byte)).unwrap_or(self.rest.len());
+        let word = &self.rest[start..];
+        let (word, rest) = word.split_at(word.iter().position(is_blank).unwrap_or(word.len()));
+        self.rest = rest;
+        Some(word).filter(|word| !word.is_empty())
+    }
+}
+
+/// Returns the words of a text.
+pub(super) fn words(text: &[u8]) -> Words<'_> {
+    Words { rest: text }
+}
+
+/// Makes line ends of carriage returns that stand alone, as old programs write them.
+pub(super) fn end_lines(text: &mut [u8]) {
+    let mut at = 0;
+    while let Some(next) = memchr(b'\r', &text[at..]) {
+        at += next + 1;
+        if text.get(at) != Some(&b'\n') {
+            text[at - 1] = b'\n';
+        }
+    }
 }

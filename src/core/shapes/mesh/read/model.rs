@@ -13,7 +13,7 @@ pub(super) const ENDS_EARLY: &str = "the file ends before all of its elements";
 pub struct Model {
     /// The vertices, in the file's own coordinates; all are finite.
     pub vertices: Vec<DVec3>,
-    /// The corners of each triangle, as indices of `vertices`. Polygons are cut into triangles from their first corner.
+    /// The corners of each triangle, as indices of `vertices`. Polygons are cut into triangles.
     pub faces: Vec<[u32; 3]>,
     /// The names of materials, in the order of their first use.
     pub materials: Vec<String>,
@@ -21,6 +21,17 @@ pub struct Model {
     pub slots: Vec<u16>,
     /// The index of the flat side of which each triangle is a part, rising; empty where each is a side of its own.
     pub sides: Vec<u32>,
+    /// What was not taken as the file says it.
+    pub remarks: Vec<Remark>,
+}
+
+/// Something about a file that its user should know.
+#[derive(Debug, PartialEq)]
+pub struct Remark {
+    /// What it is, phrased to follow the name of the mesh.
+    pub message: String,
+    /// What it means, or what to do about it.
+    pub help: &'static str,
 }
 
 /// Why a file cannot be read: where, and what is wrong there.
@@ -117,13 +128,6 @@ impl MemoryBudget {
             "it has at least {vertices} vertices and {faces} faces, which may take more than the {} of memory that are left",
             ByteSize(self.memory)
         )
-    }
-}
-
-/// Cuts a polygon into triangles from its first corner.
-pub(super) fn fan(corners: &[u32], faces: &mut Vec<[u32; 3]>) {
-    if let [first, rest @ ..] = corners {
-        faces.extend(rest.windows(2).map(|pair| [*first, pair[0], pair[1]]));
     }
 }
 

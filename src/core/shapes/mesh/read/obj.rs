@@ -1,7 +1,8 @@
 //! Wavefront OBJ: vertices, faces, and the names of their materials. All else is ignored.
 
 use super::blocks::{self, words};
-use super::model::{MAX_VERTICES, MemoryBudget, Model, ReadError, coordinate, fan, shown};
+use super::model::{MAX_VERTICES, MemoryBudget, Model, ReadError, coordinate, shown};
+use super::polygons::Polygons;
 use glam::DVec3;
 use memchr::memchr;
 use std::borrow::Cow;
@@ -13,8 +14,12 @@ use std::collections::hash_map::Entry;
 struct Part {
     vertices: Vec<DVec3>,
     faces: Vec<[u32; 3]>,
-    /// The names of materials, each with the number of the block's faces before it and its line.
+    polygons: Polygons,
+    /// The names of materials, each with the number of the block's triangles before it and its line; no name is that of
+    /// the mesh's own material.
     uses: Vec<(usize, String, usize)>,
+    /// The largest number of a vertex that comes after its face, and the line.
+    ahead: Option<(u32, usize)>,
     lines: usize,
     /// The first fault, with its line.
     fault: Option<(usize, String)>,
@@ -22,11 +27,10 @@ struct Part {
 
 /// Reads a file's text.
 pub fn read(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
-    // A byte order mark is no part of the text.
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let mut model = Model::default();
     let mut names = HashMap::new();
-    let (mut slot, mut line) = (0, 0);
+    let mut polygons = Polygons::default();
+    let (mut slot, mut line, mut ahead) = (0, 0, Vec::new());
     let take = |part: Part| {
         budget
             .holds(model.vertices.len() + part.vertices.len(), model.faces.len() + part.faces.len())
@@ -34,9 +38,15 @@ pub fn read(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
         let before = model.faces.len();
         model.vertices.extend(part.vertices);
         model.faces.extend(part.faces);
+        polygons.append(part.polygons, before);
+        ahead.extend(part.ahead.map(|(vertex, number)| (vertex, line + number)));
         for (faces, name, number) in part.uses {
             // Faces so far without a material keep none.
             model.slots.resize(before + faces, slot);
+            if name.is_empty() {
+                slot = 0;
+                continue;
+            }
             slot = match names.entry(name) {
                 Entry::Occupied(known) => *known.get(),
                 Entry::Vacant(free) => {
@@ -55,7 +65,31 @@ pub fn read(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
         fault.map_or(Ok(()), Err)
     };
     blocks::read(bytes, continues, vertices, |block, before| Part::read(block, before, budget), take)?;
+    let count = model.vertices.len();
+    if let Some((vertex, line)) = ahead.into_iter().find(|(vertex, _)| *vertex as usize >= count) {
+        let message = format!("there is no vertex {}: the file has {count}", u64::from(vertex) + 1);
+        return Err(ReadError::line(line, message));
+    }
+    polygons.cut(&mut model);
     Ok(model)
+}
+
+/// Says why a file without faces has none.
+pub fn without_faces(bytes: &[u8]) -> String {
+    let of = |known: &[&str]| {
+        let mut words = blocks::lines(bytes).filter_map(|line| words(line).next());
+        words.find(|word| known.iter().any(|known| known.as_bytes() == *word)).map(shown)
+    };
+    if let Some(word) = of(&["curv", "curv2", "surf"]) {
+        return format!("its curved surfaces (`{word}`) are not read: export it as a mesh of polygons");
+    }
+    if let Some(word) = of(&["l", "p"]) {
+        return format!("it has lines or points (`{word}`) and no faces");
+    }
+    match of(&["v"]) {
+        Some(_) => "it has vertices and no faces: it is a cloud of points".to_owned(),
+        None => "no line of it begins with `v` or `f`, so it is no OBJ".to_owned(),
+    }
 }
 
 /// Tells whether a line goes on in the next one: it ends with a backslash that is not in a comment.
@@ -63,8 +97,8 @@ fn continues(line: &[u8]) -> bool {
     line.strip_suffix(b"\r").unwrap_or(line).ends_with(b"\\") && memchr(b'#', line).is_none()
 }
 
-/// Calls `each` with the number of every line, from 1, and the line without its comment, until that fails. Lines that
-/// are continued are one. Returns the number of lines.
+/// Calls `each` with the number of every line, from 1, and the line, until that fails. Lines that are continued are one,
+/// without a comment. Returns the number of lines.
 fn each_line<'b, E>(
     block: &'b [u8],
     mut each: impl FnMut(usize, Cow<'b, [u8]>) -> Result<(), E>,
@@ -75,7 +109,7 @@ fn each_line<'b, E>(
         count += 1;
         let first = count;
         if !continues(line) {
-            each(first, Cow::Borrowed(&line[..memchr(b'#', line).unwrap_or(line.len())]))?;
+            each(first, Cow::Borrowed(line))?;
             continue;
         }
         let (mut whole, mut next) = (Vec::new(), Some(line));
@@ -125,7 +159,7 @@ impl Part {
         corners: &mut Vec<u32>,
         budget: &MemoryBudget,
     ) -> Result<(), String> {
-        let mut words = words(line);
+        let mut words = words(&line[..memchr(b'#', line).unwrap_or(line.len())]);
         match words.next() {
             Some(b"v") => {
                 let mut at = [0.0; 3];
@@ -141,43 +175,44 @@ impl Part {
                 corners.clear();
                 let count = before + self.vertices.len();
                 for word in words {
-                    corners.push(corner(word, count)?);
+                    let corner = corner(word, count)?;
+                    if corner as usize >= count && self.ahead.is_none_or(|(most, _)| most < corner) {
+                        self.ahead = Some((corner, number));
+                    }
+                    corners.push(corner);
                     // A polygon may be as long as the file.
                     if corners.len().is_multiple_of(1 << 16) {
                         budget.holds(count, self.faces.len() + corners.len())?;
                     }
                 }
-                if corners.len() < 3 {
-                    let count = corners.len();
-                    return Err(format!("a face needs three vertices, and this one has {count}"));
-                }
                 budget.holds(count, self.faces.len() + corners.len())?;
-                fan(corners, &mut self.faces);
+                self.polygons.add(corners, &mut self.faces);
             }
-            Some(b"usemtl") => {
-                let name = words.map(String::from_utf8_lossy).collect::<Vec<_>>().join(" ");
-                if name.is_empty() {
-                    return Err("`usemtl` needs the name of a material".to_owned());
-                }
-                self.uses.push((self.faces.len(), name, number));
-            }
+            Some(b"usemtl") => self.uses.push((self.faces.len(), material(line), number)),
             _ => {}
         }
         Ok(())
     }
 }
 
-/// Reads a corner of a face, `vertex/texture/normal`: its vertex counts from 1, or backward from -1.
+/// Returns the name that follows `usemtl`. It may have a `#`, as in `Material #25`; one between blanks begins a comment.
+fn material(line: &[u8]) -> String {
+    let name = words(line).skip(1).take_while(|word| *word != b"#");
+    name.map(String::from_utf8_lossy).collect::<Vec<_>>().join(" ")
+}
+
+/// Reads a corner of a face, `vertex/texture/normal`: its vertex counts from 1, or backward from -1 of those so far. A vertex
+/// may come after its faces.
 fn corner(word: &[u8], count: usize) -> Result<u32, String> {
     let vertex = &word[..word.iter().position(|byte| *byte == b'/').unwrap_or(word.len())];
     let index: Option<i64> = str::from_utf8(vertex).ok().and_then(|vertex| vertex.parse().ok());
     let index = index.ok_or_else(|| format!("`{}` is not a vertex's number", shown(word)))?;
     let found = match index {
-        1.. => usize::try_from(index - 1).ok(),
+        1.. => usize::try_from(index - 1).ok().filter(|index| *index < MAX_VERTICES),
         0 => return Err("vertices are counted from 1, so there is no vertex 0".to_owned()),
         _ => usize::try_from(index.unsigned_abs()).ok().and_then(|back| count.checked_sub(back)),
     };
-    found.filter(|index| *index < count).map(|index| index as u32).ok_or_else(|| {
+    found.map(|index| index as u32).ok_or_else(|| {
         let before =
             if count == 1 { "1 vertex precedes".to_owned() } else { format!("{count} vertices precede") };
         format!("there is no vertex {index}: {before} this face")

@@ -1,7 +1,8 @@
 //! The elements of a PLY in bytes of either order.
 
-use super::model::{ENDS_EARLY, MemoryBudget, Model, ReadError, fan};
+use super::model::{ENDS_EARLY, MemoryBudget, Model, ReadError};
 use super::ply_header::{Field, Kind, Number, Section};
+use super::polygons::Polygons;
 use crate::parallel;
 use glam::DVec3;
 
@@ -11,8 +12,8 @@ pub(super) fn read<const BIG: bool>(
     mut rest: &[u8],
     sections: &[Section],
     budget: &MemoryBudget,
-) -> Result<Model, ReadError> {
-    let mut model = Model::default();
+) -> Result<(Model, Polygons), ReadError> {
+    let (mut model, mut polygons) = (Model::default(), Polygons::default());
     let early = || ReadError::byte(file.len(), ENDS_EARLY);
     for section in sections {
         let place = |rest: &[u8]| file.len() - rest.len();
@@ -72,15 +73,16 @@ pub(super) fn read<const BIG: bool>(
                     budget.holds(model.vertices.len(), model.faces.len()).map_err(error)?;
                     model.vertices.push(at);
                 }
-                Kind::Face => {
-                    section.corners(index, &given, &mut corners).map_err(error)?;
-                    fan(&corners, &mut model.faces);
+                Kind::Face | Kind::Strips => {
+                    section
+                        .add(index, &given, &mut corners, &mut model.faces, &mut polygons)
+                        .map_err(error)?;
                 }
                 Kind::Other => {}
             }
         }
     }
-    Ok(model)
+    Ok((model, polygons))
 }
 
 /// Takes so many bytes; `None` where there are fewer.

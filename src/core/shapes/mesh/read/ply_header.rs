@@ -1,19 +1,26 @@
 //! Headers of PLY files: the elements of a file, and what is read of each.
 
-use super::blocks::words;
+use super::blocks::{is_blank, words};
 use super::model::{ENDS_EARLY, MAX_VERTICES, ReadError, coordinate, shown};
-use ply_rs_bw::parser::{ParseError, Parser, Reader};
-use ply_rs_bw::ply::{DefaultElement, ElementDef, Header, PropertyDef, PropertyType, ScalarType};
-use std::io::ErrorKind;
+use super::polygons::Polygons;
+use memchr::memchr;
 
 /// The names that programs give to the corners of faces.
-const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
+const CORNERS: [&str; 3] = ["vertex_indices", "vertex_index", "vertex_indexes"];
 
-/// The longest header, in bytes: the parser takes many times the memory of the header's lines.
+/// The longest header, in bytes.
 const LONGEST_HEADER: usize = 1 << 20;
 
+/// How the elements of a file are written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Encoding {
+    Ascii,
+    LittleEndian,
+    BigEndian,
+}
+
 /// The type of a number.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) enum Number {
     /// A whole number of so many bytes, from a negative one upward.
     Signed(usize),
@@ -24,17 +31,20 @@ pub(super) enum Number {
 }
 
 impl Number {
-    fn of(scalar: &ScalarType) -> Self {
-        match scalar {
-            ScalarType::Char => Self::Signed(1),
-            ScalarType::UChar => Self::Unsigned(1),
-            ScalarType::Short => Self::Signed(2),
-            ScalarType::UShort => Self::Unsigned(2),
-            ScalarType::Int => Self::Signed(4),
-            ScalarType::UInt => Self::Unsigned(4),
-            ScalarType::Float => Self::Float,
-            ScalarType::Double => Self::Double,
-        }
+    fn of(name: &[u8]) -> Result<Self, String> {
+        Ok(match name {
+            b"char" | b"int8" => Self::Signed(1),
+            b"uchar" | b"uint8" => Self::Unsigned(1),
+            b"short" | b"int16" => Self::Signed(2),
+            b"ushort" | b"uint16" => Self::Unsigned(2),
+            b"int" | b"int32" => Self::Signed(4),
+            b"uint" | b"uint32" => Self::Unsigned(4),
+            b"int64" => Self::Signed(8),
+            b"uint64" => Self::Unsigned(8),
+            b"float" | b"float32" => Self::Float,
+            b"double" | b"float64" => Self::Double,
+            _ => return Err(format!("`{}` is not a type of PLY", shown(name))),
+        })
     }
 
     fn is_whole(self) -> bool {
@@ -53,7 +63,7 @@ impl Number {
 }
 
 /// What is read of a property. An element has its properties one after the other.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) enum Field {
     /// The coordinate along this axis.
     Coordinate(usize, Number),
@@ -66,7 +76,9 @@ pub(super) enum Field {
 }
 
 /// The elements of a name, as the header describes them.
+#[derive(Debug)]
 pub(super) struct Section {
+    name: String,
     pub count: usize,
     pub fields: Vec<Field>,
     pub kind: Kind,
@@ -75,123 +87,206 @@ pub(super) struct Section {
 }
 
 /// The elements that are read; others are skipped.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Kind {
     Vertex,
     Face,
+    /// Strips of triangles: each corner makes one with the two before it. A negative number ends a strip.
+    Strips,
     Other,
 }
 
-/// Reads the header: returns it, what comes after it, and the line where that begins.
-pub(super) fn header(bytes: &[u8]) -> Result<(Header, &[u8], usize), ReadError> {
+/// A header, and what comes after it.
+pub(super) struct Header<'h> {
+    pub encoding: Encoding,
+    pub sections: Vec<Section>,
+    pub rest: &'h [u8],
+    /// The number of the header's lines.
+    pub line: usize,
+}
+
+/// Reads the header. Lines of other words than those of PLY are comments, as some programs write them.
+pub(super) fn header(bytes: &[u8]) -> Result<Header<'_>, ReadError> {
     let first = &bytes[..bytes.len().min(LONGEST_HEADER)];
-    let mut reader = Reader::new(first);
-    let header = Parser::<DefaultElement>::new().read_header(&mut reader).map_err(|error| {
-        if error.kind() == ErrorKind::UnexpectedEof && first.len() < bytes.len() {
-            return ReadError::file("its header does not end within 1 MiB");
+    // Lines end as the first one does: with a carriage return alone only if that does, since bytes may follow.
+    let end = match first.iter().position(|byte| matches!(byte, b'\r' | b'\n')) {
+        Some(at) if first[at] == b'\r' && first.get(at + 1) != Some(&b'\n') => b'\r',
+        _ => b'\n',
+    };
+    let (mut encoding, mut sections, mut rest) = (None, Vec::<Section>::new(), first);
+    for line in 1.. {
+        let Some(length) = memchr(end, rest) else {
+            let is_cut = first.len() == bytes.len();
+            return Err(ReadError::file(if is_cut {
+                ENDS_EARLY
+            } else {
+                "its header does not end within 1 MiB"
+            }));
+        };
+        let (text, after) = (&rest[..length], &rest[length + 1..]);
+        rest = after;
+        let error = |message: String| ReadError::line(line, message);
+        let mut words = words(text);
+        match words.next() {
+            Some(b"format") => {
+                encoding = Some(match words.next() {
+                    Some(b"ascii") => Encoding::Ascii,
+                    Some(b"binary_little_endian") => Encoding::LittleEndian,
+                    Some(b"binary_big_endian") => Encoding::BigEndian,
+                    _ => return Err(error(unexpected(text, true))),
+                });
+            }
+            Some(b"element") => {
+                let (name, count) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
+                let count = str::from_utf8(count).ok().and_then(|count| count.parse().ok());
+                let count = count.ok_or_else(|| error(unexpected(text, true)))?;
+                sections.push(Section::new(&String::from_utf8_lossy(name), count));
+            }
+            Some(b"property") => {
+                let section = sections.last_mut().ok_or_else(|| error(unexpected(text, true)))?;
+                let words: Vec<_> = words.collect();
+                let field = section.field(&words).unwrap_or_else(|| Err(unexpected(text, true)));
+                section.fields.push(field.map_err(error)?);
+            }
+            Some(b"end_header") => {
+                let encoding = encoding.ok_or_else(|| {
+                    ReadError::file("its header has no line `format`, such as `format ascii 1.0`")
+                })?;
+                let vertices = sections.iter().find(|section| section.kind == Kind::Vertex);
+                let vertices = vertices.map_or(0, |section| section.count);
+                sections.iter_mut().for_each(|section| section.vertices = vertices);
+                may_fit(&sections, bytes.len()).map_err(ReadError::file)?;
+                return Ok(Header { encoding, sections, rest: &bytes[first.len() - rest.len()..], line });
+            }
+            Some(word) if line == 1 && !word.eq_ignore_ascii_case(b"ply") => {
+                return Err(error("a PLY begins with the word `ply`".to_owned()));
+            }
+            _ => {}
         }
-        fault(&error, first)
-    })?;
-    let rest = &bytes[first.len() - reader.get_ref().len()..];
-    Ok((header, rest, reader.line()))
+    }
+    Err(ReadError::file(ENDS_EARLY))
 }
 
 impl Section {
-    pub fn new(element: &ElementDef, vertices: usize) -> Result<Self, ReadError> {
-        let kind = match element.name.as_str() {
+    fn new(name: &str, count: usize) -> Self {
+        let kind = match name {
             "vertex" => Kind::Vertex,
             "face" => Kind::Face,
+            "tristrips" => Kind::Strips,
             _ => Kind::Other,
         };
-        let field = |(name, property): (&String, &PropertyDef)| {
-            let axis = ["x", "y", "z"].iter().position(|axis| axis == name).filter(|_| kind == Kind::Vertex);
-            let is_corners = kind == Kind::Face && CORNERS.contains(&name.as_str());
-            let wrong = |what: &str| {
-                Err(ReadError::file(format!("`{name}` of its elements `{}` is not {what}", element.name)))
-            };
-            match &property.data_type {
-                PropertyType::Scalar(number) => match axis {
-                    _ if is_corners => wrong("a list"),
-                    Some(axis) => Ok(Field::Coordinate(axis, Number::of(number))),
-                    None => Ok(Field::Number(Number::of(number))),
-                },
-                PropertyType::List(length, number) => {
-                    let (length, number) = (Number::of(length), Number::of(number));
-                    match axis {
-                        Some(_) => wrong("a number"),
-                        None if !length.is_whole() => wrong("a list with a whole number of values"),
-                        None if is_corners && !number.is_whole() => wrong("a list of whole numbers"),
-                        None if is_corners => Ok(Field::Corners(length, number)),
-                        None => Ok(Field::List(length, number)),
-                    }
-                }
-            }
-        };
-        let fields = element.properties.iter().map(field).collect::<Result<_, _>>()?;
-        Ok(Self { count: element.count, fields, kind, vertices })
+        Self { name: name.to_owned(), count, fields: Vec::new(), kind, vertices: 0 }
     }
 
-    /// Checks the corners of the face of this index, and makes 32 bits of each.
-    pub fn corners(&self, face: usize, given: &[i64], corners: &mut Vec<u32>) -> Result<(), String> {
-        if given.len() < 3 {
-            return Err(format!("face {face} has {} vertices, and needs three", given.len()));
+    /// Reads what a property is; `None` where words are missing.
+    fn field(&self, words: &[&[u8]]) -> Option<Result<Field, String>> {
+        let is_corners = |name: &[u8]| {
+            matches!(self.kind, Kind::Face | Kind::Strips)
+                && CORNERS.iter().any(|known| known.as_bytes() == name)
+        };
+        let axis = |name: &[u8]| {
+            [b"x", b"y", b"z"].iter().position(|axis| *axis == name).filter(|_| self.kind == Kind::Vertex)
+        };
+        let wrong = |name: &[u8], what: &str| {
+            Err(format!("`{}` of its elements `{}` is not {what}", shown(name), self.name))
+        };
+        Some(match words {
+            [b"list", length, number, name, ..] => {
+                let both = Number::of(length).and_then(|length| Ok((length, Number::of(number)?)));
+                match both {
+                    Err(message) => Err(message),
+                    _ if axis(name).is_some() => wrong(name, "a number"),
+                    Ok((length, _)) if !length.is_whole() => {
+                        wrong(name, "a list with a whole number of values")
+                    }
+                    Ok((_, number)) if is_corners(name) && !number.is_whole() => {
+                        wrong(name, "a list of whole numbers")
+                    }
+                    Ok((length, number)) if is_corners(name) => Ok(Field::Corners(length, number)),
+                    Ok((length, number)) => Ok(Field::List(length, number)),
+                }
+            }
+            [number, name, ..] if is_corners(name) => Number::of(number).and_then(|_| wrong(name, "a list")),
+            [number, name, ..] => Number::of(number).map(|number| match axis(name) {
+                Some(axis) => Field::Coordinate(axis, number),
+                None => Field::Number(number),
+            }),
+            _ => return None,
+        })
+    }
+
+    /// Adds the triangles of a face, or of strips, of this index; `corners` is room for its corners.
+    pub fn add(
+        &self,
+        index: usize,
+        given: &[i64],
+        corners: &mut Vec<u32>,
+        faces: &mut Vec<[u32; 3]>,
+        polygons: &mut Polygons,
+    ) -> Result<(), String> {
+        let (count, is_strip) = (self.vertices, self.kind == Kind::Strips);
+        let is_known = |corner: &i64| (0..count as i64).contains(corner) || is_strip && *corner < 0;
+        if let Some(corner) = given.iter().find(|corner| !is_known(corner)) {
+            let what = if is_strip { "strip" } else { "face" };
+            return Err(format!("{what} {index} refers to vertex {corner}, and there are {count}, from 0"));
         }
-        let count = self.vertices;
-        if let Some(corner) = given.iter().find(|corner| !(0..count as i64).contains(corner)) {
-            return Err(format!("face {face} refers to vertex {corner}, and there are {count}, from 0"));
+        for part in given.split(|corner| *corner < 0) {
+            corners.clear();
+            corners.extend(part.iter().map(|corner| *corner as u32));
+            if !is_strip {
+                polygons.add(corners, faces);
+                continue;
+            }
+            for (at, three) in corners.windows(3).enumerate() {
+                let [a, b, c] = [three[at % 2], three[1 - at % 2], three[2]];
+                // A corner that is repeated joins strips.
+                if a != b && b != c && a != c {
+                    faces.push([a, b, c]);
+                }
+            }
         }
-        corners.clear();
-        corners.extend(given.iter().map(|corner| *corner as u32));
         Ok(())
     }
 }
 
 /// Refuses a header that promises more than the file can hold: each element takes at least a byte.
-pub(super) fn may_fit(header: &Header, size: usize) -> Result<(), ReadError> {
+fn may_fit(sections: &[Section], size: usize) -> Result<(), String> {
     let mut left = size;
-    for (name, element) in &header.elements {
-        let has = |names: &[&str]| names.iter().any(|name| element.properties.contains_key(*name));
-        if element.count > left {
-            let message = format!(
-                "the header announces {} elements `{name}`, more than the file has room for",
-                element.count
-            );
-            return Err(ReadError::file(message));
+    if sections.iter().filter(|section| section.kind == Kind::Vertex).count() > 1 {
+        return Err("it has more than one list of elements `vertex`".to_owned());
+    }
+    for Section { name, count, fields, kind, .. } in sections {
+        if *count > left {
+            return Err(format!(
+                "the header announces {count} elements `{name}`, more than the file has room for"
+            ));
         }
-        if element.properties.is_empty() && element.count > 0 {
-            return Err(ReadError::file(format!("its elements `{name}` have no properties")));
+        if fields.is_empty() && *count > 0 {
+            return Err(format!("its elements `{name}` have no properties"));
         }
-        left -= element.count;
-        if name == "vertex" && !(has(&["x"]) && has(&["y"]) && has(&["z"])) {
-            return Err(ReadError::file("its vertices do not have `x`, `y` and `z`"));
+        left -= count;
+        let has_axis = |wanted| {
+            fields.iter().any(|field| matches!(field, Field::Coordinate(axis, _) if *axis == wanted))
+        };
+        if *kind == Kind::Vertex && !(0..3).all(has_axis) {
+            return Err("its vertices do not have `x`, `y` and `z`".to_owned());
         }
-        if name == "face" && !has(&CORNERS) {
-            return Err(ReadError::file("its faces do not have `vertex_indices`"));
+        let has_corners = fields.iter().any(|field| matches!(field, Field::Corners(..)));
+        if matches!(kind, Kind::Face | Kind::Strips) && !has_corners {
+            return Err(format!("its elements `{name}` do not have `vertex_indices`"));
         }
-        if name == "vertex" && element.count > MAX_VERTICES {
-            return Err(ReadError::file("it has more than 2^31 vertices"));
+        if *kind == Kind::Vertex && *count > MAX_VERTICES {
+            return Err("it has more than 2^31 vertices".to_owned());
         }
     }
     Ok(())
 }
 
-/// Says what the parser says of a header, in a line and without the text that it repeats.
-fn fault(error: &ParseError, bytes: &[u8]) -> ReadError {
-    if error.kind() == ErrorKind::UnexpectedEof {
-        return ReadError::file(ENDS_EARLY);
-    }
-    let line = error.line().and_then(|line| Some((line, bytes.split(|byte| *byte == b'\n').nth(line - 1)?)));
-    let Some((number, line)) = line else {
-        let text = error.to_string();
-        return ReadError::file(text.lines().next().unwrap_or_default().trim_end_matches('.').to_lowercase());
-    };
-    ReadError::line(number, unexpected(line, true))
-}
-
-/// Says that a line is not what the header makes expect.
-pub(super) fn unexpected(line: &[u8], is_header: bool) -> String {
-    let wrong = words(line).find_map(|word| coordinate(word).err());
-    wrong
-        .filter(|_| !is_header)
-        .unwrap_or_else(|| format!("`{}` is not what the header announces here", shown(line.trim_ascii())))
+/// Says that a text is not what the header makes expect.
+pub(super) fn unexpected(text: &[u8], is_header: bool) -> String {
+    let wrong = words(text).find_map(|word| coordinate(word).err());
+    wrong.filter(|_| !is_header).unwrap_or_else(|| {
+        let blanks = text.iter().take_while(|byte| is_blank(byte)).count();
+        format!("`{}` is not what the header announces here", shown(text[blanks..].trim_ascii_end()))
+    })
 }

@@ -1,110 +1,175 @@
-//! The elements of a PLY in text: each has a line.
+//! The elements of a PLY in text: each has a line, but words may be laid out in any way.
 
-use super::blocks::{self, line_ends, never, words};
-use super::model::{ENDS_EARLY, MemoryBudget, Model, ReadError, coordinate, fan};
+use super::blocks::{self, Words, is_blank, never, words};
+use super::model::{ENDS_EARLY, MemoryBudget, Model, ReadError, coordinate};
 use super::ply_header::{Field, Kind, Number, Section, unexpected};
+use super::polygons::Polygons;
 use glam::DVec3;
 use memchr::memchr_iter;
 
-/// What a block of lines holds.
+/// What a block of a text holds.
 #[derive(Default)]
 struct Part {
     vertices: Vec<DVec3>,
     faces: Vec<[u32; 3]>,
-    /// The first fault, with the index of its element.
+    polygons: Polygons,
+    lines: usize,
+    /// The first fault, with its line.
     fault: Option<(usize, String)>,
     given: Vec<i64>,
     corners: Vec<u32>,
 }
 
-/// Reads what follows the header, which ends before this line.
+/// Reads what follows the header, which ends before this line: as lines, on all cores, and word by word where lines are
+/// not elements.
 pub(super) fn read(
+    rest: &[u8],
+    line: usize,
+    sections: &[Section],
+    budget: &MemoryBudget,
+) -> Result<(Model, Polygons), ReadError> {
+    by_lines(rest, line, sections, budget).or_else(|error| {
+        by_words(rest, line, sections, budget).map_err(|other| if other.at.is_some() { other } else { error })
+    })
+}
+
+fn by_lines(
     mut rest: &[u8],
     mut line: usize,
     sections: &[Section],
     budget: &MemoryBudget,
-) -> Result<Model, ReadError> {
-    let mut model = Model::default();
+) -> Result<(Model, Polygons), ReadError> {
+    let (mut model, mut polygons) = Default::default();
     for section in sections {
-        let end = match section.count.checked_sub(1) {
-            None => Some(0),
-            Some(last) => memchr_iter(b'\n', rest).nth(last).map(|end| end + 1),
-        };
-        // The last line of a file may have no end.
-        let is_cut = end.is_none() && blocks::lines(rest).count() < section.count;
-        let (lines, after) = rest.split_at(end.unwrap_or(rest.len()));
-        if section.kind != Kind::Other {
-            let take = |part: Part| {
-                budget
-                    .holds(model.vertices.len() + part.vertices.len(), model.faces.len() + part.faces.len())
-                    .map_err(ReadError::file)?;
-                model.vertices.extend(part.vertices);
-                model.faces.extend(part.faces);
-                part.fault.map_or(Ok(()), |(index, message)| Err(ReadError::line(line + index, message)))
-            };
-            blocks::read(
-                lines,
-                never,
-                line_ends,
-                |block, first| Part::read(block, first, section, budget),
-                take,
-            )?;
-        }
-        if is_cut {
-            return Err(ReadError::file(ENDS_EARLY));
-        }
-        (rest, line) = (after, line + section.count);
+        let (lines, after) = rest.split_at(end_of(rest, section.count)?);
+        let take = |part: Part| add(part, &mut model, &mut polygons, &mut line, budget);
+        blocks::read(lines, never, count, |block, first| Part::read(block, first, section, budget), take)?;
+        rest = after;
     }
-    Ok(model)
+    Ok((model, polygons))
+}
+
+fn by_words(
+    rest: &[u8],
+    line: usize,
+    sections: &[Section],
+    budget: &MemoryBudget,
+) -> Result<(Model, Polygons), ReadError> {
+    let (mut model, mut polygons) = Default::default();
+    let mut words = words(rest);
+    for section in sections {
+        let mut part = Part::default();
+        for index in 0..section.count {
+            part.element(&mut words, index, section, budget).map_err(|message| {
+                if words.rest.is_empty() {
+                    return ReadError::file(ENDS_EARLY);
+                }
+                let before = &rest[..rest.len() - words.rest.len()];
+                ReadError::line(line + blocks::line_ends(before) + 1, message)
+            })?;
+        }
+        add(part, &mut model, &mut polygons, &mut 0, budget)?;
+    }
+    Ok((model, polygons))
+}
+
+/// Adds what a part holds that begins after this line.
+fn add(
+    part: Part,
+    model: &mut Model,
+    polygons: &mut Polygons,
+    line: &mut usize,
+    budget: &MemoryBudget,
+) -> Result<(), ReadError> {
+    let before = model.faces.len();
+    budget
+        .holds(model.vertices.len() + part.vertices.len(), before + part.faces.len())
+        .map_err(ReadError::file)?;
+    model.vertices.extend(part.vertices);
+    model.faces.extend(part.faces);
+    polygons.append(part.polygons, before);
+    let fault = part.fault.map(|(number, message)| ReadError::line(*line + number, message));
+    *line += part.lines;
+    fault.map_or(Ok(()), Err)
+}
+
+fn is_empty(line: &[u8]) -> bool {
+    line.iter().all(is_blank)
+}
+
+/// Returns the number of lines that are not empty.
+fn count(text: &[u8]) -> usize {
+    blocks::lines(text).filter(|line| !is_empty(line)).count()
+}
+
+/// Returns where so many lines end that are not empty.
+fn end_of(text: &[u8], count: usize) -> Result<usize, ReadError> {
+    let (mut start, mut left) = (0, count);
+    // The last line of a file may have no end.
+    for end in memchr_iter(b'\n', text).map(|end| end + 1).chain([text.len()]) {
+        if left == 0 {
+            return Ok(start);
+        }
+        left -= usize::from(!is_empty(&text[start..end]));
+        start = end;
+    }
+    if left == 0 { Ok(start) } else { Err(ReadError::file(ENDS_EARLY)) }
 }
 
 impl Part {
     /// Reads a block of lines up to the first fault; its first element has this index.
     fn read(block: &[u8], first: usize, section: &Section, budget: &MemoryBudget) -> Self {
-        let mut part = Self::default();
-        for (index, line) in (first..).zip(blocks::lines(block)) {
-            if let Err(message) = part.element(line, index, section, budget) {
-                part.fault = Some((index, message));
+        let (mut part, mut index) = (Self::default(), first);
+        for line in blocks::lines(block) {
+            part.lines += 1;
+            if section.kind == Kind::Other || is_empty(line) {
+                continue;
+            }
+            if let Err(message) = part.element(&mut words(line), index, section, budget) {
+                part.fault = Some((part.lines, message));
                 break;
             }
+            index += 1;
         }
         part
     }
 
     fn element(
         &mut self,
-        line: &[u8],
+        words: &mut Words,
         index: usize,
         section: &Section,
         budget: &MemoryBudget,
     ) -> Result<(), String> {
-        let mut at = [0.0; 3];
-        self.fields(line, section, &mut at, budget).ok_or_else(|| unexpected(line, false))?;
+        let (start, mut at) = (words.rest, [0.0; 3]);
+        let is_whole = self.fields(words, section, &mut at, budget).is_some();
+        let text = || &start[..start.len() - words.rest.len()];
+        if !is_whole {
+            return Err(unexpected(text(), false));
+        }
         match section.kind {
             Kind::Vertex if DVec3::from(at).is_finite() => self.vertices.push(DVec3::from(at)),
             Kind::Vertex => {
-                let wrong = words(line).find_map(|word| coordinate(word).err());
+                let wrong = blocks::words(text()).find_map(|word| coordinate(word).err());
                 return Err(wrong.unwrap_or_else(|| format!("vertex {index} is not finite")));
             }
-            Kind::Face => {
-                section.corners(index, &self.given, &mut self.corners)?;
-                budget.holds(section.vertices, self.faces.len() + self.corners.len())?;
-                fan(&self.corners, &mut self.faces);
+            Kind::Face | Kind::Strips => {
+                budget.holds(section.vertices, self.faces.len() + self.given.len())?;
+                section.add(index, &self.given, &mut self.corners, &mut self.faces, &mut self.polygons)?;
             }
             Kind::Other => {}
         }
         Ok(())
     }
 
-    /// Reads the properties of an element; `None` where the line does not have them.
+    /// Reads the properties of an element; `None` where the words are others.
     fn fields(
         &mut self,
-        line: &[u8],
+        words: &mut Words,
         section: &Section,
         at: &mut [f64; 3],
         budget: &MemoryBudget,
     ) -> Option<()> {
-        let mut words = words(line);
         for field in &section.fields {
             let word = str::from_utf8(words.next()?).ok()?;
             match *field {
@@ -145,8 +210,8 @@ fn scalar(word: &str, number: Number) -> Option<f64> {
 /// Reads a whole number of a type.
 fn whole(word: &str, number: Number) -> Option<i64> {
     let range = match number {
-        Number::Signed(size) => -1 << (8 * size - 1)..1 << (8 * size - 1),
-        Number::Unsigned(size) => 0..1 << (8 * size),
+        Number::Signed(size) => i64::MIN >> (64 - 8 * size)..=i64::MAX >> (64 - 8 * size),
+        Number::Unsigned(size) => 0..=i64::MAX >> 63_usize.saturating_sub(8 * size),
         Number::Float | Number::Double => return None,
     };
     word.parse().ok().filter(|whole| range.contains(whole))

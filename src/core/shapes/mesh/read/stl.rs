@@ -1,30 +1,39 @@
 //! STL, in text and in bytes.
 
-use super::blocks::{self, never, words};
-use super::model::{MAX_VERTICES, MemoryBudget, Model, ReadError, coordinate, shown};
+use super::blocks::{self, Words, never, words};
+use super::model::{MAX_VERTICES, MemoryBudget, Model, ReadError, Remark, coordinate, shown};
 use crate::parallel;
+use crate::text;
 use glam::DVec3;
+use std::cmp::Ordering;
 
 /// The bytes before the first triangle: a title, and the number of triangles.
 const HEADER: usize = 84;
 /// The bytes of a triangle: a normal, three corners and two bytes more.
 const TRIANGLE: usize = 50;
 
-/// Reads a file. It is binary if its length is what its number of triangles says, as titles of binary files may begin
-/// with `solid` too.
+/// Tells whether a file has as many bytes as its number of triangles takes.
+pub fn is_whole(bytes: &[u8]) -> bool {
+    bytes.get(80..HEADER).is_some_and(|count| bytes.len() - HEADER == TRIANGLE * word(count) as usize)
+}
+
+/// Tells whether a file is a text. Titles of binary files may begin with `solid`, too, but some of their bytes are 0.
+pub fn is_text(bytes: &[u8]) -> bool {
+    let begins = words(bytes).next().is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
+    begins && !is_whole(bytes) && !bytes[..bytes.len().min(4 * HEADER)].contains(&0)
+}
+
+/// Reads a file.
 pub fn read(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
-    let count = bytes.get(80..HEADER).map(|count| word(count) as usize);
-    let is_binary = count.is_some_and(|count| bytes.len() - HEADER == TRIANGLE * count);
-    let begins = bytes.trim_ascii_start();
-    if !is_binary && begins.get(..5).is_some_and(|begins| begins.eq_ignore_ascii_case(b"solid")) {
+    if is_text(bytes) {
         return in_text(bytes, budget);
     }
-    let Some(count) = count else {
+    let Some(announced) = bytes.get(80..HEADER).map(|count| word(count) as usize) else {
         return Err(ReadError::byte(bytes.len(), "the file ends before its number of triangles"));
     };
-    if (bytes.len() - HEADER) / TRIANGLE < count {
-        let message =
-            format!("the file ends after {} of {count} triangles", (bytes.len() - HEADER) / TRIANGLE);
+    let (mut count, spare) = ((bytes.len() - HEADER) / TRIANGLE, (bytes.len() - HEADER) % TRIANGLE);
+    if count < announced && spare > 0 {
+        let message = format!("the file ends after {count} of {announced} triangles");
         return Err(ReadError::byte(bytes.len(), message));
     }
     budget.holds(3 * count, count).map_err(ReadError::file)?;
@@ -35,11 +44,27 @@ pub fn read(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
     };
     let mut vertices = vec![DVec3::ZERO; 3 * count];
     parallel::fill(&mut vertices, at);
+    let (mut remarks, found) = (Vec::new(), count);
     if let Some(corner) = parallel::find_first(vertices.len(), |corner| !vertices[corner].is_finite()) {
-        let message = format!("a corner of triangle {} is not finite", corner / 3 + 1);
-        return Err(ReadError::byte(byte(corner), message));
+        // What follows the triangles that were announced may be something else.
+        if announced == 0 || corner / 3 < announced {
+            let message = format!("a corner of triangle {} is not finite", corner / 3 + 1);
+            return Err(ReadError::byte(byte(corner), message));
+        }
+        count = announced;
+        vertices.truncate(3 * count);
     }
-    finish(vertices)
+    if found != announced {
+        let help = match count.cmp(&announced) {
+            Ordering::Less => "all that it holds are taken; if the file was cut off, copy or export it again",
+            Ordering::Equal => "what follows those that it announces is left out, as it is no triangles",
+            Ordering::Greater => "all that it holds are taken",
+        };
+        let message =
+            format!("has a file that announces {} and holds {found}", text::count(announced, "triangle"));
+        remarks.push(Remark { message, help });
+    }
+    finish(vertices, remarks)
 }
 
 /// Reads a number from four bytes, the lowest first.
@@ -61,7 +86,28 @@ enum Keyword {
 }
 
 impl Keyword {
-    fn of(word: &[u8]) -> Option<Self> {
+    /// Returns the next keyword among words, and passes by others.
+    fn next(words: &mut Words) -> Option<Self> {
+        while let Some(word) = words.next() {
+            if let Some(keyword) = Self::of(word, words) {
+                return Some(keyword);
+            }
+        }
+        None
+    }
+
+    /// Returns the keyword that a word is, or is with the next word of the `rest`: `end loop` is `endloop`.
+    fn of(word: &[u8], rest: &mut Words) -> Option<Self> {
+        if word.eq_ignore_ascii_case(b"end") {
+            let mut ahead = rest.clone();
+            let next = ahead.next()?;
+            *rest = ahead;
+            return Self::known(&[b"end", next].concat());
+        }
+        Self::known(word)
+    }
+
+    fn known(word: &[u8]) -> Option<Self> {
         let all: [(&[u8], Self); 7] = [
             (b"vertex", Self::Vertex),
             (b"endloop", Self::EndLoop),
@@ -114,7 +160,7 @@ fn in_text(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
     if is_in_facet || vertices.len() != start {
         return Err(ReadError::line(blocks::line_ends(bytes) + 1, "the file ends within a facet"));
     }
-    finish(vertices)
+    finish(vertices, Vec::new())
 }
 
 /// Refuses a facet without three vertices.
@@ -141,7 +187,7 @@ impl Part {
     fn line(&mut self, line: &[u8], budget: &MemoryBudget) -> Result<(), String> {
         let mut words = words(line);
         let Some(first) = words.next() else { return Ok(()) };
-        let mut keyword = Keyword::of(first);
+        let mut keyword = Keyword::of(first, &mut words);
         if keyword.is_none() {
             return Err(format!("`{}` is not a word of STL", shown(first)));
         }
@@ -177,18 +223,18 @@ impl Part {
                 Keyword::EndFacet => self.is_in_facet = Some(false),
                 Keyword::Outer => {}
             }
-            keyword = words.find_map(Keyword::of);
+            keyword = Keyword::next(&mut words);
         }
         Ok(())
     }
 }
 
 /// Makes a face of every three vertices.
-fn finish(vertices: Vec<DVec3>) -> Result<Model, ReadError> {
+fn finish(vertices: Vec<DVec3>, remarks: Vec<Remark>) -> Result<Model, ReadError> {
     if vertices.len() > MAX_VERTICES {
         return Err(ReadError::file("it has more than 2^31 corners"));
     }
     let faces =
         (0..vertices.len() as u32 / 3).map(|index| [3 * index, 3 * index + 1, 3 * index + 2]).collect();
-    Ok(Model { vertices, faces, ..Model::default() })
+    Ok(Model { vertices, faces, remarks, ..Model::default() })
 }

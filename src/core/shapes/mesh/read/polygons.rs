@@ -1,0 +1,166 @@
+//! Polygons of a file, cut into triangles.
+
+use super::model::{Model, Remark};
+use crate::parallel;
+use crate::text;
+use earcut::Earcut;
+use glam::{DVec2, DVec3};
+
+/// How far the corners of a polygon may lie off its plane before that is told, as a fraction of its size: those of round
+/// shapes are hardly ever flat.
+const FLAT: f64 = 0.1;
+
+/// How far an edge may turn to the wrong side for rounding, as a fraction of the product of two edges.
+const STRAIGHT: f64 = 1e-9;
+
+/// The most pairs of corners of polygons with dents in a file: cutting these takes up to ten seconds.
+const MOST_PAIRS: u64 = 1 << 32;
+
+/// The faces of a file that are no triangles.
+#[derive(Default)]
+pub(super) struct Polygons {
+    /// For each polygon the index of its first triangle, and the number of triangles that it is cut into from its first
+    /// corner.
+    fans: Vec<[u32; 2]>,
+    /// The number of faces of less than three corners, which are left out.
+    short: usize,
+}
+
+/// What is special about a polygon.
+struct Found {
+    polygon: usize,
+    is_bent: bool,
+    /// Its corners in its plane where they have a dent.
+    dented: Option<Vec<[f64; 2]>>,
+}
+
+impl Polygons {
+    /// Adds a face of any number of corners to triangles.
+    pub fn add(&mut self, corners: &[u32], faces: &mut Vec<[u32; 3]>) {
+        let [first, rest @ ..] = corners else {
+            self.short += 1;
+            return;
+        };
+        match rest.len() {
+            0 | 1 => self.short += 1,
+            2 => {}
+            count => self.fans.push([faces.len() as u32, count as u32 - 1]),
+        }
+        faces.extend(rest.windows(2).map(|pair| [*first, pair[0], pair[1]]));
+    }
+
+    /// Adds the polygons of triangles that follow so many others.
+    pub fn append(&mut self, other: Self, before: usize) {
+        self.fans.extend(other.fans.into_iter().map(|[first, count]| [first + before as u32, count]));
+        self.short += other.short;
+    }
+
+    /// Cuts those polygons of a whole file anew that have dents, and tells what is odd about others.
+    pub fn cut(self, model: &mut Model) {
+        let find = |polygon: usize| {
+            let corners = corners(model, self.fans[polygon]);
+            let (dented, is_bent) = examine(&corners);
+            (dented.is_some() || is_bent).then_some(Found { polygon, is_bent, dented })
+        };
+        let found = parallel::map_ranges(self.fans.len(), 2, &|range| range.filter_map(find).collect());
+        let bent = found.iter().filter(|found| found.is_bent).count();
+        let mut left = MOST_PAIRS;
+        let dented: Vec<_> = found
+            .into_iter()
+            .filter_map(|found| Some((found.polygon, found.dented?)))
+            .filter(|(_, flat)| {
+                let pairs = (flat.len() as u64).pow(2);
+                pairs <= left && {
+                    left -= pairs;
+                    true
+                }
+            })
+            .collect();
+        let anew = parallel::map(dented.len(), |index| cut(&dented[index].1));
+        if !anew.is_empty() {
+            let (mut faces, mut slots) = (Vec::with_capacity(model.faces.len()), Vec::new());
+            let mut next = 0;
+            for ((polygon, _), triangles) in dented.iter().zip(anew) {
+                let fan = self.fans[*polygon];
+                let [first, count] = fan.map(|at| at as usize);
+                let corners: Vec<_> = indices(model, fan).collect();
+                faces.extend_from_slice(&model.faces[next..first]);
+                faces.extend(triangles.iter().map(|face| face.map(|corner| corners[corner as usize])));
+                if let Some(slot) = model.slots.get(first) {
+                    slots.extend_from_slice(&model.slots[next..first]);
+                    slots.extend(triangles.iter().map(|_| *slot));
+                }
+                next = first + count;
+            }
+            faces.extend_from_slice(&model.faces[next..]);
+            slots.extend_from_slice(model.slots.get(next..).unwrap_or_default());
+            (model.faces, model.slots) = (faces, slots);
+        }
+        if self.short > 0 {
+            model.remarks.push(Remark {
+                message: format!(
+                    "leaves out {} of fewer than three corners",
+                    text::count(self.short, "face")
+                ),
+                help: "such a face is a point or a line: no ray hits it",
+            });
+        }
+        if bent > 0 {
+            model.remarks.push(Remark {
+                message: format!("has polygons that are not flat: {bent}"),
+                help: "they are cut into triangles, which another program may do in another way; triangles are always flat",
+            });
+        }
+    }
+}
+
+/// Returns the corners of a polygon that was cut from its first corner.
+fn indices(model: &Model, [first, count]: [u32; 2]) -> impl Iterator<Item = u32> {
+    let fan = &model.faces[first as usize..][..count as usize];
+    fan.iter().take(1).flat_map(|face| [face[0], face[1]]).chain(fan.iter().map(|face| face[2]))
+}
+
+/// Returns the corners of a polygon as seen from its first one.
+fn corners(model: &Model, fan: [u32; 2]) -> Vec<DVec3> {
+    let at = |corner: u32| model.vertices[corner as usize];
+    let origin = at(model.faces[fan[0] as usize][0]);
+    indices(model, fan).map(|corner| at(corner) - origin).collect()
+}
+
+/// Returns the corners of a polygon in its plane if it has a dent, and tells whether it is not flat.
+fn examine(corners: &[DVec3]) -> (Option<Vec<[f64; 2]>>, bool) {
+    let count = corners.len();
+    let normal: DVec3 = corners.windows(2).map(|pair| pair[0].cross(pair[1])).sum();
+    let Some(upright) = normal.try_normalize() else { return (None, false) };
+    let size = corners.iter().map(|at| at.length()).fold(0.0, f64::max);
+    let heights = corners.iter().map(|at| at.dot(upright));
+    let (low, high) = heights.fold((0.0_f64, 0.0_f64), |(low, high), at| (low.min(at), high.max(at)));
+    // Seen along an axis, from the side from which the corners run counterclockwise.
+    let axis = normal.abs().max_position();
+    let (mut across, mut up) = ((axis + 1) % 3, (axis + 2) % 3);
+    if normal[axis] < 0.0 {
+        (across, up) = (up, across);
+    }
+    let flat: Vec<_> = corners.iter().map(|at| DVec2::new(at[across], at[up])).collect();
+    let edges = (0..count).map(|at| flat[(at + 1) % count] - flat[at]).filter(|edge| *edge != DVec2::ZERO);
+    let edges: Vec<_> = edges.collect();
+    let pairs = || (0..edges.len()).map(|at| [edges[at], edges[(at + 1) % edges.len()]]);
+    let turns_right =
+        |[one, other]: [DVec2; 2]| one.perp_dot(other) < -STRAIGHT * one.length() * other.length();
+    // The edges of a convex polygon go back and forth once.
+    let forth = || edges.iter().map(|edge| edge.x).filter(|x| *x != 0.0).map(|x| x > 0.0);
+    let reversals = forth().zip(forth().skip(1).chain(forth().take(1))).filter(|(one, other)| one != other);
+    let is_dented = pairs().any(turns_right) || reversals.count() > 2;
+    (is_dented.then(|| flat.iter().map(DVec2::to_array).collect()), high - low > FLAT * size)
+}
+
+/// Cuts a polygon whose corners run counterclockwise into triangles whose corners do, too.
+fn cut(flat: &[[f64; 2]]) -> Vec<[u32; 3]> {
+    let mut triangles: Vec<u32> = Vec::new();
+    Earcut::new().earcut(flat.iter().copied(), &[], &mut triangles);
+    let counterclockwise = |[a, b, c]: [u32; 3]| {
+        let at = |corner: u32| DVec2::from(flat[corner as usize]);
+        if (at(b) - at(a)).perp_dot(at(c) - at(a)) < 0.0 { [a, c, b] } else { [a, b, c] }
+    };
+    triangles.chunks_exact(3).map(|face| counterclockwise([face[0], face[1], face[2]])).collect()
+}
