@@ -13,6 +13,7 @@ mod falsify;
 #[cfg(feature = "fuzz")]
 mod fuzz;
 mod gallery;
+mod habits;
 mod performance;
 mod plugins;
 mod same;
