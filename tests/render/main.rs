@@ -18,6 +18,7 @@ mod packets;
 mod plan;
 mod ray_budget;
 mod readme;
+mod rules;
 mod sealed;
 mod shaders;
 mod snapshots;

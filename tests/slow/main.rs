@@ -16,6 +16,7 @@ mod gallery;
 mod habits;
 mod performance;
 mod plugins;
+mod proven;
 mod same;
 mod slurm;
 mod stop;

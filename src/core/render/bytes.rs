@@ -4,11 +4,18 @@ use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::View;
 use crate::world::material::Rgb;
 use glam::DVec3;
+use tabray_exact::scalar::Scalar;
+
+/// Returns the level of a channel, of which a byte shows the whole part.
+#[inline(always)]
+pub fn level<N: Scalar>(channel: N) -> N {
+    N::constant(255.0) * channel
+}
 
 /// Converts a channel to a byte: 1 and more becomes 255, 0 and less becomes 0, and values between are truncated, not
 /// rounded. A NaN becomes 0.
 pub fn to_byte(channel: f64) -> u8 {
-    (255.0 * channel) as u8
+    level(channel) as u8
 }
 
 /// Converts colours to bytes.
@@ -32,7 +39,7 @@ const WHOLE: f64 = (1_u64 << 52) as f64;
 /// vector instructions; a conversion to a byte has none.
 #[inline(always)]
 fn quantized(channel: f64) -> u64 {
-    let level = 255.0 * channel;
+    let level = level(channel);
     let level = if level > 0.0 { level } else { 0.0 };
     let level = if level < 255.0 { level } else { 255.0 };
     let whole = level + WHOLE;

@@ -1,7 +1,6 @@
 //! The limits of how far light is followed, and of how many rays a primary ray may cost.
 
-/// The path length from the viewer, in world units, beyond which no reflected or transmitted ray is followed.
-pub const MAX_DIST: f64 = 20.0;
+pub use crate::world::rules::MAX_DIST;
 
 /// The ray budget: the number of simple rays whose work one primary ray may cost, itself included; the rays beyond are
 /// black. Without a limit, mirrors that nearly touch would reflect each other almost endlessly. A ray whose hit takes as

@@ -4,6 +4,7 @@ pub mod bytes;
 mod culling;
 pub mod decisions;
 pub mod division;
+pub mod enclosed;
 mod features;
 pub mod flaws;
 pub mod footprint;

@@ -17,6 +17,7 @@ pub mod light_samples;
 pub mod material;
 pub mod packets;
 pub mod pinhole;
+pub mod rules;
 pub mod sample;
 pub mod shader;
 pub mod shape;

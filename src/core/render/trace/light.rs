@@ -6,6 +6,7 @@ use crate::simd::cpu::kernels;
 use crate::simd::soa::{View, ViewMut};
 use crate::world::material::{Look, Rgb};
 use crate::world::packets::shader::is_any;
+use crate::world::rules;
 
 /// The light that rays on the same path, from object to object, can add to a pixel.
 #[derive(Clone, Copy)]
@@ -73,11 +74,11 @@ kernels! {
         }
     }
 
-    /// Marks the rays that continue from a surface: those whose path length is at most `max_travelled`, in world units.
-    pub(super) fn reach(travelled: &[f64], max_travelled: f64, goes: &mut [u64]) {
+    /// Marks the rays that continue from a surface, given the lengths of the paths to it, in world units.
+    pub(super) fn reach(travelled: &[f64], goes: &mut [u64]) {
         let (count, travelled) = (goes.len(), &travelled[..goes.len()]);
         for lane in 0..count {
-            goes[lane] = u64::from(travelled[lane] <= max_travelled);
+            goes[lane] = u64::from(rules::path_left(travelled[lane]) >= 0.0);
         }
     }
 
@@ -107,18 +108,18 @@ kernels! {
         ray_budget.iter().fold(u32::MAX, |fewest, ray_budget| fewest.min(*ray_budget))
     }
 
-    /// Reflects directions. Marks the rays that continue: those whose path length is at most `max_travelled`, in world
-    /// units, and that hit a point whose specular reflectivity is not 0.
+    /// Reflects directions. Marks the rays that continue: those whose path is not too long, and that hit a point whose
+    /// specular reflectivity is not 0.
     pub(super) fn mirror(
-        dir: View, normals: View, specular: Colours, travelled: &[f64], max_travelled: f64, goes: &mut [u64]
+        dir: View, normals: View, specular: Colours, travelled: &[f64], goes: &mut [u64]
     ) => out {
         let count = dir.len();
         let (normals, mut out) = (normals.first(count), out.first(count));
         let (travelled, goes) = (&travelled[..count], &mut goes[..count]);
         for lane in 0..count {
             let (dir, normal) = (dir.get(lane), normals.get(lane));
-            out.set(lane, dir - 2.0 * dir.dot(normal) * normal);
-            goes[lane] = u64::from(travelled[lane] <= max_travelled);
+            out.set(lane, rules::mirrored(dir.to_array(), normal.to_array()).into());
+            goes[lane] = u64::from(rules::path_left(travelled[lane]) >= 0.0);
         }
         if let Colours::Each(specular) = specular {
             let specular = specular.first(count);
@@ -128,12 +129,12 @@ kernels! {
         }
     }
 
-    /// Divides colours by the path lengths of their light, in world units.
+    /// Attenuates colours, given the path lengths of their light, in world units.
     pub(super) fn fade(travelled: &[f64]) => colours {
         let count = travelled.len();
         let mut colours = colours.first(count);
         for lane in 0..count {
-            colours.set(lane, colours.get(lane) * (1.0 / travelled[lane]));
+            colours.set(lane, rules::attenuation(travelled[lane]) * colours.get(lane));
         }
     }
 
@@ -143,12 +144,13 @@ kernels! {
         let mut colours = colours.first(count);
         match specular {
             Colours::Uniform(specular) => for lane in 0..count {
-                colours.set(lane, colours.get(lane) + specular * seen.get(lane));
+                colours.set(lane, rules::reflected(colours.get(lane), seen.get(lane), specular));
             },
             Colours::Each(specular) => {
                 let specular = specular.first(count);
                 for lane in 0..count {
-                    colours.set(lane, colours.get(lane) + specular.get(lane) * seen.get(lane));
+                    let specular = specular.get(lane);
+                    colours.set(lane, rules::reflected(colours.get(lane), seen.get(lane), specular));
                 }
             }
         }

@@ -9,7 +9,6 @@ use super::refract;
 use super::scratch::{HitScratch, ShadingScratch};
 use super::surface::Errors;
 use crate::geometry::ray::Side;
-use crate::render::limits::MAX_DIST;
 use crate::render::observer::{Count, DropReason, Event, Hit, RayKind, RayPurpose, TraceObserver};
 use crate::render::plan::depth::{Branch, STEPS, step};
 use crate::scene::model::Object;
@@ -18,6 +17,7 @@ use crate::world::interaction::SurfaceInteraction;
 use crate::world::interface::Interface;
 use crate::world::material::Rgb;
 use crate::world::packets::shader::SurfacePoints;
+use crate::world::rules;
 use glam::DVec3;
 use std::mem::swap;
 
@@ -146,7 +146,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
         let branch = self.plan.continuation(surface.index).through;
         let (travelled, goes) = (&surface.travelled[..count], resized(&mut shading.goes, count));
-        light::reach(self.cpu, travelled, MAX_DIST, goes);
+        light::reach(self.cpu, travelled, goes);
         group.leave_out(self.cpu, &branch, travelled, goes);
         self.end_bounces(goes);
         shading.dir.copy(group.dir.view(count));
@@ -158,7 +158,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         for lane in 0..group.len {
             let point = object.surface_point(surface.points.get(lane), surface.sides[lane]);
             let tint = object.tint(&point);
-            colours.set(lane, kept * colours.get(lane) + tint * shading.behind.get(lane));
+            let (own, behind) = (colours.get(lane), shading.behind.get(lane));
+            colours.set(lane, rules::transmitted(own, Rgb::splat(kept), behind, tint));
         }
     }
 
@@ -189,7 +190,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let (travelled, goes) = (&surface.travelled[..count], resized(goes, count));
         let dir = dir.resized(count);
         let branch = self.plan.continuation(surface.index).mirrored;
-        light::mirror(cpu, group.dir.view(count), normals, specular, travelled, MAX_DIST, goes, dir);
+        light::mirror(cpu, group.dir.view(count), normals, specular, travelled, goes, dir);
         if surface.is_bent {
             surface.keep_before(group.dir.view(count), &mut shading.dir);
         }
@@ -261,7 +262,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let mut dir = shading.dir.resized(count);
             for lane in 0..count {
                 let (seen, normal) = (group.dir.get(lane), surface.normals.get(lane));
-                dir.set(lane, seen - 2.0 * seen.dot(normal) * normal);
+                dir.set(lane, rules::mirrored(seen.to_array(), normal.to_array()).into());
             }
             if surface.is_bent {
                 surface.keep_before(group.dir.view(count), &mut shading.dir);
@@ -285,7 +286,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     ) {
         let count = group.padded();
         let (travelled, goes) = (&shading.surface.travelled[..count], resized(&mut shading.goes, count));
-        light::reach(self.cpu, travelled, MAX_DIST, goes);
+        light::reach(self.cpu, travelled, goes);
         for (lane, goes) in goes.iter_mut().enumerate() {
             *goes &= u64::from(is_chosen(lane));
         }
@@ -306,7 +307,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let ShadingScratch { surface, dir, goes, lanes, secondary, seen, behind, .. } = shading;
         let lanes = compact(&goes[..group.len], lanes);
         if W::SEES && lanes.is_empty() {
-            let is_far = surface.travelled[0] > MAX_DIST;
+            let is_far = rules::path_left(surface.travelled[0]) < 0.0;
             self.observer.see(Event::Dropped(if is_far { DropReason::TooFar } else { DropReason::TooFaint }));
             self.observer.see(Event::Colour(DVec3::ZERO));
         }

@@ -7,6 +7,7 @@ use crate::world::certify::Precise;
 use crate::world::light::Light;
 use crate::world::light_samples::{AnyLit, LightSamples, ShadingPoints};
 use crate::world::material::Rgb;
+use crate::world::rules;
 use f256::f256;
 use glam::DVec3;
 use tabray_exact::interval::{Fraction, Interval};
@@ -92,7 +93,7 @@ fn sample_each<T: Light>(
         if !is_uniform {
             emissivity.set(lane, sent.unwrap_or(Rgb::ZERO));
         }
-        cos_over_distance[lane] = cosine * inverse;
+        cos_over_distance[lane] = rules::received(cosine, inverse);
         t_max[lane] = if does_shine != 0 { ray_end } else { 0.0 };
         shines[lane] = does_shine;
         any_faces |= faces;

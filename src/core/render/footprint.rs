@@ -10,25 +10,22 @@
 //! The footprint whose mean is known the least is cut into quarters, again and again, until the mean of the whole pixel is
 //! known well enough.
 
-mod light;
-mod rays;
-mod scene;
-mod surface;
-
-use crate::geometry::aabb::Aabb;
 use crate::geometry::image_point::ImagePoint;
 use crate::geometry::sight::Line;
 use crate::render::bytes::shown;
-use crate::render::plan::depth::{self, Depth};
+use crate::render::enclosed::{LightPoints, Limits, Scene, SceneBounds, Tracer};
+use crate::render::plan::depth::Depth;
 use crate::scene::model::Model;
 use crate::world::film::Film;
 use crate::world::material::Rgb;
-use rays::Tracer;
-use scene::Scene;
+use std::cell::Cell;
 use tabray_exact::affine::Affine;
 use tabray_exact::double_double::power_of_two;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::Scalar;
+
+/// How far the rays of a footprint are followed: branches are left out that add no more than 1/400 of a level.
+const LIMITS: Limits = Limits { hits: 48, depth: 24, places: 6, negligible: 1e-5, tolerable: f64::INFINITY };
 
 /// The maximum number of footprints that are examined for a pixel.
 pub(crate) const MAX_FOOTPRINTS: usize = 1 + 4 * 256;
@@ -124,16 +121,14 @@ impl Footprint {
 
 /// Proves the colours of a model's pixels.
 pub struct Prover {
-    boxes: Vec<Option<Aabb>>,
-    most: f64,
-    passes_fractions: bool,
+    bounds: SceneBounds,
+    lights: Vec<usize>,
 }
 
 impl Prover {
     /// Prepares the proofs of a model.
     pub fn new(model: &Model) -> Self {
-        let passes_fractions = model.tints_are_fractions();
-        Self { boxes: scene::boxes(model), most: depth::most(model), passes_fractions }
+        Self { bounds: SceneBounds::of(model), lights: (0..model.lights.len()).collect() }
     }
 
     /// Encloses the colour of a pixel, until it is known to within an error, where 1 is white, as it is shown, or until
@@ -145,14 +140,13 @@ impl Prover {
         [x, y]: [usize; 2],
         error: f64,
     ) -> Proof {
-        let Self { most, passes_fractions, .. } = *self;
-        let scene = Scene { model, depth, boxes: &self.boxes, most, passes_fractions };
+        let Self { bounds, lights } = self;
+        let scene = Scene { model, lights, depth, bounds, meets_uncertified: Cell::new(false) };
         let gain = camera.gain();
         let footprint = |middle: [f64; 2], cuts: u32| {
-            let colour = match lines(camera, middle, power_of_two(-(cuts as i32) - 1)) {
-                Some(lines) => Tracer::new(&scene).primary(&lines),
-                None => [Affine::WHOLE; 3],
-            };
+            let lines = lines(camera, middle, power_of_two(-(cuts as i32) - 1));
+            let mut tracer = Tracer::new(&scene, LIMITS, LightPoints::All);
+            let colour = lines.and_then(|lines| tracer.primary(&lines)).unwrap_or([Affine::WHOLE; 3]);
             Footprint { middle, cuts, mean: colour.map(|channel| channel.mean()) }
         };
         let mut all = vec![footprint([x as f64, y as f64], 0)];

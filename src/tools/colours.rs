@@ -1,28 +1,28 @@
 //! Proves the colours of pixels: encloses each channel in an interval, and compares the bytes with those of the image.
 //!
-//! This is a second evaluation of the rules by which a scene is rendered, in intervals from the scene's numbers on. With the
-//! tracer it shares the equations of shapes, and the plugins in which shaders and lights enclose what they send. It follows all
-//! that a pixel's colour depends on: each hit, shadow ray, mirror and pane, and the tile or texel that is met. What an
-//! interval leaves open widens the colour, or opens the pixel.
-
-mod light;
-mod rays;
-mod scene;
-mod surface;
+//! What an interval leaves open widens the colour, or opens the pixel.
 
 use f256::f256;
-use rays::Tracer;
-use scene::{Boxes, Colour, Number, Scene};
 use std::cell::Cell;
 use std::ops::ControlFlow;
 use tabray_core::geometry::sight::Sight;
-use tabray_core::render::bytes::to_byte;
+use tabray_core::render::bytes::{level, to_byte};
+use tabray_core::render::enclosed::{Colour, Endpoint, LightPoints, Limits, Scene, SceneBounds, Tracer};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::plan::depth::FAINT;
 use tabray_core::render::renderer::Renderer;
 use tabray_core::render::trace;
 use tabray_exact::interval::{Float, Fraction, Interval};
 use tabray_exact::scalar::{Scalar, per_axis};
+
+/// How far rays are followed: branches are left out that no byte is likely to notice, and those that are open by a level
+/// open the pixel.
+fn limits<F: Float>() -> Limits {
+    // An operation with many digits takes a hundred times as long.
+    let fewer = if F::IS_LONG { 10 } else { 1 };
+    let (hits, depth) = (4000 / fewer, 300 / fewer);
+    Limits { hits, depth, places: usize::MAX, negligible: 1e-11, tolerable: 1.0 / 255.0 }
+}
 
 /// The verdict on a byte, or on a pixel: the last in this order of those of its bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -64,10 +64,22 @@ impl Pixel {
 /// The result of one precision for a pixel.
 struct Attempt {
     pixel: Pixel,
-    /// Whether the colour was enclosed at all.
+    /// Whether the colour was enclosed, and no branch of it only bounded.
     is_enclosed: bool,
     /// Whether a higher precision would tell no more.
     is_final: bool,
+    /// Whether a ray may meet a shape without an equation.
+    meets_uncertified: bool,
+}
+
+/// What is known of a pixel's colour in one precision.
+struct Enclosed<F: Endpoint> {
+    /// The colour; `None` where it is open.
+    colour: Option<Colour<Interval<F>>>,
+    /// Whether branches were bounded because nothing else is known of them.
+    is_open: bool,
+    /// Whether branches were not followed because of a limit.
+    is_spent: bool,
     /// Whether a ray may meet a shape without an equation.
     meets_uncertified: bool,
 }
@@ -82,15 +94,13 @@ impl Attempt {
 /// Proves the colours of an image.
 pub struct Prover<'p, 'm> {
     plan: &'p Plan<'m>,
-    boxes: Boxes,
-    passes_fractions: bool,
+    bounds: SceneBounds,
 }
 
 impl<'p, 'm> Prover<'p, 'm> {
     /// Prepares the proofs of a plan.
     pub fn new(plan: &'p Plan<'m>) -> Self {
-        let passes_fractions = plan.model.tints_are_fractions();
-        Self { plan, boxes: Boxes::around(&plan.model.objects), passes_fractions }
+        Self { plan, bounds: SceneBounds::of(plan.model) }
     }
 
     /// Returns the verdict on a pixel as the tracer renders it: `x` counts from the left, `y` from the bottom.
@@ -116,22 +126,9 @@ impl<'p, 'm> Prover<'p, 'm> {
         Pixel { channels }
     }
 
-    /// Returns the plan as the proof of one pixel looks at it.
-    fn scene(&self) -> Scene<'_, 'm> {
-        Scene {
-            plan: self.plan,
-            objects: &self.plan.model.objects,
-            boxes: &self.boxes,
-            passes_fractions: self.passes_fractions,
-            meets_uncertified: Cell::new(false),
-        }
-    }
-
     /// Tries a proof in one precision.
-    fn verdicts<F: Number>(&self, x: usize, y: usize, bytes: [u8; 3]) -> Attempt {
-        let scene = self.scene();
-        let (colour, is_spent) = mean::<F>(&scene, x, y);
-        let meets_uncertified = scene.meets_uncertified.get();
+    fn verdicts<F: Endpoint>(&self, x: usize, y: usize, bytes: [u8; 3]) -> Attempt {
+        let Enclosed { colour, is_open, is_spent, meets_uncertified } = self.colour::<F>(x, y);
         let Some(colour) = colour else {
             let pixel = Pixel::default();
             return Attempt { pixel, is_enclosed: false, is_final: is_spent, meets_uncertified };
@@ -140,7 +137,37 @@ impl<'p, 'm> Prover<'p, 'm> {
         let missing = if self.plan.depth.is_some() { FAINT } else { 0.0 };
         let channels = per_axis(|channel| verdict(colour[channel], bytes[channel], missing));
         let is_final = is_spent || !channels.contains(&Verdict::Open);
-        Attempt { pixel: Pixel { channels }, is_enclosed: true, is_final, meets_uncertified }
+        Attempt { pixel: Pixel { channels }, is_enclosed: !is_open, is_final, meets_uncertified }
+    }
+
+    /// Encloses a pixel's colour, the mean of its samples.
+    fn colour<F: Endpoint>(&self, x: usize, y: usize) -> Enclosed<F> {
+        let (plan, camera) = (self.plan, &self.plan.camera);
+        let scene = Scene {
+            model: plan.model,
+            lights: &plan.needs.lights,
+            depth: plan.depth.as_ref(),
+            bounds: &self.bounds,
+            meets_uncertified: Cell::new(false),
+        };
+        let mut sum = Some([Interval::constant(0.0); 3]);
+        let (mut is_open, mut is_spent) = (false, false);
+        for (place, sample) in camera.places(x, y, camera.samples) {
+            let sight: Sight = camera.sight_of(place, sample.as_ref());
+            let lights = sample.map_or(LightPoints::Middle, LightPoints::Of);
+            let mut tracer = Tracer::new(&scene, limits::<F>(), lights);
+            let colour = tracer.primary(&sight.line::<Interval<F>>());
+            is_open |= tracer.is_open();
+            is_spent |= tracer.is_spent();
+            sum = sum.zip(colour).map(|(sum, colour)| per_axis(|channel| sum[channel] + colour[channel]));
+            if sum.is_none() {
+                break;
+            }
+        }
+        let count = Interval::constant(f64::from(camera.samples));
+        let mean = |sum: Colour<Interval<F>>| per_axis(|channel| sum[channel] / count);
+        let colour = if camera.samples == 1 { sum } else { sum.map(mean) };
+        Enclosed { colour, is_open, is_spent, meets_uncertified: scene.meets_uncertified.get() }
     }
 
     /// Returns the verdicts on all pixels of the image that is rendered here, row by row from the top. `done` is called
@@ -165,27 +192,9 @@ impl<'p, 'm> Prover<'p, 'm> {
     }
 }
 
-/// Encloses a pixel's colour, the mean of its samples, and tells whether a limit on the number of rays was reached.
-fn mean<F: Number>(scene: &Scene, x: usize, y: usize) -> (Option<Colour<F>>, bool) {
-    let camera = &scene.plan.camera;
-    let mut sum = [Interval::constant(0.0); 3];
-    let mut is_spent = false;
-    for (place, sample) in camera.places(x, y, camera.samples) {
-        let sight: Sight = camera.sight_of(place, sample.as_ref());
-        let mut tracer = Tracer::new(scene, sample);
-        let colour = tracer.primary::<F>(&sight.line());
-        is_spent |= tracer.is_spent();
-        let Some(colour) = colour else { return (None, is_spent) };
-        sum = per_axis(|channel| sum[channel] + colour[channel]);
-    }
-    let count = Interval::constant(f64::from(camera.samples));
-    let mean = if camera.samples == 1 { sum } else { per_axis(|channel| sum[channel] / count) };
-    (Some(mean), is_spent)
-}
-
 /// Returns the verdict on the byte of a channel. `missing` is the most that the image may lack.
 fn verdict<F: Float>(channel: Interval<F>, byte: u8, missing: f64) -> Verdict {
-    let level = Interval::constant(255.0) * channel;
+    let level = level(channel);
     let to_byte = |level: F| level.floor().to_f64() as u8;
     let (low, high) = (to_byte(level.low), to_byte(level.high));
     let least = to_byte((level - Interval::constant(255.0 * missing)).low);
@@ -219,8 +228,8 @@ mod tests {
     /// Asserts that the red of the middle pixel is this fraction, in every precision.
     #[track_caller]
     fn is_red(objects: &str, [numerator, denominator]: [f64; 2]) {
-        fn red<F: Number>(prover: &Prover) -> Interval<F> {
-            mean::<F>(&prover.scene(), 1, 1).0.expect("a known colour")[0]
+        fn red<F: Endpoint>(prover: &Prover) -> Interval<F> {
+            prover.colour::<F>(1, 1).colour.expect("a known colour")[0]
         }
         fn is_enclosed<F: Float>(red: Interval<F>, [numerator, denominator]: [f64; 2], within: f64) {
             let off = red * Interval::constant(denominator) - Interval::constant(numerator);
@@ -307,7 +316,7 @@ mod tests {
         );
         let plan = Plan::new(&model);
         let prover = Prover::new(&plan);
-        let red = mean::<f64>(&prover.scene(), 1, 1).0.expect("a known colour")[0];
+        let red = prover.colour::<f64>(1, 1).colour.expect("a known colour")[0];
         assert!((red * Interval::constant(9.0) - Interval::constant(6.0)).has_zero(), "{red:?}");
         assert_eq!(prover.pixel(1, 1, [170; 3]).verdict(), Verdict::Proven);
         assert_ne!(prover.pixel(1, 1, [218; 3]).verdict(), Verdict::Proven);

@@ -1,0 +1,148 @@
+//! The light that reaches the points of a surface.
+
+use super::number::{Endpoint, Number, ranges};
+use super::panes::{Passes, passed};
+use super::scene::{Colour, Path, Scene};
+use super::surface::{Surface, is_black};
+use crate::geometry::sight::Line;
+use crate::world::packets::light::PacketLight;
+use crate::world::rules;
+use crate::world::sample::Sample;
+use tabray_exact::interval::Interval;
+use tabray_exact::scalar::{cross, dot, per_axis};
+
+/// The greatest exponent of a highlight that is taken as a product.
+const MAX_POWER: i32 = 1000;
+
+/// The points of lights with a size that are seen.
+#[derive(Clone, Copy)]
+pub enum LightPoints {
+    /// Those in the middle.
+    Middle,
+    /// Those that a sample chooses.
+    Of(Sample),
+    /// All of them, of whose light the mean is taken.
+    All,
+}
+
+/// Encloses what the light of this index adds to the colour of points; `None` where it is open. `dir` is the unit vector
+/// along the rays that see the points.
+pub(super) fn shine<N: Number>(
+    scene: &Scene,
+    (index, seen): (usize, LightPoints),
+    surface: &Surface<N>,
+    dir: [N; 3],
+) -> Option<Colour<N>> {
+    let (zero, black) = (N::of(0.0), [N::constant(0.0); 3]);
+    let light = &*scene.model.lights[index].value;
+    let shininess = scene.model.objects[surface.place.object].material.shininess;
+    let has_glint = shininess != 0.0 && !is_black(&surface.specular);
+    if is_black(&surface.diffuse) && !has_glint {
+        return Some(black);
+    }
+    let toward = toward(light, (index, seen), surface.at)?;
+    let distance = dot(toward, toward).sqrt();
+    let cosine = dot(toward, surface.normal) / distance;
+    // Light from behind the surface may face the shading normals only.
+    let above = surface.unbent.map_or(cosine, |unbent| cosine.min(dot(toward, unbent))).range();
+    if above.high <= zero {
+        return Some(black);
+    }
+    let sent = N::End::sent(light, ranges(surface.at))?;
+    let sent = per_axis(|channel| N::enclosing(sent[channel]));
+    if is_black(&sent) {
+        return Some(black);
+    }
+    let received = rules::received(cosine, N::constant(1.0) / distance);
+    let mut scattered = per_axis(|channel| surface.diffuse[channel] * received);
+    if has_glint {
+        let half = per_axis(|axis| toward[axis] / distance - dir[axis]);
+        let half_cosine = dot(half, surface.normal) / dot(half, half).sqrt();
+        if half_cosine.range().high > zero {
+            let strength = power(half_cosine, shininess);
+            scattered = per_axis(|channel| scattered[channel] + surface.specular[channel] * strength);
+        }
+    }
+    let path = Path { line: Line { origin: surface.at, dir: toward }, leaves: Some(surface.place) };
+    let passes = passed(scene, &path);
+    if matches!(passes, Passes::Open) && !scene.bounds.passes_fractions {
+        return None;
+    }
+    Some(per_axis(|channel| {
+        let full = scattered[channel] * sent[channel];
+        let lit = match &passes {
+            Passes::Nothing => black[channel],
+            Passes::All => full,
+            Passes::Part(fraction) => full * fraction[channel],
+            Passes::Open => full.hull(black[channel]),
+        };
+        let lit = if above.low > zero { lit } else { lit.hull(black[channel]) };
+        lit.mean_over_light()
+    }))
+}
+
+/// Encloses the vectors from points to a light: to its own point, or to those seen of the disc around it that faces the
+/// points. `None` where they are open.
+fn toward<N: Number>(
+    light: &(dyn PacketLight + 'static),
+    (index, seen): (usize, LightPoints),
+    at: [N; 3],
+) -> Option<[N; 3]> {
+    let n = N::constant;
+    let (location, size) = (light.location(), light.size());
+    let toward = per_axis(|axis| n(location[axis]) - at[axis]);
+    if size == 0.0 {
+        return Some(toward);
+    }
+    let unit = |vector: [N; 3]| {
+        let length = dot(vector, vector).sqrt();
+        per_axis(|axis| vector[axis] / length)
+    };
+    let (place, [across, up]) = match seen {
+        LightPoints::Middle => return Some(toward),
+        LightPoints::Of(sample) => {
+            let draw = sample.on_light(index);
+            let (sin, cos) = (n(2.0) * N::enclosing(Interval::pi()) * n(draw.y)).sin_cos();
+            let radius = n(draw.x).sqrt();
+            ([radius * cos, radius * sin], orthonormal_pair(unit(toward))?)
+        }
+        // The mean over the disc does not depend on how it is turned, so any two vectors do that are perpendicular.
+        LightPoints::All => {
+            let magnitude = |axis: &usize| toward[*axis].coarse().middle().abs();
+            let farthest = (0..3).min_by(|one, other| magnitude(one).total_cmp(&magnitude(other)));
+            let axis = per_axis(|axis| n(if Some(axis) == farthest { 1.0 } else { 0.0 }));
+            let sight = unit(toward);
+            let across = unit(cross(sight, axis));
+            ([0, 1].map(N::on_light), [across, cross(sight, across)])
+        }
+    };
+    let [x, y] = place.map(|coordinate| n(size) * coordinate);
+    Some(per_axis(|axis| toward[axis] + (x * across[axis] + y * up[axis])))
+}
+
+/// Encloses the two vectors perpendicular to a unit vector that `glam` chooses; `None` where they are open.
+fn orthonormal_pair<N: Number>([x, y, z]: [N; 3]) -> Option<[[N; 3]; 2]> {
+    let (n, side) = (N::constant, z.range());
+    let sign = if side.low >= N::of(0.0) {
+        n(1.0)
+    } else if side.high < N::of(0.0) {
+        n(-1.0)
+    } else {
+        return None;
+    };
+    let a = n(-1.0) / (sign + z);
+    let b = x * y * a;
+    Some([[n(1.0) + sign * x * x * a, sign * b, -sign * x], [b, sign + y * y * a, -y]])
+}
+
+/// Encloses the power of a cosine above 0; 0 below.
+fn power<N: Number>(cosine: N, shininess: f64) -> N {
+    let n = N::constant;
+    let cosine = cosine.max(n(0.0)).min(n(1.0));
+    let whole = shininess as i32;
+    if f64::from(whole) == shininess && (1..=MAX_POWER).contains(&whole) {
+        return cosine.powi(whole);
+    }
+    let power = cosine.pow(n(shininess));
+    if shininess > 0.0 { power.max(n(0.0)).min(n(1.0)) } else { power }
+}

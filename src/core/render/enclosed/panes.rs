@@ -1,0 +1,127 @@
+//! How much light passes between a point and a lamp.
+
+use super::number::{Endpoint, Hit, Number, coarse, ranges};
+use super::scene::{Colour, Path, Place, Scene};
+use super::surface::tint;
+use crate::geometry::sight::Line;
+use crate::world::shader::PointBounds;
+use tabray_exact::interval::Interval;
+use tabray_exact::scalar::per_axis;
+
+/// The number of walls of one transparent object on a shadow ray after which what passes is open.
+const MAX_PANES: usize = 100;
+
+/// The fraction of a light that reaches points.
+pub(super) enum Passes<N> {
+    /// All of it.
+    All,
+    /// This fraction.
+    Part(Colour<N>),
+    Nothing,
+    /// An unknown fraction: anything from nothing to all, if tints are fractions.
+    Open,
+}
+
+/// Tells how much light passes along lines from t = 0 to t = 1.
+pub(super) fn passed<N: Number>(scene: &Scene, path: &Path<N>) -> Passes<N> {
+    let (objects, one) = (&scene.model.objects, N::of(1.0));
+    let coarse = coarse(&path.line);
+    let is_glass = |object: &usize| objects[*object].material.transparency != 0.0;
+    let mut panes = Panes { at: Vec::new(), passed: None };
+    let (mut open, mut is_blocked) = (Vec::new(), false);
+    for object in (0..objects.len()).filter(is_glass) {
+        if let Err(low) = panes.add(scene, path, object) {
+            panes.at.push(Interval { low, high: N::of(scene.leaves(&coarse, object)) });
+            open.push(object);
+        }
+    }
+    for object in (0..objects.len()).filter(|object| !is_glass(object)) {
+        scene.hits(path, &coarse, object, &mut |hit, _| {
+            match hit {
+                Hit::Certain(at) if at.range().high < one && !panes.are_at(at.range()) => is_blocked = true,
+                hit if hit.low() < one => open.push(object),
+                _ => {}
+            }
+            !is_blocked
+        });
+        if is_blocked {
+            return Passes::Nothing;
+        }
+    }
+    open.iter().for_each(|object| scene.note_open(*object));
+    match panes.passed {
+        _ if !open.is_empty() => Passes::Open,
+        None => Passes::All,
+        Some(fraction) => Passes::Part(fraction),
+    }
+}
+
+/// The panes of glass on lines.
+struct Panes<N: Number> {
+    /// Where they are or may be.
+    at: Vec<Interval<N::End>>,
+    /// The fraction of light that passes, if there is any pane.
+    passed: Option<Colour<N>>,
+}
+
+impl<N: Number> Panes<N> {
+    /// Tells whether any pane may be at a t.
+    fn are_at(&self, t: Interval<N::End>) -> bool {
+        self.at.iter().any(|pane| pane.low <= t.high && t.low <= pane.high)
+    }
+
+    /// Adds each wall of a transparent object that the lines pass through before t = 1.
+    ///
+    /// # Errors
+    /// The t before which all are added, where it is open which follow.
+    fn add(&mut self, scene: &Scene, path: &Path<N>, object: usize) -> Result<(), N::End> {
+        let one = N::of(1.0);
+        let (mut onward, mut start) = (*path, N::constant(0.0));
+        for _ in 0..MAX_PANES {
+            let mut all = Vec::new();
+            scene.hits(&onward, &coarse(&onward.line), object, &mut |hit, place| {
+                let low = match hit {
+                    Hit::Certain(at) | Hit::Perhaps(at) => (start + at).range().low,
+                    Hit::Doubtful(low) => (start.range() + Interval::point(low)).low,
+                };
+                if low < one {
+                    all.push((low, hit, place));
+                }
+                true
+            });
+            let (at, place) = match all[..] {
+                [] => return Ok(()),
+                [(_, Hit::Certain(at), place)] => (start + at, place),
+                [(first, ..), ..] => {
+                    return Err(all.iter().fold(
+                        first,
+                        |nearest, (low, ..)| {
+                            if *low < nearest { *low } else { nearest }
+                        },
+                    ));
+                }
+            };
+            let range = at.range();
+            // Of panes in one place, one stands for all: that is not decided here.
+            if range.high >= one || self.are_at(range) {
+                return Err(range.low);
+            }
+            let point = path.line.at(at);
+            let tint = pane_tint(scene, place, point).ok_or(range.low)?;
+            let before = self.passed.unwrap_or([N::constant(1.0); 3]);
+            self.passed = Some(per_axis(|channel| before[channel] * tint[channel]));
+            self.at.push(range);
+            start = at;
+            onward = Path { line: Line { origin: point, dir: path.line.dir }, leaves: Some(place) };
+        }
+        Err(start.range().low)
+    }
+}
+
+/// Encloses the fraction of light that passes through a place at points; `None` where it is open.
+fn pane_tint<N: Number>(scene: &Scene, place: Place, at: [N; 3]) -> Option<Colour<N>> {
+    let pane = &scene.model.objects[place.object];
+    let seen = PointBounds::seen(pane.shape.proven()?, pane.shader.sees(), place.part, ranges(at), None);
+    let diffuse = N::End::look(pane, &seen)?.diffuse;
+    tint(pane.material.transparency, per_axis(|channel| N::enclosing(diffuse[channel])))
+}

@@ -1,0 +1,233 @@
+//! The colours that rays return.
+
+use super::light::{self, LightPoints};
+use super::number::{Hit, Number};
+use super::scene::{Colour, Path, Place, Scene};
+use super::surface::{Surface, is_black, tint};
+use crate::geometry::sight::Line;
+use crate::world::rules;
+use tabray_exact::interval::{Float, Interval};
+use tabray_exact::scalar::{dot, per_axis};
+
+/// How far rays are followed.
+#[derive(Clone, Copy)]
+pub struct Limits {
+    /// The number of hits after which branches are no longer followed, but bounded.
+    pub hits: usize,
+    /// The number of rays one after the other, each continuing the last, after which they are bounded.
+    pub depth: usize,
+    /// The number of places beyond which a ray that may hit any of them first is bounded.
+    pub places: usize,
+    /// A branch that can add no more than this to a pixel's channel is bounded and not followed.
+    pub negligible: f64,
+    /// An open branch that can add more than this opens the whole colour, and the other branches are not followed.
+    pub tolerable: f64,
+}
+
+/// Rays.
+struct Ray<N> {
+    path: Path<N>,
+    /// The length of the lines' direction, in world units.
+    length: N,
+    /// The length of the path from the viewer to the lines' start, in world units.
+    travelled: N,
+    /// A bound on the factor by which the rays' light is multiplied.
+    weight: f64,
+    depth: usize,
+}
+
+/// Traces rays that start as one.
+pub struct Tracer<'s> {
+    scene: &'s Scene<'s>,
+    limits: Limits,
+    lights: LightPoints,
+    hits: usize,
+    is_spent: bool,
+    is_open: bool,
+}
+
+impl<'s> Tracer<'s> {
+    /// Returns a tracer of one ray from the viewer, or of all through a footprint.
+    pub fn new(scene: &'s Scene<'s>, limits: Limits, lights: LightPoints) -> Self {
+        Self { scene, limits, lights, hits: 0, is_spent: false, is_open: false }
+    }
+
+    /// Tells whether branches were not followed because of a limit.
+    pub fn is_spent(&self) -> bool {
+        self.is_spent
+    }
+
+    /// Tells whether branches were bounded because nothing else is known of them.
+    pub fn is_open(&self) -> bool {
+        self.is_open
+    }
+
+    /// Encloses the colours that primary rays return; `None` where they are open.
+    pub fn primary<N: Number>(&mut self, line: &Line<N>) -> Option<Colour<N>> {
+        let length = dot(line.dir, line.dir).sqrt();
+        let path = Path { line: *line, leaves: None };
+        self.colour(&Ray { path, length, travelled: N::constant(0.0), weight: 1.0, depth: 0 })
+    }
+
+    fn colour<N: Number>(&mut self, ray: &Ray<N>) -> Option<Colour<N>> {
+        let black = [N::constant(0.0); 3];
+        let left = rules::path_left(ray.travelled).range();
+        if left.high < N::of(0.0) {
+            return Some(black);
+        }
+        if ray.depth > 0 {
+            let most = self.bound(ray);
+            if ray.weight * most < self.limits.negligible {
+                return Some(up_to(most));
+            }
+            if ray.depth >= self.limits.depth {
+                self.is_spent = true;
+                return self.open(ray, most);
+            }
+        }
+        let (places, is_something) = self.scene.first(&ray.path);
+        let is_hopeless = places.iter().any(|(hit, place)| {
+            let is_doubtful = matches!(hit, Hit::Doubtful(_));
+            is_doubtful && ray.weight * self.bound_at(ray, hit, *place) > self.limits.tolerable
+        });
+        let is_spent = self.hits + places.len() > self.limits.hits;
+        self.is_spent |= is_spent;
+        if is_hopeless || is_spent || places.len() > self.limits.places || left.low < N::of(0.0) {
+            let bounds = places.iter().map(|(hit, place)| self.bound_at(ray, hit, *place));
+            let most = bounds.fold(self.behind(), f64::max);
+            return self.open(ray, most);
+        }
+        self.hits += places.len();
+        let mut any = (!is_something).then(|| self.background(ray));
+        for (hit, place) in places {
+            let seen = match hit {
+                Hit::Certain(t) | Hit::Perhaps(t) => self.seen(ray, t, place),
+                Hit::Doubtful(_) => None,
+            };
+            let half = |channel: &N| 0.5 * channel.mean().width().to_f64();
+            let seen = match seen {
+                Some(seen) if seen.iter().all(|channel| half(channel) <= self.limits.negligible) => seen,
+                Some(seen) => {
+                    let most = self.bound_at(ray, &hit, place);
+                    per_axis(|at| if half(&seen[at]) > most { within(most) } else { seen[at] })
+                }
+                None => self.open(ray, self.bound_at(ray, &hit, place))?,
+            };
+            any = Some(any.map_or(seen, |any| hull(any, seen)));
+        }
+        Some(any.unwrap_or(black))
+    }
+
+    /// Encloses the colours that rays return which hit nothing.
+    fn background<N: Number>(&self, ray: &Ray<N>) -> Colour<N> {
+        let Some(background) = &self.scene.model.background else { return [N::constant(0.0); 3] };
+        let toward = per_axis(|axis| (ray.path.line.dir[axis] / ray.length).coarse());
+        let seen = background.value.enclose(toward);
+        per_axis(|channel| N::enclosing(Interval::from_f64(seen[channel])))
+    }
+
+    /// Encloses the colours that rays return which hit a place at t; `None` where they are open. Where an interface divides
+    /// the rays, nothing is known.
+    fn seen<N: Number>(&mut self, ray: &Ray<N>, t: N, place: Place) -> Option<Colour<N>> {
+        if self.scene.model.objects[place.object].material.interface.is_some() {
+            return None;
+        }
+        let mut any = None;
+        for surface in Surface::facing(self.scene, &ray.path.line, t, place)? {
+            let shaded = self.shaded(ray, t, &surface)?;
+            any = Some(any.map_or(shaded, |any| hull(any, shaded)));
+        }
+        any
+    }
+
+    fn shaded<N: Number>(&mut self, ray: &Ray<N>, t: N, surface: &Surface<N>) -> Option<Colour<N>> {
+        let travelled = ray.travelled + t * ray.length;
+        let dir = ray.path.line.dir;
+        let toward = per_axis(|axis| dir[axis] / ray.length);
+        let mut colour = surface.ambient;
+        for index in self.scene.lights {
+            let added = light::shine(self.scene, (*index, self.lights), surface, toward)?;
+            colour = per_axis(|channel| colour[channel] + added[channel]);
+        }
+        let attenuation = rules::attenuation(travelled);
+        colour = per_axis(|channel| colour[channel] * attenuation);
+        let transparency = self.scene.model.objects[surface.place.object].material.transparency;
+        if transparency != 0.0 {
+            let tint = tint(transparency, surface.diffuse)?;
+            let kept = N::constant(1.0) - N::constant(transparency);
+            let behind = self.secondary(ray, surface, travelled, dir, &tint)?;
+            colour = per_axis(|at| rules::transmitted(colour[at], kept, behind[at], tint[at]));
+        }
+        if !is_black(&surface.specular) {
+            let seen = self.secondary(ray, surface, travelled, surface.mirrored(dir)?, &surface.specular)?;
+            colour = per_axis(|at| rules::reflected(colour[at], seen[at], surface.specular[at]));
+        }
+        Some(colour)
+    }
+
+    /// Encloses the colours that rays return which continue from a surface. Their light is multiplied by `factor`.
+    fn secondary<N: Number>(
+        &mut self,
+        ray: &Ray<N>,
+        surface: &Surface<N>,
+        travelled: N,
+        dir: [N; 3],
+        factor: &Colour<N>,
+    ) -> Option<Colour<N>> {
+        let path = Path { line: Line { origin: surface.at, dir }, leaves: Some(surface.place) };
+        let most = factor.iter().fold(0.0_f64, |most, channel| most.max(channel.coarse().magnitude()));
+        // A mirrored direction is as long as the one that it is mirrored from.
+        let length = ray.length;
+        self.colour(&Ray { path, length, travelled, weight: ray.weight * most, depth: ray.depth + 1 })
+    }
+
+    /// Returns all colours up to a magnitude, where nothing else is known of what rays return; `None` where that is no use.
+    fn open<N: Number>(&mut self, ray: &Ray<N>, most: f64) -> Option<Colour<N>> {
+        self.is_open = true;
+        (ray.weight * most <= self.limits.tolerable).then(|| up_to(most))
+    }
+
+    /// Bounds the magnitude of what rays return.
+    fn bound<N: Number>(&self, ray: &Ray<N>) -> f64 {
+        let most = match (ray.path.leaves, self.scene.depth) {
+            (Some(place), Some(depth)) => depth.beyond(Some(place.object)),
+            _ => self.scene.bounds.most,
+        };
+        self.over_path(ray, 0.0, most)
+    }
+
+    /// Bounds the magnitude of what rays return with this first hit.
+    fn bound_at<N: Number>(&self, ray: &Ray<N>, hit: &Hit<N>, place: Place) -> f64 {
+        let most = self.scene.depth.map_or(self.scene.bounds.most, |depth| depth.objects[place.object].hit);
+        self.over_path(ray, Interval::point(hit.low()).coarse().low, most)
+    }
+
+    /// Bounds the magnitude of light, given a bound on it times its path length, where rays hit nothing before t.
+    fn over_path<N: Number>(&self, ray: &Ray<N>, t: f64, most: f64) -> f64 {
+        if most == 0.0 {
+            return self.behind();
+        }
+        let path = Interval::point(t) * ray.length.coarse() + ray.travelled.coarse();
+        let bound = (Interval::point(most) / Interval { low: path.low.max(0.0), high: path.high }).high;
+        if bound.is_nan() { f64::INFINITY } else { bound.max(self.behind()) }
+    }
+
+    /// Bounds the light of the background.
+    fn behind(&self) -> f64 {
+        let background = self.scene.model.background.as_ref();
+        background.map_or(0.0, |background| background.value.brightest().max_element())
+    }
+}
+
+/// Encloses all colours up to a magnitude.
+fn up_to<N: Number>(most: f64) -> Colour<N> {
+    [within(most); 3]
+}
+
+fn within<N: Number>(most: f64) -> N {
+    N::enclosing(Interval { low: N::of(-most), high: N::of(most) })
+}
+
+fn hull<N: Number>(one: Colour<N>, other: Colour<N>) -> Colour<N> {
+    per_axis(|channel| one[channel].hull(other[channel]))
+}

@@ -1,0 +1,104 @@
+//! The points of a surface that lines hit.
+
+use super::number::{Endpoint, Number, ranges};
+use super::scene::{Colour, Place, Scene};
+use crate::geometry::sight::Line;
+use crate::world::rules;
+use crate::world::shader::PointBounds;
+use tabray_exact::interval::Interval;
+use tabray_exact::scalar::{dot, per_axis};
+
+/// The points that lines hit, and how they look there.
+pub(super) struct Surface<N> {
+    pub place: Place,
+    pub at: [N; 3],
+    /// The unit normals with which the points are shaded, turned to face the lines where both sides are lit.
+    pub normal: [N; 3],
+    /// The unit normals of the surface itself, turned likewise, where the points are shaded with others.
+    pub unbent: Option<[N; 3]>,
+    pub ambient: Colour<N>,
+    pub diffuse: Colour<N>,
+    pub specular: Colour<N>,
+}
+
+impl<N: Number> Surface<N> {
+    /// Returns the points at t of lines, once for each way that the normals may face; `None` where these or the look are
+    /// open.
+    pub fn facing(scene: &Scene, line: &Line<N>, t: N, place: Place) -> Option<Vec<Self>> {
+        let object = &scene.model.objects[place.object];
+        // What a shader bends normals to is not enclosed.
+        if object.shader.bends() {
+            return None;
+        }
+        let zero = N::of(0.0);
+        let at = line.at(t);
+        let shape = object.shape.proven()?;
+        let normal = N::gradient(shape, at, place.part);
+        let length = dot(normal, normal).sqrt();
+        let range = length.range();
+        if range.low <= zero || !range.is_bounded() {
+            return None;
+        }
+        let outward = per_axis(|axis| normal[axis] / length);
+        let toward = if object.shape.is_two_sided() {
+            dot(outward, line.dir).range()
+        } else {
+            Interval::point(N::of(-1.0))
+        };
+        let shaded = |own: [N; 3], is_turned: bool| {
+            // What is mirrored is mirrored by the shading normal, too.
+            let normal = N::shading_normal(shape, at, place.part, own)?;
+            let unbent = (normal != own).then_some(own);
+            let outward = if is_turned { per_axis(|axis| -normal[axis]) } else { normal };
+            let (at_ranges, outward) = (ranges(at), Some(ranges(outward)));
+            let point = PointBounds::seen(shape, object.shader.sees(), place.part, at_ranges, outward);
+            let look = N::End::look(object, &point)?;
+            let enclosing = |of: [Interval<N::End>; 3]| per_axis(|channel| N::enclosing(of[channel]));
+            let (ambient, diffuse) = (enclosing(look.ambient), enclosing(look.diffuse));
+            Some(Self { place, at, normal, unbent, ambient, diffuse, specular: enclosing(look.specular) })
+        };
+        let mut all = Vec::with_capacity(2);
+        if toward.low <= zero {
+            all.push(shaded(outward, false)?);
+        }
+        if toward.high >= zero {
+            all.push(shaded(per_axis(|axis| -outward[axis]), true)?);
+        }
+        Some(all)
+    }
+
+    /// Returns the directions in which rays along `dir` are mirrored, as long as these; `None` where they are open.
+    pub fn mirrored(&self, dir: [N; 3]) -> Option<[N; 3]> {
+        let mirrored = rules::mirrored(dir, self.normal);
+        let Some(unbent) = self.unbent else { return Some(mirrored) };
+        // What bent normals mirror through the surface is turned back.
+        let through = (dot(mirrored, unbent) * dot(dir, unbent)).range();
+        if through.low > N::of(0.0) {
+            Some(rules::mirrored(mirrored, unbent))
+        } else {
+            (through.high <= N::of(0.0)).then_some(mirrored)
+        }
+    }
+}
+
+/// Returns the fraction of light that passes through an object at points; `None` where it is open.
+pub(super) fn tint<N: Number>(transparency: f64, diffuse: Colour<N>) -> Option<Colour<N>> {
+    let [red, green, blue] = diffuse;
+    let (transparency, one) = (N::constant(transparency), N::constant(1.0));
+    let strongest = red.max(green).max(blue);
+    // The strongest channel is divided by itself, and no other is greater.
+    let ratio = |channel: N| {
+        if channel == strongest && strongest.is_exact() { one } else { (channel / strongest).min(one) }
+    };
+    let range = strongest.range();
+    if range.low > N::of(0.0) {
+        Some(per_axis(|channel| transparency * ratio(diffuse[channel])))
+    } else {
+        (range.high <= N::of(0.0)).then_some([transparency; 3])
+    }
+}
+
+/// Tells whether a colour is black, for certain.
+pub(super) fn is_black<N: Number>(colour: &Colour<N>) -> bool {
+    colour.iter().all(|channel| channel.is_zero())
+}

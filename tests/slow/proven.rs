@@ -1,0 +1,78 @@
+//! What is proven of the pixels of every scene.
+
+use crate::common::{load, root, scenes};
+use std::fmt::Write;
+use std::thread;
+use tabray::render::Plan;
+use tabray::render::footprint;
+use tabray::render::plan::depth::Depth;
+use tabray::scene::Model;
+use tabray::tools::colours::{self, Verdict};
+use tabray::world::Accuracy;
+
+/// The size of the images, in pixels.
+const SIZE: [usize; 2] = [20, 15];
+
+/// The error within which pixels are certified, where 1 is white.
+const ERROR: f64 = 2.0 / 255.0;
+
+/// Proofs may only become better. A snapshot says how many pixels are certified within two levels, and how many bytes have
+/// each verdict.
+#[test]
+fn as_many_pixels_are_proven_as_before() {
+    // Deep reflections take a stack as large as those of the program's threads.
+    let table = thread::Builder::new().stack_size(128 << 20).spawn(table).expect("a thread");
+    let table = table.join().expect("no failure");
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path(root().join("snapshots/proofs"));
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.bind(|| insta::assert_snapshot!("shares", table));
+}
+
+fn table() -> String {
+    let mut table = String::from("certified proven rounded open uncertified contradicted\n");
+    for path in scenes() {
+        let name = path.strip_prefix(root().join("scenes")).expect("a scene").display().to_string();
+        let mut model = load(&path);
+        let camera = &mut model.camera.value;
+        if camera.accuracy == Accuracy::Classic {
+            continue;
+        }
+        (camera.pixels, camera.samples) = (SIZE, 1);
+        let (certified, verdicts) = (certified(&model), verdicts(&model));
+        let [proven, rounded, open, uncertified, contradicted] = verdicts;
+        assert_eq!(contradicted, 0, "{name}");
+        writeln!(
+            table,
+            "{certified:9} {proven:6} {rounded:7} {open:4} {uncertified:11} {contradicted:12} {name}"
+        )
+        .expect("a string");
+    }
+    table
+}
+
+/// Returns the coordinates of all pixels.
+fn pixels() -> impl Iterator<Item = [usize; 2]> {
+    (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y]))
+}
+
+/// Counts the pixels whose mean colours are certified.
+fn certified(model: &Model) -> usize {
+    let (prover, depth) = (footprint::Prover::new(model), Depth::new(model));
+    let camera = &model.camera.value;
+    let gain = libm::exp2(camera.exposure);
+    let proof = |pixel| prover.pixel((model, depth.as_ref()), camera, pixel, ERROR);
+    pixels().filter(|pixel| proof(*pixel).is_within(ERROR, gain)).count()
+}
+
+/// Counts the bytes of each verdict.
+fn verdicts(model: &Model) -> [usize; 5] {
+    let plan = Plan::new(model);
+    let prover = colours::Prover::new(&plan);
+    let mut counts = [0; Verdict::ALL.len()];
+    for [x, y] in pixels() {
+        prover.traced(x, y).channels.iter().for_each(|verdict| counts[*verdict as usize] += 1);
+    }
+    counts
+}
