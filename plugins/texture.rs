@@ -2,8 +2,10 @@
 
 use tabray::prelude::*;
 
-static FILENAME: Pparm<String> =
-    Pparm::required("filename", "a PPM or PNG file, relative to the scene's folder");
+static FILENAME: Pparm<String> = Pparm::required(
+    "filename",
+    "an image, relative to the scene's folder: PNG, JPEG, WebP, TIFF, BMP, PPM, Radiance HDR or OpenEXR",
+);
 
 const TABLE: Table = &[&FILENAME];
 

@@ -1,6 +1,7 @@
 //! Small helpers for the text of messages: guesses at misspelt words, lists of words, reasons, and JSON.
 
 use image::ImageError;
+use image::error::ImageFormatHint;
 use serde::Serialize;
 use std::borrow::Cow;
 use std::ffi::OsStr;
@@ -142,11 +143,21 @@ pub fn reason(error: &io::Error) -> String {
     }
 }
 
+/// What is said of a file that is no image.
+pub const NO_IMAGE: &str = "it is not an image that can be read";
+
 /// Returns why a file could not be read as an image.
 pub fn picture_reason(error: &ImageError) -> String {
     match error {
         ImageError::IoError(error) if error.kind() != io::ErrorKind::UnexpectedEof => reason(error),
-        ImageError::Unsupported(_) => "it is not a PPM or PNG image".to_owned(),
+        ImageError::Unsupported(error) => match error.format_hint() {
+            ImageFormatHint::Exact(format) => {
+                let name = format.extensions_str().first().unwrap_or(&"").to_uppercase();
+                let what = if format.reading_enabled() { " of a kind" } else { "" };
+                format!("it is a {name}{what}, which is not read: save it as PNG")
+            }
+            _ => NO_IMAGE.to_owned(),
+        },
         ImageError::Limits(_) => "it is too large".to_owned(),
         _ => "it is corrupt".to_owned(),
     }

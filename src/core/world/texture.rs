@@ -4,9 +4,13 @@ use crate::files::{self, ImageBytes};
 use crate::text;
 use crate::world::material::Rgb;
 use bytesize::ByteSize;
-use image::{ColorType, DynamicImage, ImageDecoder, ImageError, ImageReader, Limits, RgbImage};
+use image::metadata::Orientation;
+use image::{
+    ColorType, DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, Rgb as Texel,
+    RgbImage,
+};
 use std::fs;
-use std::io::{self, BufReader};
+use std::io::{self, BufReader, Read, Seek};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use tabray_exact::interval::{Float, Interval};
@@ -22,8 +26,26 @@ const MOST_TEXELS: usize = 8;
 #[derive(Debug, Default)]
 pub struct Texture {
     path: PathBuf,
-    image: OnceLock<Result<RgbImage, String>>,
+    picture: OnceLock<Result<Picture, String>>,
 }
+
+/// An image that was read.
+#[derive(Debug)]
+struct Picture {
+    image: RgbImage,
+    remarks: Vec<&'static str>,
+}
+
+/// The files that are not read, and how they begin, as far as the reader of images does not know them.
+const OTHERS: [(&[u8], usize, &str); 7] = [
+    (b"<", 0, "XML, as SVG is"),
+    (b"8BPS", 0, "a file of Photoshop"),
+    (b"ftyp", 4, "a HEIC, an AVIF or a film"),
+    (b"JXL ", 4, "a JPEG XL"),
+    (b"\xff\x0a", 0, "a JPEG XL"),
+    (b"jP  ", 4, "a JPEG 2000"),
+    (b"%PDF", 0, "a PDF"),
+];
 
 /// Textures are equal if their paths are.
 impl PartialEq for Texture {
@@ -33,9 +55,9 @@ impl PartialEq for Texture {
 }
 
 impl Texture {
-    /// Makes a texture of an image file: PPM, PGM, PBM or PNG. Nothing is read yet.
+    /// Makes a texture of an image file. Nothing is read yet.
     pub fn new(path: PathBuf) -> Self {
-        Self { path, image: OnceLock::new() }
+        Self { path, picture: OnceLock::new() }
     }
 
     /// Returns the path of the image file.
@@ -56,41 +78,73 @@ impl Texture {
     /// # Errors
     /// The reason why it cannot be read.
     pub fn load_within(&self, bytes: u64) -> Result<&RgbImage, &str> {
-        self.image.get_or_init(|| self.read(bytes)).as_ref().map_err(String::as_str)
+        let picture = self.picture.get_or_init(|| self.read(bytes));
+        picture.as_ref().map(|picture| &picture.image).map_err(String::as_str)
     }
 
-    fn read(&self, most: u64) -> Result<RgbImage, String> {
+    fn read(&self, most: u64) -> Result<Picture, String> {
         let file = files::open(&self.path).map_err(|error| text::reason(&error))?;
-        let mut limits = Limits::no_limits();
-        limits.max_alloc = Some(most.saturating_add(ASIDE));
+        let too_much = || format!("it takes more than {} of memory", ByteSize(most));
         let cannot = |error: ImageError| match error {
-            ImageError::Limits(_) => format!("it takes more than {} of memory", ByteSize(most)),
+            ImageError::Limits(_) => too_much(),
             _ => text::picture_reason(&error),
         };
+        let length = file.metadata().map_err(|error| text::reason(&error))?.len();
+        // Some decoders hold the whole file.
+        if length > most {
+            return Err(too_much());
+        }
+        let mut limits = Limits::no_limits();
+        limits.max_alloc = Some(most.saturating_add(ASIDE));
         let bytes: &mut dyn ImageBytes = &mut BufReader::new(file);
         let reader = ImageReader::new(bytes).with_guessed_format();
         let mut reader = reader.map_err(|error| text::reason(&error))?;
         reader.limits(limits);
-        let decoder = reader.into_decoder().map_err(cannot)?;
+        let Some(format) = reader.format() else { return Err(other(reader.into_inner())) };
+        let mut decoder = reader.into_decoder().map_err(cannot)?;
         let (width, height) = decoder.dimensions();
         if width == 0 || height == 0 {
             return Err(format!("it is {width} x {height} pixels, and has none"));
         }
-        // As it is decoded, and as bytes of red, green and blue.
+        let (colours, orientation) =
+            (decoder.color_type(), decoder.orientation().unwrap_or(Orientation::NoTransforms));
         let pixels = u64::from(width) * u64::from(height);
-        let bytes = if decoder.color_type() == ColorType::Rgb8 { 0 } else { 3 * pixels };
-        let bytes = decoder.total_bytes().saturating_add(bytes);
-        if bytes > most {
-            return Err(format!("it takes more than {} of memory", ByteSize(most)));
+        // As it is decoded, as bytes of red, green and blue, and turned.
+        let copies = match colours {
+            ColorType::Rgb8 => 0,
+            colours if colours.has_alpha() => 4 + 3,
+            _ => 3,
+        };
+        let turned = if orientation == Orientation::NoTransforms { 0 } else { 3 };
+        // What decoders take beside, which have no limits of their own.
+        let aside = match format {
+            ImageFormat::Jpeg => length + 6 * pixels,
+            ImageFormat::WebP => length + 6 * pixels,
+            _ => 0,
+        };
+        if decoder.total_bytes().saturating_add((copies + turned) * pixels).saturating_add(aside) > most {
+            return Err(too_much());
         }
         let picture = DynamicImage::from_decoder(decoder).map_err(cannot)?;
-        Ok(picture.into_rgb8())
+        let mut remarks = Vec::new();
+        if is_bright(&picture) {
+            remarks.push("has colours above 1, which are cut to 1");
+        }
+        let image = if colours.has_alpha() { over_white(picture, &mut remarks) } else { picture.into_rgb8() };
+        let mut image = DynamicImage::ImageRgb8(image);
+        image.apply_orientation(orientation);
+        Ok(Picture { image: image.into_rgb8(), remarks })
+    }
+
+    /// Returns what is not shown as the image has it, phrased to follow the texture's name.
+    pub fn remarks(&self) -> &[&'static str] {
+        self.picture.get().and_then(|picture| picture.as_ref().ok()).map_or(&[], |picture| &picture.remarks)
     }
 
     /// Returns the memory that the image takes, in bytes; 0 if it has not been read.
     pub fn bytes(&self) -> u64 {
-        let picture = self.image.get().and_then(|picture| picture.as_ref().ok());
-        picture.map_or(0, |picture| picture.as_raw().len() as u64)
+        let picture = self.picture.get().and_then(|picture| picture.as_ref().ok());
+        picture.map_or(0, |picture| picture.image.as_raw().len() as u64)
     }
 
     /// Tells whether no file exists at the path.
@@ -128,4 +182,38 @@ impl Texture {
         };
         rows.flat_map(of_row).reduce(hull).unwrap_or([any; 3])
     }
+}
+
+/// Says what a file is that is no image known to the reader.
+fn other(mut file: impl Read + Seek) -> String {
+    let mut start = [0; 16];
+    let read = file.rewind().and_then(|()| file.read(&mut start));
+    let known = |(begins, at, _): &&(&[u8], usize, &str)| start[*at..].starts_with(begins);
+    match OTHERS.iter().find(known) {
+        Some((_, _, what)) if read.is_ok() => format!("it is {what}: save it as PNG"),
+        _ => text::NO_IMAGE.to_owned(),
+    }
+}
+
+/// Tells whether colours of an image are brighter than white.
+fn is_bright(picture: &DynamicImage) -> bool {
+    match picture {
+        DynamicImage::ImageRgb32F(image) => image.iter().any(|channel| *channel > 1.0),
+        DynamicImage::ImageRgba32F(image) => image.iter().any(|channel| *channel > 1.0),
+        _ => false,
+    }
+}
+
+/// Lays an image over white, so that an object shows its own colours where a texel is transparent.
+fn over_white(picture: DynamicImage, remarks: &mut Vec<&'static str>) -> RgbImage {
+    let picture = picture.into_rgba8();
+    if picture.pixels().any(|texel| texel.0[3] < u8::MAX) {
+        remarks.push("has transparent texels, which do not show what is behind an object but its own colour");
+    }
+    let over = |[red, green, blue, alpha]: [u8; 4]| {
+        let alpha = u16::from(alpha);
+        [red, green, blue]
+            .map(|channel| ((u16::from(channel) * alpha + 255 * (255 - alpha) + 127) / 255) as u8)
+    };
+    RgbImage::from_fn(picture.width(), picture.height(), |x, y| Texel(over(picture.get_pixel(x, y).0)))
 }

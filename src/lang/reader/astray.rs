@@ -4,7 +4,8 @@ use std::path::{Component, Path, PathBuf};
 use tabray_core::text::nearest_file;
 
 /// The extensions of images that textures can be.
-const IMAGES: [&str; 5] = ["ppm", "png", "pgm", "pbm", "pnm"];
+const IMAGES: [&str; 13] =
+    ["ppm", "png", "pgm", "pbm", "pnm", "jpg", "jpeg", "webp", "bmp", "tif", "tiff", "hdr", "exr"];
 
 /// The maximum number of folders that are searched, and of files in each.
 const FOLDERS: usize = 64;
@@ -12,6 +13,10 @@ const FILES: usize = 4096;
 
 /// Returns the name of the image that was probably meant by one that a scene in `folder` has and that does not exist.
 pub fn image(folder: &Path, written: &str) -> Option<String> {
+    let slashes = written.replace('\\', "/");
+    if slashes != written && folder.join(&slashes).is_file() {
+        return Some(slashes);
+    }
     let written = Path::new(written);
     let name = written.file_name()?;
     let own = written.parent().unwrap_or(Path::new(""));

@@ -33,6 +33,13 @@ impl Check<'_, '_> {
             }
             let read = texture.load_within(self.texture_memory);
             self.texture_memory -= texture.bytes().min(self.texture_memory);
+            for remark in texture.remarks() {
+                let place = self.places.get(*order);
+                let parsed = source.entity(self.registry, *order, &place);
+                let place = parsed.and_then(|parsed| place_of(args.entity, &parsed, None));
+                self.report
+                    .add(Fault::warning(place, format!("the file of texture `{}` {remark}", args.name)));
+            }
             if let Err(reason) = read {
                 let place = self.places.get(*order);
                 let is_told = self.report.would_list(Severity::Error, &place);
@@ -52,7 +59,7 @@ impl Check<'_, '_> {
                 let place = parsed.and_then(|parsed| place_of(args.entity, &parsed, file));
                 self.report.add(
                     Fault::error(place, message).help(
-                        "a texture is a PPM or PNG file, and its name is relative to the scene's folder",
+                        "a texture is an image, such as a PNG or JPEG, and its name is relative to the scene's folder",
                     ),
                 );
             }
