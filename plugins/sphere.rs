@@ -109,16 +109,10 @@ impl<A: Marker> Hittable for Sphere<A> {
 
 impl<A: Bounded> Bracketed for Sphere<A> {
     #[inline(always)]
-    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+    fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         let from = ray.origin - self.center;
-        sphere::t_bounds(from, ray.dir, 1.0, 1.0, self.radius, range.origin_side, range.origin_error)
-    }
-
-    #[inline(always)]
-    fn t_bounds_within(&self, ray: &Ray, _range: &RayRange, drift: Drift) -> Bracket {
-        let from = ray.origin - self.center;
-        let spread = sphere::spread_within(from, self.radius, drift);
-        sphere::t_bounds(from, ray.dir, 1.0, spread, self.radius, None, 0.0)
+        let spread = 1.0 + sphere::spread(from, self.radius, ray.drift);
+        sphere::t_bounds(from, ray.dir, 1.0, spread, self.radius, range.origin_side, range.origin_error)
     }
 
     #[inline(always)]

@@ -41,7 +41,7 @@ pub use crate::geometry::aabb::{Aabb, SLACK};
 pub use crate::geometry::frame::Frame;
 pub use crate::geometry::image_point::{ImagePoint, from_middle};
 pub use crate::geometry::placement::Rotation;
-pub use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
+pub use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayBall, RayRange, Side};
 pub use crate::geometry::sight::{Line, Sight};
 pub use crate::geometry::view_frame::{ViewFrame, half_tangent};
 pub use crate::shapes::implicit::Implicit;

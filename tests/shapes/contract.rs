@@ -7,7 +7,7 @@ use std::fs;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use tabray::exact::Scalar;
-use tabray::geometry::{Aabb, Bracket, Frame, ImagePoint, MISS, Ray, RayRange, Side};
+use tabray::geometry::{Aabb, Bracket, Frame, ImagePoint, MISS, Ray, RayBall, RayRange, Side};
 use tabray::scene::{Args, Derived, Entity, Kind, Pparm, Refusal, Registry, Row, Table};
 use tabray::shapes::Implicit;
 use tabray::tools::contract::{self, Breach, Promise};
@@ -194,7 +194,7 @@ impl Hittable for Ball {
 }
 
 impl Bracketed for Ball {
-    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+    fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         if range.origin_side.is_none()
             && range.origin_error > 0.0
             && self.is_near(ray.origin, range.origin_error)

@@ -10,6 +10,7 @@ mod oracle;
 mod arithmetic;
 mod cameras;
 mod contract;
+mod costs;
 mod double_double;
 mod implicit;
 mod mesh;

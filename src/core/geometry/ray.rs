@@ -1,6 +1,7 @@
 //! Rays, distances along them, and the sides of surfaces that they hit.
 
 use glam::DVec3;
+use std::ops::Deref;
 
 pub use tabray_exact::roots::range::{MISS, RayRange, Side};
 
@@ -50,6 +51,50 @@ impl Bracket {
     pub const UNKNOWN: Self = Self { near: 0.0, far: MISS };
 }
 
+/// A ray, and how far the rays that it stands for may be from it.
+///
+/// A ray that was taken to a copy's own coordinates stands for all rays that rounding may have made it of. A ray of the
+/// world stands for itself: the rounding of a camera ray's direction, 3 units of 2^-53 in each component, is not counted
+/// here, and shapes allow for it.
+#[derive(Clone, Copy, Debug)]
+pub struct RayBall {
+    /// The ray.
+    pub ray: Ray,
+    /// The maximum distance of the rays that it stands for.
+    pub drift: Drift,
+}
+
+impl RayBall {
+    /// Returns whether the ray stands for itself alone.
+    #[inline(always)]
+    pub fn is_single(&self) -> bool {
+        self.drift.is_none()
+    }
+}
+
+impl From<Ray> for RayBall {
+    #[inline(always)]
+    fn from(ray: Ray) -> Self {
+        Self { ray, drift: Drift::NONE }
+    }
+}
+
+impl From<&Ray> for RayBall {
+    #[inline(always)]
+    fn from(ray: &Ray) -> Self {
+        Self::from(*ray)
+    }
+}
+
+impl Deref for RayBall {
+    type Target = Ray;
+
+    #[inline(always)]
+    fn deref(&self) -> &Ray {
+        &self.ray
+    }
+}
+
 /// The maximum distance of a ray that was transformed and rounded from the ray that it stands for.
 #[derive(Clone, Copy, Debug)]
 pub struct Drift {
@@ -62,4 +107,10 @@ pub struct Drift {
 impl Drift {
     /// The drift of a ray that was not transformed.
     pub const NONE: Self = Self { origin: 0.0, dir: 0.0 };
+
+    /// Returns whether this is the drift of a ray that was not transformed.
+    #[inline(always)]
+    pub fn is_none(&self) -> bool {
+        (self.origin == 0.0) & (self.dir == 0.0)
+    }
 }

@@ -3,7 +3,7 @@
 mod hits;
 
 use crate::geometry::aabb::Aabb;
-use crate::geometry::ray::{Bracket, Drift, Ray, RayRange};
+use crate::geometry::ray::{Bracket, Drift, Ray, RayBall, RayRange};
 use crate::shapes::sphere::{self, SphereLine};
 use crate::world::accuracy::Bounded;
 use glam::DVec3;
@@ -94,23 +94,16 @@ impl<A: Bounded> Ellipsoid<A> {
         Self::new(center, times_power_of_two(radius, -exponent), scale)
     }
 
-    /// Returns a bracket of the distance of a ray's first hit.
+    /// Returns a bracket of the distance of the first hit of each ray that one stands for.
     #[inline(always)]
-    pub fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+    pub fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         let (from, dir) = self.scaled(ray);
         let (inverse, error) = (1.0 / dir.dot(dir), range.origin_error / self.scale.min_element());
         let spread = self.largest_inverse_scale * inverse.sqrt();
+        let Drift { origin, dir: turn } = ray.drift;
+        let drift = Drift { origin: origin * self.largest_inverse_scale, dir: turn * spread };
+        let spread =
+            if ray.is_single() { spread } else { 1.0 + spread + sphere::spread(from, self.radius, drift) };
         sphere::t_bounds(from, dir, inverse, spread, self.radius, range.origin_side, error)
-    }
-
-    /// Returns a bracket of the distance of the first hit of each ray within a drift of this one.
-    #[inline(always)]
-    pub fn t_bounds_within(&self, ray: &Ray, drift: Drift) -> Bracket {
-        let (from, dir) = self.scaled(ray);
-        let inverse = 1.0 / dir.dot(dir);
-        let spread = self.largest_inverse_scale * inverse.sqrt();
-        let drift = Drift { origin: drift.origin * self.largest_inverse_scale, dir: drift.dir * spread };
-        let spread = spread + sphere::spread_within(from, self.radius, drift);
-        sphere::t_bounds(from, dir, inverse, spread, self.radius, None, 0.0)
     }
 }

@@ -3,7 +3,7 @@
 use super::plane::{Flat, Plane};
 use super::rectangle::{FinitePlane, along_sides};
 use crate::geometry::aabb::Aabb;
-use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
 use crate::world::accuracy::{Bounded, Marker};
 use crate::world::certify::Equation;
 use crate::world::hittable::{Bracketed, Certified, Hittable};
@@ -60,7 +60,7 @@ impl<A: Marker> Hittable for FinitePlane<A> {
 
 impl<A: Bounded> Bracketed for FinitePlane<A> {
     #[inline(always)]
-    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+    fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         FinitePlane::t_bounds(self, ray, range)
     }
 

@@ -9,7 +9,7 @@ mod formula;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::facet::Facet;
 use crate::geometry::frame::{self, BLUR, Frame};
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayBall, RayRange, Side};
 use crate::geometry::sight::Line;
 use crate::world::body::Body;
 use crate::world::certify::Equation;
@@ -43,10 +43,6 @@ const MOST_DRIFTING: usize = 256;
 
 /// The maximum number of roots along a ray where the surface is cut away, for another method than the shape's own.
 const MOST_CUT: usize = 64;
-
-/// The maximum number of times that the bracket of a root is made four times as wide, until the function has certain
-/// signs at both ends.
-const WIDENINGS: usize = 8;
 
 impl Body {
     /// Makes an object of an implicit surface with the reflectivities of its material.
@@ -124,17 +120,16 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
 }
 
 impl<T: Implicit> Bracketed for ImplicitShape<T> {
-    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+    fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
+        if !ray.is_single() {
+            return FormulaOnRay::new(self, ray).within(ray.drift).bracket(range);
+        }
         let touches = || self.touches(ray.origin, range.origin_error);
         by_distance(ray, range, touches, |range| {
             let line = FormulaOnRay { by_proof: true, ..FormulaOnRay::new(self, ray) };
             let FirstRoot { root, is_certain } = line.first_hit(range);
             is_certain.then(|| line.distance(root, range))
         })
-    }
-
-    fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
-        FormulaOnRay::new(self, ray).within(drift).bracket(range)
     }
 
     fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
@@ -248,29 +243,19 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
             FirstRoot { root: None, is_certain: true } => return Bracket::MISS,
             _ => return Bracket::UNKNOWN,
         };
-        let value = |t: f64| taylor::FunctionOnLine::at(self, Interval::constant(t));
-        let start = value(stretch.outer.start);
+        let start = taylor::FunctionOnLine::at(self, Interval::<f64>::constant(stretch.outer.start));
         let rounding = 4.0 * f64::EPSILON * (self.closest.abs() + root.abs());
-        let mut width = 4.0 * (self.blur + self.turn * root.abs()) + rounding;
-        for _ in 0..WIDENINGS {
-            let (low, high) = (root - width, root + width);
-            let (before, after) = (value(low), value(high));
-            // The function does not cross 0 from the start to the root, and so has the sign there that it starts with.
-            let crosses = |from: Interval, to: Interval| from.low > 0.0 && to.high < 0.0;
-            let enters = crosses(before, after) && start.low > 0.0;
-            if enters || crosses(after, before) && start.high < 0.0 {
-                let is_kept =
-                    !T::IS_CUT || self.shape.formula.kept(self.on_line(Interval { low, high })).low >= 0.0;
-                let near = (self.closest + low - rounding).max(0.0);
-                return if is_kept {
-                    Bracket { near, far: self.closest + high + rounding }
-                } else {
-                    Bracket::UNKNOWN
-                };
-            }
-            width *= 4.0;
+        let width = 4.0 * (self.blur + self.turn * root.abs()) + rounding;
+        let Some((low, high, rises)) = taylor::bracket(self, root, width) else { return Bracket::UNKNOWN };
+        // The function does not cross 0 from the start to the root, and so has the sign there that it starts with.
+        let is_first = if rises { start.high < 0.0 } else { start.low > 0.0 };
+        let is_kept = !T::IS_CUT || self.shape.formula.kept(self.on_line(Interval { low, high })).low >= 0.0;
+        if is_first && is_kept {
+            let near = (self.closest + low - rounding).max(0.0);
+            Bracket { near, far: self.closest + high + rounding }
+        } else {
+            Bracket::UNKNOWN
         }
-        Bracket::UNKNOWN
     }
 
     /// Returns the part of the ray in the box, from the ray's origin on, whatever the range is: so a hit is the same in

@@ -1,7 +1,7 @@
 //! Rectangles cut out of planes: the arithmetic behind the shapes that have one.
 
 use crate::geometry::aabb::{Aabb, larger, smaller};
-use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange};
 use crate::shapes::plane::Plane;
 use crate::world::accuracy::Marker;
 use glam::{DMat3, DVec2, DVec3};
@@ -113,11 +113,11 @@ impl<A> FinitePlane<A> {
 impl<A: Marker> FinitePlane<A> {
     /// Returns bounds of the distance of a hit in a range.
     #[inline(always)]
-    pub fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+    pub fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         let rough = self.plane.rough_crossing(ray, range.origin_error);
         let inside = self.inside(ray, rough.distance);
         // A camera ray's direction is off by 3 units of 2^-53 in each component, which is less than half of the slack.
-        let slack = rough.error + 2.0 * self.slack(ray, rough.distance);
+        let slack = rough.error + rough.aside + 2.0 * self.slack(ray, rough.distance);
         let Bracket { near, far } = self.plane.t_bounds(&rough, ray, range);
         Bracket {
             near: if inside < -slack { MISS } else { near },

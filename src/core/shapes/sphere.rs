@@ -241,15 +241,19 @@ pub fn t_bounds(
     }
 }
 
-/// Returns the `spread` with which [`t_bounds`] holds for all rays within a drift of one with a unit direction.
+/// Returns what is to be added to the `spread` with which [`t_bounds`] holds for a ray with a unit direction, to hold for
+/// all rays within a drift of it.
 ///
 /// The drift moves `aside` by `k` EPSILON of the size. Where the discriminant exceeds `doubt`, which grows with the
 /// spread `K`, that moves half the chord by less than `k EPSILON size / sqrt(32,768 EPSILON K)`, of which half of
 /// `ERROR K size` is more than enough for `K = 1 + k / 8`.
 #[inline(always)]
-pub fn spread_within(from: DVec3, radius: f64, drift: Drift) -> f64 {
+pub fn spread(from: DVec3, radius: f64, drift: Drift) -> f64 {
+    if drift.is_none() {
+        return 0.0;
+    }
     let size = from.abs().element_sum() + radius;
-    1.0 + (2.0 * drift.origin / size + 3.0 * drift.dir) / (8.0 * f64::EPSILON)
+    (2.0 * drift.origin / size + 3.0 * drift.dir) / (8.0 * f64::EPSILON)
 }
 
 #[inline(always)]

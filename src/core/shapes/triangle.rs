@@ -1,9 +1,10 @@
 //! The tests of a ray against the edges of a triangle: the arithmetic behind triangles.
 
 mod hits;
+mod sides;
 
 use crate::geometry::aabb::larger;
-use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayBall, RayRange};
 use crate::geometry::ray_packet::RayPacket;
 use crate::shapes::plane::Plane;
 use crate::simd::soa::{LANES, Vectors};
@@ -14,6 +15,8 @@ use tabray_exact::double_double::vectors::{
 };
 use tabray_exact::double_double::{DoubleDouble, two_sum};
 use tabray_exact::scalar::{Scalar, constants, cross, dot, per_axis};
+
+pub(crate) use sides::{UNDERFLOW, largest, passed, side_error};
 
 /// A triangle.
 #[derive(Clone, Copy, Debug)]
@@ -48,10 +51,10 @@ impl<A: Bounded> Triangle<A> {
 impl<A: Bounded> Triangle<A> {
     /// Returns a bracket of the distance at which a ray crosses the triangle.
     #[inline(always)]
-    pub fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+    pub fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         let rough = self.plane.rough_crossing(ray, range.origin_error);
         let Bracket { near, far } = self.plane.t_bounds(&rough, ray, range);
-        let passed = self.passed(ray);
+        let passed = passed(self.corners, ray, ray.drift);
         Bracket {
             near: if passed == Some(false) { MISS } else { near },
             far: if passed == Some(true) { far } else { MISS },
@@ -103,31 +106,11 @@ impl<A> Triangle<A> {
     /// through between them (Woop, Benthin and Wald 2013).
     #[inline(always)]
     pub(crate) fn is_passed_by(&self, ray: &Ray) -> bool {
-        self.passed(ray).unwrap_or_else(|| {
+        passed(self.corners, ray, Drift::NONE).unwrap_or_else(|| {
             let [a, b, c] = self.corners;
             let sides = [(a, b), (b, c), (c, a)].map(|(from, to)| exact_side(from, to, ray));
             sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0)
         })
-    }
-
-    /// Computes [`is_passed_by`](Self::is_passed_by), or `None` where rounding could have changed a sign.
-    #[inline(always)]
-    pub fn passed(&self, ray: &Ray) -> Option<bool> {
-        // Written out, as a call of `map` would not be inlined, and lanes not be taken eight at a time.
-        let [a, b, c] = self.corners;
-        let [a, b, c] = [a - ray.origin, b - ray.origin, c - ray.origin];
-        let side = |from: DVec3, to: DVec3| {
-            let side = from.cross(to).dot(ray.dir);
-            // Units of 2^-53 of the product of the largest components: a component of the cross product is off by 4 of
-            // its two terms, the direction of a camera ray by 3 and the product by 4; components of the direction add
-            // up to at most 1.74, so that the sum is off by 14 + 6 * 3 + 14 = 46, less than 64.
-            let error = 32.0 * f64::EPSILON * from.abs().max_element() * to.abs().max_element();
-            (side > error, side < -error)
-        };
-        let (one, two, three) = (side(a, b), side(b, c), side(c, a));
-        let is_inside = (one.0 & two.0 & three.0) | (one.1 & two.1 & three.1);
-        let is_outside = (one.0 | two.0 | three.0) & (one.1 | two.1 | three.1);
-        if is_inside | is_outside { Some(is_inside) } else { None }
     }
 }
 

@@ -17,6 +17,11 @@ use tabray_exact::interval::Fraction;
 pub struct AnyShape(Box<dyn PacketShape>);
 
 impl AnyShape {
+    /// Wraps a shape that takes packets and proofs itself.
+    pub fn of_packets(shape: impl PacketShape + 'static) -> Self {
+        Self(Box::new(shape))
+    }
+
     /// Returns the shape's interface for packets of rays.
     #[inline]
     pub fn packets(&self) -> &dyn PacketShape {
@@ -25,7 +30,7 @@ impl AnyShape {
 
     /// Returns a bracket of the distance of the ray's first hit, as tight as is quickly known.
     pub fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
-        self.0.t_bounds(ray, range)
+        self.0.t_bounds(&ray.into(), range)
     }
 
     /// Returns the distance of a hit that [`t_bounds`](Self::t_bounds) has found for certain, or NaN where it takes

@@ -5,7 +5,7 @@
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::facet::Facet;
-use crate::geometry::ray::{Bracket, Drift, Ray, RayRange, Side};
+use crate::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
 use crate::world::certify::{Assumption, Equation};
 use crate::world::coincidence;
 use glam::{DMat3, DVec2, DVec3};
@@ -152,19 +152,12 @@ pub trait Hittable: Send + Sync {
 /// Branch-free arithmetic on several rays at a time uses the brackets to find the shape that each ray may hit first.
 /// The exact distance is then computed for that shape alone.
 pub trait Bracketed: Hittable {
-    /// Returns a bracket of [`distance`](Hittable::distance).
+    /// Returns a bracket of the [`distance`](Hittable::distance) of each ray that this one stands for. In the world,
+    /// that is the ray itself; in a copy's coordinates, all rays within a drift.
     ///
     /// Where the ray may start on the shape, because the shape touches the origin within the range's `origin_error`,
     /// the bracket has no certain upper end.
-    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket;
-
-    /// Returns a bracket of the distances of all rays within a drift of this one, none of which starts on the shape. If
-    /// the bracket is unknown, as by default, the hits of camera rays on copies of the shape are proven, which takes a
-    /// hundred times as long.
-    #[inline(always)]
-    fn t_bounds_within(&self, _ray: &Ray, _range: &RayRange, _drift: Drift) -> Bracket {
-        Bracket::UNKNOWN
-    }
+    fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket;
 
     /// Returns the distance that [`distance`](Hittable::distance) returns, to the last bit, for a ray whose hit a
     /// bracket has found for certain, or NaN where it takes more than plain arithmetic. For other rays it need not

@@ -97,7 +97,7 @@ impl Promise {
                 "make `distance` depend on the shape, the ray and the ray range alone"
             }
             Self::PacketsAgree => {
-                "make `t_bounds` contain `distance`, and `refine` equal it to the last bit or be NaN; if in doubt, leave out `Bracketed`, or `uniform`; where there is a `shading_normal`, `is_smooth` is true"
+                "make `t_bounds` contain the `distance` of each ray that its ray stands for, and `refine` equal it to the last bit or be NaN; if in doubt, leave out `Bracketed`, or `uniform`; where there is a `shading_normal`, `is_smooth` is true"
             }
             Self::NormalIsUnit => {
                 "end `normal` with `.normalize()`, and choose a normal where the surface has none"

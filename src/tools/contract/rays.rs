@@ -86,6 +86,7 @@ fn try_ray(tried: &RayTrial, draw: &mut Draw) -> Result<Option<DVec3>, Fault> {
     let distance = tried.distance_in_range(&tried.ray, &RayRange::ALL)?;
     tried.check_repeats(distance)?;
     tried.check_packets(distance)?;
+    tried.check_drift()?;
     tried.check_ranges(distance)?;
     tried.check_proof(distance)?;
     if distance == MISS {

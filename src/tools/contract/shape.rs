@@ -3,7 +3,7 @@
 use super::looks::same_bits;
 use super::promise::{Fault, Promise};
 use glam::DVec3;
-use tabray_core::geometry::ray::{MISS, Ray, RayRange, Side};
+use tabray_core::geometry::ray::{Drift, MISS, Ray, RayBall, RayRange, Side};
 use tabray_core::geometry::ray_packet::{Nearest, RayPacket};
 use tabray_core::geometry::sight::Sight;
 use tabray_core::simd::cpu::Cpu;
@@ -25,6 +25,10 @@ pub const SLACK: f64 = 1e-7;
 /// The least absolute cosine between a ray and the normal. Below it the ray grazes the surface, and rounding decides
 /// what it hits.
 pub const GRAZING: f64 = 0.05;
+
+/// How far the rays are from a ray that stands for them, as a fraction of the same numbers: some thousand times as far as
+/// those of a copy that is not distorted.
+const DRIFT: f64 = 1e-10;
 
 /// A shape and the ray with which it is tried.
 pub struct RayTrial<'s> {
@@ -145,6 +149,30 @@ impl RayTrial<'_> {
                         cosines[0]
                     ));
                 }
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that the bracket of a ray that stands for others holds the hits of these, as where a copy is placed.
+    pub fn check_drift(&self) -> Result<(), Fault> {
+        let Self { shape, ray, .. } = self;
+        let drift = Drift { origin: DRIFT * self.size(0.0), dir: DRIFT };
+        let bracket = shape.packets().t_bounds(&RayBall { ray: *ray, drift }, &RayRange::ALL);
+        // A shape of which only the distance is known answers for the ray alone.
+        if bracket.near == bracket.far {
+            return Ok(());
+        }
+        let (across, up) = ray.dir.any_orthonormal_pair();
+        for aside in [across, -across, up, -up] {
+            let origin = ray.origin + 0.9 * drift.origin * aside;
+            let neighbour = Ray { origin, dir: (ray.dir + 0.9 * drift.dir * aside).normalize() };
+            let distance = shape.distance(&neighbour, &RayRange::ALL);
+            if !(bracket.near <= distance && distance <= bracket.far) {
+                return Err(Promise::PacketsAgree.fault(format!(
+                    "`distance` gives {distance} for a ray within {drift:?}, and `t_bounds` {bracket:?}, {}",
+                    describe_ray(ray)
+                )));
             }
         }
         Ok(())

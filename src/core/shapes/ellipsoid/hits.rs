@@ -2,7 +2,7 @@
 
 use super::Ellipsoid;
 use crate::geometry::aabb::Aabb;
-use crate::geometry::ray::{Bracket, Drift, Ray, RayRange, Side};
+use crate::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
 use crate::shapes::{sphere, uv};
 use crate::world::accuracy::{Bounded, Marker};
 use crate::world::certify::Equation;
@@ -54,13 +54,8 @@ impl<A: Marker> Hittable for Ellipsoid<A> {
 
 impl<A: Bounded> Bracketed for Ellipsoid<A> {
     #[inline(always)]
-    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+    fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         Ellipsoid::t_bounds(self, ray, range)
-    }
-
-    #[inline(always)]
-    fn t_bounds_within(&self, ray: &Ray, _range: &RayRange, drift: Drift) -> Bracket {
-        Ellipsoid::t_bounds_within(self, ray, drift)
     }
 
     #[inline(always)]

@@ -2,7 +2,7 @@
 
 use crate::geometry::aabb::{Aabb, larger};
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray};
-use crate::shapes::triangle::Triangle;
+use crate::shapes::triangle::{Triangle, UNDERFLOW, largest, passed};
 use crate::world::accuracy::Exact;
 use crate::world::certify::Equation;
 use glam::DVec3;
@@ -20,11 +20,6 @@ const AWAY_ERROR: f64 = 32.0 * f64::EPSILON;
 /// A bound on the rounding error of the dot product with the ray's direction, as a fraction of the product of the edges: a camera ray's
 /// direction is off by 3, and components of a direction add up to at most 1.74: 1.74 * (10 + 2 * 6) = 39, less than 48.
 const TOWARD_ERROR: f64 = 24.0 * f64::EPSILON;
-
-/// Far more than what products lose that are too small for all digits: the sum of a few of 5e-324. A product with such a
-/// sum loses as many times more as the other factor is. It is a normal number, as processors take a hundred times longer
-/// for products with others.
-pub(super) const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 
 /// What a ray may leave: bounds on the distance of its origin from the point that it stands for, in world units. The
 /// ray leaves the faces within that distance.
@@ -117,13 +112,6 @@ impl Flat {
     }
 }
 
-/// Returns the largest magnitude of a component.
-#[inline(always)]
-pub(super) fn largest(vector: DVec3) -> f64 {
-    let DVec3 { x, y, z } = vector.abs();
-    larger(larger(x, y), z)
-}
-
 /// Returns bounds of the distance before `end` at which a ray hits a face; with a drift, of all rays within it.
 #[inline(always)]
 pub(super) fn t_bounds(corners: [DVec3; 3], ray: &Ray, end: f64, leaving: Leaving, drift: Drift) -> Bracket {
@@ -134,42 +122,6 @@ pub(super) fn t_bounds(corners: [DVec3; 3], ray: &Ray, end: f64, leaving: Leavin
     let flat = Flat::of(corners);
     let left = if leaving.most >= 0.0 { flat.left(ray, leaving, drift) } else { None };
     left.unwrap_or_else(|| flat.t_bounds(ray, end, leaving, drift, passed == Some(true)))
-}
-
-/// Returns the error of a product of two corners, as seen from a ray's origin, and its direction: as a fraction of the
-/// product of the corners' largest components, and how much is to be added to each of these first.
-#[inline(always)]
-pub(super) fn side_error(drift: Drift) -> (f64, f64) {
-    // A drift of the direction changes a product by 3 of the drift and of the two largest components, and one of the
-    // origin by 2 of it and of their sum.
-    let error = 32.0 * f64::EPSILON + 3.0 * drift.dir;
-    (error, 2.0 * drift.origin / error)
-}
-
-/// Tells whether the line of a ray passes every edge on the same side; `None` where rounding could have changed a sign.
-///
-/// It computes the same numbers as [`Triangle::passed`], whose comment derives the error.
-#[inline(always)]
-pub(super) fn passed(corners: [DVec3; 3], ray: &Ray, drift: Drift) -> Option<bool> {
-    let [a, b, c] = [corners[0] - ray.origin, corners[1] - ray.origin, corners[2] - ray.origin];
-    let (error, more) = side_error(drift);
-    let largest = [largest(a) + more, largest(b) + more, largest(c) + more];
-    let size = [error * largest[0], error * largest[1], error * largest[2]];
-    let one = a.cross(b).dot(ray.dir);
-    let two = b.cross(c).dot(ray.dir);
-    let three = c.cross(a).dot(ray.dir);
-    let errors = [
-        size[0] * largest[1] + UNDERFLOW,
-        size[1] * largest[2] + UNDERFLOW,
-        size[2] * largest[0] + UNDERFLOW,
-    ];
-    let (plus, minus) = (
-        [one > errors[0], two > errors[1], three > errors[2]],
-        [one < -errors[0], two < -errors[1], three < -errors[2]],
-    );
-    let is_inside = (plus[0] & plus[1] & plus[2]) | (minus[0] & minus[1] & minus[2]);
-    let is_outside = (plus[0] | plus[1] | plus[2]) & (minus[0] | minus[1] | minus[2]);
-    if is_inside | is_outside { Some(is_inside) } else { None }
 }
 
 /// Tells whether the corners of a face do not lie on one line.

@@ -7,7 +7,7 @@ use super::points::touches;
 use super::search::Scratch;
 use super::surface::Surface;
 use crate::geometry::aabb::{Aabb, larger};
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayBall, RayRange};
 use crate::geometry::sight::Sight;
 use crate::shapes::plane::Plane;
 use crate::shapes::triangle::{Triangle, plane_for_distances};
@@ -89,16 +89,10 @@ impl Surface {
         (Bracket::exactly(distance), only)
     }
 
-    /// Returns a bracket of the first hits in a range of all rays within a drift of one.
+    /// Returns a bracket of the first hits in a range of all rays that one stands for.
     #[inline(always)]
-    pub(super) fn bracket_within<A: Bounded>(
-        &self,
-        cpu: Cpu,
-        ray: &Ray,
-        range: &RayRange,
-        drift: Drift,
-    ) -> Bracket {
-        let known = self.first(cpu, ray, range, NOTHING, drift, false);
+    pub(super) fn bracket_within<A: Bounded>(&self, cpu: Cpu, ray: &RayBall, range: &RayRange) -> Bracket {
+        let known = self.first(cpu, ray, range, NOTHING, ray.drift, false);
         known.within(self.crossing::<A>(known, ray))
     }
 

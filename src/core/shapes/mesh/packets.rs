@@ -1,12 +1,11 @@
 //! Meshes for packets of rays.
 
-use super::hits::NOTHING;
 use super::known::Known;
 use super::memo::Memo;
 use super::search::Aims;
 use super::shape::{ByFaces, Mesh};
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
-use crate::geometry::ray_packet::{self, Nearest, PACKET_SIZE, RayPacket};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayBall, RayRange, Side};
+use crate::geometry::ray_packet::{self, PACKET_SIZE, RayPacket};
 use crate::shapes::triangle::{crossings, unit_normals};
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::{LANES, Vectors};
@@ -17,33 +16,38 @@ use crate::world::packets::shape::Packets;
 use crate::world::shape::{ByPackets, Shape};
 
 impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
-    fn closest_hits(
+    fn brackets(
         &self,
         cpu: Cpu,
         rays: RayPacket,
+        drift: Drift,
         sides: Option<&[Side]>,
-        id: u64,
-        nearest: Nearest,
-    ) -> bool {
-        let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
-        let count = rays.len();
-        let mesh = &self.shape;
-        let (side, ends) = (sides.map(|sides| sides[0]), &nearest.far[..count]);
-        if side.is_none() || mesh.can_hit_itself {
-            let leaving = mesh.leaving(side, rays.origin_error);
-            let aims = Aims { leaving, drift: Drift::NONE, is_any: false };
-            Memo::with(|memo| {
-                mesh.search(cpu, rays, ends, aims, |lane, known, crossing| {
+        ends: &[f64],
+        (near, far): (&mut [f64], &mut [f64]),
+    ) {
+        near.fill(MISS);
+        far.fill(MISS);
+        let (mesh, side, ends) = (&self.shape, sides.map(|sides| sides[0]), &ends[..near.len()]);
+        if side.is_some() && !mesh.can_hit_itself {
+            return;
+        }
+        let aims = Aims { leaving: mesh.leaving(side, rays.origin_error), drift, is_any: false };
+        Memo::with(|memo| {
+            mesh.search(cpu, rays, ends, aims, |lane, known, crossing| {
+                let bracket = if drift.is_none() {
                     let (ray, range) = (rays.get(lane), RayRange { far: ends[lane], ..RayRange::ALL });
-                    let (bracket, face) = mesh.surface.bracketed::<A>(known, crossing, &ray, &range, leaving);
-                    (near[lane], far[lane]) = (bracket.near, bracket.far);
+                    let (bracket, face) =
+                        mesh.surface.bracketed::<A>(known, crossing, &ray, &range, aims.leaving);
                     if let Some(face) = face {
                         memo.note(mesh.surface.id, &ray, bracket.near, face);
                     }
-                });
+                    bracket
+                } else {
+                    known.within(crossing)
+                };
+                (near[lane], far[lane]) = (bracket.near, bracket.far);
             });
-        }
-        ray_packet::closest_of_brackets(cpu, &near[..count], &far[..count], id, nearest)
+        });
     }
 
     fn occluded(
@@ -120,29 +124,12 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
         true
     }
 
-    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
-        self.shape.bracket(Cpu::best(), ray, range).0
-    }
-
-    fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
-        self.shape.surface.bracket_within::<A>(Cpu::best(), ray, range, drift)
-    }
-
-    fn brackets_within(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        drift: Drift,
-        ends: &[f64],
-        near: &mut [f64],
-        far: &mut [f64],
-    ) {
-        near.fill(MISS);
-        far.fill(MISS);
-        let aims = Aims { leaving: NOTHING, drift, is_any: false };
-        self.shape.search(cpu, rays, ends, aims, |lane, known, crossing| {
-            Bracket { near: near[lane], far: far[lane] } = known.within(crossing);
-        });
+    fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
+        if ray.is_single() {
+            self.shape.bracket(Cpu::best(), ray, range).0
+        } else {
+            self.shape.surface.bracket_within::<A>(Cpu::best(), ray, range)
+        }
     }
 
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {

@@ -1,11 +1,12 @@
 //! The search for the first hits of a packet's rays.
 
-use super::face::{Flat, Leaving, UNDERFLOW, largest, side_error, t_bounds};
+use super::face::{Flat, Leaving, t_bounds};
 use super::known::Eight;
 use super::surface::Surface;
 use crate::geometry::bvh::{self, Order, PacketVisitor, Stack};
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray};
 use crate::geometry::ray_packet::RayPacket;
+use crate::shapes::triangle::{UNDERFLOW, largest, side_error};
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::LANES;
 use glam::DVec3;
@@ -128,10 +129,10 @@ kernels! {
     }
 }
 
-/// Tells which of eight rays certainly miss a face, and which certainly pass through it, as [`face::passed`] does; 1 for
+/// Tells which of eight rays certainly miss a face, and which certainly pass through it, as [`passed`] does; 1 for
 /// those.
 ///
-/// [`face::passed`]: super::face::passed
+/// [`passed`]: crate::shapes::triangle::passed
 #[inline(always)]
 fn passed(corners: [DVec3; 3], rays: RayPacket, drift: Drift) -> ([u64; LANES], [u64; LANES]) {
     let (error, more) = side_error(drift);

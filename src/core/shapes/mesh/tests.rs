@@ -6,7 +6,7 @@ use super::known::Known;
 use super::search::Aims;
 use super::{Look, Mesh, Openness, Surface, ToWorld, read::Model};
 use crate::geometry::placement::Rotation;
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayBall, RayRange, Side};
 use crate::geometry::ray_packet::{PACKET_SIZE, RayPacket};
 use crate::geometry::sight::Sight;
 use crate::shapes::triangle::Triangle;
@@ -279,7 +279,7 @@ fn a_face_that_only_another_ray_within_the_drift_hits_is_not_missed() {
         let (exactly, _) = surface.bracket::<Exact>(cpu, &ray, &RayRange::ALL, NOTHING);
         assert_eq!(exactly.near, MISS);
         for drift in [Drift { origin: 2e-6, dir: 0.0 }, Drift { origin: 0.0, dir: 1e-6 }] {
-            let within = surface.bracket_within::<Exact>(cpu, &ray, &RayRange::ALL, drift);
+            let within = surface.bracket_within::<Exact>(cpu, &RayBall { ray, drift }, &RayRange::ALL);
             assert!(within.near <= 2.0 && within.far == MISS, "{drift:?}: {within:?}");
         }
     }

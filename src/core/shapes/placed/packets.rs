@@ -2,10 +2,10 @@
 //! tested against packets there, too.
 
 use super::object_space::{ObjectSpaceRays, take_out, to_world};
-use super::shape::{ByPlacement, CAMERA, Placed, entered};
+use super::shape::{ByPlacement, Placed, entered};
 use crate::geometry::aabb::Aabb;
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
-use crate::geometry::ray_packet::{self, Nearest, PACKET_SIZE, RayPacket, split};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayBall, RayRange, Side};
+use crate::geometry::ray_packet::{RayPacket, split};
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::LANES;
 use crate::world::hittable::Hittable;
@@ -17,34 +17,12 @@ use crate::world::shape::{ByPackets, Shape};
 const PART: usize = 64;
 
 impl Placed {
-    /// Computes brackets of first hits before `ends`. `drift` is that of rays in another copy's coordinates.
-    fn brackets(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        sides: Option<&[Side]>,
-        drift: Option<Drift>,
-        ends: &[f64],
-        (near, far): (&mut [f64], &mut [f64]),
-    ) {
-        if near.len() <= LANES {
-            self.few_brackets::<LANES>(cpu, rays, sides, drift, ends, (near, far));
-            return;
-        }
-        for part in split(near.len(), PART) {
-            let sides = sides.map(|sides| &sides[part.clone()]);
-            let brackets = (&mut near[part.clone()], &mut far[part.clone()]);
-            let (rays, ends) = (rays.part(part.clone()), &ends[part]);
-            self.few_brackets::<PART>(cpu, rays, sides, drift, ends, brackets);
-        }
-    }
-
     fn few_brackets<const N: usize>(
         &self,
         cpu: Cpu,
         rays: RayPacket,
+        drift: Drift,
         sides: Option<&[Side]>,
-        drift: Option<Drift>,
         ends: &[f64],
         (near, far): (&mut [f64], &mut [f64]),
     ) {
@@ -61,31 +39,21 @@ impl Placed {
         }
         let mut own = ObjectSpaceRays::<N>::NONE;
         own.set(cpu, self, rays, &ends[..count]);
-        let mut error = 0.0;
+        // Rays that continue from a surface are taken as they are.
+        let mut own_drift = Drift::NONE;
         if is_from_camera {
             let origins = (0..count).map(|lane| rays.origin.get(lane));
-            if let Some(drift) = self.object_drift(origins, drift.unwrap_or(CAMERA)) {
-                shape.brackets_within(cpu, own.rays(count), drift, &own.ends[..count], near, far);
-                error = drift.dir;
-            } else {
-                near.fill(0.0);
-                far.fill(MISS);
-            }
-        } else {
-            let (mut met, mut doubt) = ([0; N], [0; N]);
-            near.copy_from_slice(&own.ends[..count]);
-            far.copy_from_slice(&own.ends[..count]);
-            let (met, doubt) = (&mut met[..count], &mut doubt[..count]);
-            let nearest = Nearest { near, far, met, doubt };
-            shape.closest_hits(cpu, own.rays(count), sides, 1, nearest);
-            for lane in 0..count {
-                let is_in_doubt = doubt[lane] != 0;
-                if is_in_doubt || met[lane] == 0 {
-                    (near[lane], far[lane]) = (if is_in_doubt { 0.0 } else { MISS }, MISS);
+            match self.object_drift(origins, drift) {
+                Some(drift) => own_drift = drift,
+                None => {
+                    near.fill(0.0);
+                    far.fill(MISS);
+                    return;
                 }
             }
         }
-        to_world(cpu, error, &own.lengths[..count], rays, ends, near, far);
+        shape.brackets(cpu, own.rays(count), own_drift, sides, &own.ends[..count], (&mut *near, &mut *far));
+        to_world(cpu, own_drift.dir, &own.lengths[..count], rays, ends, near, far);
         if self.max_z.0.is_some() {
             for lane in 0..count {
                 let bracket = Bracket { near: near[lane], far: far[lane] };
@@ -100,6 +68,44 @@ impl Placed {
                 let entry = || Self::entry(*bounds.get_or_insert_with(|| self.bounds()), &rays.get(lane));
                 Bracket { near: near[lane], far: far[lane] } = entered(bracket, entry);
             }
+        }
+    }
+
+    /// Searches again in the object's own coordinates, as for a single ray: a root depends on its bracket in the last bits,
+    /// and a bracket that was taken to the world depends on the drift.
+    fn few_refine(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        sides: Option<&[Side]>,
+        (near, far): (&[f64], &[f64]),
+        out: &mut [f64],
+    ) {
+        let (count, shape) = (out.len(), self.body.shape.packets());
+        let mut own = ObjectSpaceRays::<PART>::NONE;
+        own.set(cpu, self, rays, &[MISS; PART][..count]);
+        let (mut low, mut high) = ([MISS; PART], [MISS; PART]);
+        let (low, high) = (&mut low[..count], &mut high[..count]);
+        shape.brackets(cpu, own.rays(count), Drift::NONE, sides, &own.ends[..count], (&mut *low, &mut *high));
+        // A ray by itself decides what is doubtful.
+        let mut is_open = [false; PART];
+        for lane in 0..count {
+            is_open[lane] = low[lane] < MISS && high[lane] == MISS;
+            high[lane] = if is_open[lane] { low[lane] } else { high[lane] };
+        }
+        let mut distances = [MISS; PART];
+        distances[..count].copy_from_slice(low);
+        shape.refine(cpu, own.rays(count), sides, (&*low, &*high), &mut distances[..count]);
+        for lane in (0..count).filter(|lane| near[*lane] != far[*lane]) {
+            let distance = if low[lane] == high[lane] { low[lane] } else { distances[lane] };
+            let kept = RayRange::ALL.keep(distance / own.lengths[lane]);
+            out[lane] = if is_open[lane] || distance.is_nan() {
+                f64::NAN
+            } else if self.max_z.cuts_off(&rays.get(lane), kept) {
+                MISS
+            } else {
+                kept
+            };
         }
     }
 
@@ -165,25 +171,24 @@ impl Placed {
 }
 
 impl Packets for Shape<Placed, ByPackets, ByPlacement> {
-    fn closest_hits(
+    fn brackets(
         &self,
         cpu: Cpu,
         rays: RayPacket,
+        drift: Drift,
         sides: Option<&[Side]>,
-        id: u64,
-        nearest: Nearest,
-    ) -> bool {
-        let count = rays.len();
-        if count <= LANES {
-            let (mut near, mut far) = ([MISS; LANES], [MISS; LANES]);
-            let (near, far) = (&mut near[..count], &mut far[..count]);
-            self.shape.brackets(cpu, rays, sides, None, nearest.far, (&mut *near, &mut *far));
-            return ray_packet::closest_of_brackets(cpu, near, far, id, nearest);
+        ends: &[f64],
+        (near, far): (&mut [f64], &mut [f64]),
+    ) {
+        if near.len() <= LANES {
+            return self.shape.few_brackets::<LANES>(cpu, rays, drift, sides, ends, (near, far));
         }
-        let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
-        let (near, far) = (&mut near[..count], &mut far[..count]);
-        self.shape.brackets(cpu, rays, sides, None, nearest.far, (&mut *near, &mut *far));
-        ray_packet::closest_of_brackets(cpu, near, far, id, nearest)
+        for part in split(near.len(), PART) {
+            let sides = sides.map(|sides| &sides[part.clone()]);
+            let brackets = (&mut near[part.clone()], &mut far[part.clone()]);
+            let (rays, ends) = (rays.part(part.clone()), &ends[part]);
+            self.shape.few_brackets::<PART>(cpu, rays, drift, sides, ends, brackets);
+        }
     }
 
     fn occluded(
@@ -199,10 +204,7 @@ impl Packets for Shape<Placed, ByPackets, ByPlacement> {
         // The shape does not know where its copy ends.
         let is_whole = placed.max_z.0.is_none() && !placed.body.shape.packets().is_of_the_notes();
         let Some(bounds) = placed.bounds().filter(|_| is_whole) else {
-            let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
-            let (near, far) = (&mut near[..count], &mut far[..count]);
-            placed.brackets(cpu, rays, sides, None, t_max, (&mut *near, &mut *far));
-            return ray_packet::occluded_by_brackets(cpu, near, far, t_max, blocked, doubt);
+            return shape::occluded_by_brackets(self, cpu, rays, sides, t_max, blocked, doubt);
         };
         if count <= LANES {
             return placed.few_occluded::<LANES>(cpu, rays, sides, (t_max, &bounds), blocked, doubt);
@@ -215,18 +217,18 @@ impl Packets for Shape<Placed, ByPackets, ByPlacement> {
         })
     }
 
-    /// Searches again in the object's own coordinates, as for a single ray: a root depends on its bracket in the last bits,
-    /// and a bracket that was taken to the world depends on the packet.
     fn refine(
         &self,
-        _cpu: Cpu,
+        cpu: Cpu,
         rays: RayPacket,
         sides: Option<&[Side]>,
-        _brackets: (&[f64], &[f64]),
+        (near, far): (&[f64], &[f64]),
         out: &mut [f64],
     ) {
-        for lane in 0..out.len() {
-            out[lane] = self.refine_one(&rays.get(lane), sides.map(|sides| sides[lane]));
+        for part in split(out.len(), PART) {
+            let sides = sides.map(|sides| &sides[part.clone()]);
+            let brackets = (&near[part.clone()], &far[part.clone()]);
+            self.shape.few_refine(cpu, rays.part(part.clone()), sides, brackets, &mut out[part]);
         }
     }
 
@@ -255,24 +257,8 @@ impl Packets for Shape<Placed, ByPackets, ByPlacement> {
         self.shape.body.shape.packets().finds_normals_by_rays()
     }
 
-    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+    fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         self.shape.t_bounds(ray, range)
-    }
-
-    fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
-        self.shape.t_bounds_within(ray, range, drift)
-    }
-
-    fn brackets_within(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        drift: Drift,
-        ends: &[f64],
-        near: &mut [f64],
-        far: &mut [f64],
-    ) {
-        self.shape.brackets(cpu, rays, None, Some(drift), ends, (near, far));
     }
 
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {

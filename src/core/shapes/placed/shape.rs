@@ -4,7 +4,7 @@ use super::image_plane::MaxZ;
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::facet::Facet;
 use crate::geometry::placement::Placement;
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayBall, RayRange, Side};
 use crate::geometry::sight::Sight;
 use crate::world::body::Body;
 use crate::world::certify::{Enclosure, Precision, Premise, Proven};
@@ -41,7 +41,7 @@ pub struct ByPlacement;
 const TURN: f64 = 256.0 * f64::EPSILON;
 
 /// The drift of a camera ray in the world: a component of its direction is off by 3 units of 2^-53 at most.
-pub(super) const CAMERA: Drift = Drift { origin: 0.0, dir: 3.0 * f64::EPSILON };
+const CAMERA: Drift = Drift { origin: 0.0, dir: 3.0 * f64::EPSILON };
 
 /// The largest drift of a direction for which brackets are computed. Lengths are off by as much, and must be known far
 /// better than the distance at which two hits count as coincident.
@@ -93,6 +93,8 @@ impl Placed {
         let Placement { scale, translation, .. } = self.placement;
         let away = origins.map(|origin| (origin - translation).abs().element_sum()).fold(0.0, f64::max);
         let (least, most) = (scale.min_element(), scale.max_element());
+        // A camera ray of the world stands for itself, but for its own rounding.
+        let drift = if drift.is_none() { CAMERA } else { drift };
         // Making two vectors unit vectors at most doubles the difference between them, relative to the shorter one,
         // which is as long as 1 / `most` at least.
         let dir = 2.0 * (drift.dir + TURN) * (most / least);
@@ -128,27 +130,33 @@ impl Placed {
         (from <= to * (1.0 + SLACK)).then_some(from)
     }
 
-    /// Returns a bracket of the first hit of one ray.
-    pub(super) fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+    /// Returns a bracket of the first hits of all rays that one stands for. A ray that continues from a surface is taken as
+    /// it is.
+    pub(super) fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         if self.body.shape.packets().is_of_the_notes() {
             return Bracket::exactly(self.distance(ray, range));
         }
-        if range.origin_side.is_none() && range.origin_error == 0.0 {
-            let bracket = self.t_bounds_within(ray, range, CAMERA);
-            return entered(bracket, || Self::entry(self.bounds(), ray));
+        let is_from_camera = range.origin_side.is_none() && range.origin_error == 0.0;
+        let mut drift = Drift::NONE;
+        if is_from_camera {
+            match self.object_drift([ray.origin].into_iter(), ray.drift) {
+                Some(own) => drift = own,
+                None => return Bracket::UNKNOWN,
+            }
         }
         let (own, length) = self.object_ray(ray);
-        let bracket = self.body.shape.t_bounds(&own, &self.object_range(ray, range, length));
-        self.max_z.kept_bracket(ray, in_world(bracket, length, 0.0, ray, range), range.origin_error)
-    }
-
-    /// Returns a bracket of the first hits of all rays within a drift of a camera ray.
-    pub(super) fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
-        let Some(drift) = self.object_drift([ray.origin].into_iter(), drift) else { return Bracket::UNKNOWN };
-        let (own, length) = self.object_ray(ray);
-        let object_range = RayRange { origin_error: 0.0, ..self.object_range(ray, range, length) };
-        let bracket = self.body.shape.packets().t_bounds_within(&own, &object_range, drift);
-        self.max_z.kept_bracket(ray, in_world(bracket, length, drift.dir, ray, range), 0.0)
+        let mut object_range = self.object_range(ray, range, length);
+        if is_from_camera {
+            object_range.origin_error = 0.0;
+        }
+        let bracket = self.body.shape.packets().t_bounds(&RayBall { ray: own, drift }, &object_range);
+        let bracket = in_world(bracket, length, drift.dir, ray, range);
+        let bracket = self.max_z.kept_bracket(ray, bracket, range.origin_error);
+        if is_from_camera && ray.is_single() {
+            entered(bracket, || Self::entry(self.bounds(), ray))
+        } else {
+            bracket
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Shapes that are all or a part of a plane, for packets of rays.
 
 use super::surface::Plane;
-use crate::geometry::ray::{Bracket, Ray, RayRange, Side};
+use crate::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
 use crate::geometry::ray_packet::RayPacket;
 use crate::world::accuracy::{Accuracy, Bounded, Marker};
 use crate::world::hittable::Bracketed;
@@ -36,7 +36,7 @@ impl<T: Flat, P> OneRay for Shape<T, ByPlane, P> {
     }
 
     #[inline(always)]
-    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+    fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         self.shape.t_bounds(ray, range)
     }
 

@@ -2,7 +2,7 @@
 
 use super::{Flat, Plane};
 use crate::geometry::aabb::{Aabb, SLACK};
-use crate::geometry::ray::{Bracket, Ray, RayRange, Side};
+use crate::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
 use crate::world::accuracy::{Bounded, Marker};
 use crate::world::hittable::{Bracketed, Certified, Hittable};
 use glam::DVec3;
@@ -52,7 +52,7 @@ impl<A: Marker> Hittable for Plane<A> {
 
 impl<A: Bounded> Bracketed for Plane<A> {
     #[inline(always)]
-    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+    fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         Plane::t_bounds(self, &self.rough_crossing(ray, range.origin_error), ray, range)
     }
 

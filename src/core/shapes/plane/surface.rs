@@ -2,7 +2,7 @@
 
 use super::products::{MIN_TOWARD, Products, RECIPROCAL_ERROR, reciprocal};
 use crate::geometry::aabb::{Aabb, SLACK, larger};
-use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayBall, RayRange};
 use crate::world::certify::Equation;
 use glam::DVec3;
 use std::marker::PhantomData;
@@ -36,6 +36,8 @@ pub struct RoughCrossing {
     pub distance: f64,
     /// A bound of the distance's error, in world units; infinite where the ray is parallel to within rounding.
     pub error: f64,
+    /// A bound of how far the points at one distance along the rays that the ray stands for are from its own.
+    pub aside: f64,
     /// Whether the ray is parallel to the plane.
     pub is_parallel: bool,
 }
@@ -84,15 +86,18 @@ impl<A> Plane<A> {
     }
 
     /// Computes the intersection to within a few ulps, and a bound of its error, which includes that of the ray's
-    /// origin.
+    /// origin, and the distance of the intersections of all rays that it stands for.
     ///
     /// Units of 2^-53: the normal's components are off by 1 against each other, the vector between the points by 1, a
     /// product by 1 and the sum of three by 2, so that `away` is off by 5 of its size and `toward` by 4; by 5 more
     /// because a camera ray's direction is off by 3 in each component, which add up to at most 1.74. As `toward` is
     /// more than 3 times its error of 9, these 9 become at most 14 in the quotient, less than the 16 here. Where the
     /// ray runs exactly along the plane, the reciprocal is infinite or NaN, and so are the results.
+    ///
+    /// A drift moves `away` by as much as the origin and `toward` by as much as the direction. `toward` is more than 3
+    /// times that, too, so that it is less than doubled in the quotient.
     #[inline(always)]
-    pub fn rough_crossing(&self, ray: &Ray, origin_error: f64) -> RoughCrossing {
+    pub fn rough_crossing(&self, ray: &RayBall, origin_error: f64) -> RoughCrossing {
         let Products { away, away_size, toward, .. } = self.products(self.normal, ray);
         let inverse = reciprocal(toward);
         let distance = away * inverse;
@@ -101,8 +106,15 @@ impl<A> Plane<A> {
         let error = inverse.abs() * (ERROR * (away_size + distance.abs()) + origin_error);
         // For a normal along an axis, `toward` is one component of the direction, in which nothing cancels.
         let is_parallel = (toward == 0.0) & self.is_upright;
-        let error = if inverse.abs() >= MIN_TOWARD.recip() { f64::INFINITY } else { error };
-        RoughCrossing { distance, error, is_parallel }
+        if ray.is_single() {
+            let error = if inverse.abs() >= MIN_TOWARD.recip() { f64::INFINITY } else { error };
+            return RoughCrossing { distance, error, aside: 0.0, is_parallel };
+        }
+        let Drift { origin, dir } = ray.drift;
+        let aside = origin + distance.abs() * dir;
+        let is_steep = inverse.abs() * (MIN_TOWARD + 4.0 * dir) < 1.0;
+        let error = if is_steep { error + 2.0 * inverse.abs() * aside } else { f64::INFINITY };
+        RoughCrossing { distance, error, aside, is_parallel: false }
     }
 
     /// Computes the dot products with a normal of any length.
@@ -127,12 +139,12 @@ impl<A> Plane<A> {
     /// Returns bounds of the distance of an intersection in a range.
     #[inline(always)]
     pub fn t_bounds(&self, rough: &RoughCrossing, ray: &Ray, range: &RayRange) -> Bracket {
-        let RoughCrossing { distance, error, is_parallel } = *rough;
+        let RoughCrossing { distance, error, aside, is_parallel } = *rough;
         let (low, high) = (distance - error, distance + error);
         let z = ray.origin.z + distance * ray.dir.z;
         // The error of z: that of the distance, and of the sum. The error of the product is far less than a
         // reciprocal's.
-        let z_error = error + 4.0 * f64::EPSILON * ray.origin.z.abs();
+        let z_error = error + aside + 4.0 * f64::EPSILON * ray.origin.z.abs();
         // If the error is infinite or the distance is NaN, all of these are false but `is_parallel`: neither a hit nor
         // a miss is certain.
         let is_missed = is_parallel | (high <= range.near) | (z - z_error > self.max_z);

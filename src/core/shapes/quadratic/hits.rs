@@ -2,7 +2,7 @@
 
 use super::Quadric;
 use crate::geometry::aabb::Aabb;
-use crate::geometry::ray::{Bracket, Drift, Ray, RayRange, Side};
+use crate::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
 use crate::world::accuracy::{Bounded, Marker};
 use crate::world::certify::Equation;
 use crate::world::hittable::{Bracketed, Certified, Hittable};
@@ -59,17 +59,12 @@ impl<A: Marker> Hittable for Quadric<A> {
 
 impl<A: Bounded> Bracketed for Quadric<A> {
     #[inline(always)]
-    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+    fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         let may_leave = range.origin_error > 0.0 && range.origin_side.is_none();
         if may_leave && self.touches(ray.origin, range.origin_error) {
             return Bracket::UNKNOWN;
         }
         Quadric::t_bounds(self, ray, range)
-    }
-
-    #[inline(always)]
-    fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
-        Quadric::t_bounds_within(self, ray, range, drift)
     }
 
     #[inline(always)]

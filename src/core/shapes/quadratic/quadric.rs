@@ -5,7 +5,7 @@ use super::quick::QuickHit;
 use super::surface::{OwnRay, Quadratic};
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::clearance;
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayBall, RayRange, Side};
 use crate::world::accuracy::{Accuracy, Marker};
 use glam::{DMat3, DVec3};
 use std::marker::PhantomData;
@@ -13,9 +13,6 @@ use tabray_exact::scalar::{Scalar, per_axis};
 
 /// A bound of the error of a camera ray, whose direction is off by 3 units of 2^-53 in each component.
 const CAMERA: Drift = Drift { origin: 0.0, dir: 1.5 * f64::EPSILON };
-
-/// The drift of a ray that is taken as it is.
-pub(super) const NO_DRIFT: Drift = Drift { origin: 0.0, dir: 0.0 };
 
 /// A quadric `p·Sp + l·p + c = 0`, for points `p` relative to the center, in a box.
 #[derive(Clone, Debug)]
@@ -175,25 +172,20 @@ impl<A: Marker> Quadric<A> {
             return f64::NAN;
         }
         let own = self.own_ray(ray);
-        let quick = self.own.quick_hit(&own, range.near, NO_DRIFT);
+        let quick = self.own.quick_hit(&own, range.near, Drift::NONE);
         let corrected = self.own.corrected(&own, quick.distance);
         let is_unknown = quick.is_unknown | corrected.is_nan();
         let hit = if is_unknown { f64::NAN } else { range.keep(corrected) };
         if quick.is_missed { MISS } else { hit }
     }
 
-    /// Returns bounds of the distance of the first hit in a range, for a ray that does not start on the quadric.
+    /// Returns bounds of the distances at which all rays that one stands for first hit the quadric in a range.
     #[inline(always)]
-    pub fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+    pub fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         if let Some(side) = range.origin_side {
             return Bracket::exactly(self.other_distance(ray, side, range));
         }
-        self.t_bounds_within(ray, range, CAMERA)
-    }
-
-    /// Returns bounds of the distances at which all rays within a drift of this one first hit the quadric in a range.
-    #[inline(always)]
-    pub fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
+        let drift = if ray.is_single() { CAMERA } else { ray.drift };
         let QuickHit { is_missed, is_unknown, distance, error } =
             self.own.quick_hit(&self.own_ray(ray), range.near, drift);
         let (near, far) = if is_unknown { (range.near, MISS) } else { (distance - error, distance + error) };

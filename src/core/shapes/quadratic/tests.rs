@@ -1,5 +1,5 @@
-use super::quadric::NO_DRIFT;
 use super::surface::Quadratic;
+use crate::geometry::ray::Drift;
 use crate::geometry::ray::MISS;
 use glam::DVec3;
 
@@ -9,7 +9,7 @@ fn hit(coefficients: [f64; 10], [low, high]: [DVec3; 2], origin: DVec3, dir: DVe
     let surface = Quadratic::new(coefficients, low, high);
     let ray = surface.own(origin, dir, DVec3::ZERO);
     let exact = surface.exact_hit(&ray, 0.0);
-    let quick = surface.quick_hit(&ray, 0.0, NO_DRIFT);
+    let quick = surface.quick_hit(&ray, 0.0, Drift::NONE);
     if quick.is_missed {
         assert_eq!(exact, MISS);
     } else if !quick.is_unknown {

@@ -12,7 +12,7 @@ use super::slab::Slab;
 use super::surface::Revolution;
 use crate::geometry::aabb::{from_order, larger, order, smaller};
 use crate::geometry::frame::Frame;
-use crate::geometry::ray::{MISS, Ray, Side};
+use crate::geometry::ray::{Drift, MISS, Ray, Side};
 use crate::geometry::ray_packet::RayPacket;
 use crate::simd::cpu::{Cpu, kernels};
 
@@ -22,23 +22,30 @@ const MIN_COMPONENT: f64 = 1e-9;
 /// The margin of a slab's largest square, as a multiple of a ray's rounding error.
 const MARGIN: f64 = 4.0;
 
+/// The largest distance of rays from the one that stands for them, as a fraction of the surface's radius. Those that
+/// are farther away are traced alone.
+const MOST_OFF: f64 = 1e-4;
+
 /// The largest number of rays that are bracketed together: few enough for their data to stay in the cache, and for
 /// slabs that none of them reaches to be skipped.
 pub(super) const MAX_RAYS: usize = 64;
 
 impl Revolution {
-    /// Computes the brackets of the first hits of rays, up to `N`, which may leave the surface to these sides. Hits
-    /// beyond `ends`, in world units, are of no interest.
+    /// Computes the brackets of the first hits of all rays within a drift of each ray of up to `N`, which may leave the
+    /// surface to these sides. Hits beyond `ends`, in world units, are of no interest.
     pub(super) fn t_bounds<const N: usize>(
         &self,
         cpu: Cpu,
         frame: &Frame,
-        rays: RayPacket,
+        (rays, drift): (RayPacket, Drift),
         sides: Option<&[Side]>,
         ends: &[f64],
         lanes: &mut Lanes<N>,
     ) {
         lanes.prepare(rays.len(), sides);
+        if !drift.is_none() {
+            spread(cpu, lanes, frame, rays, drift, self.size());
+        }
         let reach = self.slabs.reach();
         if let Some((low, high)) = enter(cpu, lanes, frame, rays, self.size(), reach, ends) {
             let (first, last) = (self.slabs.index(low), self.slabs.index(high));
@@ -68,6 +75,21 @@ impl Revolution {
 }
 
 kernels! {
+    /// Sets how far all rays within a drift of each ray are from it, as far as any of them may be on the surface. From the
+    /// point closest to the axis, that is no farther than the radius divided by the direction's part across the axis.
+    fn spread<const N>(lanes: &mut Lanes<N>, frame: &Frame, rays: RayPacket, drift: Drift, size: [f64; 2]) {
+        let count = rays.len().min(N);
+        let (rays, [height, widest]) = (rays.first(count), size);
+        for lane in 0..count {
+            let Ray { origin, dir } = frame.ray(&rays.get(lane));
+            let a = dir.x * dir.x + dir.z * dir.z;
+            let closest = larger(-(origin.x * dir.x + origin.z * dir.z) / a, 0.0);
+            let across = closest + 2.0 * widest / a.sqrt();
+            let along = (origin.y.abs() + height) / dir.y.abs();
+            lanes.off[lane] = drift.origin + drift.dir * smaller(across, along);
+        }
+    }
+
     /// Sets up rays relative to a base near the axis, and clips them to the bounding cylinder, whose squared radius
     /// `reach` includes the shell of the error. Returns the smallest and the largest height of any ray in it; `None`
     /// where all rays miss it.
@@ -89,7 +111,8 @@ kernels! {
             // difference from the frame's, 3 in the axes, 3/2 in the rotation; sqrt(3) of these 5 across three axes are
             // below 9. The direction: sqrt(3) of 3 in the axes and 3/2 in the rotation, 1 for a camera ray's rounded
             // direction, and 1 for the point along the ray: below 10.
-            let off = 12.0 * f64::EPSILON * (origin.abs().element_sum() + base);
+            let off = 12.0 * f64::EPSILON * (origin.abs().element_sum() + base) + lanes.off[lane];
+            let is_wide = lanes.off[lane] > MOST_OFF * widest;
 
             let inverse_dy = 1.0 / dir.y;
             let (bottom, top) = (-moved.y * inverse_dy, (height - moved.y) * inverse_dy);
@@ -101,7 +124,7 @@ kernels! {
             let from = larger(larger(-base, first), inward);
             let to = smaller(last, outward);
 
-            let is_aligned = (a < MIN_COMPONENT * MIN_COMPONENT) | (dir.y.abs() < MIN_COMPONENT);
+            let is_aligned = (a < MIN_COMPONENT * MIN_COMPONENT) | (dir.y.abs() < MIN_COMPONENT) | is_wide;
             let is_missed = !is_aligned & ((discriminant < 0.0) | (from > to) | (from + base > ends[lane]));
             let is_in = !is_aligned & !is_missed;
             lanes.set(lane, Ray { origin: moved, dir }, (base, off), (from, to), widest);

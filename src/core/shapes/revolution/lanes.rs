@@ -19,7 +19,8 @@ pub(super) struct Lanes<const N: usize> {
     /// The part of the ray in the surface's bounding cylinder.
     pub from: [f64; N],
     pub to: [f64; N],
-    /// The distance of the base from the ray's origin, and a bound of the base's rounding error.
+    /// The distance of the base from the ray's origin, and a bound of the base's rounding error. Before the base is set,
+    /// a bound of the distance of the rays that the ray stands for.
     pub base: [f64; N],
     pub off: [f64; N],
     /// Bounds of the rounding errors of the quadratic, and of the places where the ray reaches the cylinder's ends.
@@ -59,8 +60,10 @@ impl<const N: usize> Lanes<N> {
         }
     }
 
-    /// Prepares `count` lanes for rays that leave the surface to these sides, or start elsewhere.
+    /// Prepares `count` lanes for rays that leave the surface to these sides, or start elsewhere, and stand for
+    /// themselves.
     pub fn prepare(&mut self, count: usize, sides: Option<&[Side]>) {
+        self.off[..count].fill(0.0);
         match sides {
             None => {
                 self.side[..count].fill(1.0);

@@ -2,7 +2,6 @@
 
 use super::local::Local;
 use super::surface::Revolution;
-use crate::geometry::frame::BLUR;
 use crate::geometry::ray::Side;
 use crate::world::certify::Equation;
 use tabray_exact::interval::Interval;
@@ -23,9 +22,13 @@ impl FunctionOnLine for ProfileOnRay<'_> {
         self.surface.value(per_axis(|axis| self.local.place(axis, along)))
     }
 
+    fn wants_proof(&self) -> bool {
+        !self.local.ray.is_single()
+    }
+
     /// Returns bounds of the second derivative; that of the squared distance from the axis is constant.
     fn curvature(&self, piece: Interval) -> Option<Interval> {
-        let dir = self.local.dir.to_array().map(|part| Interval::about(part, BLUR));
+        let dir = self.local.dir.to_array().map(|part| Interval::about(part, self.local.turn));
         let height = self.local.place(1, piece);
         let of_square = self.surface.square.at(Jet::variable(height)).second;
         Some(Interval::constant(2.0) * (dir[0].powi(2) + dir[2].powi(2)) - of_square * dir[1].powi(2))

@@ -3,7 +3,7 @@
 
 use super::quadratic::Quadratic;
 use crate::geometry::frame::{self, BLUR, Frame};
-use crate::geometry::ray::{Ray, RayRange};
+use crate::geometry::ray::{Ray, RayBall, RayRange};
 use glam::DVec3;
 use std::ops::Range;
 use tabray_exact::roots::stretch::Stretch;
@@ -16,8 +16,10 @@ pub struct Local {
     pub origin: DVec3,
     /// The ray's direction, a unit vector.
     pub dir: DVec3,
-    /// A bound of the rounding error of each coordinate of the base.
+    /// A bound of the rounding error of each coordinate of the base, for all rays that the ray stands for.
     pub blur: f64,
+    /// A bound of that of each component of the direction.
+    pub turn: f64,
     /// The distances from the base at which the part begins and ends.
     pub from: f64,
     pub to: f64,
@@ -28,14 +30,14 @@ pub struct Local {
     /// The distance from the ray's origin at which the search ends.
     pub far: f64,
     /// The ray in the world, and the surface's frame.
-    pub ray: Ray,
+    pub ray: RayBall,
     pub frame: Frame,
 }
 
 impl Local {
     /// Clips a ray of the world to heights from 0 to `height` and to the radius `widest` around a frame's y axis.
     #[inline(always)]
-    pub fn new(frame: &Frame, ray: &Ray, range: &RayRange, height: f64, widest: f64) -> Option<Self> {
+    pub fn new(frame: &Frame, ray: &RayBall, range: &RayRange, height: f64, widest: f64) -> Option<Self> {
         let Ray { origin, dir } = frame.ray(ray);
         let a = dir.x * dir.x + dir.z * dir.z;
         // Far from the ray's origin, ulps are larger than the details of the surface: these ends only place the base,
@@ -55,12 +57,13 @@ impl Local {
         }
         // Offset in the world before it is rotated: the rotated vector is as small as the surface.
         let moved = frame.direction(frame.from_origin(ray, base));
-        let blur = frame::blur(moved, base);
+        let blur = frame::blur(moved, base) + ray.drift.origin + ray.drift.dir * base.abs();
+        let turn = BLUR + ray.drift.dir;
         let mut stretch = Stretch::from(range.near - base..f64::INFINITY);
-        stretch.cut((moved.y, dir.y), [0.0, height], [blur, BLUR], 2.0 * (height + widest));
+        stretch.cut((moved.y, dir.y), [0.0, height], [blur, turn], 2.0 * (height + widest));
         let (mut from, mut to) = (stretch.outer.start, stretch.outer.end);
         // Wider than needed, so that rounding does not cut anything off.
-        let widest = widest + 2.0 * (blur + BLUR * (height + widest));
+        let widest = widest + 2.0 * (blur + turn * (height + widest));
         let widest = widest * widest * (1.0 + 1e-9);
         let inside = Quadratic::around(moved, dir).lowered(widest);
         if a > 1e-30 {
@@ -77,7 +80,7 @@ impl Local {
             return None;
         }
         let (far, inner) = (range.far, stretch.inner);
-        Some(Self { origin: moved, dir, blur, from, to, inner, base, far, ray: *ray, frame: *frame })
+        Some(Self { origin: moved, dir, blur, turn, from, to, inner, base, far, ray: *ray, frame: *frame })
     }
 
     /// Returns the height at a place along the ray.
@@ -90,7 +93,7 @@ impl Local {
     /// may have been rounded from.
     #[inline(always)]
     pub fn place<N: Scalar>(&self, axis: usize, along: N) -> N {
-        N::about(self.origin[axis], self.blur) + along * N::about(self.dir[axis], BLUR)
+        N::about(self.origin[axis], self.blur) + along * N::about(self.dir[axis], self.turn)
     }
 
     /// Returns a coordinate of the place along this ray alone.
@@ -102,7 +105,7 @@ impl Local {
     /// Returns a bound of the rounding error of each coordinate of any point of this part of the ray.
     #[inline(always)]
     pub fn moved(&self) -> f64 {
-        self.blur + BLUR * self.from.abs().max(self.to.abs())
+        self.blur + self.turn * self.from.abs().max(self.to.abs())
     }
 
     /// Returns the tolerance of full precision along this part of the ray: 2 EPSILON of its largest distance from the

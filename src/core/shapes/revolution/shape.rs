@@ -7,8 +7,8 @@ use super::normal;
 use super::surface::Revolution;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::frame::Frame;
-use crate::geometry::ray::{Bracket, Ray, RayRange, Side};
-use crate::geometry::ray_packet::{self, Nearest, RayPacket, split};
+use crate::geometry::ray::{Bracket, Drift, Ray, RayBall, RayRange, Side};
+use crate::geometry::ray_packet::{RayPacket, split};
 use crate::geometry::sight::Line;
 use crate::shapes::uv;
 use crate::simd::cpu::Cpu;
@@ -147,43 +147,23 @@ impl<P> Packets for Shape<InFrame<Revolution>, ByPackets, P>
 where
     Self: Proofs,
 {
-    fn closest_hits(
+    fn brackets(
         &self,
         cpu: Cpu,
         rays: RayPacket,
-        sides: Option<&[Side]>,
-        id: u64,
-        mut nearest: Nearest,
-    ) -> bool {
-        let InFrame { surface, frame } = &self.shape;
-        let (mut any, mut lanes) = (false, Lanes::<MAX_RAYS>::none());
-        for part in split(rays.len(), MAX_RAYS) {
-            let (rays, sides) = (rays.part(part.clone()), sides.map(|sides| &sides[part.clone()]));
-            let nearest = nearest.part(part);
-            surface.t_bounds(cpu, frame, rays, sides, nearest.far, &mut lanes);
-            any |= ray_packet::closest_of_brackets(cpu, &lanes.near, &lanes.far, id, nearest);
-        }
-        any
-    }
-
-    fn occluded(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
+        drift: Drift,
         sides: Option<&[Side]>,
         ends: &[f64],
-        blocked: &mut [u64],
-        doubt: &mut [u64],
-    ) -> bool {
+        (near, far): (&mut [f64], &mut [f64]),
+    ) {
         let InFrame { surface, frame } = &self.shape;
-        let (mut any, mut lanes) = (false, Lanes::<MAX_RAYS>::none());
-        for part in split(ends.len(), MAX_RAYS) {
+        let mut lanes = Lanes::<MAX_RAYS>::none();
+        for part in split(near.len(), MAX_RAYS) {
             let (rays, sides) = (rays.part(part.clone()), sides.map(|sides| &sides[part.clone()]));
-            let (ends, blocked, doubt) = (&ends[part.clone()], &mut blocked[part.clone()], &mut doubt[part]);
-            surface.t_bounds(cpu, frame, rays, sides, ends, &mut lanes);
-            any |= ray_packet::occluded_by_brackets(cpu, &lanes.near, &lanes.far, ends, blocked, doubt);
+            surface.t_bounds(cpu, frame, (rays, drift), sides, &ends[part.clone()], &mut lanes);
+            near[part.clone()].copy_from_slice(&lanes.near[..part.len()]);
+            far[part.clone()].copy_from_slice(&lanes.far[..part.len()]);
         }
-        any
     }
 
     fn refine(
@@ -203,7 +183,10 @@ where
         normal::interact(cpu, surface, frame, rays, distances, sides, cosines, travelled, points, normals);
     }
 
-    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+    fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
+        if !ray.is_single() {
+            return self.shape.surface.bracket(&self.shape.frame, ray, range);
+        }
         let touches = || self.touches(ray.origin, range.origin_error);
         by_distance(ray, range, touches, |range| {
             let (distance, is_certain) = self.shape.surface.first_hit(&self.shape.frame, ray, range);

@@ -9,7 +9,7 @@ use super::line::{ProfileOnRay, Uncut};
 use super::local::Local;
 use super::surface::Revolution;
 use crate::geometry::frame::Frame;
-use crate::geometry::ray::{MISS, Ray, RayRange, Side};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
 use crate::geometry::ray_packet::RayPacket;
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::View;
@@ -50,11 +50,52 @@ impl Revolution {
         (distance, is_certain)
     }
 
+    /// Returns a bracket of the first hits in a range of all rays that one stands for.
+    pub fn bracket(&self, frame: &Frame, ray: &RayBall, range: &RayRange) -> Bracket {
+        let lanes = self.alone(frame, ray, range.origin_side);
+        let (near, far) = (lanes.near[0], lanes.far[0]);
+        if near == MISS || far < MISS {
+            return Bracket { near, far };
+        }
+        let Some(local) = self.local(frame, ray, range) else { return Bracket::MISS };
+        let (distance, is_certain) = self.walk(&local, range.origin_side, lanes, &mut MAX_PIECES.clone());
+        if !is_certain {
+            return Bracket::UNKNOWN;
+        }
+        if distance == MISS {
+            return Bracket::MISS;
+        }
+        let root = distance - local.base;
+        let rounding = 4.0 * f64::EPSILON * (local.base.abs() + root.abs());
+        let width = 4.0 * (local.blur + local.turn * root.abs()) + rounding;
+        taylor::bracket(&ProfileOnRay { surface: self, local: &local }, root, width).map_or(
+            Bracket::UNKNOWN,
+            |(low, high, _)| Bracket {
+                near: (local.base + low - rounding).max(0.0),
+                far: local.base + high + rounding,
+            },
+        )
+    }
+
+    /// Returns the part of a ray in the bounding cylinder.
+    fn local(&self, frame: &Frame, ray: &RayBall, range: &RayRange) -> Option<Local> {
+        Local::new(frame, ray, range, self.height, self.slabs.reach().sqrt())
+    }
+
+    /// Brackets one ray in plain arithmetic.
+    fn alone(&self, frame: &Frame, ray: &RayBall, origin_side: Option<Side>) -> Lanes<1> {
+        let rays = RayPacket { origin: view(&ray.ray.origin), dir: view(&ray.ray.dir), origin_error: 0.0 };
+        let mut lanes = Lanes::none();
+        let sides = origin_side.as_ref().map(from_ref);
+        self.t_bounds(Cpu::best(), frame, (rays, ray.drift), sides, &[MISS], &mut lanes);
+        lanes
+    }
+
     /// Returns how many plain rays take as long as the search for the first hit of a ray that may leave the surface to
     /// a side. It depends on nothing else, so that what a pixel may cost is the same however its rays are traced.
     pub fn search_cost(&self, frame: &Frame, ray: &Ray, origin_side: Option<Side>) -> u32 {
         let range = RayRange { origin_side, ..RayRange::ALL };
-        if Local::new(frame, ray, &range, self.height, self.slabs.reach().sqrt()).is_none() {
+        if self.local(frame, &ray.into(), &range).is_none() {
             return 0;
         }
         let pieces = if self.slabs.is_tight() { 0 } else { self.search(frame, ray, &range).pieces };
@@ -69,10 +110,7 @@ impl Revolution {
 
     /// Searches for a ray's first hit in a range.
     fn search(&self, frame: &Frame, ray: &Ray, range: &RayRange) -> SearchResult {
-        let rays = RayPacket { origin: view(&ray.origin), dir: view(&ray.dir), origin_error: 0.0 };
-        let sides = range.origin_side.as_ref().map(from_ref);
-        let mut lanes = Lanes::<1>::none();
-        self.t_bounds(Cpu::best(), frame, rays, sides, &[MISS], &mut lanes);
+        let lanes = self.alone(frame, &ray.into(), range.origin_side);
         let (near, far) = (lanes.near[0], lanes.far[0]);
         let known = |distance| SearchResult { distance, is_certain: true, pieces: 0 };
         if near == MISS {
@@ -80,8 +118,7 @@ impl Revolution {
         } else if far < MISS {
             known(range.keep(self.root(frame, ray, (near, far))))
         } else {
-            let local = Local::new(frame, ray, range, self.height, self.slabs.reach().sqrt());
-            local.map_or(known(MISS), |local| {
+            self.local(frame, &ray.into(), range).map_or(known(MISS), |local| {
                 let mut left = MAX_PIECES;
                 let (distance, is_certain) = self.walk(&local, range.origin_side, lanes, &mut left);
                 SearchResult { distance: range.keep(distance), is_certain, pieces: MAX_PIECES - left }
@@ -93,7 +130,7 @@ impl Revolution {
     /// course notes' steps search all of the ray between the surface's heights, as in the notes.
     pub fn first_hit_by(&self, method: Method, frame: &Frame, ray: &Ray, range: &RayRange) -> f64 {
         let widest = if method == Method::Steps { f64::INFINITY } else { self.slabs.widest() };
-        let Some(local) = Local::new(frame, ray, range, self.height, widest) else { return MISS };
+        let Some(local) = Local::new(frame, &ray.into(), range, self.height, widest) else { return MISS };
         let line = Uncut { surface: self, local: &local };
         let shortest = 4.0 * local.tolerance();
         match method.first_root(&line, local.from..local.to, local.base, range, shortest) {

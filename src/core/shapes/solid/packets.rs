@@ -1,8 +1,8 @@
 //! Packets of rays that may hit a part of a solid.
 
 use super::trimmed::{ByParts, Trimmed};
-use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
-use crate::geometry::ray_packet::{self, Nearest, PACKET_SIZE, RayPacket};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayBall, RayRange, Side};
+use crate::geometry::ray_packet::{Nearest, PACKET_SIZE, RayPacket};
 use crate::simd::cpu::Cpu;
 use crate::world::hittable::Hittable;
 use crate::world::interaction::SurfaceInteraction;
@@ -10,37 +10,6 @@ use crate::world::packets::shape::{self, Packets};
 use crate::world::shape::{ByPackets, Shape};
 
 impl Trimmed {
-    /// Computes brackets of first hits before `ends`, for those rays of a packet that may hit the part at all.
-    fn brackets(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        sides: Option<&[Side]>,
-        ends: &[f64],
-        (near, far): (&mut [f64], &mut [f64]),
-    ) {
-        let count = near.len();
-        let (mut met, mut doubt) = ([0; PACKET_SIZE], [0; PACKET_SIZE]);
-        near.copy_from_slice(&ends[..count]);
-        far.copy_from_slice(&ends[..count]);
-        let own = self.sides(sides);
-        let (met, doubt) = (&mut met[..count], &mut doubt[..count]);
-        let nearest = Nearest { near: &mut *near, far: &mut *far, met: &mut *met, doubt: &mut *doubt };
-        self.own().closest_hits(cpu, rays, own.as_ref().map(|sides| &sides[..count]), 1, nearest);
-        for lane in 0..count {
-            let bracket = if met[lane] == 0 && doubt[lane] == 0 {
-                Bracket::MISS
-            } else {
-                let origin_side = sides.map(|sides| sides[lane]);
-                let range =
-                    RayRange { near: 0.0, far: ends[lane], origin_side, origin_error: rays.origin_error };
-                let is_known = met[lane] != 0 && doubt[lane] == 0 && near[lane] == far[lane];
-                self.t_bounds_from(&rays.get(lane), &range, is_known.then_some(near[lane]))
-            };
-            (near[lane], far[lane]) = (bracket.near, bracket.far);
-        }
-    }
-
     /// Returns sides of the solid as sides of the part.
     fn sides(&self, of: Option<&[Side]>) -> Option<[Side; PACKET_SIZE]> {
         of.map(|of| {
@@ -52,6 +21,52 @@ impl Trimmed {
 }
 
 impl Packets for Shape<Trimmed, ByPackets, ByParts> {
+    fn brackets(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        drift: Drift,
+        sides: Option<&[Side]>,
+        ends: &[f64],
+        (near, far): (&mut [f64], &mut [f64]),
+    ) {
+        let (part, count) = (&self.shape, near.len());
+        let own = part.sides(sides);
+        let own = own.as_ref().map(|own| &own[..count]);
+        part.own().packets().brackets(cpu, rays, drift, own, ends, (&mut *near, &mut *far));
+        if part.is_whole() {
+            return;
+        }
+        // Where a hit of the part is certain, its distance is that of a single ray, to the last bit.
+        let mut distances = [f64::NAN; PACKET_SIZE];
+        let is_wide = |lane: usize| near[lane] < far[lane] && far[lane] < MISS;
+        if drift.is_none() && (0..count).any(is_wide) {
+            let mut known = [MISS; PACKET_SIZE];
+            for lane in 0..count {
+                known[lane] = if is_wide(lane) { far[lane] } else { near[lane] };
+            }
+            let brackets = (&*near, &known[..count]);
+            part.own().packets().refine(cpu, rays.first(count), own, brackets, &mut distances[..count]);
+        }
+        for lane in 0..count {
+            let bracket = Bracket { near: near[lane], far: far[lane] };
+            let range = RayRange {
+                near: 0.0,
+                far: ends[lane],
+                origin_side: sides.map(|sides| sides[lane]),
+                origin_error: rays.origin_error,
+            };
+            let first = if bracket.near == bracket.far { bracket.near } else { distances[lane] };
+            let first = (!bracket.is_doubtful() && !first.is_nan()).then_some(first);
+            let bracket = if bracket.near < ends[lane] {
+                part.t_bounds_from(&RayBall { ray: rays.get(lane), drift }, &range, first)
+            } else {
+                Bracket::MISS
+            };
+            (near[lane], far[lane]) = (bracket.near, bracket.far);
+        }
+    }
+
     fn closest_hits(
         &self,
         cpu: Cpu,
@@ -60,21 +75,12 @@ impl Packets for Shape<Trimmed, ByPackets, ByParts> {
         id: u64,
         nearest: Nearest,
     ) -> bool {
-        let count = rays.len();
-        if self.shape.is_whole() {
-            let own = self.shape.sides(sides);
-            return self.shape.own().closest_hits(
-                cpu,
-                rays,
-                own.as_ref().map(|own| &own[..count]),
-                id,
-                nearest,
-            );
+        if !self.shape.is_whole() {
+            return shape::closest_by_brackets(self, cpu, rays, sides, id, nearest);
         }
-        let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
-        let (near, far) = (&mut near[..count], &mut far[..count]);
-        self.shape.brackets(cpu, rays, sides, nearest.far, (&mut *near, &mut *far));
-        ray_packet::closest_of_brackets(cpu, near, far, id, nearest)
+        let own = self.shape.sides(sides);
+        let own = own.as_ref().map(|own| &own[..rays.len()]);
+        self.shape.own().closest_hits(cpu, rays, own, id, nearest)
     }
 
     fn occluded(
@@ -86,16 +92,12 @@ impl Packets for Shape<Trimmed, ByPackets, ByParts> {
         blocked: &mut [u64],
         doubt: &mut [u64],
     ) -> bool {
-        let count = t_max.len();
-        if self.shape.is_whole() {
-            let own = self.shape.sides(sides);
-            let (own, packets) = (own.as_ref().map(|own| &own[..count]), self.shape.own().packets());
-            return packets.occluded(cpu, rays, own, t_max, blocked, doubt);
+        if !self.shape.is_whole() {
+            return shape::occluded_by_brackets(self, cpu, rays, sides, t_max, blocked, doubt);
         }
-        let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
-        let (near, far) = (&mut near[..count], &mut far[..count]);
-        self.shape.brackets(cpu, rays.first(count), sides, t_max, (&mut *near, &mut *far));
-        ray_packet::occluded_by_brackets(cpu, near, far, t_max, blocked, doubt)
+        let own = self.shape.sides(sides);
+        let own = own.as_ref().map(|own| &own[..t_max.len()]);
+        self.shape.own().packets().occluded(cpu, rays, own, t_max, blocked, doubt)
     }
 
     fn refine(
@@ -112,7 +114,8 @@ impl Packets for Shape<Trimmed, ByPackets, ByParts> {
             self.shape.own().packets().refine(cpu, rays, own, brackets, out);
             return;
         }
-        for lane in 0..out.len() {
+        let (near, far) = brackets;
+        for lane in (0..out.len()).filter(|lane| near[*lane] != far[*lane]) {
             out[lane] = self.refine_one(&rays.get(lane), sides.map(|sides| sides[lane]));
         }
     }
@@ -125,7 +128,7 @@ impl Packets for Shape<Trimmed, ByPackets, ByParts> {
         shape::interact_each(cpu, &self.shape, rays, distances, interaction);
     }
 
-    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+    fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         self.shape.t_bounds(ray, range)
     }
 

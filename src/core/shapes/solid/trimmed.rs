@@ -1,7 +1,7 @@
 //! The surface of a part of a solid, for single rays.
 
 use crate::geometry::aabb::Aabb;
-use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
 use crate::geometry::sight::Sight;
 use crate::world::any_shape::AnyShape;
 use crate::world::body::Part;
@@ -216,15 +216,19 @@ impl Trimmed {
     }
 
     /// Returns a bracket of the first hit of one ray.
-    pub(super) fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+    pub(super) fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         self.t_bounds_from(ray, range, None)
     }
 
     /// Returns a bracket of the first hit of one ray. `first` is the distance of the part's own first hit, if that is
     /// known.
-    pub(super) fn t_bounds_from(&self, ray: &Ray, range: &RayRange, first: Option<f64>) -> Bracket {
+    pub(super) fn t_bounds_from(&self, ray: &RayBall, range: &RayRange, first: Option<f64>) -> Bracket {
         if self.is_whole() {
-            return self.own().t_bounds(ray, &self.own_range(range));
+            return self.own().packets().t_bounds(ray, &self.own_range(range));
+        }
+        // A copy of a solid is a solid of copies.
+        if !ray.is_single() {
+            return Bracket::UNKNOWN;
         }
         let touches = || self.own().touches(ray.origin, range.origin_error);
         by_distance(ray, range, touches, |range| {

@@ -2,7 +2,7 @@
 
 use super::Triangle;
 use crate::geometry::aabb::Aabb;
-use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
 use crate::shapes::plane::{Flat, Plane};
 use crate::shapes::uv;
 use crate::world::accuracy::{Bounded, Marker};
@@ -58,7 +58,7 @@ impl<A: Marker> Hittable for Triangle<A> {
 
 impl<A: Bounded> Bracketed for Triangle<A> {
     #[inline(always)]
-    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+    fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         Triangle::t_bounds(self, ray, range)
     }
 

@@ -6,9 +6,12 @@
 
 pub use super::proofs::Proofs;
 
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
-use crate::geometry::ray_packet::{Brackets, Nearest, RayPacket, mark_occluded, merge_nearest};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayBall, RayRange, Side};
+use crate::geometry::ray_packet::{
+    self, Brackets, Nearest, PACKET_SIZE, RayPacket, mark_occluded, merge_nearest,
+};
 use crate::simd::cpu::{Cpu, kernels};
+use crate::simd::soa::LANES;
 use crate::world::coincidence::close;
 use crate::world::hittable::{Bracketed, Hittable};
 use crate::world::interaction::{SurfaceInteraction, turned};
@@ -31,6 +34,19 @@ where
 
 /// A shape against which packets of rays are tested.
 pub trait Packets: Send + Sync {
+    /// Computes brackets of the first hits, before `ends`, of all rays within a drift of each ray of a packet. `sides` has
+    /// the side of this shape that each ray leaves, if the rays leave this shape. Hits beyond an
+    /// end may be left out.
+    fn brackets(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        drift: Drift,
+        sides: Option<&[Side]>,
+        ends: &[f64],
+        brackets: (&mut [f64], &mut [f64]),
+    );
+
     /// Merges the hits of a packet's rays with this shape into the nearest hits so far, and tells whether the order of
     /// any is in doubt. `sides` has the side of this shape that each ray leaves, if the rays leave this shape; `id` is
     /// the object's index in the scene plus 1.
@@ -41,7 +57,9 @@ pub trait Packets: Send + Sync {
         sides: Option<&[Side]>,
         id: u64,
         nearest: Nearest,
-    ) -> bool;
+    ) -> bool {
+        closest_by_brackets(self, cpu, rays, sides, id, nearest)
+    }
 
     /// Marks in `blocked` the rays that this shape blocks before `t_max`, and in `doubt` the rays for which that is
     /// uncertain. Returns whether any is in doubt.
@@ -53,10 +71,12 @@ pub trait Packets: Send + Sync {
         t_max: &[f64],
         blocked: &mut [u64],
         doubt: &mut [u64],
-    ) -> bool;
+    ) -> bool {
+        occluded_by_brackets(self, cpu, rays, sides, t_max, blocked, doubt)
+    }
 
     /// Computes the distances of certain hits that [`closest_hits`](Self::closest_hits) has bracketed; NaN where a
-    /// distance takes more than plain arithmetic.
+    /// distance takes more than plain arithmetic. Where a bracket has no width, the distance is known, and may be left.
     fn refine(
         &self,
         cpu: Cpu,
@@ -74,34 +94,56 @@ pub trait Packets: Send + Sync {
         false
     }
 
-    /// Returns a bracket of the distance of one ray's first hit.
-    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket;
-
-    /// Returns a bracket of the first hits of all rays within a drift of a camera ray; unknown by default.
-    fn t_bounds_within(&self, _ray: &Ray, _range: &RayRange, _drift: Drift) -> Bracket {
-        Bracket::UNKNOWN
-    }
-
-    /// Computes the brackets that [`t_bounds_within`](Self::t_bounds_within) returns for each ray of a packet and its end.
-    fn brackets_within(
-        &self,
-        _cpu: Cpu,
-        rays: RayPacket,
-        drift: Drift,
-        ends: &[f64],
-        near: &mut [f64],
-        far: &mut [f64],
-    ) {
-        for lane in 0..near.len() {
-            let range = RayRange { far: ends[lane], ..RayRange::ALL };
-            Bracket { near: near[lane], far: far[lane] } =
-                self.t_bounds_within(&rays.get(lane), &range, drift);
-        }
-    }
+    /// Returns a bracket of the first hit of each ray that one stands for.
+    fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket;
 
     /// Returns the distance of one ray's hit that [`t_bounds`](Self::t_bounds) has found for certain, or NaN where it
     /// takes more than plain arithmetic.
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64;
+}
+
+/// Merges hits as [`Packets::closest_hits`] does by default.
+pub(crate) fn closest_by_brackets(
+    shape: &(impl Packets + ?Sized),
+    cpu: Cpu,
+    rays: RayPacket,
+    sides: Option<&[Side]>,
+    id: u64,
+    nearest: Nearest,
+) -> bool {
+    with_brackets(rays.len(), |near, far| {
+        shape.brackets(cpu, rays, Drift::NONE, sides, nearest.far, (&mut *near, &mut *far));
+        ray_packet::closest_of_brackets(cpu, near, far, id, nearest)
+    })
+}
+
+/// Marks rays as [`Packets::occluded`] does by default.
+pub(crate) fn occluded_by_brackets(
+    shape: &(impl Packets + ?Sized),
+    cpu: Cpu,
+    rays: RayPacket,
+    sides: Option<&[Side]>,
+    t_max: &[f64],
+    blocked: &mut [u64],
+    doubt: &mut [u64],
+) -> bool {
+    let count = t_max.len();
+    with_brackets(count, |near, far| {
+        shape.brackets(cpu, rays.first(count), Drift::NONE, sides, t_max, (&mut *near, &mut *far));
+        ray_packet::occluded_by_brackets(cpu, near, far, t_max, blocked, doubt)
+    })
+}
+
+/// Calls a function with arrays for the brackets of `count` rays: no longer than they need to be, as clearing them takes
+/// time.
+#[inline(always)]
+fn with_brackets(count: usize, call: impl FnOnce(&mut [f64], &mut [f64]) -> bool) -> bool {
+    if count <= LANES {
+        let (mut near, mut far) = ([MISS; LANES], [MISS; LANES]);
+        return call(&mut near[..count], &mut far[..count]);
+    }
+    let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
+    call(&mut near[..count], &mut far[..count])
 }
 
 /// A shape that is tested against one ray at a time.
@@ -112,14 +154,8 @@ pub trait OneRay: Send + Sync {
     /// Returns the plugin author's shape.
     fn author(&self) -> &Self::Author;
 
-    /// Returns a bracket of the distance of the ray's first hit.
-    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket;
-
-    /// Returns a bracket of the first hits of all rays within a drift of a camera ray; unknown by default.
-    #[inline(always)]
-    fn t_bounds_within(&self, _ray: &Ray, _range: &RayRange, _drift: Drift) -> Bracket {
-        Bracket::UNKNOWN
-    }
+    /// Returns a bracket of the first hit of each ray that this one stands for.
+    fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket;
 
     /// Returns the distance of a hit that [`t_bounds`](Self::t_bounds) has found for certain, or NaN where it takes
     /// more than plain arithmetic.
@@ -153,13 +189,8 @@ impl<T: Bracketed, P> OneRay for Shape<T, ByBracket, P> {
     }
 
     #[inline(always)]
-    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+    fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         self.shape.t_bounds(ray, range)
-    }
-
-    #[inline(always)]
-    fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
-        self.shape.t_bounds_within(ray, range, drift)
     }
 
     #[inline(always)]
@@ -168,7 +199,8 @@ impl<T: Bracketed, P> OneRay for Shape<T, ByBracket, P> {
     }
 }
 
-/// The bracket follows from the author's distance, and from whether the shape touches the ray's origin.
+/// The bracket follows from the author's distance, and from whether the shape touches the ray's origin. In a copy's
+/// coordinates, too, the hit counts that the author finds there.
 impl<T: Hittable, P: Coincidence> OneRay for Shape<T, ByDistance, P>
 where
     Self: Proofs,
@@ -181,7 +213,7 @@ where
     }
 
     #[inline(always)]
-    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+    fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         if P::IS_PLAIN {
             return Bracket::exactly(self.shape.distance(ray, range));
         }
@@ -235,6 +267,18 @@ impl<T: Hittable, S, P> Packets for Shape<T, S, P>
 where
     Self: OneRay<Author = T>,
 {
+    fn brackets(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        drift: Drift,
+        sides: Option<&[Side]>,
+        ends: &[f64],
+        (near, far): (&mut [f64], &mut [f64]),
+    ) {
+        brackets(cpu, self, rays, drift, sides, ends, near, far);
+    }
+
     fn closest_hits(
         &self,
         cpu: Cpu,
@@ -273,24 +317,8 @@ where
         interact_each(cpu, &self.shape, rays, distances, interaction);
     }
 
-    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+    fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         OneRay::t_bounds(self, ray, range)
-    }
-
-    fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
-        OneRay::t_bounds_within(self, ray, range, drift)
-    }
-
-    fn brackets_within(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        drift: Drift,
-        ends: &[f64],
-        near: &mut [f64],
-        far: &mut [f64],
-    ) {
-        brackets_within(cpu, self, rays, drift, ends, near, far);
     }
 
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
@@ -316,9 +344,9 @@ kernels! {
         let (count, rays) = (rays.len(), rays.first(rays.len()));
         let Nearest { near, far, met, doubt } = nearest;
         match sides {
-            None => merge_nearest(count, &ShapeBounds { shape, rays }, id, near, far, met, doubt),
+            None => merge_nearest(count, &ShapeBounds { shape, rays, drift: Drift::NONE }, id, near, far, met, doubt),
             Some(sides) => {
-                merge_nearest(count, &LeavingBounds { shape, rays, sides: &sides[..count] }, id, near, far, met, doubt)
+                merge_nearest(count, &LeavingBounds { shape, rays, drift: Drift::NONE, sides: &sides[..count] }, id, near, far, met, doubt)
             }
         }
     }
@@ -329,21 +357,19 @@ kernels! {
     ) -> bool {
         let (count, rays) = (t_max.len(), rays.first(t_max.len()));
         match sides {
-            None => mark_occluded(&ShapeBounds { shape, rays }, t_max, blocked, doubt),
-            Some(sides) => mark_occluded(&LeavingBounds { shape, rays, sides: &sides[..count] }, t_max, blocked, doubt),
+            None => mark_occluded(&ShapeBounds { shape, rays, drift: Drift::NONE }, t_max, blocked, doubt),
+            Some(sides) => mark_occluded(&LeavingBounds { shape, rays, drift: Drift::NONE, sides: &sides[..count] }, t_max, blocked, doubt),
         }
     }
 
     /// Computes brackets of the first hits of all rays within a drift of each ray.
-    fn brackets_within[T: OneRay](
-        shape: &T, rays: RayPacket, drift: Drift, ends: &[f64], near: &mut [f64], far: &mut [f64]
+    fn brackets[T: OneRay](
+        shape: &T, rays: RayPacket, drift: Drift, sides: Option<&[Side]>, ends: &[f64], near: &mut [f64], far: &mut [f64]
     ) {
         let (count, rays) = (near.len(), rays.first(near.len()));
-        let (ends, far) = (&ends[..count], &mut far[..count]);
-        for lane in 0..count {
-            let range = RayRange { far: ends[lane], ..RayRange::ALL };
-            let bracket = shape.t_bounds_within(&rays.get(lane), &range, drift);
-            (near[lane], far[lane]) = (bracket.near, bracket.far);
+        match sides {
+            None => write(&ShapeBounds { shape, rays, drift }, &ends[..count], near, far),
+            Some(sides) => write(&LeavingBounds { shape, rays, drift, sides: &sides[..count] }, &ends[..count], near, far),
         }
     }
 
@@ -376,17 +402,28 @@ kernels! {
     }
 }
 
+/// Writes the brackets of hits before `ends`.
+#[inline(always)]
+fn write(brackets: &impl Brackets, ends: &[f64], near: &mut [f64], far: &mut [f64]) {
+    let far = &mut far[..ends.len()];
+    for lane in 0..ends.len() {
+        Bracket { near: near[lane], far: far[lane] } = brackets.get(lane, ends[lane]);
+    }
+}
+
 /// A shape's brackets for rays that do not leave the shape.
 struct ShapeBounds<'b, T> {
     shape: &'b T,
     rays: RayPacket<'b>,
+    drift: Drift,
 }
 
 impl<T: OneRay> Brackets for ShapeBounds<'_, T> {
     #[inline(always)]
     fn get(&self, lane: usize, far: f64) -> Bracket {
         let origin_error = self.rays.origin_error;
-        self.shape.t_bounds(&self.rays.get(lane), &RayRange { far, origin_error, ..RayRange::ALL })
+        let ray = RayBall { ray: self.rays.get(lane), drift: self.drift };
+        self.shape.t_bounds(&ray, &RayRange { far, origin_error, ..RayRange::ALL })
     }
 }
 
@@ -394,6 +431,7 @@ impl<T: OneRay> Brackets for ShapeBounds<'_, T> {
 struct LeavingBounds<'b, T> {
     shape: &'b T,
     rays: RayPacket<'b>,
+    drift: Drift,
     sides: &'b [Side],
 }
 
@@ -405,7 +443,7 @@ impl<T: OneRay> Brackets for LeavingBounds<'_, T> {
             return Bracket::MISS;
         }
         let (origin_side, origin_error) = (Some(origin_side), self.rays.origin_error);
-        self.shape
-            .t_bounds(&self.rays.get(lane), &RayRange { far, origin_side, origin_error, ..RayRange::ALL })
+        let ray = RayBall { ray: self.rays.get(lane), drift: self.drift };
+        self.shape.t_bounds(&ray, &RayRange { far, origin_side, origin_error, ..RayRange::ALL })
     }
 }
