@@ -10,6 +10,10 @@
 //! The footprint whose mean is known the least is cut into quarters, again and again, until the mean of the whole pixel is
 //! known well enough.
 
+mod brightness;
+
+pub use brightness::Brightness;
+
 use crate::geometry::image_point::ImagePoint;
 use crate::geometry::sight::Line;
 use crate::render::bytes::shown;

@@ -46,6 +46,7 @@ use crate::world::material::Rgb;
 use crate::world::sample::{self, Sample};
 use arrays::VectorList;
 use direct_light::RIM_POINTS;
+use glam::DVec2;
 use hit_record::HitRecord;
 use ray_group::RayGroup;
 use scratch::PrimaryScratch;
@@ -224,6 +225,27 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             (0..pixels.len()).for_each(|pixel| colours.set(pixel, camera.gain() * colours.get(pixel)));
         }
         self.scratch.primary.insert(primary).colours.view(pixels.len())
+    }
+
+    /// Computes the colours that rays through places of the image return, in pixels, each with its sample.
+    pub fn places(&mut self, places: &[(DVec2, Sample)]) -> Vec<Rgb> {
+        let mut primary = self.scratch.primary.take().unwrap_or_default();
+        let PrimaryScratch { group, seen, .. } = &mut *primary;
+        self.scratch.places.iter_mut().for_each(|places| places.resize(PACKET_SIZE, 0.0));
+        let (mut all, gain) = (Vec::with_capacity(places.len()), self.plan.camera.gain());
+        for part in places.chunks(PACKET_SIZE) {
+            let Scratch { places: [x, y], samples, .. } = &mut *self.scratch;
+            samples.clear();
+            samples.extend(part.iter().map(|(_, sample)| *sample));
+            for ((place, _), (x, y)) in part.iter().zip(x.iter_mut().zip(y)) {
+                (*x, *y) = (place.x, place.y);
+            }
+            self.look(group, part.len());
+            self.colours(group, seen);
+            all.extend((0..part.len()).map(|lane| gain * seen.get(lane)));
+        }
+        self.scratch.primary = Some(primary);
+        all
     }
 
     /// Computes the colours of pixels by one ray through the middle of each.

@@ -84,13 +84,15 @@ impl Depth {
             let look = object.shader.brightest(&object.material);
             object.material.transparency != 0.0 || look.is_none_or(|look| look.specular != Rgb::ZERO)
         };
-        if !model.objects.iter().any(is_shiny) {
-            return None;
-        }
+        model.objects.iter().any(is_shiny).then(|| Self::of(model))
+    }
+
+    /// Computes the bounds of any scene.
+    pub(crate) fn of(model: &Model) -> Self {
         let surfaces = Surface::all(model, &looks(model), None);
         let cuts = model.camera.value.accuracy != Accuracy::Classic;
         let (most, objects) = Scene::new(model, surfaces, background(model)).bounds(cuts);
-        Some(Self { most, objects })
+        Self { most, objects }
     }
 
     /// Returns a bound on what rays that leave the object of this index return, times the path length; for `None`, of
