@@ -27,10 +27,11 @@ use tabray_tools::chart::{self, Cost, Estimate, Estimates, Goal};
 
 /// Choose accuracy and samples for a maximum error or time
 ///
-/// Measures the choices on a part of the image, shows them with a bound on their errors that holds with a confidence of
-/// 99 %, and prints the command line to use. Takes at most half as many rays as an image with the fixed number of
-/// samples that suffices, or 1 million if that is more (2 million with `--worst`), beside those that are timed. That is
-/// at most about 500 rays for each pixel of a tiny image. Gives up after 10 seconds or after --time-limit, and may take a tenth longer.
+/// Measures the choices, shows them with a bound on their errors that holds with a confidence of 99 %, and prints the command
+/// line to use. First takes about 1 million rays to compare the choices (2 million with `--worst`), beside those that are
+/// timed, and up to 4 million for lamps, wires and glints that are smaller than what is between samples. Then measures the likely choice
+/// on as many pixels as the bound needs, with 8 to 64 samples beside its own: on all pixels, if the error is small or the
+/// image is. Gives up after 10 seconds or after --time-limit, and may take a tenth longer.
 #[derive(clap::Args)]
 #[command(group = ArgGroup::new("limit").args(["max_error", "max_time"]).required(true))]
 #[command(after_long_help = EXAMPLES)]
@@ -163,6 +164,13 @@ impl<'e> Selection<'e> {
             };
             let asked = &self.asked;
             Failure::Failed(match self.goal {
+                Goal::Error { most, .. } if self.estimates.all.iter().any(|one| self.is_hidden(one, most)) => {
+                    let pixels = self.estimates.small.pixels;
+                    let missed = levels(self.estimates.small.missed);
+                    format!(
+                        "no promise: {pixels} pixels may show what is smaller than a sample, and what is missed in them may add {missed}"
+                    )
+                }
                 Goal::Error { .. } | Goal::None => {
                     let least = least(&|one| one.bound);
                     let least = if least.is_finite() { levels(least) } else { "unknown".to_owned() };
@@ -176,6 +184,12 @@ impl<'e> Selection<'e> {
                 }
             })
         })
+    }
+
+    /// Tells whether a choice would meet the greatest error, if nothing could be missed that is smaller than a sample.
+    fn is_hidden(&self, one: &Estimate, most: f64) -> bool {
+        let small = self.estimates.small;
+        small.pixels > 0 && (one.bound - small.missed <= most || small.missed > most)
     }
 
     /// Says which choices were considered and which one was chosen, and shows the command line.
@@ -217,13 +231,21 @@ impl<'e> Selection<'e> {
                 format!("the one with the least error within {} on {} cores", self.asked, self.cores)
             }
         };
-        let Estimates { pixels: [measured, all], against, is_short, .. } = *self.estimates;
-        let sure = if measured == all { "" } else { ", with a confidence of 99 %" };
+        let Estimates { pixels: all, small, is_short, .. } = *self.estimates;
+        let measured = chosen.pixels;
+        let sure = ", with a confidence of 99 %";
+        let small = match small.pixels {
+            0 => String::new(),
+            pixels => format!(
+                " {pixels} pixels may show what is smaller than a sample; they were measured with more samples, and bounds \
+                 include what these may have missed."
+            ),
+        };
         let short = if is_short { "; there was no time for more" } else { "" };
         let _ = write!(
             text,
-            "\nThe marked choice is {why}{sure}. Errors are in levels of 255. They were measured on {measured} of {all} pixels, against \
-             {against} samples in each{short}; those of the whole image are at most what the table says. Choices of one \
+            "\nThe marked choice is {why}{sure}. Errors are in levels of 255. Its own was measured on {measured} of {all} \
+             pixels{short}; that of the whole image is at most what the table says.{small} Choices of one \
              accuracy are compared by their rays per pixel, those of several by their times.\n\n{}\n\n\
              {} render {}{} {how} --samples {}\n",
             self.times(chosen),

@@ -265,9 +265,9 @@ fn what_is_chosen_is_a_command_line_that_renders() {
     };
     let chosen = choose(&["--max-error", "1%"]);
     let text = String::from_utf8(chosen.stdout).expect("UTF-8");
-    // All pixels of a small image are measured, so that nothing is left to confidence.
-    let said = "\nThe marked choice is the fastest with an error of at most 1 % of white (2.55 levels of 255). Errors are in \
-                levels of 255. They were measured on 1200 of 1200 pixels, against 256 samples in each; those of the whole image are at most what the table says. ";
+    // All pixels of a small image are measured.
+    let said = "\nThe marked choice is the fastest with an error of at most 1 % of white (2.55 levels of 255), with a confidence of 99 %. \
+                Errors are in levels of 255. Its own was measured on 1200 of 1200 pixels; that of the whole image is at most what the table says. Choices ";
     assert!(text.contains(said), "{text}");
     let line = text.lines().last().expect("a command line");
     let mut words = line.split(' ');

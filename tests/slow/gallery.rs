@@ -167,7 +167,7 @@ a tenth count as equal, and so do errors that differ by less than a half.
   ones are those of the notes.
 - **Reflections and transmissions**: one ray through each pixel, in scenes with mirrors or glass. Each choice ends paths
   after a number of reflections and transmissions; its error is the difference from the image with all visible ones.
-- **The whole image**: accuracy and samples together, as `tabray choose` measures them: pixels spread over the image
+- **The whole image**: accuracy and samples together, as `tabray choose` measures them: pixels drawn at random
   against more samples, with all sources of error.
 
 Errors of distances are the 99th percentile of all right hits. The ground truth is that of the real ray through the
@@ -250,8 +250,14 @@ that it considered, and prints the command line to use; `--max-time 2` chooses t
 With `--worst`, the error is that which one of a thousand pixels exceeds, instead of the root mean square.
 
 Each error has a bound that holds with a confidence of 99 %, and the bound of what is chosen is at most what was asked
-for; if all pixels are measured, the bound is the error. The samples are chosen by counts, so that the same scene has
-the same answer. Another accuracy than the scene's is chosen only if it takes at most 80 % of its time in each of five
-groups of packets of rays. Times are [measured](choose.md#how-times-are-measured) for each number of samples. Choosing takes at most half as many rays as the image that it recommends, or a million, and ends after 10 seconds
-unless `--time-limit` gives it more. [What was promised and what was measured](choose.md), for 30 scenes.
+for. Pixels that may show lamps, wires or glints smaller than what is between samples are found and measured by
+themselves; if that is not enough, there is no promise and no choice. The samples are chosen by counts, so that the same
+scene has the same answer. Another accuracy than the scene's is chosen only if it takes at most 80 % of its time in each
+of five groups of packets of rays, and `classic` only where it is the scene's own. Times are
+[measured](choose.md#how-times-are-measured) for each number of samples. Where an image needs 16 samples or more,
+`--samples 4..16`, `4..64` and `4..256` are measured too, and one is chosen if it takes at most 80 % of the rays of the
+fixed number, with its probes: a count, not a time. Choosing takes about a million rays to compare the choices, up to 4
+million for small things, and then measures the likely choice on as many pixels as its bound needs, with 8 to 64 samples
+beside its own. It ends after 10 seconds unless `--time-limit` gives it more.
+[What a promise rests on, and what was measured](choose.md).
 ";

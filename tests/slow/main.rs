@@ -1,5 +1,6 @@
 //! Tests that take long: builds of packages with further plugins, hundreds of thousands of rays compared with true
 //! hits, renders that are stopped midway, charts, and the measurements of the docs.
+#![allow(clippy::disallowed_methods, reason = "no picture depends on what a test computes")]
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -8,6 +9,7 @@ mod oracle;
 
 mod accuracy;
 mod chart;
+mod choose;
 mod copy;
 mod falsify;
 #[cfg(feature = "fuzz")]

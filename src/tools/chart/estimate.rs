@@ -1,15 +1,19 @@
 //! A quick measurement of the effects of accuracy and samples on a scene, to choose from.
 //!
-//! Errors are measured on pixels that are spread over the image, against more samples of the same sequence, and are given
-//! with an upper bound that holds with a stated confidence. Which pixels, and how many, depends on the scene alone unless
-//! time runs out.
+//! Errors are measured on pixels that are drawn at random, against more samples, and on all pixels that may show what is
+//! smaller than what is between samples; they are given with an upper bound that holds with a stated confidence. Which
+//! pixels, and how many, depends on the scene alone unless time runs out.
 
 use super::candidate::Load;
+use super::confirm::{self, Known, Plans};
 use super::data::{Family, Panel, Point, Subject, WrongHits};
+use super::goal::{Estimate, Estimates, Goal, Small};
 use super::needed;
-use super::places::{Pixels, spread};
+use super::places::Draw;
 use super::progress::Progress;
-use super::sampled::{Colours, Errors};
+use super::right::{Colours, Right};
+use super::sampled::{Errors, Image};
+use super::small::{Missed, SmallThings};
 use super::times::Times;
 use super::timings::{self, Cost, Timings, plan};
 use crate::threads::renderer_with;
@@ -21,7 +25,6 @@ use tabray_core::scene::choice::Choice;
 use tabray_core::scene::model::Model;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_core::world::film::Film;
-use tabray_core::world::material::Rgb;
 
 /// The numbers of samples to choose from, and the number of samples that they are compared with.
 const STAGES: [(&[u32], u32); 2] = [(&[1, 2, 4, 8, 16, 32, 64], 256), (&[128, 256], 1024)];
@@ -40,89 +43,6 @@ const ADAPTIVE_FROM: u32 = 16;
 /// The numbers of pixels that are measured before it is asked whether they suffice: at first, and when time runs out.
 const FIRST: usize = 1024;
 const FEWEST: usize = 128;
-
-/// The goal of a choice.
-#[derive(Clone, Copy)]
-pub enum Goal {
-    /// A maximum error.
-    Error {
-        /// The error, as a fraction of white.
-        most: f64,
-        /// Whether it is the 99.9th percentile of the pixels' errors, not their root mean square.
-        worst: bool,
-    },
-    /// A maximum time, and the least error within it.
-    Time {
-        /// The time for the image on all cores, in seconds.
-        most: f64,
-        /// Whether the error is that of the worst pixels, as for an error.
-        worst: bool,
-    },
-    /// None: all numbers of samples are measured.
-    None,
-}
-
-/// The cost and the error of an accuracy and a number of samples, with all sources of error together.
-#[derive(Clone, Copy)]
-pub struct Estimate {
-    /// The accuracy.
-    pub accuracy: Accuracy,
-    /// The number of samples per pixel, from a Sobol sequence; the least where pixels take different ones.
-    pub samples: u32,
-    /// The greatest number of samples, where pixels take different ones.
-    pub most: Option<u32>,
-    /// The mean number of rays from the viewer for a pixel: its samples, and where pixels take different numbers, its part
-    /// of the probes that decide on them.
-    pub rays: f64,
-    /// The cost of the render of the whole image.
-    pub cost: Cost,
-    /// The measured error, where 1 is white.
-    pub error: f64,
-    /// The upper bound of the error of the whole image, with a confidence of 99 %.
-    pub bound: f64,
-    /// The largest measured error of a pixel, where 1 is white.
-    pub worst: f64,
-}
-
-/// Estimates, and what they rest on.
-pub struct Estimates {
-    /// The choices: those of the scene's own accuracy first, by ascending samples; those where pixels take different
-    /// numbers follow the others of their accuracy.
-    pub all: Vec<Estimate>,
-    /// The scene's own accuracy.
-    pub own: Accuracy,
-    /// The number of pixels that were measured, and of all pixels.
-    pub pixels: [usize; 2],
-    /// The number of samples per pixel that the choices were compared with.
-    pub against: u32,
-    /// Whether time ran out, so that fewer pixels were measured than would be.
-    pub is_short: bool,
-}
-
-impl Goal {
-    /// Tells whether an error or a bound is that of the worst pixels.
-    fn is_worst(self) -> bool {
-        matches!(self, Self::Error { worst: true, .. } | Self::Time { worst: true, .. })
-    }
-
-    /// Returns the first choice that meets the goal, among those of one accuracy by ascending samples.
-    pub fn first_meeting(self, estimates: &[Estimate]) -> Option<&Estimate> {
-        match self {
-            Self::Error { most, .. } => estimates.iter().find(|one| one.bound <= most),
-            Self::Time { most, .. } => estimates.iter().rfind(|one| one.cost.time.range[1] <= most),
-            Self::None => None,
-        }
-    }
-
-    fn is_none(self) -> bool {
-        matches!(self, Self::None)
-    }
-
-    /// Tells whether a render of this cost is estimated to take at most the time that is allowed.
-    fn is_likely(self, cost: &Cost) -> bool {
-        matches!(self, Self::Time { most, .. } if cost.time.mean <= most)
-    }
-}
 
 /// Measures the scene's own accuracy with several numbers of samples, and the accuracies that are clearly faster. A render begins
 /// with work of this CPU time, in seconds.
@@ -154,13 +74,29 @@ pub fn estimates(
     study.kept.extend((1..models.len()).filter(|index| gains[index - 1]));
     // The most exact of the accuracies is the truth.
     let right = if matches!(own, Accuracy::Exact | Accuracy::Strict) { 0 } else { 1 };
+    let truth = plan(models[right].1);
+    let [width, height] = truth.camera.pixels;
+    let is_whole = (width * height) as f64 * f64::from(of_pixel(STAGES[0], study.kept.len())) <= MIN_RAYS;
+    let seen = if is_whole { STAGES[0].1 } else { confirm::FEWEST };
+    let mut small = match goal {
+        Goal::None => SmallThings::none(),
+        _ => SmallThings::find(&truth, &study.threads, goal.error(), seen),
+    };
+    small.measure(&truth, &study.threads, goal.error(), progress)?;
     let mut last = None;
     for (samples, against) in STAGES {
-        let estimates = study.measure(&models, right, samples, against, progress)?;
-        let is_met = goal.first_meeting(&estimates.all[..samples.len()]).is_some_and(|met| match goal {
-            Goal::Error { .. } | Goal::None => true,
-            Goal::Time { .. } => met.samples < samples[samples.len() - 1],
-        });
+        let estimates = study.measure((&models, right), &small, samples, against, progress)?;
+        let is_met = match goal {
+            Goal::Error { most, .. } => {
+                let is_hopeless = estimates.small.missed > most;
+                is_hopeless || estimates.all.iter().any(|one| one.bound <= most)
+            }
+            Goal::None => true,
+            Goal::Time { .. } => {
+                let met = goal.first_meeting(&estimates.all[..samples.len()]);
+                met.is_some_and(|met| met.samples < samples[samples.len() - 1])
+            }
+        };
         let before = last.replace(estimates);
         if let (Some(before), Some(last)) = (before, &mut last) {
             last.all.extend(before.all);
@@ -175,6 +111,11 @@ pub fn estimates(
     // A choice that was measured twice counts as it was with more samples.
     estimates.all.dedup_by_key(|one| (one.accuracy, one.most, one.samples));
     Ok(estimates)
+}
+
+/// Returns the number of rays that one pixel costs: the samples of each choice, and the true ones.
+fn of_pixel((samples, against): (&[u32], u32), accuracies: usize) -> u32 {
+    samples.iter().sum::<u32>() * accuracies as u32 + against + needed::RAYS
 }
 
 /// Compares accuracies and numbers of samples together, as [`estimates`] measures them.
@@ -209,7 +150,9 @@ pub(super) fn panel(load: Load, progress: &mut dyn Progress) -> io::Result<Panel
         title: "the whole image: accuracy and samples together".to_owned(),
         note: format!(
             "{} of {} pixels, against {} samples",
-            estimates.pixels[0], estimates.pixels[1], estimates.against
+            estimates.all.iter().map(|one| one.pixels).max().unwrap_or(0),
+            estimates.pixels,
+            estimates.against
         ),
         subject: Subject::Whole,
         points: estimates.all.iter().map(point).collect(),
@@ -231,19 +174,22 @@ impl Study {
     fn needed(
         &mut self,
         (accuracy, model): (Accuracy, &Model),
-        pixels: &Pixels,
-        right: &[Rgb],
+        pixels: &[[usize; 2]],
+        right: &[Right],
         against: u32,
-        all: usize,
+        (all, drawn, missed): (usize, usize, &Missed),
     ) -> Vec<Estimate> {
-        let mut measured = needed::measure(model, &self.threads, pixels, against / MORE);
+        let mut measured = needed::measure(model, &self.threads, (pixels, drawn), against / MORE);
         let estimate = |one: &mut needed::MeasuredChoice| {
-            let (mut errors, [samples, most]) = (Errors::new(1), one.limits);
-            errors.add(&[take(&mut one.colours)], right);
-            let [error, bound] = errors.bounds(0, most, against, all, self.goal.is_worst());
-            let (rays, worst) = (one.rays, errors.worst(0));
+            let (mut errors, mut small, [samples, most]) = (Errors::new(1), Errors::new(1), one.limits);
+            let of_small = one.colours.split_off(drawn);
+            errors.add(&[take(&mut one.colours)], &right[..drawn]);
+            small.add(&[of_small], &right[drawn..]);
+            let [error, bound] = errors.bounds(0, Image { all, small: &small, missed }, self.goal.is_worst());
+            let (rays, worst) = (one.rays, errors.worst(0).max(small.worst(0)));
             let cost = self.timings.cost_of(rays, &one.timing);
-            Estimate { accuracy, samples, most: Some(most), rays, cost, error, bound, worst }
+            let pixels = pixels.len();
+            Estimate { accuracy, samples, most: Some(most), rays, cost, error, bound, worst, pixels }
         };
         let mut estimates: Vec<_> = measured.iter_mut().map(estimate).collect();
         let met = self.goal.first_meeting(&estimates).map(|met| met.most);
@@ -287,8 +233,8 @@ impl Study {
 
     fn measure(
         &mut self,
-        models: &[(Accuracy, &Model)],
-        right: usize,
+        (models, right): (&[(Accuracy, &Model)], usize),
+        small: &SmallThings,
         samples: &[u32],
         against: u32,
         progress: &mut dyn Progress,
@@ -299,34 +245,46 @@ impl Study {
         for (index, plan) in kept.iter().zip(&mut plans) {
             self.time(*index, samples, plan, progress)?;
         }
-        let mut truth = (right != 0).then(|| plan(models[right].1));
-        let size = models[0].1.camera.value.pixels;
-        let all = size[0] * size[1];
-        // One pixel costs the samples of each choice, and the true ones.
-        let of_pixel = samples.iter().sum::<u32>() * kept.len() as u32 + against + needed::RAYS;
+        let mut truth = plan(models[right].1);
+        let draw = Draw::new(models[0].1.camera.value.pixels, small.pixels());
+        let (all, rest) = (draw.all(), draw.rest());
+        // The pixels that may show small things are all measured.
+        let mut of_small: Vec<Errors> = vec![Errors::new(samples.len()); kept.len()];
+        if small.is_measured() {
+            let pixels = small.pixels();
+            for (plan, errors) in plans.iter_mut().zip(&mut of_small) {
+                let mut colours = Colours { threads: &self.threads, pixels: &pixels, progress };
+                let choices = samples.iter().map(|samples| colours.of(plan, *samples));
+                errors.add(&choices.collect::<io::Result<Vec<_>>>()?, &small.right());
+            }
+        }
+        let missed = &small.missed();
+        let of_pixel = of_pixel((samples, against), kept.len());
         let most = |picture: u32| {
             let least = if goal.is_worst() { 2.0 * MIN_RAYS } else { MIN_RAYS };
-            let rays = (PART * f64::from(picture) * all as f64).max(least);
+            // What is to be confirmed is measured on more pixels later, with fewer samples.
+            let part = if confirm::is_for(goal) { 0.0 } else { PART };
+            let rays = (part * f64::from(picture) * all as f64).max(least);
             // A small image has fewer pixels than that.
-            ((rays / f64::from(of_pixel)) as usize).max(FEWEST).min(all)
+            ((rays / f64::from(of_pixel)) as usize).max(FEWEST).min(rest)
         };
         let mut errors: Vec<Errors> = vec![Errors::new(samples.len()); kept.len()];
         let mut rights = Vec::new();
         let (mut next, mut is_short) = (FIRST, false);
         loop {
-            let wanted = next.min(all);
-            if wanted == all {
+            let wanted = next.min(rest);
+            if wanted == rest {
                 errors.fill(Errors::new(samples.len()));
                 rights.clear();
             }
-            let pixels = spread(size, wanted);
+            let pixels = draw.first(wanted);
             progress.more((wanted - errors[0].pixels()) * of_pixel as usize / 10);
             while errors[0].pixels() < wanted && !is_short {
                 // Few enough that it is often asked whether time has run out.
                 let from = errors[0].pixels();
-                let part: Pixels = pixels[from..wanted.min(from + FEWEST)].to_vec();
-                let mut colours = Colours { threads: &self.threads, pixels: &part, progress };
-                let true_ones = colours.of(truth.as_mut().unwrap_or(&mut plans[0]), against)?;
+                let part = &pixels[from..wanted.min(from + FEWEST)];
+                let mut colours = Colours { threads: &self.threads, pixels: part, progress };
+                let true_ones = colours.right(&mut truth, against / 2)?;
                 for (plan, errors) in plans.iter_mut().zip(&mut errors) {
                     let choices = samples.iter().map(|samples| colours.of(plan, *samples));
                     let choices = choices.collect::<io::Result<Vec<_>>>()?;
@@ -337,49 +295,60 @@ impl Study {
             }
             let measured = errors[0].pixels();
             let timings = &self.timings;
-            let estimates = kept.iter().zip(&errors).flat_map(|(index, errors)| {
-                let choice = move |(place, samples): (usize, &u32)| {
-                    let [error, bound] = errors.bounds(place, *samples, against, all, goal.is_worst());
-                    Estimate {
-                        accuracy: models[*index].0,
-                        samples: *samples,
-                        most: None,
-                        rays: f64::from(*samples),
-                        cost: timings.cost(*index, *samples),
-                        error,
-                        bound,
-                        worst: errors.worst(place),
-                    }
-                };
-                samples.iter().enumerate().map(choice)
-            });
+            let estimates =
+                kept.iter().zip(errors.iter().zip(&of_small)).flat_map(|(index, (errors, small))| {
+                    let image = Image { all, small, missed };
+                    let choice = move |(place, samples): (usize, &u32)| {
+                        let [error, bound] = errors.bounds(place, image, goal.is_worst());
+                        Estimate {
+                            accuracy: models[*index].0,
+                            samples: *samples,
+                            most: None,
+                            rays: f64::from(*samples),
+                            cost: timings.cost(*index, *samples),
+                            error,
+                            bound,
+                            worst: errors.worst(place).max(small.worst(place)),
+                            pixels: measured + missed.pixels.len(),
+                        }
+                    };
+                    samples.iter().enumerate().map(choice)
+                });
             let mut estimates: Vec<_> = estimates.collect();
-            let met = goal.first_meeting(&estimates[..samples.len()]);
+            let is_all = measured == rest;
+            let met = match is_all {
+                true => goal.first_meeting(&estimates[..samples.len()]),
+                false => confirm::likely(goal, &estimates[..samples.len()]),
+            };
             let picture = met.map_or(samples[samples.len() - 1], |met| met.samples);
             if is_short || measured >= most(picture) {
-                let of_accuracy = estimates.chunks_mut(samples.len());
+                if !is_short && picture >= ADAPTIVE_FROM {
+                    let right = [&rights[..], &small.right()].concat();
+                    let pixels = [&pixels[..measured], &small.pixels()].concat();
+                    let image = (all, measured, missed);
+                    estimates.extend(self.needed(models[0], &pixels, &right, against, image));
+                    let _ = progress.done(0);
+                }
+                if !is_short && !is_all {
+                    let known = Known { errors: &errors[0], samples, small, missed, draw: &draw };
+                    let plans = Plans { threads: &self.threads, model: models[0].1, truth: &mut truth };
+                    is_short = confirm::confirm(goal, plans, &known, &mut estimates, progress)?;
+                }
+                let of_accuracy = estimates[..kept.len() * samples.len()].chunks_mut(samples.len());
                 for ((index, plan), estimates) in kept.iter().zip(&mut plans).zip(of_accuracy) {
                     self.refine(*index, estimates, plan, progress);
                 }
-                if !is_short && picture >= ADAPTIVE_FROM {
-                    let pixels: Pixels = pixels[..measured].to_vec();
-                    estimates.extend(self.needed(models[0], &pixels, &rights, against, all));
-                    let _ = progress.done(0);
-                }
-                let pixels = [measured, all];
-                return Ok(Estimates { all: estimates, own: self.own, pixels, against, is_short });
+                let small = Small { pixels: missed.pixels.len(), missed: missed.error(all) };
+                return Ok(Estimates {
+                    all: estimates,
+                    own: self.own,
+                    pixels: all,
+                    small,
+                    against,
+                    is_short,
+                });
             }
             next = (2 * next).min(most(picture));
-        }
-    }
-}
-
-impl Estimate {
-    /// Returns the number of samples, as `--samples` takes it.
-    pub fn numbers(&self) -> String {
-        match self.most {
-            Some(most) => format!("{}..{most}", self.samples),
-            None => self.samples.to_string(),
         }
     }
 }

@@ -8,11 +8,13 @@
 
 #[cfg(feature = "drawing")]
 mod axis;
+mod betting;
 mod candidate;
 #[cfg(feature = "drawing")]
 mod canvas;
 mod clock;
 mod colours;
+mod confirm;
 mod cost;
 mod data;
 #[cfg(feature = "drawing")]
@@ -20,6 +22,7 @@ mod draw;
 mod estimate;
 mod files;
 mod front;
+mod goal;
 mod hits;
 mod judgement;
 #[cfg(feature = "drawing")]
@@ -30,7 +33,9 @@ mod packets;
 mod pictures;
 mod places;
 mod progress;
+mod right;
 mod sampled;
+mod small;
 mod study;
 mod times;
 mod timings;
@@ -41,8 +46,9 @@ pub use cost::Estimated;
 pub use data::{Chart, Family, Panel, Point, Subject, WrongHits, WrongHitsOf};
 #[cfg(feature = "drawing")]
 pub use draw::{png, svg};
-pub use estimate::{Estimate, Estimates, Goal, estimates};
+pub use estimate::estimates;
 pub use files::{csv, json};
+pub use goal::{Estimate, Estimates, Goal, Small};
 pub use machine::Machine;
 pub use progress::Progress;
 pub use times::Times;

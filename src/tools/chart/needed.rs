@@ -2,7 +2,6 @@
 
 use super::cost::Timing;
 use super::pictures::ADAPTIVE;
-use super::places::Pixels;
 use std::ops::Range;
 use tabray_core::parallel;
 use tabray_core::render::bytes::shown;
@@ -31,17 +30,24 @@ pub(super) struct MeasuredChoice {
     pub timing: Timing,
 }
 
-/// Measures the choices whose greatest number of samples is at most `most`.
-pub(super) fn measure(model: &Model, threads: &Renderer, pixels: &Pixels, most: u32) -> Vec<MeasuredChoice> {
+/// Measures the choices whose greatest number of samples is at most `most`. The rays are those of the first pixels, so many of
+/// which are spread over the image.
+pub(super) fn measure(
+    model: &Model,
+    threads: &Renderer,
+    (pixels, spread): (&[[usize; 2]], usize),
+    most: u32,
+) -> Vec<MeasuredChoice> {
     let mut plan = plan(model);
     let choices = ADAPTIVE.into_iter().filter(|[_, own]| *own <= most);
     choices
         .map(|limits| {
             set(&mut plan, limits);
-            let (colours, samples) = colours(threads, &plan, pixels);
+            let (mut all, samples) = colours(threads, &plan, &pixels[..spread]);
+            all.extend(colours(threads, &plan, &pixels[spread..]).0);
             let timing = Timing::begun(&plan, threads, None);
             // Tiles differ in their samples, and there are fewer of them than pixels.
-            MeasuredChoice { limits, colours, rays: samples + timing.probes(), timing }
+            MeasuredChoice { limits, colours: all, rays: samples + timing.probes(), timing }
         })
         .collect()
 }
@@ -53,14 +59,14 @@ pub(super) fn refine(model: &Model, threads: &Renderer, limits: [u32; 2], timing
     while timing.refine(&plan, threads, None) {}
 }
 
-fn plan(model: &Model) -> Plan<'_> {
+pub(super) fn plan(model: &Model) -> Plan<'_> {
     let mut plan = Plan::new(model);
     plan.camera.sampler = Sampler::Sobol;
     plan
 }
 
 /// Lets pixels take these numbers of samples.
-fn set(plan: &mut Plan, [least, most]: [u32; 2]) {
+pub(super) fn set(plan: &mut Plan, [least, most]: [u32; 2]) {
     plan.camera.samples = least;
     plan.set_adaptive(Some(Adaptive { most, error: None }));
 }
@@ -80,7 +86,7 @@ impl TraceObserver for Samples {
 }
 
 /// Returns the colours of pixels and the mean of their numbers of samples.
-fn colours(threads: &Renderer, plan: &Plan, pixels: &Pixels) -> (Vec<Rgb>, f64) {
+pub(super) fn colours(threads: &Renderer, plan: &Plan, pixels: &[[usize; 2]]) -> (Vec<Rgb>, f64) {
     // Pixels that lie far apart share no probes.
     let part = |range: Range<usize>| -> Vec<_> {
         let mut scratch = Scratch::default();
@@ -95,5 +101,5 @@ fn colours(threads: &Renderer, plan: &Plan, pixels: &Pixels) -> (Vec<Rgb>, f64) 
     };
     let all = threads.run(|| parallel::map_ranges(pixels.len(), 8, &part));
     let samples = all.iter().map(|(_, samples)| *samples).sum::<u64>() as f64;
-    (all.iter().map(|(colour, _)| *colour).collect(), samples / pixels.len() as f64)
+    (all.iter().map(|(colour, _)| *colour).collect(), samples / pixels.len().max(1) as f64)
 }

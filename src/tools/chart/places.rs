@@ -1,6 +1,7 @@
 //! The pixels that are measured, spread evenly over an image.
 
 use glam::DVec2;
+use std::collections::BTreeSet;
 use tabray_core::render::tiles::{self, TILE};
 
 /// Pixels: columns from the left and rows from the bottom.
@@ -19,6 +20,84 @@ pub fn spread([width, height]: [usize; 2], count: usize) -> Pixels {
 pub fn place([width, height]: [usize; 2], index: usize) -> [usize; 2] {
     let size = DVec2::new(width as f64, height as f64);
     (size * (STEP * index as f64).fract()).to_array().map(|side| side as usize)
+}
+
+/// The pixels of an image in an order as if they were drawn at random, the same each time.
+struct Drawing {
+    size: [usize; 2],
+    /// Half the number of bits of the least power of 4 that is at least the number of pixels.
+    half: u32,
+}
+
+impl Drawing {
+    fn new(size: [usize; 2]) -> Self {
+        let bits = usize::BITS - (size[0] * size[1]).saturating_sub(1).leading_zeros();
+        Self { size, half: bits.div_ceil(2).max(1) }
+    }
+
+    /// Returns the pixel of an index below the number of pixels.
+    fn at(&self, index: usize) -> [usize; 2] {
+        let mut index = self.mixed(index);
+        // What is beyond the image is mixed again, until it is not: that leaves a permutation of the pixels.
+        while index >= self.size[0] * self.size[1] {
+            index = self.mixed(index);
+        }
+        [index % self.size[0], index / self.size[0]]
+    }
+
+    /// Permutes the numbers of 2 * `half` bits, by a Feistel network.
+    fn mixed(&self, index: usize) -> usize {
+        let mask = (1 << self.half) - 1;
+        let (mut left, mut right) = (index as u64 >> self.half, index as u64 & mask);
+        for round in 1..=ROUNDS {
+            // The finalizer of SplitMix64.
+            let mut hash = (right + (round << 32)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            hash = (hash ^ hash >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            hash = (hash ^ hash >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+            (left, right) = (right, left ^ (hash ^ hash >> 31) & mask);
+        }
+        (left << self.half | right) as usize
+    }
+}
+
+/// The rounds of a [`Drawing`].
+const ROUNDS: u64 = 6;
+
+/// The pixels of an image in the order in which they are drawn at random, without those that may show small things.
+pub struct Draw {
+    drawing: Drawing,
+    all: usize,
+    width: usize,
+    without: BTreeSet<[usize; 2]>,
+}
+
+impl Draw {
+    pub fn new([width, height]: [usize; 2], without: Pixels) -> Self {
+        let without = without.into_iter().collect();
+        Self { drawing: Drawing::new([width, height]), all: width * height, width, without }
+    }
+
+    /// Returns the number of all pixels.
+    pub fn all(&self) -> usize {
+        self.all
+    }
+
+    /// Returns the number of pixels that may be drawn.
+    pub fn rest(&self) -> usize {
+        self.all - self.without.len()
+    }
+
+    /// Returns so many of the pixels, or all in rows.
+    pub fn first(&self, count: usize) -> Pixels {
+        let is_drawn = |pixel: &[usize; 2]| !self.without.contains(pixel);
+        if count >= self.rest() {
+            return (0..self.all)
+                .map(|index| [index % self.width, index / self.width])
+                .filter(is_drawn)
+                .collect();
+        }
+        (0..self.all).map(|index| self.drawing.at(index)).filter(is_drawn).take(count).collect()
+    }
 }
 
 /// Returns the pixels of a tile and of those beside it, of which so many are traced together, in the order in which they
@@ -45,13 +124,26 @@ const STEP: DVec2 = DVec2::new(0.754_877_666_246_692_7, 0.569_840_290_998_053_2)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::collections::BTreeSet;
 
     #[test]
     fn tiles_hold_every_pixel_of_a_small_picture_once() {
         let pixels: Pixels = tiles([19, 9], 100).concat();
         assert_eq!(pixels.len(), 19 * 9);
         assert_eq!(pixels.into_iter().collect::<BTreeSet<_>>().len(), 19 * 9);
+    }
+
+    #[test]
+    fn a_drawing_has_every_pixel_once_in_no_order() {
+        for size in [[1, 1], [19, 9], [64, 64], [100, 41]] {
+            let drawing = Drawing::new(size);
+            let all = size[0] * size[1];
+            let drawn: Vec<_> = (0..all).map(|index| drawing.at(index)).collect();
+            assert_eq!(drawn.iter().collect::<BTreeSet<_>>().len(), all);
+            // Half of the neighbours in the drawing are in the same half of the image.
+            let is_left = |[x, _]: &[usize; 2]| 2 * x < size[0];
+            let same = drawn.windows(2).filter(|pair| is_left(&pair[0]) == is_left(&pair[1])).count();
+            assert!(all < 100 || (4 * all / 10..6 * all / 10).contains(&same), "{same} of {all}");
+        }
     }
 
     #[test]

@@ -1,43 +1,50 @@
 //! Errors of sampled pixels, and what they say about the whole image.
 
-use super::pictures::shown_colours;
-use super::places::Pixels;
-use super::progress::Progress;
-use std::io;
-use tabray_core::render::plan::Plan;
-use tabray_core::render::renderer::Renderer;
+use super::betting::Drawn;
+use super::right::Right;
+use super::small::Missed;
 use tabray_core::world::material::Rgb;
-
-/// The number of standard deviations by which the mean of the squared errors may be off: a normal distribution stays
-/// below 2.33 with a confidence of 99 %.
-const DEVIATIONS: f64 = 3.0;
-
-/// The factor of the skewness that is added to the deviations, divided by the root of the number of pixels. Few pixels
-/// have most of the error, and if too few of these are measured, the deviation is too small as well (N. Johnson,
-/// "Modified t tests and confidence intervals for asymmetrical populations", 1978).
-const SKEWNESS: f64 = (1.0 + 2.0 * DEVIATIONS * DEVIATIONS) / 6.0;
 
 /// The part of the pixels that may be worse than the error of the worst pixels.
 const WORST: f64 = 0.001;
 
-/// The probability with which a bound on the worst pixels may be wrong.
+/// The probability with which a bound may be wrong: a bound on the mean for half of it, since two choices may be measured
+/// to the end.
 const DOUBT: f64 = 0.01;
 
-/// The colours of some pixels, computed on all threads.
-pub(super) struct Colours<'c> {
-    pub threads: &'c Renderer,
-    pub pixels: &'c Pixels,
-    pub progress: &'c mut dyn Progress,
+/// The number of standard deviations of the noise of the right colours that is added to a bound: a normal distribution stays
+/// below 2.58 with a confidence of 99.5 %.
+const DEVIATIONS: f64 = 2.58;
+
+/// The error of a pixel.
+#[derive(Clone, Copy)]
+struct PixelError {
+    /// The mean square of the channels' errors, as the two right colours have it: its expectation is the true one,
+    /// since their errors are independent, or more where a channel is white. It may be below 0.
+    square: f64,
+    /// A bound on the mean square of the right colours' own errors, in expectation.
+    spread: f64,
+    /// The variance that the right colours' noise gives `square`.
+    noise: f64,
+    /// The largest channel's error.
+    worst: f64,
 }
 
-impl Colours<'_> {
-    /// Computes the pixels with a number of samples.
-    pub fn of(&mut self, plan: &mut Plan, samples: u32) -> io::Result<Vec<Rgb>> {
-        plan.camera.samples = samples;
-        let colours = shown_colours(self.threads, plan, self.pixels);
-        match self.progress.done(self.pixels.len() * samples as usize / 10) {
-            std::ops::ControlFlow::Continue(()) => Ok(colours),
-            std::ops::ControlFlow::Break(()) => Err(io::ErrorKind::Interrupted.into()),
+impl PixelError {
+    fn new(colour: Rgb, [one, other]: Right) -> Self {
+        let (off, apart) = (colour - 0.5 * (one + other), one - other);
+        let spread = 0.25 * apart * apart;
+        // What is clamped to white is less bright in the mean than it should be, in all images.
+        let square = |channel: usize| {
+            let is_white = colour[channel].max(one[channel]).max(other[channel]) >= 1.0;
+            off[channel] * off[channel] - if is_white { 0.0 } else { spread[channel] }
+        };
+        let [of_colours, spread] = [off * off, spread].map(|squares| squares.element_sum() / 3.0);
+        Self {
+            square: (square(0) + square(1) + square(2)) / 3.0,
+            spread,
+            noise: 4.0 * (of_colours + spread) * spread,
+            worst: off.abs().max_element(),
         }
     }
 }
@@ -45,8 +52,18 @@ impl Colours<'_> {
 /// The errors of pixels, for several choices.
 #[derive(Clone)]
 pub(super) struct Errors {
-    /// For each choice, the mean of the squared errors of each pixel's channels, and the largest error.
-    choices: Vec<Vec<[f64; 2]>>,
+    choices: Vec<Vec<PixelError>>,
+}
+
+/// The pixels of an image that the errors of some of them are about.
+#[derive(Clone, Copy)]
+pub(super) struct Image<'i> {
+    /// The number of its pixels.
+    pub all: usize,
+    /// The errors of the pixels that may show what is smaller than a sample, all of them, for the same choices.
+    pub small: &'i Errors,
+    /// What may be missed in these.
+    pub missed: &'i Missed,
 }
 
 impl Errors {
@@ -61,64 +78,96 @@ impl Errors {
 
     /// Returns the largest error of a choice in any channel.
     pub fn worst(&self, choice: usize) -> f64 {
-        self.choices[choice].iter().map(|error| error[1]).fold(0.0, f64::max)
+        self.choices[choice].iter().map(|error| error.worst).fold(0.0, f64::max)
     }
 
-    /// Adds pixels: for each choice their colours, and the true ones.
-    pub fn add(&mut self, choices: &[Vec<Rgb>], right: &[Rgb]) {
+    /// Returns the mean of the fourth powers of a choice's errors.
+    pub fn fourth(&self, choice: usize) -> f64 {
+        self.choices[choice].iter().map(|error| error.square.powi(2)).sum::<f64>() / self.pixels() as f64
+    }
+
+    /// Adds pixels: for each choice their colours, and the right ones.
+    pub fn add(&mut self, choices: &[Vec<Rgb>], right: &[Right]) {
         for (errors, colours) in self.choices.iter_mut().zip(choices) {
-            errors.extend(colours.iter().zip(right).map(|(colour, right)| {
-                let apart = (*colour - *right).abs();
-                [apart.length_squared() / 3.0, apart.max_element()]
-            }));
+            errors.extend(colours.iter().zip(right).map(|(colour, right)| PixelError::new(*colour, *right)));
         }
     }
 
-    /// Returns the error of a choice and an upper bound for the image, whose number of pixels is `all`: the root of the
-    /// mean square, or with `worst` the 99.9th percentile.
-    pub fn bounds(&self, choice: usize, samples: u32, against: u32, all: usize, worst: bool) -> [f64; 2] {
-        let errors = &self.choices[choice];
-        // The samples are among those that count as true. If they were independent, the mean square difference would be
-        // too small by this factor; for even ones, it is nearer to 1. The centre of a pixel is no such sample.
-        let known = if samples == 1 { 1.0 } else { 1.0 - f64::from(samples) / f64::from(against) };
+    /// Returns the error of a choice and an upper bound for the image: the root of the mean square, or with `worst` the
+    /// 99.9th percentile. The pixels have been drawn at random from those of the image that are not small ones.
+    pub fn bounds(&self, choice: usize, image: Image, worst: bool) -> [f64; 2] {
         if worst {
-            return self.percentile(choice, all).map(|error| error / known.sqrt());
+            return self.percentile(choice, image);
         }
-        let count = errors.len() as f64;
-        let mean = errors.iter().map(|error| error[0]).sum::<f64>() / count;
-        let moment =
-            |power: i32| errors.iter().map(|error| (error[0] - mean).powi(power)).sum::<f64>() / count;
-        let deviation = moment(2).sqrt();
-        let skewness = if deviation > 0.0 { moment(3) / deviation.powi(3) } else { 0.0 };
-        let rest = 1.0 - count / all.max(errors.len()) as f64;
-        let deviations = DEVIATIONS + SKEWNESS * (skewness / count.sqrt()).max(0.0);
-        let bound = mean + deviations * deviation * (rest / count).sqrt();
-        [mean, bound].map(|square| (square / known).sqrt())
+        let (errors, small) = (&self.choices[choice], &image.small.choices[choice]);
+        let all = image.all as f64;
+        let rest = image.all - image.missed.pixels.len();
+        let squares: Vec<_> = errors.iter().map(|error| error.square).collect();
+        let [mean, most] = if squares.is_empty() {
+            [0.0; 2]
+        } else {
+            let drawn = Drawn { numbers: &squares, all: rest };
+            [squares.iter().sum::<f64>() / squares.len() as f64, drawn.bound(0.5 * DOUBT)]
+        };
+        let of_small: f64 = small.iter().map(|error| error.square).sum();
+        let noise = errors.iter().chain(small).map(|error| error.noise).sum::<f64>().sqrt();
+        // Where all pixels are known, nothing but this makes up for right colours that are not.
+        let known = if errors.len() >= rest { &errors[..] } else { &[] };
+        let spread: f64 = known.iter().chain(small).map(|error| error.spread).sum();
+        let root = |square: f64| square.max(0.0).sqrt();
+        let error = root((rest as f64 * mean + of_small) / all);
+        let bound = root((rest as f64 * most + of_small + spread + DEVIATIONS * noise) / all)
+            + image.missed.error(image.all);
+        [error, bound.max(error)]
     }
 
     /// Returns the error that one of a thousand pixels exceeds, and an upper bound for the image: an error that so many
     /// of the pixels exceed that it is no accident.
-    fn percentile(&self, choice: usize, all: usize) -> [f64; 2] {
-        let mut errors: Vec<_> = self.choices[choice].iter().map(|error| error[1]).collect();
-        errors.sort_unstable_by(|one, other| other.total_cmp(one));
-        let place = (WORST * errors.len() as f64) as usize;
-        if errors.len() >= all {
-            return [errors[place]; 2];
-        }
-        // The probability that at most `above` of the pixels exceed the true percentile.
+    fn percentile(&self, choice: usize, image: Image) -> [f64; 2] {
+        let sorted = |errors: &mut dyn Iterator<Item = f64>| {
+            let mut errors: Vec<_> = errors.collect();
+            errors.sort_unstable_by(|one, other| other.total_cmp(one));
+            errors
+        };
+        let errors = sorted(&mut self.choices[choice].iter().map(|error| error.worst));
+        let small = &image.small.choices[choice];
+        let known = sorted(&mut small.iter().map(|error| error.worst));
+        let most = if small.is_empty() {
+            vec![1.0; image.missed.pixels.len()]
+        } else {
+            sorted(&mut small.iter().zip(&image.missed.pixels).map(|(error, missed)| error.worst + missed))
+        };
+        let rest = image.all - image.missed.pixels.len();
+        // So many of the small pixels exceed the percentile: then so large a part of the others does.
+        let allowed = (WORST * image.all as f64) as usize;
+        let percentile = |small: &[f64], of_rest: &dyn Fn(f64) -> f64| {
+            let least = |above: usize| {
+                let part = (allowed - above) as f64 / rest.max(1) as f64;
+                small.get(above).map_or(0.0, |error| *error).max(of_rest(part))
+            };
+            (0..=allowed.min(small.len())).map(least).fold(f64::INFINITY, f64::min)
+        };
+        let at = |place: usize| errors.get(place).copied().unwrap_or(0.0);
+        let error = percentile(&known, &|part| at((part * errors.len() as f64) as usize));
         let count = errors.len() as f64;
-        let (mut term, mut sum, mut above) = (libm::exp(-WORST * count), 0.0, 0);
-        loop {
-            sum += term;
-            if sum > DOUBT {
-                break;
+        let bound = percentile(&most, &|part| {
+            if errors.len() >= rest {
+                return at((part * count) as usize);
             }
-            above += 1;
-            term *= WORST * count / f64::from(above);
-        }
-        // Where even the largest error may well be below the percentile, nothing is known.
-        let bound = (above as usize).checked_sub(1).map_or(f64::INFINITY, |place| errors[place]);
-        [errors[place], bound]
+            // The probability that at most `above` of the pixels exceed the true percentile.
+            let (mut term, mut sum, mut above) = (libm::exp(-part * count), 0.0, 0);
+            loop {
+                sum += term;
+                if sum > DOUBT {
+                    break;
+                }
+                above += 1;
+                term *= part * count / f64::from(above);
+            }
+            // Where even the largest error may well be below the percentile, nothing is known.
+            (above as usize).checked_sub(1).map_or(f64::INFINITY, at)
+        });
+        [error, bound]
     }
 }
 
@@ -129,26 +178,40 @@ mod tests {
     fn errors(of: impl Iterator<Item = f64>) -> Errors {
         let mut errors = Errors::new(1);
         let colours: Vec<_> = of.map(Rgb::splat).collect();
-        let right = vec![Rgb::ZERO; colours.len()];
+        let right = vec![[Rgb::ZERO; 2]; colours.len()];
         errors.add(&[colours], &right);
         errors
+    }
+
+    fn bounds(errors: &Errors, all: usize, worst: bool) -> [f64; 2] {
+        let image = Image { all, small: &Errors::new(1), missed: &Missed::default() };
+        errors.bounds(0, image, worst)
     }
 
     #[test]
     fn bounds_are_the_errors_where_all_pixels_are_known() {
         let errors = errors((0..1000).map(|pixel| f64::from(u8::from(pixel % 10 == 0))));
-        let [error, bound] = errors.bounds(0, 1, 256, 1000, false);
+        let [error, bound] = bounds(&errors, 1000, false);
         assert!((error - 0.1_f64.sqrt()).abs() < 1e-12 && (bound - error).abs() < 1e-12, "{error} {bound}");
-        let [error, bound] = errors.bounds(0, 1, 256, 100_000, false);
+        let [error, bound] = bounds(&errors, 100_000, false);
         assert!(bound > 1.1 * error && bound < 1.3 * error, "{error} {bound}");
-        assert_eq!(errors.bounds(0, 1, 256, 1000, true), [1.0; 2]);
+        assert_eq!(bounds(&errors, 1000, true), [1.0; 2]);
+    }
+
+    #[test]
+    fn what_small_things_may_hide_is_added_to_the_error_of_all() {
+        let (rest, small) = (errors((0..900).map(|_| 0.0)), errors((0..100).map(|_| 0.1)));
+        let missed = Missed { pixels: vec![0.05; 100], largest: 0.0 };
+        let [error, bound] = rest.bounds(0, Image { all: 1000, small: &small, missed: &missed }, false);
+        assert!((error - 0.1 * 0.1_f64.sqrt()).abs() < 1e-12, "{error}");
+        assert!((bound - error - missed.error(1000)).abs() < 1e-12 && bound > 1.2 * error, "{bound}");
     }
 
     #[test]
     fn the_worst_pixels_are_bounded_by_those_that_are_known_if_these_are_many() {
         let known = |count: u32| errors((0..count).map(|pixel| f64::from(pixel) / f64::from(count)));
-        assert_eq!(known(4000).bounds(0, 1, 256, 1 << 20, true)[1], f64::INFINITY);
-        let [error, bound] = known(8000).bounds(0, 1, 256, 1 << 20, true);
+        assert_eq!(bounds(&known(4000), 1 << 20, true)[1], f64::INFINITY);
+        let [error, bound] = bounds(&known(8000), 1 << 20, true);
         assert!(error < 0.9991 && bound > error && bound < 1.0, "{error} {bound}");
     }
 }

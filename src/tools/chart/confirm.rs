@@ -1,0 +1,177 @@
+//! The choice that is likely to meet a goal, measured on so many pixels that it certainly does.
+//!
+//! A bound that holds whatever is in the pixels that are not measured needs many that are: but few samples in each beside
+//! those of the choice itself, since their noise is as often too high as too low.
+
+use super::goal::{Estimate, Goal};
+use super::needed;
+use super::places::Draw;
+use super::progress::Progress;
+use super::right::Colours;
+use super::sampled::{Errors, Image};
+use super::small::{Missed, SmallThings};
+use super::timings;
+use std::io;
+use tabray_core::render::plan::Plan;
+use tabray_core::render::renderer::Renderer;
+use tabray_core::scene::model::Model;
+
+/// The part of the greatest error that an estimate must be below to be worth confirming.
+const LIKELY: f64 = 0.9;
+
+/// The ratio of the rays of a choice where pixels take different numbers to those of the fixed one, from which on it is worth
+/// taking.
+const GAIN: f64 = 0.8;
+
+/// The pixels that are measured at once, and the part of those so far that is added before the bound is computed again.
+const AT_ONCE: usize = 4096;
+const AGAIN: f64 = 0.2;
+
+/// The numbers of samples of each of the two images that count as right, the part of the greatest mean square that their
+/// noise may add to a bound, and the pixels after which a mean that is too large ends a measurement.
+const RIGHT: [u32; 4] = [4, 8, 16, 32];
+const NOISE: f64 = 0.1;
+const HOPELESS: usize = 16_384;
+
+/// The least number of samples of a pixel that is measured, with that of its own.
+pub(super) const FEWEST: u32 = 2 * RIGHT[0] + 1;
+
+/// The rays from the viewer that a measurement takes at most where the error is not the goal, as a part of the image's.
+const PART: f64 = 0.5;
+
+/// The number of choices that are measured at most.
+const TRIES: usize = 2;
+
+/// Tells whether a choice is confirmed for a goal.
+pub(super) fn is_for(goal: Goal) -> bool {
+    matches!(goal, Goal::Error { worst: false, .. } | Goal::Time { worst: false, .. })
+}
+
+/// Returns the first choice that is likely to meet a goal, among those of one accuracy by ascending samples.
+pub(super) fn likely(goal: Goal, estimates: &[Estimate]) -> Option<&Estimate> {
+    match goal {
+        Goal::Error { most, worst: false } => estimates.iter().find(|one| one.error <= LIKELY * most),
+        _ => goal.first_meeting(estimates),
+    }
+}
+
+/// What is known before a choice is confirmed.
+pub(super) struct Known<'k> {
+    /// The errors of the scene's own accuracy on some pixels, for each number of samples.
+    pub errors: &'k Errors,
+    pub samples: &'k [u32],
+    pub small: &'k SmallThings,
+    pub missed: &'k Missed,
+    /// The other pixels.
+    pub draw: &'k Draw,
+}
+
+/// The plans of which pixels are measured.
+pub(super) struct Plans<'p, 'm> {
+    pub threads: &'p Renderer,
+    /// The scene, with its own accuracy.
+    pub model: &'p Model,
+    /// The plan whose colours count as right.
+    pub truth: &'p mut Plan<'m>,
+}
+
+/// Confirms the estimate that is likely to meet a goal: first the cheaper one where pixels take different numbers of samples.
+/// Tells whether time has run out.
+pub(super) fn confirm(
+    goal: Goal,
+    mut plans: Plans,
+    known: &Known,
+    estimates: &mut [Estimate],
+    progress: &mut dyn Progress,
+) -> io::Result<bool> {
+    if !is_for(goal) {
+        return Ok(false);
+    }
+    let fixed = &estimates[..known.samples.len()];
+    let first = likely(goal, fixed).map(|first| (first.rays, first.samples));
+    let is_cheaper = |one: &Estimate| first.is_none_or(|(rays, _)| one.rays <= GAIN * rays);
+    let adaptive: Vec<_> = estimates.iter().copied().filter(|one| one.most.is_some()).collect();
+    let cheaper = likely(goal, &adaptive).filter(|one| is_cheaper(one)).map(|one| one.most);
+    let cheaper = cheaper.and_then(|most| estimates.iter().position(|one| one.most == most));
+    let fixed = first.map_or(known.samples.len(), |(_, samples)| {
+        known.samples.iter().position(|one| *one == samples).unwrap_or(known.samples.len())
+    });
+    for index in cheaper.into_iter().chain(fixed..known.samples.len()).take(TRIES) {
+        let is_late = confirm_one(goal, &mut plans, known, &mut estimates[index], progress)?;
+        let is_met = match goal {
+            Goal::Error { most, .. } => estimates[index].bound <= most,
+            Goal::Time { .. } | Goal::None => true,
+        };
+        if is_late || is_met {
+            return Ok(is_late);
+        }
+    }
+    Ok(false)
+}
+
+fn confirm_one(
+    goal: Goal,
+    plans: &mut Plans,
+    known: &Known,
+    estimate: &mut Estimate,
+    progress: &mut dyn Progress,
+) -> io::Result<bool> {
+    let (wanted, is_error) = match goal {
+        Goal::Error { most, .. } => (most, true),
+        Goal::Time { .. } | Goal::None => (estimate.error, false),
+    };
+    let Known { small, missed, draw, .. } = known;
+    let noise = |samples: &u32| {
+        let place = known.samples.iter().position(|one| one == samples);
+        0.5 * place.map_or(0.0, |place| known.errors.fourth(place))
+    };
+    let right = RIGHT.into_iter().find(|samples| noise(samples) <= NOISE * wanted * wanted);
+    let right = right.unwrap_or(RIGHT[RIGHT.len() - 1]);
+    let Plans { threads, model, truth } = plans;
+    let threads = *threads;
+    let mut plan = if estimate.most.is_some() { needed::plan(model) } else { timings::plan(model) };
+    let samples = estimate.samples;
+    if let Some(most) = estimate.most {
+        needed::set(&mut plan, [samples, most]);
+    }
+    let is_adaptive = estimate.most.is_some();
+    let mut chosen = |pixels: &[[usize; 2]], progress: &mut dyn Progress| {
+        if is_adaptive {
+            return Ok(needed::colours(threads, &plan, pixels).0);
+        }
+        Colours { threads, pixels, progress }.of(&mut plan, samples)
+    };
+    let mut of_small = Errors::new(1);
+    if small.is_measured() {
+        of_small.add(&[chosen(&small.pixels(), progress)?], &small.right());
+    }
+    let image = Image { all: draw.all(), small: &of_small, missed };
+    let of_pixel = estimate.rays + f64::from(2 * right);
+    let most =
+        if is_error { draw.rest() } else { (PART * estimate.rays * draw.all() as f64 / of_pixel) as usize };
+    // All but one: the samples that count as right are too few for what is said of an image of which all is known.
+    let pixels = draw.first(most.min(draw.rest() - 1));
+    let (mut errors, mut next) = (Errors::new(1), AT_ONCE);
+    for part in pixels.chunks(AT_ONCE) {
+        progress.more((part.len() as f64 * of_pixel / 10.0) as usize);
+        let colours = chosen(part, progress)?;
+        let right = Colours { threads, pixels: part, progress }.right(truth, right)?;
+        errors.add(&[colours], &right);
+        let count = errors.pixels();
+        let (is_late, is_last) = (progress.is_late(), count == pixels.len());
+        if count < next && !is_late && !is_last {
+            continue;
+        }
+        next = count + (AGAIN * count as f64) as usize;
+        let [error, bound] = errors.bounds(0, image, false);
+        if bound < estimate.bound {
+            (estimate.error, estimate.bound) = (error, bound);
+            estimate.pixels = count + missed.pixels.len();
+        }
+        let is_hopeless = count >= HOPELESS && error > wanted;
+        if is_late || is_error && (bound <= wanted || is_hopeless) {
+            return Ok(is_late);
+        }
+    }
+    Ok(false)
+}

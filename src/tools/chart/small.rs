@@ -1,0 +1,397 @@
+//! Pixels that may show something bright that is smaller than what is between their samples: lamps, stars, wires and
+//! glints, seen directly, in mirrors or in glass.
+//!
+//! They are found by bounds on the colours of all rays through a part of the image. Where these allow more than
+//! what samples are sure to see, the part is cut into quarters, down to parts of a pixel: to the cells in which the bright thing must be.
+//! Then all of these pixels are measured, by many samples in the cells and some in the rest of the pixel.
+
+use super::progress::Progress;
+use super::right::{Right, SCRAMBLES};
+use glam::DVec2;
+use std::io;
+use std::ops::Range;
+use tabray_core::geometry::aabb::Aabb;
+use tabray_core::parallel;
+use tabray_core::render::bytes::shown;
+use tabray_core::render::flaws::Flaws;
+use tabray_core::render::footprint::Brightness;
+use tabray_core::render::plan::Plan;
+use tabray_core::render::renderer::Renderer;
+use tabray_core::render::trace::{Scratch, Tracer};
+use tabray_core::simd::cpu::Cpu;
+use tabray_core::world::film::Film;
+use tabray_core::world::material::Rgb;
+use tabray_core::world::sample::{Sample, Sampler};
+
+/// The least and the greatest brightness, where 1 is white, up to which nothing counts as small. What is less bright must take
+/// a large part of a pixel, or of many pixels, to matter, and then samples see it.
+const BRIGHT: [f64; 2] = [4.0, 64.0];
+
+/// The width in pixels of the squares that are looked at first, and how many times the half width of a pixel is halved.
+const SQUARE: usize = 8;
+const CUTS: u32 = 5;
+
+/// The greatest number of cells of a pixel, and of pixels that are cut into cells at all.
+const CELLS: usize = 16;
+const CUT: usize = 500;
+
+/// The part of a square's bound that the largest of its quarters' bounds must be below if cutting is of use.
+const BETTER: f64 = 0.9;
+
+/// The samples of each image that counts as right: of the rest of a pixel, and at first of its cells.
+const REST: u32 = 128;
+const FIRST: u32 = 64;
+
+/// The greatest number of samples for all pixels together.
+const MOST: usize = 4_000_000;
+
+/// The part of the goal that what may be missed is to be below.
+const WANTED: f64 = 0.15;
+
+/// The largest expected square of what is missed, for a thing of the best size to be missed: a thing that takes the part p of
+/// a cell is missed by n samples with a probability of at most exp(-p n), and p exp(-p n / 2) n is at most 2 / e.
+const EXPECTED: f64 = 0.541_341_132_946_451;
+
+/// The number of samples that miss a thing with a probability of 1 % is this divided by the part of the cell that it takes.
+const SURE: f64 = 4.605_170_185_988_091;
+
+/// A square part of a pixel that may show something bright.
+#[derive(Clone, Copy)]
+struct Cell {
+    middle: DVec2,
+    half: f64,
+    /// A bound on its brightness.
+    most: f64,
+}
+
+impl Cell {
+    fn area(&self) -> f64 {
+        (2.0 * self.half).powi(2)
+    }
+
+    fn contains(&self, place: DVec2) -> bool {
+        (place - self.middle).abs().max_element() <= self.half
+    }
+}
+
+/// A pixel that may show something bright and small.
+struct SmallPixel {
+    at: [usize; 2],
+    cells: Vec<Cell>,
+    /// The sums of the samples of each image: in the rest, and in each cell; and their numbers.
+    rest: [(Rgb, u32); 2],
+    sums: [Vec<Rgb>; 2],
+    count: u32,
+}
+
+/// The pixels of an image that may show something bright and small.
+pub(super) struct SmallThings {
+    pixels: Vec<SmallPixel>,
+    is_measured: bool,
+}
+
+/// What may be missed in the pixels that may show something small.
+#[derive(Default)]
+pub(super) struct Missed {
+    /// A bound on what is missed in each pixel in the mean, where 1 is white.
+    pub pixels: Vec<f64>,
+    /// What may be missed in one pixel.
+    pub largest: f64,
+}
+
+impl Missed {
+    /// Bounds the root mean square over an image of so many pixels.
+    pub fn error(&self, all: usize) -> f64 {
+        let squares: f64 = self.pixels.iter().map(|missed| EXPECTED * missed * missed).sum();
+        ((squares + self.largest * self.largest) / all as f64).sqrt()
+    }
+}
+
+impl SmallThings {
+    /// Returns none.
+    pub fn none() -> Self {
+        Self { pixels: Vec::new(), is_measured: true }
+    }
+
+    /// Finds the pixels of a plan's image, in which things matter that together change the image by more than an error.
+    /// `samples` is the number of samples that each of the pixels has that are measured.
+    pub fn find(plan: &Plan, threads: &Renderer, error: f64, samples: u32) -> Self {
+        let camera = &plan.camera;
+        let [width, height] = camera.pixels;
+        let bounds = Brightness::new(plan.model);
+        let mut found = Self::none();
+        // Something matters in so many white pixels, or in one pixel that is as bright as the root of that. Samples are sure
+        // to see what is so bright that it takes a certain part of these.
+        let matters = (width * height) as f64 * error * error;
+        let bright = f64::from(samples) * if matters < 1.0 { matters.sqrt() } else { matters } / SURE;
+        let bright = bright.clamp(BRIGHT[0], BRIGHT[1]);
+        if bounds.most(camera) <= bright {
+            return found;
+        }
+        let bounds = Bounds { bounds, camera, bright, unbounded: unbounded(plan) };
+        let squares: Vec<_> = (0..height)
+            .step_by(SQUARE)
+            .flat_map(|y| (0..width).step_by(SQUARE).map(move |x| [x, y]))
+            .collect();
+        let part = |range: Range<usize>| {
+            let mut pixels = Vec::new();
+            squares[range].iter().for_each(|square| bounds.find(*square, SQUARE, &mut pixels));
+            pixels
+        };
+        let whole = threads.run(|| parallel::map_ranges(squares.len(), 2, &part));
+        let is_cut = whole.len() <= CUT;
+        let cells = |index: usize| if is_cut { bounds.cut(whole[index].1) } else { vec![whole[index].1] };
+        let cells = threads.run(|| parallel::map(whole.len(), cells));
+        let pixel = |((at, _), cells): (([usize; 2], Cell), Vec<Cell>)| {
+            let sums = [(); 2].map(|()| vec![Rgb::ZERO; cells.len()]);
+            (!cells.is_empty()).then_some(SmallPixel { at, cells, rest: [(Rgb::ZERO, 0); 2], sums, count: 0 })
+        };
+        found.pixels = whole.into_iter().zip(cells).filter_map(pixel).collect();
+        found
+    }
+
+    /// Returns the pixels, by column and row.
+    pub fn pixels(&self) -> Vec<[usize; 2]> {
+        self.pixels.iter().map(|pixel| pixel.at).collect()
+    }
+
+    /// Tells whether the right colours are known.
+    pub fn is_measured(&self) -> bool {
+        self.is_measured
+    }
+
+    /// Takes samples until what may be missed is a small part of an error, or too many are taken.
+    pub fn measure(
+        &mut self,
+        plan: &Plan,
+        threads: &Renderer,
+        error: f64,
+        progress: &mut dyn Progress,
+    ) -> io::Result<()> {
+        let all = plan.camera.pixels[0] * plan.camera.pixels[1];
+        let cost = |pixel: &SmallPixel, count: u32| 2 * pixel.cells.len() * count as usize;
+        let mut taken: usize =
+            self.pixels.iter().map(|pixel| 2 * REST as usize + cost(pixel, pixel.first())).sum();
+        if taken > MOST {
+            self.is_measured = false;
+            return Ok(());
+        }
+        let mut wanted: Vec<(usize, u32)> =
+            self.pixels.iter().enumerate().map(|(index, pixel)| (index, pixel.first())).collect();
+        while !wanted.is_empty() {
+            progress.more(taken / 10);
+            self.take(plan, threads, &wanted);
+            if progress.done(taken / 10).is_break() {
+                return Err(io::ErrorKind::Interrupted.into());
+            }
+            let limit = (WANTED * error).powi(2) * all as f64;
+            let open: Vec<_> = self.pixels.iter().map(SmallPixel::open).collect();
+            if open.iter().sum::<f64>() <= limit {
+                break;
+            }
+            // The samples of those that are the most open are doubled.
+            let least = limit / self.pixels.len() as f64;
+            wanted = open
+                .iter()
+                .zip(&self.pixels)
+                .enumerate()
+                .filter(|(_, (open, pixel))| **open > least && 2 * pixel.count <= Sampler::MOST)
+                .map(|(index, (_, pixel))| (index, 2 * pixel.count))
+                .collect();
+            let more: usize = wanted.iter().map(|(index, count)| cost(&self.pixels[*index], count / 2)).sum();
+            taken += more;
+            if taken > MOST || progress.is_late() {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Lets pixels, by their indices, have so many samples in each cell and image.
+    fn take(&mut self, plan: &Plan, threads: &Renderer, wanted: &[(usize, u32)]) {
+        let pixels = &self.pixels;
+        let part = |range: Range<usize>| {
+            let (mut scratch, mut nobody) = (Scratch::default(), Flaws::default());
+            let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody);
+            let more = |(index, count): &(usize, u32)| pixels[*index].more(*count, &plan.camera, &mut tracer);
+            wanted[range].iter().map(more).collect::<Vec<_>>()
+        };
+        let sums = threads.run(|| parallel::map_ranges(wanted.len(), 2, &part));
+        for ((index, count), (rest, sums)) in wanted.iter().zip(sums) {
+            let pixel = &mut self.pixels[*index];
+            (pixel.rest, pixel.sums, pixel.count) = (rest, sums, *count);
+        }
+    }
+
+    /// Returns the right colours, as the two images have them.
+    pub fn right(&self) -> Vec<Right> {
+        self.pixels.iter().map(SmallPixel::shown).collect()
+    }
+
+    /// Returns what may be missed: everything, where nothing is measured.
+    pub fn missed(&self) -> Missed {
+        if !self.is_measured {
+            return Missed { pixels: vec![EXPECTED.sqrt().recip(); self.pixels.len()], largest: 0.0 };
+        }
+        let pixels: Vec<_> = self.pixels.iter().map(SmallPixel::missed).collect();
+        let largest = self.pixels.iter().map(SmallPixel::largest).fold(0.0, f64::max);
+        Missed { pixels, largest }
+    }
+}
+
+/// Bounds on the colours of an image.
+struct Bounds<'b> {
+    bounds: Brightness<'b>,
+    camera: &'b Film,
+    /// The brightness up to which nothing counts as small.
+    bright: f64,
+    /// The brightness that stands for one that is not bounded.
+    unbounded: f64,
+}
+
+/// Returns the brightness of what mirrors and glass may show of one surface, where nothing bounds what they add: a scene
+/// that has nothing bright shows nothing bright in them.
+fn unbounded(plan: &Plan) -> f64 {
+    let Some(depth) = &plan.depth else { return f64::INFINITY };
+    let viewer = plan.camera.origins();
+    let shown = plan.model.objects.iter().zip(&depth.objects).filter(|(_, bounds)| bounds.beyond > 0.0);
+    let distance = |bounds: Option<Aabb>| bounds.map_or(0.0, |bounds| viewer.distance(&bounds));
+    let nearest = shown.map(|(object, _)| distance(object.shape.bounds())).fold(f64::INFINITY, f64::min);
+    let own = depth.objects.iter().map(|bounds| bounds.own).fold(0.0, f64::max);
+    let most = libm::exp2(plan.camera.exposure) * own / nearest;
+    if nearest > 0.0 { most } else { f64::INFINITY }
+}
+
+impl Bounds<'_> {
+    /// Adds the pixels of a square of the image that may show something bright. `corner` is its lower left pixel.
+    fn find(&self, corner: [usize; 2], side: usize, pixels: &mut Vec<([usize; 2], Cell)>) {
+        let [x, y] = corner;
+        if x >= self.camera.pixels[0] || y >= self.camera.pixels[1] {
+            return;
+        }
+        let half = 0.5 * side as f64;
+        let Some(cell) = self.cell(DVec2::new(x as f64, y as f64) + (half - 0.5), half) else { return };
+        if side == 1 {
+            return pixels.push((corner, cell));
+        }
+        let side = side / 2;
+        for corner in [[x, y], [x + side, y], [x, y + side], [x + side, y + side]] {
+            self.find(corner, side, pixels);
+        }
+    }
+
+    /// Returns a square with its bound; `None` if it shows nothing bright, or is white in any case.
+    fn cell(&self, middle: DVec2, half: f64) -> Option<Cell> {
+        let [low, high] = self.bounds.within(self.camera, middle.to_array(), half);
+        let known = |high: f64| if high.is_finite() { high } else { self.unbounded };
+        let channels = (0..3).filter(|channel| low[*channel] < 1.0);
+        let most = channels.map(|channel| known(high[channel])).fold(0.0, f64::max);
+        (most > self.bright).then_some(Cell { middle, half, most })
+    }
+
+    /// Returns the parts of a pixel in which something bright must be, if anywhere.
+    fn cut(&self, whole: Cell) -> Vec<Cell> {
+        let mut cells = vec![whole];
+        for _ in 0..CUTS {
+            let mut smaller = Vec::new();
+            for Cell { middle, half, .. } in &cells {
+                let half = 0.5 * half;
+                let corners = [[-half, -half], [half, -half], [-half, half], [half, half]];
+                smaller.extend(
+                    corners.iter().filter_map(|off| self.cell(*middle + DVec2::from_array(*off), half)),
+                );
+            }
+            let most = smaller.iter().map(|cell| cell.most).fold(0.0, f64::max);
+            // Where bounds do not depend on the place, smaller cells are of no use.
+            let is_same = smaller.len() == 4 * cells.len() && most >= BETTER * whole.most;
+            if smaller.len() > CELLS || is_same && cells.len() > 1 {
+                break;
+            }
+            cells = smaller;
+        }
+        if cells.len() == 4 && cells[0].half == 0.25 { vec![whole] } else { cells }
+    }
+}
+
+impl SmallPixel {
+    /// Returns the number of samples in each cell and image at first.
+    fn first(&self) -> u32 {
+        let each = FIRST / (self.cells.len() as u32).min(FIRST / 8);
+        // A cell that is the whole pixel has no rest.
+        if self.cells.len() == 1 && self.cells[0].half == 0.5 { FIRST + REST } else { each }
+            .next_power_of_two()
+    }
+
+    /// Returns the part of the pixel that the cells take.
+    fn area(&self) -> f64 {
+        self.cells.iter().map(Cell::area).sum()
+    }
+
+    /// Takes samples until each cell has so many in each image. Returns the sums of the rest, and those of the cells.
+    fn more(
+        &self,
+        count: u32,
+        camera: &Film,
+        tracer: &mut Tracer<Flaws>,
+    ) -> ([(Rgb, u32); 2], [Vec<Rgb>; 2]) {
+        let middle = DVec2::new(self.at[0] as f64, self.at[1] as f64);
+        let (mut rest, mut sums) = (self.rest, self.sums.clone());
+        for (image, scramble) in SCRAMBLES.into_iter().enumerate() {
+            let seed = (self.at[1] * camera.pixels[0] + self.at[0]) as u32 ^ scramble;
+            if self.count == 0 {
+                let sample = |index| Sample { sampler: Sampler::Sobol, index, pixel: seed };
+                let samples = (0..REST).map(sample).map(|sample| (middle + sample.jitter(), sample));
+                let outside: Vec<_> = samples
+                    .filter(|(place, _)| !self.cells.iter().any(|cell| cell.contains(*place)))
+                    .collect();
+                rest[image] = (tracer.places(&outside).into_iter().sum(), outside.len() as u32);
+            }
+            for (index, (cell, sum)) in self.cells.iter().zip(&mut sums[image]).enumerate() {
+                let pixel = seed ^ (index as u32 + 1).wrapping_mul(0x85eb_ca6b);
+                let sample = |index| Sample { sampler: Sampler::Sobol, index, pixel };
+                let places: Vec<_> = (self.count..count)
+                    .map(sample)
+                    .map(|sample| (cell.middle + 2.0 * cell.half * sample.jitter(), sample))
+                    .collect();
+                *sum += tracer.places(&places).into_iter().sum::<Rgb>();
+            }
+        }
+        (rest, sums)
+    }
+
+    /// Returns the colours that the two images show.
+    fn shown(&self) -> Right {
+        [0, 1].map(|image| {
+            let (rest, count) = self.rest[image];
+            let of_rest = if count > 0 { (1.0 - self.area()) * rest / f64::from(count) } else { Rgb::ZERO };
+            let cells = self.cells.iter().zip(&self.sums[image]);
+            let of_cells: Rgb = cells.map(|(cell, sum)| cell.area() * *sum / f64::from(self.count)).sum();
+            shown(of_rest + of_cells)
+        })
+    }
+
+    /// Returns how much brighter the pixel may get.
+    fn room(&self) -> f64 {
+        let [one, other] = self.shown();
+        (1.0 - one.min(other)).max_element()
+    }
+
+    /// Bounds what is missed, in the mean: the light of things of the best size to be missed, in all cells.
+    fn missed(&self) -> f64 {
+        let samples = 2.0 * f64::from(self.count);
+        self.cells.iter().map(|cell| cell.area() * cell.most / samples).sum::<f64>().min(self.room())
+    }
+
+    /// Bounds what is missed, with a confidence of 99 %, of a thing in one cell.
+    fn largest(&self) -> f64 {
+        let samples = 2.0 * f64::from(self.count);
+        let of_cells = self.cells.iter().map(|cell| SURE * cell.area() * cell.most / samples);
+        of_cells.fold(0.0, f64::max).min(self.room())
+    }
+
+    /// Returns the square of what is open: of what may be missed, and of the noise of what is seen.
+    fn open(&self) -> f64 {
+        let [one, other] = self.shown();
+        self.missed().max(self.largest()).powi(2) + 0.25 * (one - other).length_squared() / 3.0
+    }
+}
