@@ -1,27 +1,27 @@
 //! Bounds on what the rays through a part of an image return, each by itself.
 
-use super::lines;
-use super::rays::Tracer;
-use super::scene::{Scene, boxes};
-use crate::geometry::aabb::Aabb;
+use super::{LIMITS, lines};
+use crate::render::enclosed::{LightPoints, Scene, SceneBounds, Tracer};
 use crate::render::plan::depth::{Depth, clearance};
 use crate::scene::model::Model;
 use crate::world::film::Film;
 use crate::world::material::Rgb;
+use std::cell::Cell;
+use tabray_exact::affine::Affine;
 
 /// Bounds the colours of a model's primary rays, where light with a size counts by its mean.
 pub struct Brightness<'m> {
     model: &'m Model,
     depth: Depth,
-    boxes: Vec<Option<Aabb>>,
-    passes_fractions: bool,
+    lights: Vec<usize>,
+    bounds: SceneBounds,
 }
 
 impl<'m> Brightness<'m> {
     /// Prepares the bounds of a model.
     pub fn new(model: &'m Model) -> Self {
-        let passes_fractions = model.tints_are_fractions();
-        Self { model, depth: Depth::of(model), boxes: boxes(model), passes_fractions }
+        let lights = (0..model.lights.len()).collect();
+        Self { model, depth: Depth::of(model), lights, bounds: SceneBounds::of(model) }
     }
 
     /// Bounds any channel of any primary ray, where 1 is white; infinite where there is no bound.
@@ -43,14 +43,15 @@ impl<'m> Brightness<'m> {
     /// Bounds the colours of all primary rays through a square of the image, given by its middle and half its width in
     /// pixels: the least and the greatest of each channel, infinite where there is no bound.
     pub fn within(&self, camera: &Film, middle: [f64; 2], half: f64) -> [Rgb; 2] {
-        let Self { model, depth, boxes, passes_fractions } = self;
-        let (most, passes_fractions) = (depth.most, *passes_fractions);
-        let scene = Scene { model, depth: Some(depth), boxes, most, passes_fractions };
+        let Self { model, depth, lights, bounds } = self;
+        let meets_uncertified = Cell::new(false);
+        let scene = Scene { model, lights, depth: Some(depth), bounds, meets_uncertified };
         let Some(lines) = lines(camera, middle, half) else {
             let most = Rgb::splat(self.most(camera));
             return [-most, most];
         };
-        let ranges = Tracer::new(&scene).primary(&lines).map(|channel| channel.range());
+        let colour = Tracer::new(&scene, LIMITS, LightPoints::All).primary(&lines);
+        let ranges = colour.unwrap_or([Affine::WHOLE; 3]).map(|channel| channel.range());
         let end = |of: fn(&tabray_exact::interval::Interval) -> f64, unknown: f64| {
             let ends = [0, 1, 2].map(|channel| of(&ranges[channel]));
             Rgb::from_array(ends.map(|end| if end.is_nan() { unknown } else { camera.gain() * end }))
