@@ -1,14 +1,15 @@
 //! Formulas, as a scene or a profile plugin writes them: `2 + sin(y)`, or in x, y and z.
 
 pub mod field;
+mod function;
 mod parser;
 mod program;
 mod spline;
 mod step;
 pub mod variables;
 
-pub use parser::functions;
-pub use parser::{FormulaFault, Named, is_taken};
+pub use function::functions;
+pub use parser::{FormulaFault, Named, is_in_name, is_taken};
 
 use crate::dual::Dual;
 use crate::f64x8::F64x8;
@@ -70,12 +71,16 @@ impl Formula {
         variables: &'static [&'static str],
         named: Named<'_>,
     ) -> Result<Self, FormulaFault> {
-        let (steps, numbers) = parser::parse(text, variables, named)?;
+        let (steps, numbers) = parser::parse(text, variables, named, |steps| {
+            Self::new(String::new(), &[], steps.to_vec()).at(0.0)
+        })?;
         let (mut written, mut at) = (String::with_capacity(text.len()), 0);
         for (place, number) in numbers {
             written += &text[at..place.start];
             let number = text::shortest(number);
-            written += &if number.starts_with('-') { format!("({number})") } else { number };
+            // In `2n`, the digits of a number would be part of the number before it.
+            let is_factor = written.trim_end().ends_with(|c: char| c.is_alphanumeric() || ".)|".contains(c));
+            written += &if number.starts_with('-') || is_factor { format!("({number})") } else { number };
             at = place.end;
         }
         written += &text[at..];
@@ -208,6 +213,7 @@ impl fmt::Display for Formula {
 
 #[cfg(test)]
 mod tests {
+    use super::variables::SPACE;
     use super::*;
     use std::f64::consts::PI;
 
@@ -231,6 +237,17 @@ mod tests {
             ("1e-3 + .5 + 2.", 0.0, 2.501),
             ("pi", 0.0, PI),
             ("--y", 2.0, 2.0),
+            ("2y + 3(y + 1)(y - 1)", 2.0, 13.0),
+            ("y**2 + 2y² - y³ + y^(2*2) + 2^y²", 2.0, 36.0),
+            ("2y^2 - 2π/π", 3.0, 16.0),
+            ("|y - 5| + 2|-y| + |(|y|)|", 2.0, 9.0),
+            ("2exp(0) + 2 sin(0) + y(1 + y)", 3.0, 14.0),
+            ("min(4, y, 3) + max(1, 2, y, 0)", 5.0, 8.0),
+            ("+y - +2", 5.0, 3.0),
+            ("ceil(y) + round(y) + fract(y)", 2.25, 5.25),
+            ("mod(y, 3) + mod(-y, 3)", 4.0, 3.0),
+            ("clamp(y, 1, 3) + mix(2, 4, 0.25) + smoothstep(0, 8, y)", 4.0, 6.0),
+            ("hypot(3, y) - tanh(0) + cosh(0) + sinh(0)", 4.0, 6.0),
         ] {
             assert_eq!(value(text, y), expected, "{text}");
         }
@@ -240,7 +257,7 @@ mod tests {
     fn faults_are_marked_where_they_are() {
         for (text, place, message) in [
             ("2 + sni(y)", 4..7, "unknown name `sni` in a formula"),
-            ("2 sin(y)", 2..3, "expected an operator"),
+            ("2 3", 2..3, "expected an operator"),
             ("2 + ", 4..4, "expected a value"),
             ("", 0..0, "expected a value"),
             ("(2 + y", 0..1, "unclosed `(`"),
@@ -250,9 +267,46 @@ mod tests {
             ("2 * 1.2.3", 4..9, "`1.2.3` is not a number"),
             ("2 * 1e999", 4..9, "`1e999` is too large"),
             ("ü", 0..2, "unknown name `ü` in a formula"),
+            ("2 + 1/2y + 1", 4..8, "`1/2y` can be read in two ways"),
+            ("y = 2", 2..3, "expected a value, not an equation"),
+            ("2 + |y", 4..5, "unclosed `|`"),
+            ("mod(y)", 0..3, "`mod` takes 2 values, separated by commas"),
+            ("clamp(y, 1, 2, 3)", 0..5, "`clamp` takes only 3 values"),
         ] {
             let fault = Formula::parse(text).expect_err(text);
             assert_eq!((fault.place, fault.message.as_str()), (place, message), "{text}");
+        }
+    }
+
+    #[test]
+    fn an_equation_is_the_difference_of_its_sides() {
+        let ball = Formula::parse_in("x² + y² + Z² = 2Y + 1", SPACE).expect("an equation");
+        assert_eq!(ball.run(&mut [1.0, 2.0, 3.0, 0.0, 0.0, 0.0]), 9.0);
+        assert!(Formula::parse_in("x = y = z", SPACE).is_err());
+    }
+
+    #[test]
+    fn what_is_written_with_named_numbers_means_the_same_without_them() {
+        let named = |name: &str| {
+            [("n", 5.0), ("mod", -2.0), ("k", 0.5)].iter().find(|of| of.0 == name).map(|of| of.1)
+        };
+        for text in ["2n + y", "2 n y^(2*n)", "y²n", "n(y + 1)n", "|y|k - n k", "2mod + mod y", "(y)n"] {
+            let formula = Formula::parse_with(text, HEIGHT, &named).expect(text);
+            let written = Formula::parse(&formula.to_string()).expect(text);
+            assert_eq!(written.at(1.5), formula.at(1.5), "{text}: {formula}");
+        }
+    }
+
+    #[test]
+    fn nested_functions_that_use_their_arguments_twice_are_bounded() {
+        let nested = |depth: usize| format!("{}y{}", "fract(".repeat(depth), ")".repeat(depth));
+        assert!(Formula::parse(&nested(8)).is_ok());
+        for depth in [20, 28, 31] {
+            let fault = Formula::parse(&nested(depth)).expect_err("too long");
+            assert!(
+                ["too many operations", "formula nested too deeply"].contains(&&*fault.message),
+                "{fault:?}"
+            );
         }
     }
 

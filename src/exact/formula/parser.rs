@@ -1,9 +1,12 @@
 //! The parser: from the text of a formula to its operations in postfix order.
 
+use super::function::{self, Meaning, functions};
 use super::step::{Function, MAX_DEPTH, Step};
+use super::variables::SPACE;
 use crate::decimal;
 use crate::text;
 use std::f64::consts::PI;
+use std::mem::replace;
 use std::ops::Range;
 
 /// An error in the text of a formula.
@@ -25,29 +28,23 @@ pub type Named<'n> = &'n dyn Fn(&str) -> Option<f64>;
 /// The operations of a formula, and the named numbers in its text, each with its place.
 pub(super) type Operations = (Vec<Step>, Vec<(Range<usize>, f64)>);
 
-/// The functions of a formula: name, function and number of arguments.
-const FUNCTIONS: [(&str, Function, usize); 10] = [
-    ("sin", Function::Sin, 1),
-    ("cos", Function::Cos, 1),
-    ("tan", Function::Tan, 1),
-    ("exp", Function::Exp, 1),
-    ("ln", Function::Ln, 1),
-    ("sqrt", Function::Sqrt, 1),
-    ("abs", Function::Abs, 1),
-    ("floor", Function::Floor, 1),
-    ("min", Function::Min, 2),
-    ("max", Function::Max, 2),
-];
-
-/// Returns the names of the functions of formulas, each with the number of its arguments.
-pub fn functions() -> impl Iterator<Item = (&'static str, usize)> {
-    FUNCTIONS.iter().map(|(name, _, count)| (*name, *count))
-}
-
 /// Returns whether a name means something in every formula, so that a scene cannot give it to a number.
 pub fn is_taken(name: &str) -> bool {
-    ["x", "y", "z", "pi"].contains(&name) || FUNCTIONS.iter().any(|(function, ..)| *function == name)
+    ["x", "y", "z", "pi", "π"].contains(&name)
+        || function::find(name).is_some_and(function::Named::is_reserved)
 }
+
+/// The digits of exponents, from 0.
+const SUPERSCRIPTS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+
+/// Returns whether a character can be part of a name in a formula. The `²` of `x²` is no part of one.
+pub fn is_in_name(letter: char) -> bool {
+    (letter.is_alphanumeric() || letter == '_') && !SUPERSCRIPTS.contains(&letter)
+}
+
+/// The most operations of a formula: a function that is itself a formula may use an argument more than once, and so in
+/// nested calls many times.
+const MAX_STEPS: usize = 1 << 18;
 
 /// Says what a formula in these variables consists of.
 fn language(variables: &[&str]) -> String {
@@ -55,22 +52,66 @@ fn language(variables: &[&str]) -> String {
         [] => "named numbers".to_owned(),
         variables => text::list(variables.iter().copied()),
     };
+    let of = |count: usize| {
+        let names = functions().filter(|(_, arguments)| arguments.len() == count).map(|(name, _)| name);
+        names.collect::<Vec<_>>().join(" ")
+    };
     format!(
-        "a formula consists of numbers, {variables}, `pi`, + - * / ^, parentheses, and the functions \
-         sin cos tan exp ln sqrt abs floor of one value and min max of two"
+        "a formula consists of numbers, {variables}, `pi`, + - * / ^, parentheses, and the functions {} of one value, {} of \
+         two, and {} of three",
+        of(1),
+        of(2),
+        of(3)
     )
 }
 
-/// Parses the operations of a formula in these variables and named numbers.
-pub(super) fn parse(text: &str, variables: &[&str], named: Named<'_>) -> Result<Operations, FormulaFault> {
-    let mut parser =
-        Parser { text, variables, named, at: 0, steps: Vec::new(), numbers: Vec::new(), depth: 0 };
+/// Parses the operations of a formula in these variables and named numbers. An equation in x, y and z is the difference
+/// of its sides.
+pub(super) fn parse(
+    text: &str,
+    variables: &[&str],
+    named: Named<'_>,
+    value: fn(&[Step]) -> f64,
+) -> Result<Operations, FormulaFault> {
+    let mut parser = Parser {
+        text,
+        variables,
+        named,
+        at: 0,
+        steps: Vec::new(),
+        numbers: Vec::new(),
+        depth: 0,
+        is_in_bars: false,
+        value,
+    };
     parser.sum()?;
+    let equals = parser.at;
+    if parser.take(&['=']).is_some() {
+        if variables != SPACE {
+            let help = "an equation is one of a surface, in x, y and z: here, write the value alone";
+            let fault = parser.fault(equals..parser.at, "expected a value, not an equation");
+            return Err(FormulaFault { help: help.to_owned(), ..fault });
+        }
+        parser.deeper()?;
+        parser.sum()?;
+        parser.steps.push(Step::Sub);
+    }
     match parser.peek() {
-        None => Ok((parser.steps, parser.numbers)),
+        None if deepest(&parser.steps) <= MAX_DEPTH => Ok((parser.steps, parser.numbers)),
+        None => Err(parser.fault_here("formula nested too deeply")),
         Some(')') => Err(parser.fault_here("unmatched `)`")),
         Some(_) => Err(parser.fault_here("expected an operator")),
     }
+}
+
+/// Returns the largest number of values that wait for an operation.
+fn deepest(steps: &[Step]) -> usize {
+    let (mut depth, mut deepest) = (0, 0);
+    for step in steps {
+        depth = depth + 1 - step.operands();
+        deepest = deepest.max(depth);
+    }
+    deepest
 }
 
 struct Parser<'t> {
@@ -83,6 +124,10 @@ struct Parser<'t> {
     numbers: Vec<(Range<usize>, f64)>,
     /// The number of values on the stack or the depth of parentheses, whichever is greater.
     depth: usize,
+    /// Whether a `|` ends an absolute value.
+    is_in_bars: bool,
+    /// Returns the value of operations without variables.
+    value: fn(&[Step]) -> f64,
 }
 
 type Parsed = Result<(), FormulaFault>;
@@ -122,51 +167,105 @@ impl<'t> Parser<'t> {
         Ok(())
     }
 
+    /// Parses a product. Factors may follow each other without a sign: `2x`, `(x + y)(x - y)`.
     fn product(&mut self) -> Parsed {
+        self.peek();
+        let start = self.at;
         self.signed()?;
-        while let Some(sign) = self.take(&['*', '/']) {
+        let mut divides = false;
+        loop {
+            let before = self.at;
+            let sign = self.factor_sign();
+            if sign.is_none() && !self.begins_factor() {
+                return Ok(());
+            }
             self.deeper()?;
+            let factor = self.at;
             self.signed()?;
             self.depth -= 1;
-            self.steps.push(if sign == '*' { Step::Mul } else { Step::Div });
+            if sign.is_none() && divides {
+                let whole = self.text[start..self.at].trim_end();
+                let (one, other) = (self.text[start..before].trim_end(), self.text[factor..self.at].trim());
+                let message = format!("`{whole}` can be read in two ways");
+                let fault = self.fault(start..start + whole.len(), message);
+                let (dividend, divisor) = one.rsplit_once('/').unwrap_or((one, ""));
+                let help = format!("write `{one}*{other}` or `{dividend}/({divisor}*{other})`");
+                return Err(FormulaFault { help, ..fault });
+            }
+            divides = sign == Some('/');
+            self.steps.push(if divides { Step::Div } else { Step::Mul });
         }
-        Ok(())
+    }
+
+    /// Consumes a `*` that is not the beginning of `**`, or a `/`.
+    fn factor_sign(&mut self) -> Option<char> {
+        self.peek();
+        if self.text[self.at..].starts_with("**") { None } else { self.take(&['*', '/']) }
+    }
+
+    /// Tells whether a factor follows that needs no sign before it.
+    fn begins_factor(&mut self) -> bool {
+        let is_in_bars = self.is_in_bars;
+        self.peek().is_some_and(|next| next == '(' || next.is_alphabetic() || next == '|' && !is_in_bars)
     }
 
     /// Parses a sign and its operand. Unary minus binds less tightly than a power: -y^2 is -(y^2).
     fn signed(&mut self) -> Parsed {
-        if self.take(&['-']).is_some() {
+        if let Some(sign) = self.take(&['-', '+']) {
             self.deeper()?;
             self.signed()?;
             self.depth -= 1;
-            self.steps.push(Step::Neg);
+            if sign == '-' {
+                self.steps.push(Step::Neg);
+            }
             return Ok(());
         }
         self.power()
     }
 
+    /// Parses a power: `x^2`, `x**2` or `x²`.
     fn power(&mut self) -> Parsed {
         self.atom()?;
-        if self.take(&['^']).is_none() {
+        let exponent = self.steps.len();
+        if let Some(power) = self.superscript() {
+            self.steps.push(Step::Powi(power));
             return Ok(());
         }
-        let exponent = self.steps.len();
+        if self.text[self.at..].starts_with("**") {
+            self.at += 2;
+        } else if self.take(&['^']).is_none() {
+            return Ok(());
+        }
         self.deeper()?;
         self.signed()?;
         self.depth -= 1;
-        let whole = match self.steps[exponent..] {
-            [Step::Number(number)] => Some(number),
-            [Step::Number(number), Step::Neg] => Some(-number),
-            _ => None,
-        };
-        match whole.filter(|number| number.fract() == 0.0 && number.abs() <= 1000.0) {
-            Some(number) => {
-                self.steps.truncate(exponent);
+        let is_constant = |step: &Step| !matches!(step, Step::Variable(_) | Step::Spline);
+        if self.steps[exponent..].iter().all(is_constant) {
+            let number = (self.value)(&self.steps[exponent..]);
+            self.steps.truncate(exponent);
+            let is_whole = number.fract() == 0.0 && number.abs() <= 1000.0;
+            if is_whole {
                 self.steps.push(Step::Powi(number as i32));
+                return Ok(());
             }
-            None => self.steps.push(Step::Call(Function::Pow)),
+            self.steps.push(Step::Number(number));
         }
+        self.steps.push(Step::Call(Function::Pow));
         Ok(())
+    }
+
+    /// Consumes the digits of an exponent: `²`, `¹²`.
+    fn superscript(&mut self) -> Option<i32> {
+        let value = |digit: char| SUPERSCRIPTS.iter().position(|known| *known == digit);
+        self.peek();
+        let mut power = None;
+        while let Some((digit, letter)) =
+            self.text[self.at..].chars().next().and_then(|letter| Some((value(letter)?, letter)))
+        {
+            self.at += letter.len_utf8();
+            power = Some((10 * power.unwrap_or(0) + digit as i32).min(1000));
+        }
+        power
     }
 
     fn atom(&mut self) -> Parsed {
@@ -174,13 +273,31 @@ impl<'t> Parser<'t> {
             Some('(') => {
                 let open = self.at;
                 self.at += 1;
-                self.sum()?;
+                self.enclosed(false)?;
                 self.close(open)
+            }
+            Some('|') if !self.is_in_bars => {
+                let open = self.at;
+                self.at += 1;
+                self.enclosed(true)?;
+                if self.take(&['|']).is_none() {
+                    return Err(self.fault(open..open + 1, "unclosed `|`"));
+                }
+                self.steps.push(Step::Call(Function::Abs));
+                Ok(())
             }
             Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
             Some(c) if c.is_alphabetic() => self.name(),
             _ => Err(self.fault_here("expected a value")),
         }
+    }
+
+    /// Parses what stands in parentheses, or in `| |`, in which another `|` needs parentheses around it.
+    fn enclosed(&mut self, is_in_bars: bool) -> Parsed {
+        let outer = replace(&mut self.is_in_bars, is_in_bars);
+        self.sum()?;
+        self.is_in_bars = outer;
+        Ok(())
     }
 
     fn close(&mut self, open: usize) -> Parsed {
@@ -192,14 +309,19 @@ impl<'t> Parser<'t> {
 
     fn number(&mut self) -> Parsed {
         let start = self.at;
-        let bytes = self.text.as_bytes();
-        while let Some(byte) = bytes.get(self.at)
-            && (byte.is_ascii_alphanumeric()
-                || *byte == b'.'
-                || (matches!(byte, b'+' | b'-') && matches!(bytes[self.at - 1], b'e' | b'E')))
-        {
-            self.at += 1;
+        let digits = |at: usize| {
+            let rest = self.text[at..].bytes();
+            at + rest.take_while(|byte| byte.is_ascii_digit() || *byte == b'.').count()
+        };
+        let mut end = digits(start);
+        // An `e` is an exponent only before digits: in `2exp(x)`, it is the first letter of a function.
+        if let Some(exponent) = self.text[end..].strip_prefix(['e', 'E']) {
+            let unsigned = exponent.strip_prefix(['+', '-']).unwrap_or(exponent);
+            if unsigned.starts_with(|c: char| c.is_ascii_digit()) {
+                end = digits(self.text.len() - unsigned.len());
+            }
         }
+        self.at = end;
         let word = &self.text[start..self.at];
         let number = decimal::read(word).map_err(|fault| {
             let told = self.fault(start..self.at, format!("`{word}` is {}", fault.what()));
@@ -212,7 +334,7 @@ impl<'t> Parser<'t> {
     fn name(&mut self) -> Parsed {
         let start = self.at;
         let rest = &self.text[start..];
-        let length = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
+        let length = rest.find(|c: char| !is_in_name(c)).unwrap_or(rest.len());
         self.at += length;
         let word = &rest[..length];
         let place = start..self.at;
@@ -224,41 +346,91 @@ impl<'t> Parser<'t> {
             self.steps.push(Step::Variable(variable as u8));
             return Ok(());
         }
-        match (word, FUNCTIONS.iter().find(|(name, ..)| *name == word)) {
-            ("pi", _) => self.steps.push(Step::Number(PI)),
-            (_, Some((_, function, arguments))) => {
-                self.arguments(word, place, *arguments)?;
-                self.steps.push(Step::Call(*function));
-            }
-            _ => {
-                let Some(number) = (self.named)(word) else {
-                    let fault = self.fault(place, format!("unknown name `{word}` in a formula"));
-                    return Err(FormulaFault { unknown: Some(word.to_owned()), ..fault });
-                };
+        let (named, lower) = ((self.named)(word), word.to_lowercase());
+        match (word, named, function::find(word)) {
+            ("pi" | "π", _, _) => self.steps.push(Step::Number(PI)),
+            (_, Some(number), function) if function.is_none_or(|function| !function.is_reserved()) => {
                 self.steps.push(Step::Number(number));
                 self.numbers.push((place, number));
             }
+            (_, _, Some(function)) => self.call(function, place)?,
+            // `X` is x, unless the scene has a number of this name.
+            _ => match self.variables.iter().position(|name| *name == lower && word.len() == 1) {
+                Some(variable) => self.steps.push(Step::Variable(variable as u8)),
+                None => return Err(self.unknown(word, place)),
+            },
         }
         Ok(())
     }
 
-    fn arguments(&mut self, name: &str, place: Range<usize>, count: usize) -> Parsed {
-        let open = self.at;
+    /// Explains a name that means nothing.
+    fn unknown(&self, word: &str, place: Range<usize>) -> FormulaFault {
+        let fault = self.fault(place, format!("unknown name `{word}` in a formula"));
+        let product: Vec<_> = word.split("").filter(|letter| !letter.is_empty()).collect();
+        let help = match word {
+            _ if product.iter().all(|letter| self.variables.contains(letter)) => {
+                format!("write a product as `{}`", product.join("*"))
+            }
+            "log" => "`ln(x)` is the natural logarithm, and `ln(x)/ln(10)` that of base 10".to_owned(),
+            "e" => "write `exp(1)` for the number e".to_owned(),
+            _ => return FormulaFault { unknown: Some(word.to_owned()), ..fault },
+        };
+        FormulaFault { help, ..fault }
+    }
+
+    /// Parses the arguments of a function, and applies it.
+    fn call(&mut self, function: &function::Named, place: Range<usize>) -> Parsed {
+        let (name, count, open) = (function.name, function.arguments.len(), self.at);
         if self.take(&['(']).is_none() {
             return Err(self.fault(place, format!("`{name}` needs its argument in parentheses")));
         }
-        self.sum()?;
-        for _ in 1..count {
-            if self.take(&[',']).is_none() {
-                return Err(self.fault(place, format!("`{name}` takes {count} values, separated by commas")));
-            }
+        let (mut starts, depth) = (vec![self.steps.len()], self.depth);
+        self.enclosed(false)?;
+        while (starts.len() < count || function.takes_more()) && self.take(&[',']).is_some() {
+            starts.push(self.steps.len());
             self.deeper()?;
-            self.sum()?;
-            self.depth -= 1;
+            self.enclosed(false)?;
+            if let Meaning::Operation(of) = function.meaning {
+                // The values so far are one, so that many arguments nest no deeper than two.
+                self.steps.push(Step::Call(of));
+                self.depth = depth;
+            }
+        }
+        self.depth = depth;
+        if starts.len() < count {
+            return Err(self.fault(place, format!("`{name}` takes {count} values, separated by commas")));
         }
         if self.peek() == Some(',') {
             let takes = text::count(count, "value");
             return Err(self.fault(place, format!("`{name}` takes only {takes}")));
+        }
+        match function.meaning {
+            Meaning::Operation(of) if count == 1 => self.steps.push(Step::Call(of)),
+            Meaning::Operation(_) => {}
+            Meaning::Formula(text) => {
+                let (steps, _) = parse(text, function.arguments, &|_| None, self.value)?;
+                let from = starts[0];
+                let uses = |step: &Step| match step {
+                    Step::Variable(index) => {
+                        let at = usize::from(*index);
+                        starts[at]..starts.get(at + 1).copied().unwrap_or(self.steps.len())
+                    }
+                    _ => 0..0,
+                };
+                let length: usize = steps.iter().map(|step| uses(step).len().max(1)).sum();
+                if self.steps.len() + length > MAX_STEPS {
+                    return Err(self.fault(place, "too many operations"));
+                }
+                let mut applied = Vec::with_capacity(length);
+                for step in &steps {
+                    match step {
+                        Step::Variable(_) => applied.extend_from_slice(&self.steps[uses(step)]),
+                        step => applied.push(*step),
+                    }
+                }
+                self.steps.truncate(from);
+                self.steps.append(&mut applied);
+            }
         }
         self.close(open)
     }

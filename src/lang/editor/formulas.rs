@@ -1,11 +1,10 @@
 //! The names in formulas.
 
 use std::ops::Range;
-use tabray_exact::formula::is_taken;
+use tabray_exact::formula::{is_in_name, is_taken};
 
 /// Returns the places of the names in a formula that its variables, its functions and `pi` are not, in bytes.
 pub fn names(formula: &str) -> Vec<Range<usize>> {
-    let is_part = |letter: char| letter.is_alphanumeric() || letter == '_';
     let mut found = Vec::new();
     let mut at = 0;
     while let Some(first) = formula[at..].chars().next() {
@@ -17,8 +16,8 @@ pub fn names(formula: &str) -> Vec<Range<usize>> {
             let is_exponent = rest[digits..].starts_with(['e', 'E'])
                 && exponent.next().is_some_and(|next| next.is_ascii_digit() || "+-".contains(next));
             digits + 2 * usize::from(is_exponent)
-        } else if is_part(first) {
-            let length = rest.find(|c: char| !is_part(c)).unwrap_or(rest.len());
+        } else if is_in_name(first) {
+            let length = rest.find(|c: char| !is_in_name(c)).unwrap_or(rest.len());
             if is_name(&rest[..length]) {
                 found.push(at..at + length);
             }
@@ -33,9 +32,7 @@ pub fn names(formula: &str) -> Vec<Range<usize>> {
 
 /// Tells whether a scene can give a number this name.
 pub fn is_name(name: &str) -> bool {
-    name.starts_with(char::is_alphabetic)
-        && name.chars().all(|letter| letter.is_alphanumeric() || letter == '_')
-        && !is_taken(name)
+    name.starts_with(char::is_alphabetic) && name.chars().all(is_in_name) && !is_taken(name)
 }
 
 #[cfg(test)]
@@ -47,7 +44,8 @@ mod tests {
         let named =
             |formula: &'static str| -> Vec<_> { names(formula).into_iter().map(|at| &formula[at]).collect() };
         assert_eq!(named("4 + 2*cos(turn)/beads - 1e5 + 2e-3*x_1"), ["turn", "beads", "x_1"]);
-        assert_eq!(named("2x + pi*sin(y) + 1.5E+7"), [""; 0]);
+        assert_eq!(named("2x + π*sin(y) + 1.5E+7"), [""; 0]);
+        assert_eq!(named("2n² - |a|b"), ["n", "a", "b"]);
         assert_eq!(named("r(ä) + ((a"), ["r", "ä", "a"]);
     }
 }

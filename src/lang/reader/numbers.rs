@@ -8,7 +8,7 @@ use super::values;
 use std::collections::HashMap;
 use tabray_core::scene::value::Type;
 use tabray_core::text::{list, nearest, shortest};
-use tabray_exact::formula::{Formula, FormulaFault, is_taken};
+use tabray_exact::formula::{Formula, FormulaFault, is_in_name, is_taken};
 
 /// The maximum number of names that a message lists.
 const LISTED: usize = 8;
@@ -71,8 +71,7 @@ impl<'a> Numbers<'a> {
     /// Names a number, or reports why it cannot have the name; `None` stands for a number that is faulty.
     pub fn define(&mut self, name: &Word<'_>, value: Option<f64>, report: &mut Report<'_>) {
         let mut letters = name.text.chars();
-        let is_name = letters.next().is_some_and(char::is_alphabetic)
-            && letters.all(|letter| letter.is_alphanumeric() || letter == '_');
+        let is_name = letters.next().is_some_and(char::is_alphabetic) && letters.all(is_in_name);
         let fault = |message| Fault::error(name.place.clone(), message);
         if !is_name {
             let message = format!("`{}` cannot be the name of a number", name.text.escape_debug());
@@ -106,7 +105,9 @@ impl<'a> Numbers<'a> {
                 .map_err(|(what, help)| {
                     let fault = Fault::error(word.place.clone(), format!("`{}` is {what}", word.text));
                     report.add(
-                        fault.help(help.unwrap_or("a number, or a formula in quotes, is expected here")),
+                        fault.help(
+                            help.unwrap_or("a number, or a formula in quotes, is expected here".into()),
+                        ),
                     );
                 })
                 .ok();

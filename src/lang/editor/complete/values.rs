@@ -109,11 +109,11 @@ impl CompletionContext<'_> {
                 ..plain(&definition.name.text, CompletionKind::Number, &place)
             }));
         }
-        all.extend(functions().map(|(name, count)| Completion {
-            snippet: if count == 1 {
-                format!("{name}(${{1:x}})")
-            } else {
-                format!("{name}(${{1:x}}, ${{2:y}})")
+        all.extend(functions().map(|(name, arguments)| Completion {
+            snippet: {
+                let places =
+                    arguments.iter().zip(1..).map(|(argument, place)| format!("${{{place}:{argument}}}"));
+                format!("{name}({})", places.collect::<Vec<_>>().join(", "))
             },
             has_places: true,
             ..plain(name, CompletionKind::Function, &place)

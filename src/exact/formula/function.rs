@@ -1,0 +1,75 @@
+//! The functions that a formula can call: those that number types compute, and those that are formulas of these.
+
+use super::step::Function;
+
+/// A function of formulas.
+pub(super) struct Named {
+    pub name: &'static str,
+    /// The names of its arguments.
+    pub arguments: &'static [&'static str],
+    pub meaning: Meaning,
+}
+
+/// What a function computes.
+#[derive(Clone, Copy)]
+pub(super) enum Meaning {
+    /// An operation of one value, or of two, which may take further ones, one after the other.
+    Operation(Function),
+    /// The formula of its arguments that this text is.
+    Formula(&'static str),
+}
+
+use Meaning::{Formula, Operation};
+
+/// The functions of formulas.
+static FUNCTIONS: [Named; 21] = [
+    Named { name: "sin", arguments: &["x"], meaning: Operation(Function::Sin) },
+    Named { name: "cos", arguments: &["x"], meaning: Operation(Function::Cos) },
+    Named { name: "tan", arguments: &["x"], meaning: Operation(Function::Tan) },
+    Named { name: "exp", arguments: &["x"], meaning: Operation(Function::Exp) },
+    Named { name: "ln", arguments: &["x"], meaning: Operation(Function::Ln) },
+    Named { name: "sqrt", arguments: &["x"], meaning: Operation(Function::Sqrt) },
+    Named { name: "abs", arguments: &["x"], meaning: Operation(Function::Abs) },
+    Named { name: "floor", arguments: &["x"], meaning: Operation(Function::Floor) },
+    Named { name: "min", arguments: &["x", "y"], meaning: Operation(Function::Min) },
+    Named { name: "max", arguments: &["x", "y"], meaning: Operation(Function::Max) },
+    Named { name: "ceil", arguments: &["x"], meaning: Formula("-floor(-x)") },
+    Named { name: "round", arguments: &["x"], meaning: Formula("floor(x + 0.5)") },
+    Named { name: "fract", arguments: &["x"], meaning: Formula("x - floor(x)") },
+    Named { name: "mod", arguments: &["x", "m"], meaning: Formula("x - m*floor(x/m)") },
+    Named { name: "clamp", arguments: &["x", "low", "high"], meaning: Formula("min(max(x, low), high)") },
+    Named { name: "mix", arguments: &["a", "b", "t"], meaning: Formula("a + (b - a)*t") },
+    Named {
+        name: "smoothstep",
+        arguments: &["low", "high", "x"],
+        meaning: Formula(
+            "clamp((x - low)/(high - low), 0, 1)^2 * (3 - 2*clamp((x - low)/(high - low), 0, 1))",
+        ),
+    },
+    Named { name: "hypot", arguments: &["x", "y"], meaning: Formula("sqrt(x^2 + y^2)") },
+    Named { name: "sinh", arguments: &["x"], meaning: Formula("(exp(x) - exp(-x))/2") },
+    Named { name: "cosh", arguments: &["x"], meaning: Formula("(exp(x) + exp(-x))/2") },
+    Named { name: "tanh", arguments: &["x"], meaning: Formula("1 - 2/(exp(2*x) + 1)") },
+];
+
+/// Returns the names of the functions of formulas, each with the names of its arguments.
+pub fn functions() -> impl Iterator<Item = (&'static str, &'static [&'static str])> {
+    FUNCTIONS.iter().map(|function| (function.name, function.arguments))
+}
+
+/// Finds a function by its name.
+pub(super) fn find(name: &str) -> Option<&'static Named> {
+    FUNCTIONS.iter().find(|function| function.name == name)
+}
+
+impl Named {
+    /// Tells whether the function takes more arguments than it names: the smallest of many.
+    pub fn takes_more(&self) -> bool {
+        matches!(self.meaning, Operation(_)) && self.arguments.len() > 1
+    }
+
+    /// Tells whether no number of a scene can have its name. The names of functions that came later may be those of numbers.
+    pub fn is_reserved(&self) -> bool {
+        matches!(self.meaning, Operation(_))
+    }
+}
