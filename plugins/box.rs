@@ -26,4 +26,5 @@ inventory::submit! {
             help: "a side must be longer than the rounding of its coordinates, about 1e-16 of their size",
         })
     })
+    .known_as(&["cube", "cuboid", "block"])
 }

@@ -14,4 +14,5 @@ inventory::submit! {
     Entity::of_objects("difference", "what is left of an object when others are taken away", &[TABLE], |args| {
         combined(args, &OBJECTS, Operation::Difference)
     })
+    .known_as(&["subtract", "subtraction"])
 }

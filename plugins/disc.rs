@@ -15,6 +15,7 @@ inventory::submit! {
         let disc = Disc { radius: args.get(&RADIUS) };
         Ok(Body::implicit(disc, Frame::around(args.get(&CENTER), args.get(&NORMAL))))
     })
+    .known_as(&["disk", "circle"])
 }
 
 /// A disc in the plane y = 0.

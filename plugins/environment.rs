@@ -17,6 +17,7 @@ inventory::submit! {
     Entity::background("environment", "a texture all around, where there is no object", &[TABLE], |args| {
         Ok(Box::new(Environment { texture: args.get(&TEXTURE), brightness: args.get(&BRIGHTNESS) }))
     })
+    .known_as(&["envmap", "hdri", "skybox"])
 }
 
 struct Environment {

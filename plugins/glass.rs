@@ -32,6 +32,7 @@ inventory::submit! {
             ..Material::default()
         })
     })
+    .known_as(&["dielectric"])
 }
 
 #[derive(PartialEq)]

@@ -32,6 +32,7 @@ inventory::submit! {
         })?;
         Ok(Body::implicit(surface, Frame::at(args.get(&CENTER))))
     })
+    .known_as(&["isosurface", "sdf"])
 }
 
 /// The surface where a scene's formula is 0.

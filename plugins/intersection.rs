@@ -14,4 +14,5 @@ inventory::submit! {
     Entity::of_objects("intersection", "the space that several objects share", &[TABLE], |args| {
         combined(args, &OBJECTS, Operation::Intersection)
     })
+    .known_as(&["intersect"])
 }

@@ -2,10 +2,12 @@
 
 use tabray::prelude::*;
 
-static LOCATION: Pparm<DVec3> =
-    Pparm::required("location", "the position of the light").unit("world coordinates");
-static EMISSIVITY: Pparm<Rgb> =
-    Pparm::required("emissivity", "the emission in red, green and blue").each(COLOUR);
+static LOCATION: Pparm<DVec3> = Pparm::required("location", "the position of the light")
+    .known_as(&["position", "center"])
+    .unit("world coordinates");
+static EMISSIVITY: Pparm<Rgb> = Pparm::required("emissivity", "the emission in red, green and blue")
+    .known_as(&["intensity", "power", "brightness", "color", "colour"])
+    .each(COLOUR);
 
 static SIZE: Pparm<f64> = Pparm::or("size", "the radius of a spherical light, for soft shadows", 0.0)
     .unit("world units")
@@ -19,6 +21,7 @@ inventory::submit! {
     Entity::light("light", "a point light that emits equally in all directions, or a spherical light if it has a `size`", &[TABLE], |args| {
         Ok(Box::new(PointLight::new(args)))
     })
+    .known_as(&["point_light", "pointlight", "light_source", "lamp"])
 }
 
 /// A light that emits equally in all directions. Other lights contain one.

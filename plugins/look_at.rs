@@ -3,16 +3,20 @@
 use std::sync::Arc;
 use tabray::prelude::*;
 
-pub static POSITION: Pparm<DVec3> =
-    Pparm::required("position", "the position of the viewer").unit("world coordinates").pose(Pose::Position);
+pub static POSITION: Pparm<DVec3> = Pparm::required("position", "the position of the viewer")
+    .unit("world coordinates")
+    .pose(Pose::Position)
+    .known_as(&["location", "from", "eye", "origin"]);
 pub static TARGET: Pparm<DVec3> =
     Pparm::required("target", "the point that is seen in the middle of the image")
+        .known_as(&["look_at", "lookat", "at", "to"])
         .unit("world coordinates")
         .pose(Pose::Target);
 pub static UP: Pparm<DVec3> = Pparm::or("up", "a direction that points up in the image", DVec3::Y)
     .must("a nonzero vector", |up: &DVec3| *up != DVec3::ZERO)
     .pose(Pose::Up);
 pub static ANGLE: Pparm<f64> = Pparm::or("angle", "the angle of view across the width of the image", 50.0)
+    .known_as(&["fov", "fovx"])
     .unit("degrees")
     .between(0.001, 179.0);
 
@@ -25,6 +29,7 @@ inventory::submit! {
     Entity::camera("look_at", "a viewer anywhere, who looks toward a point", &[TABLE, VIEW], |args| {
         Ok(Arc::new(LookAt::new(frame(args)?, args.get(&ANGLE))))
     })
+    .known_as(&["perspective", "pinhole"])
 }
 
 /// Returns the frame of a camera whose table has the rows of [`TABLE`].

@@ -7,6 +7,7 @@ static AMBIENT: Pparm<Rgb> =
         .each(COLOUR);
 static DIFFUSE: Pparm<Rgb> =
     Pparm::or("diffuse", "the diffuse reflection coefficients for red, green and blue", Rgb::ZERO)
+        .known_as(&["color", "colour", "albedo"])
         .each(COLOUR);
 static SPECULAR: Pparm<PerChannel> = Pparm::or(
     "specular",

@@ -52,6 +52,7 @@ inventory::submit! {
         };
         Ok(Body { warnings, bytes: surface.bytes(), ..body })
     })
+    .known_as(&["obj", "stl", "ply", "model", "trimesh"])
 }
 
 /// Which sides of faces are lit.

@@ -26,6 +26,7 @@ inventory::submit! {
             ..Material::default()
         })
     })
+    .known_as(&["conductor"])
 }
 
 #[derive(PartialEq)]

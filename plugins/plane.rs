@@ -15,6 +15,7 @@ pub const TABLE: Table = &[&NORMAL, &POINT];
 
 inventory::submit! {
     Entity::shape("plane", "an infinite plane", &[TABLE], |args| Ok(body(args, shape(args))))
+    .known_as(&["floor", "ground"])
 }
 
 /// Makes an object of a plane, or of a part of one, of an entity whose table has the rows of [`TABLE`].

@@ -6,8 +6,10 @@ use tabray::prelude::*;
 use tabray::shapes::sphere::{self, SphereLine};
 use tabray::shapes::uv;
 
-static CENTER: Pparm<DVec3> =
-    Pparm::required("center", "the position of the centre").alias(&["centre"]).unit("world coordinates");
+static CENTER: Pparm<DVec3> = Pparm::required("center", "the position of the centre")
+    .alias(&["centre"])
+    .unit("world coordinates")
+    .known_as(&["position", "location"]);
 static RADIUS: Pparm<f64> = Pparm::required("radius", "the distance from the centre to the surface")
     .unit("world units")
     .positive()
@@ -27,6 +29,7 @@ inventory::submit! {
     Entity::shape("sphere", "a sphere", &[TABLE, OWN], |args| {
         Ok(args.get(&SCALE).map_or_else(|| body(args), |scale| ellipsoid::body(args, scale)))
     })
+    .known_as(&["ball"])
 }
 
 /// Makes the object of an entity whose table has the rows of [`TABLE`].

@@ -28,6 +28,7 @@ inventory::submit! {
         Ok(Box::new(Spotlight { light, axis: axis(args), cos_edge: libm::cos(edge), point, cosine }))
     })
     .dumped_as("light")
+    .known_as(&["spot_light", "spot"])
 }
 
 /// Returns the unit vector along the axis of the beam; NaN where `point` is the light's location.

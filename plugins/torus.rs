@@ -18,6 +18,7 @@ inventory::submit! {
         let torus = Torus { radius: args.get(&RADIUS), tube: args.get(&TUBE) };
         Ok(Body::implicit(torus, Frame::around(args.get(&CENTER), args.get(&DIRECTION))))
     })
+    .known_as(&["donut", "doughnut"])
 }
 
 /// A torus around the y axis.

@@ -14,4 +14,5 @@ inventory::submit! {
     Entity::of_objects("union", "several objects as one: what lies in any of them", &[TABLE], |args| {
         combined(args, &OBJECTS, Operation::Union)
     })
+    .known_as(&["merge", "csg"])
 }

@@ -85,9 +85,17 @@ impl Registry {
         self.entities.get(name).or_else(|| self.aliases.get(name)).copied()
     }
 
-    /// Returns the name of the entity type that a misspelt word was most likely meant to be.
+    /// Returns the name of the entity type that a word was most likely meant to be: one that other programs call so, or one
+    /// that is misspelt.
     pub fn nearest(&self, word: &str) -> Option<&'static str> {
-        nearest(word, self.entities.keys().copied())
+        let other = self.known_as(word).map(|entity| entity.name);
+        other.or_else(|| nearest(word, self.entities.keys().copied()))
+    }
+
+    /// Returns the entity type that other programs call so.
+    pub(crate) fn known_as(&self, word: &str) -> Option<&'static Entity> {
+        let lower = word.to_lowercase();
+        self.iter().find(|entity| entity.known_as.contains(&lower.as_str()))
     }
 
     /// Shows how a scene writes an entity of this kind. Where a type has the kind's own name, that type is the example,

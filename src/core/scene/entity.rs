@@ -32,6 +32,8 @@ pub struct Entity {
     pub meaning: &'static str,
     /// Other names that a scene may use.
     pub aliases: &'static [&'static str],
+    /// What other programs call it, in lower case: messages about these words suggest the type.
+    pub known_as: &'static [&'static str],
     /// Makes the entity from its checked values.
     pub construct: Construct,
     /// The name that the notes' dump prints.
@@ -186,12 +188,19 @@ impl Entity {
             _ => [&[], &[]],
         };
         let (aliases, numbers, place): (&[&str], _, _) = (&[], [None; 2], Location::caller());
-        Self { name, meaning, aliases, construct, dump_name: name, numbers, tables, common, place }
+        let known_as = aliases;
+        Self { name, meaning, aliases, known_as, construct, dump_name: name, numbers, tables, common, place }
     }
 
     /// Sets other names that a scene may use.
     pub const fn alias(mut self, aliases: &'static [&'static str]) -> Self {
         self.aliases = aliases;
+        self
+    }
+
+    /// Sets what other programs call the type, in lower case.
+    pub const fn known_as(mut self, words: &'static [&'static str]) -> Self {
+        self.known_as = words;
         self
     }
 

@@ -33,6 +33,7 @@ pub type Table = &'static [&'static dyn Row];
 pub struct Pparm<T: Value> {
     name: &'static str,
     aliases: &'static [&'static str],
+    known_as: &'static [&'static str],
     meaning: &'static str,
     each: &'static [&'static str],
     unit: &'static str,
@@ -62,6 +63,7 @@ impl<T: Value> Pparm<T> {
         Self {
             name,
             aliases: &[],
+            known_as: &[],
             meaning,
             each: T::EACH,
             unit: "",
@@ -79,6 +81,12 @@ impl<T: Value> Pparm<T> {
     /// Sets other names that a scene may use.
     pub const fn alias(mut self, aliases: &'static [&'static str]) -> Self {
         self.aliases = aliases;
+        self
+    }
+
+    /// Sets what other programs call the attribute, in lower case.
+    pub const fn known_as(mut self, words: &'static [&'static str]) -> Self {
+        self.known_as = words;
         self
     }
 
@@ -155,6 +163,10 @@ impl<T: Value> Attribute for Pparm<T> {
 
     fn aliases(&self) -> &'static [&'static str] {
         self.aliases
+    }
+
+    fn known_as(&self) -> &'static [&'static str] {
+        self.known_as
     }
 
     fn meaning(&self) -> &'static str {

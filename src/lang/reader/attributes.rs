@@ -6,6 +6,7 @@ use super::names::Names;
 use super::parsed::{Form, MAX_VALUES, Parsed, VALUES, Word};
 use super::report::Report;
 use super::values;
+use crate::registry::Registry;
 use tabray_core::scene::attribute::{Attribute, LEAST_LENGTH, MOST_LENGTH};
 use tabray_core::scene::choice::Choices;
 use tabray_core::scene::entity::Entity;
@@ -17,6 +18,8 @@ use tabray_core::text::{self, list};
 
 /// Checks an entity against the table of its type and reports its faults.
 pub struct AttributeChecker<'c, 't> {
+    /// The types of entities.
+    pub registry: &'c Registry,
     /// The entity's type.
     pub entity: &'static Entity,
     /// The names that the entity's attributes may refer to.
@@ -58,8 +61,7 @@ impl AttributeChecker<'_, '_> {
         }
         sound &= unknown.is_empty();
         let meant = self.unknown_attributes(&title, &attributes, &given, &unknown);
-        let one_of_each = self.groups(&title, &attributes, &given, &meant, parsed);
-        sound &= one_of_each;
+        sound &= self.groups(&title, &attributes, &given, &meant, parsed);
         let mut missing = Vec::new();
         let mut values = Vec::new();
         for (attribute, given) in attributes.iter().zip(given) {
@@ -85,13 +87,6 @@ impl AttributeChecker<'_, '_> {
             self.report.add(
                 Fault::error(parsed.name.place.clone(), fault)
                     .help(format!("add `{}`", wanted.join("` and `"))),
-            );
-        } else if parsed.count() == 0 && one_of_each && !attributes.is_empty() && !parsed.is_damaged {
-            sound = false;
-            let names = list(attributes.iter().map(|attribute| attribute.name()));
-            self.report.add(
-                Fault::error(parsed.name.place.clone(), format!("{title} has no attributes"))
-                    .help(format!("add at least one of {names}")),
             );
         }
         sound.then_some(values)
@@ -173,6 +168,11 @@ impl AttributeChecker<'_, '_> {
         let mut fault = Fault::error(word.place.clone(), format!("{title} has no attribute `{}`", word.text));
         if let Some(near) = near {
             fault = fault.label(format!("did you mean `{near}`?")).meant(Some(near));
+        }
+        if let (None, Some(other)) = (near, self.registry.known_as(&word.text)) {
+            let usage = self.report.syntax().entity_usage(other, "NAME");
+            self.report.add(fault.help(format!("see `{}`, {}: {usage}", other.name, other.meaning)));
+            return;
         }
         let names = list(entity.attributes().map(|attribute| attribute.name()));
         self.report.add(fault.help(format!("{} takes {names}", text::with_article(entity.name))));

@@ -246,9 +246,14 @@ impl Check<'_, '_> {
                     .help("a scene has at most one background"),
             );
         }
-        let values =
-            AttributeChecker { entity, names: &mut self.names, store: &self.store, report: self.report }
-                .values(parsed);
+        let values = AttributeChecker {
+            registry: self.registry,
+            entity,
+            names: &mut self.names,
+            store: &self.store,
+            report: self.report,
+        }
+        .values(parsed);
         let values = values.filter(|_| counts);
         self.store.add(entity, text, values.as_deref());
         // An object to which one entity refers is often that of many.

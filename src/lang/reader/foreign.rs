@@ -1,5 +1,5 @@
-//! What scenes have that were written as other programs read them: brackets, commas, `=`, `;`, curly quotes, colours as
-//! `#8080ff`. Where a scene has errors, each of these is reported once, with what would be right, and the scene is read
+//! What scenes have that were written as other programs read them: brackets, commas, `=`, `;`, curly quotes, comments
+//! after `//`, colours as `#8080ff`. Where a scene has errors, each of these is reported once, with what would be right, and the scene is read
 //! again without them, so that none of the errors that follow from them is reported.
 
 use super::fault::{Fault, Severity};
@@ -11,6 +11,7 @@ use std::ops::Range;
 /// Syntax of other programs, which scenes do not have.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum ForeignSyntax {
+    Comment,
     Colour,
     Quotes,
     Brackets,
@@ -57,6 +58,10 @@ pub fn explained(
 impl ForeignSyntax {
     fn fault(self, Finding { replacement, places }: &Finding) -> Fault {
         let (message, help) = match self {
+            Self::Comment => (
+                "a comment begins with `#`, not with `//` or `/*`",
+                "a `#` after white space begins a comment, which ends with its line",
+            ),
             Self::Colour => (
                 "a `#` begins a comment, not a colour",
                 "a colour is red, green and blue, and 1 is the brightest that an image can show",
@@ -79,7 +84,7 @@ impl ForeignSyntax {
         };
         let label = match self {
             Self::Equals | Self::Semicolon => "leave it out".to_owned(),
-            Self::Colour | Self::Quotes | Self::Brackets => format!("write `{replacement}`"),
+            Self::Comment | Self::Colour | Self::Quotes | Self::Brackets => format!("write `{replacement}`"),
         };
         let mut fault = Fault::error(places.first().cloned(), message).label(label).help(help);
         places.iter().skip(1).for_each(|place| fault.count_similar(Some(place.clone())));
@@ -90,6 +95,9 @@ impl ForeignSyntax {
 impl Cleaned {
     /// Replaces all that scenes do not have. A text is only looked through for what its bytes allow.
     fn all(&mut self) {
+        if self.bytes.contains(&b'/') {
+            self.comments();
+        }
         if self.bytes.contains(&b'#') {
             self.colours();
         }
@@ -113,6 +121,37 @@ impl Cleaned {
     fn text(&self) -> String {
         // Only whole characters are replaced, by others.
         String::from_utf8_lossy(&self.bytes).into_owned()
+    }
+
+    /// Puts white space in the place of comments that begin with `//` or `/*`, where a word could begin.
+    fn comments(&mut self) {
+        let text = self.text();
+        let (mut at, mut may_begin) = (0, true);
+        while let Some(letter) = text[at..].chars().next() {
+            let rest = &text[at..];
+            let line = rest.find('\n').unwrap_or(rest.len());
+            let (length, is_foreign) = match letter {
+                '#' if may_begin => (line, false),
+                '"' if may_begin => (rest[1..line.max(1)].find('"').map_or(1, |end| end + 2), false),
+                '/' if may_begin && rest.starts_with("//") => (line, true),
+                '/' if may_begin && rest.starts_with("/*") => {
+                    (rest.find("*/").map_or(rest.len(), |end| end + 2), true)
+                }
+                letter => (letter.len_utf8(), false),
+            };
+            may_begin = letter.is_whitespace() || "{}".contains(letter) || is_foreign;
+            if is_foreign {
+                let comment = rest[..length].trim_end();
+                let first = comment.lines().next().unwrap_or_default();
+                let place = at..at + first.len();
+                let words = first.trim_start_matches(['/', '*']).trim_end_matches(['/', '*']).trim();
+                self.find(ForeignSyntax::Comment, place, || format!("# {words}"));
+                for byte in &mut self.bytes[at..at + length] {
+                    *byte = if matches!(byte, b'\n' | b'\r') { *byte } else { b' ' };
+                }
+            }
+            at += length;
+        }
     }
 
     /// Puts three numbers in the place of each colour such as `#8080ff` that follows a word on its line.
@@ -336,6 +375,8 @@ mod tests {
             ("material “a b” { }", "material   \"a b\"   { }"),
             ("ambient #ff0000 }", "ambient 1 1 1   }"),
             ("ambient #f00 }", "ambient 1 1 1}"),
+            ("a { b 1 } // ball, (1)\nc", "a { b 1 }             \nc"),
+            ("{/* one\ntwo */ a 1 }", "{      \n       a 1 }"),
         ] {
             assert_eq!(cleaned(text), clean, "{text}");
         }
@@ -345,6 +386,7 @@ mod tests {
             "sphere (left) { material wall,red radius 1 } # (1, 2); #ff0000",
             "profile \"2 + sin(y)\" text \"“a” = (1, 2);\"",
             "radius 2 #fff comment",
+            "texture \"//host/a.png\" name a//b # see // and /* */",
         ] {
             assert_eq!(cleaned(text), text);
         }
@@ -353,7 +395,8 @@ mod tests {
     #[test]
     fn long_texts_of_one_sign_take_no_time() {
         let start = Instant::now();
-        for sign in ["„ ", "“", "<1 ", "(", ", ", "1, ", "=", "; ", "#fff ", "a=\"", "‘a"] {
+        for sign in ["„ ", "“", "<1 ", "(", ", ", "1, ", "=", "; ", "#fff ", "a=\"", "‘a", "/*", "// ", "\""]
+        {
             cleaned(&sign.repeat(200_000));
         }
         assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());

@@ -132,7 +132,11 @@ pub fn near_attribute(
         Entry::Occupied(known) => *known.get(),
         Entry::Vacant(_) if is_full => None,
         Entry::Vacant(free) => {
-            *free.insert(nearest(word, entity.attributes().map(|attribute| attribute.name())))
+            let lower = word.to_lowercase();
+            let other = entity.attributes().find(|attribute| attribute.known_as().contains(&lower.as_str()));
+            let other = other.map(|attribute| attribute.name());
+            let near = || nearest(word, entity.attributes().map(|attribute| attribute.name()));
+            *free.insert(other.or_else(near))
         }
     };
     near.and_then(|name| find_attribute(entity, name))

@@ -7,6 +7,7 @@ use super::tokens::{Token, Tokens};
 use crate::registry::Registry;
 use crate::syntax::Syntax;
 use std::collections::HashSet;
+use std::ops::Range;
 
 /// Words with which a statement of POV-Ray's language begins, and which scenes have no use for. Those with a `#` begin
 /// a line.
@@ -28,6 +29,47 @@ const POV: [&str; 12] = [
 /// The number of different signs that tell POV-Ray's language for certain: some words may be those of a scene.
 const ENOUGH: usize = 2;
 
+/// The signs of other languages, in which a text begins.
+const OTHERS: [Language; 4] = [
+    Language { name: "a Mitsuba scene", begins: &["<?xml", "<scene", "<!--"], has: &["<scene"] },
+    Language { name: "an XML file, not a scene", begins: &["<?xml", "<"], has: &["</"] },
+    Language { name: "a JSON file, not a scene", begins: &["{", "[{", "[ {", "[\n"], has: &["\":", "\" :"] },
+    Language {
+        name: "a pbrt scene",
+        begins: &[],
+        has: &["\nWorldBegin", "\nAttributeBegin", "Camera \"", "Sampler \"", "Integrator \""],
+    },
+];
+
+/// Another language.
+struct Language {
+    name: &'static str,
+    /// What its texts may begin with; empty where they may begin with anything.
+    begins: &'static [&'static str],
+    /// Of these, a text has at least one, and two where it may begin with anything.
+    has: &'static [&'static str],
+}
+
+impl Language {
+    fn recognised(&self, text: &str) -> Option<Fault> {
+        let body = text.trim_start();
+        let start = text.len() - body.len();
+        let enough = if self.begins.is_empty() { ENOUGH } else { 1 };
+        let is_begun = self.begins.is_empty() || self.begins.iter().any(|begin| body.starts_with(begin));
+        let found = self.has.iter().filter(|sign| text.contains(**sign)).take(enough).count();
+        (is_begun && found == enough).then(|| {
+            let line = body.lines().next().unwrap_or_default().trim_end();
+            in_another_language(start..start + line.len(), self.name)
+        })
+    }
+}
+
+fn in_another_language(place: Range<usize>, what: &str) -> Fault {
+    let what = if what.contains(", ") { what.to_owned() } else { format!("{what}, in another language") };
+    Fault::error(Some(place), format!("this is {what}"))
+        .help("`tabray new scene NAME` writes a scene to start from; `tabray list` lists the entity types")
+}
+
 /// Returns the report on a text that is not read as a scene: the one given, or that it is one in another language.
 pub fn recognised(
     registry: &Registry,
@@ -38,7 +80,10 @@ pub fn recognised(
 ) -> Result<Report<'static>, Report<'static>> {
     let fault = match syntax {
         Syntax::Toml => of_notes(registry, name, text),
-        Syntax::Notes => of_pov(text, name).or_else(|| of_numbers(registry, text)),
+        Syntax::Notes => {
+            let other = || OTHERS.iter().find_map(|other| other.recognised(text));
+            of_pov(text, name).or_else(other).or_else(|| of_numbers(registry, text))
+        }
     };
     let Some(fault) = fault else { return Err(report) };
     let mut report = Report::new(name, text.to_owned(), syntax);
@@ -85,11 +130,8 @@ fn of_pov(text: &str, name: &str) -> Option<Fault> {
         }
     }
     let is_told = found.len() >= ENOUGH || name.ends_with(".pov");
-    first.filter(|_| is_told && !found.is_empty()).map(|place| {
-        Fault::error(Some(place), "this is a POV-Ray scene, in another language").help(
-            "`tabray new scene NAME` writes a scene to start from; `tabray list` lists the entity types",
-        )
-    })
+    let place = first.filter(|_| is_told && !found.is_empty())?;
+    Some(in_another_language(place, "a POV-Ray scene"))
 }
 
 /// Recognises a scene of numbers, which stand for what other scenes say in words.

@@ -296,7 +296,9 @@ impl Names {
                 }
                 None => {
                     let known = known.get(kind).filter(|_| is_told).into_iter().flatten().copied();
-                    let near = nearest(text, known);
+                    // An entity does not refer to itself.
+                    let own = if is_told { owner(store, &place, first) } else { None };
+                    let near = nearest(text, known.filter(|name| Some(*name) != own));
                     Fault::error(first.clone(), format!("there is no {kind} `{text}`"))
                         .label(suggestion(near, *count))
                         .meant(near)
@@ -306,6 +308,16 @@ impl Names {
             report.add(fault);
         }
     }
+}
+
+/// Returns the name of the entity in which a place is: the last one whose name comes before it.
+fn owner<'s>(store: &'s Store, place: impl Fn(usize) -> Place, at: &Place) -> Option<&'s str> {
+    let (at, mut orders) = (at.as_ref()?.start, 0..store.count());
+    while !orders.is_empty() {
+        let middle = orders.start + orders.len() / 2;
+        if place(middle)?.start < at { orders.start = middle + 1 } else { orders.end = middle }
+    }
+    orders.start.checked_sub(1).map(|order| store.name(order))
 }
 
 /// Returns the index of the table of the defined entities of a kind.

@@ -13,6 +13,7 @@ use crate::registry::Registry;
 use crate::syntax::Syntax;
 use std::borrow::Cow;
 use std::ops::Range;
+use tabray_core::scene::kind::Kind;
 use tabray_core::scene::value::Type;
 
 /// Begins to parse the entities of a text. Returns `None`, and reports why, if no part of it is an entity.
@@ -307,7 +308,41 @@ impl<'a, 'r> Parser<'a, 'r> {
             count += 1;
             self.step();
         }
+        let value_type = known.and_then(|known| table.map(|table| self.tables[table][known].value_type));
+        if let (0, Some(Type::Name(kind)), true) = (count, value_type, self.is(0, TokenForm::Open)) {
+            self.nested_entity(kind, &name, entity);
+        }
         entity.add(name, self.report);
+    }
+
+    /// Skips an entity that is written in the place of its name, and reports it.
+    fn nested_entity(&mut self, kind: Kind, name: &Word<'a>, entity: &mut Parsed<'a>) {
+        let Some(open) = self.step() else { return };
+        let mut depth = 1;
+        while depth > 0
+            && let Some(token) = self.step()
+        {
+            depth = match token.form {
+                TokenForm::Open => depth + 1,
+                TokenForm::Close => depth - 1,
+                _ => depth,
+            };
+        }
+        let place = open.start..self.before.end;
+        let example = self.registry.example(kind, "NAME", self.report.syntax());
+        let message = format!(
+            "`{}` of {} `{}` takes the name of {}",
+            name.text,
+            entity.kind.text,
+            entity.name.text,
+            kind.with_article()
+        );
+        self.report.add(
+            Fault::error(Some(place.clone()), message)
+                .label("not defined here")
+                .help(format!("define it before, {example}, and write `{} NAME` here", name.text)),
+        );
+        entity.value(Word::at("", Form::Faulty, place));
     }
 }
 

@@ -2,10 +2,11 @@
 
 use super::fault::Fault;
 use super::parsed::{Form, Word};
+use std::borrow::Cow;
 use std::sync::Arc;
 use tabray_core::scene::choice::Choices;
 use tabray_core::scene::value::{Datum, Type};
-use tabray_core::text::{self, nearest};
+use tabray_core::text::{self, nearest, shortest};
 use tabray_exact::decimal::{self, DecimalFault};
 use tabray_exact::formula::Formula;
 
@@ -82,21 +83,21 @@ fn choice(choices: Choices, word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
 }
 
 /// What is wrong with a word, and what would be right where that can be said.
-pub type ValueError = (&'static str, Option<&'static str>);
+pub type ValueError = (&'static str, Option<Cow<'static, str>>);
 
 fn all<T>(words: &[Word<'_>], read: fn(&str) -> Result<T, ValueError>) -> Result<Vec<T>, Vec<Fault>> {
     let mut values = Vec::with_capacity(words.len());
     let mut faults = Vec::new();
     for word in words {
         let value = match word.form {
-            Form::Text => Err(("in quotes", Some("write numbers without quotes"))),
+            Form::Text => Err(("in quotes", Some("write numbers without quotes".into()))),
             Form::Any | Form::Number | Form::Truth | Form::Faulty => read(&word.text),
         };
         match value {
             Ok(value) => values.push(value),
             Err((what, help)) => {
                 let fault = Fault::error(word.place.clone(), format!("`{}` is {what}", word.text));
-                faults.push(Fault { help: help.map(str::to_owned), ..fault });
+                faults.push(Fault { help: help.map(Cow::into_owned), ..fault });
             }
         }
     }
@@ -137,14 +138,24 @@ pub fn whole(word: &str) -> Result<i64, ValueError> {
 pub fn number(word: &str) -> Result<f64, ValueError> {
     decimal::read(word).map_err(|fault| {
         let help = match fault {
-            DecimalFault::NotANumber if word.contains(',') => {
-                Some("separate values by white space, and write decimals with a point")
-            }
-            DecimalFault::NotANumber if word.contains('#') => {
-                Some("put white space before the `#` of a comment")
-            }
-            fault => fault.help(),
+            DecimalFault::NotANumber => meant(word),
+            fault => fault.help().map(Cow::Borrowed),
         };
         (fault.what(), help)
+    })
+}
+
+/// Says what is right in place of a word that is not a number.
+fn meant(word: &str) -> Option<Cow<'static, str>> {
+    let end = word.find(|c: char| !(c.is_ascii_digit() || "+-.".contains(c))).unwrap_or(word.len());
+    let (number, unit) = word.split_at(end);
+    let has_unit = !unit.is_empty() && unit.chars().all(|c| c.is_alphabetic() || "°%'".contains(c));
+    Some(match (number.parse::<f64>(), unit) {
+        (Ok(percent), "%") => format!("write {percent} percent as `{}`", shortest(percent / 100.0)).into(),
+        (Ok(_), _) if has_unit => format!("numbers have no units: write `{number}`").into(),
+        _ if word.contains(',') => "separate values by white space, and write decimals with a point".into(),
+        _ if word.contains('#') => "put white space before the `#` of a comment".into(),
+        _ if Formula::parse_in(word, &[]).is_ok() => format!("a formula goes in quotes: `\"{word}\"`").into(),
+        _ => return None,
     })
 }
