@@ -299,7 +299,8 @@ fn rounded(rays: f64) -> String {
     match rays {
         ..1e3 => format!("{rays:.0}"),
         ..1e6 => format!("{:.0} thousand", rays / 1e3),
-        _ => format!("{} million", short(rays / 1e6)),
+        ..1e7 => format!("{:.2} million", rays / 1e6),
+        _ => format!("{:.0} million", rays / 1e6),
     }
 }
 
@@ -314,7 +315,7 @@ mod tests {
 
     #[test]
     fn few_rays_are_told_as_they_are() {
-        let told = [48.0, 999.0, 1500.0, 1.234e6].map(rounded);
-        assert_eq!(told, ["48", "999", "2 thousand", "1.23 million"]);
+        let told = [48.0, 999.0, 1500.0, 1.234e6, 3.21e7].map(rounded);
+        assert_eq!(told, ["48", "999", "2 thousand", "1.23 million", "32 million"]);
     }
 }

@@ -34,6 +34,10 @@ fn table() -> String {
     let mut table = String::from("certified proven rounded open uncertified contradicted\n");
     for path in scenes() {
         let name = path.strip_prefix(root().join("scenes")).expect("a scene").display().to_string();
+        // A table of these would have to be edited for each new entity type.
+        if name.starts_with("entities") {
+            continue;
+        }
         let mut model = load(&path);
         let camera = &mut model.camera.value;
         if camera.accuracy == Accuracy::Classic {
