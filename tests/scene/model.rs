@@ -108,3 +108,19 @@ fn equal_objects_look_as_the_first_of_them() {
     assert!(hearts([&red, &blue]) == hearts([&red, ""]));
     assert!(hearts([&blue, &red]) == hearts([&blue, ""]));
 }
+
+#[test]
+fn an_entity_whose_attributes_all_have_defaults_may_be_empty() {
+    let scene = |metal: &str, sky: &str| {
+        model(&format!(
+            "camera eye {{ pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 }} metal m {{ {metal} }} sky day {{ {sky} }}
+            sphere ball {{ material m center 4 3 -3 radius 1 }}"
+        ))
+    };
+    let given = registry().find("sky").expect("a sky").attributes();
+    let given: Vec<_> =
+        given.map(|attribute| (attribute.name(), attribute.default().expect("a default"))).collect();
+    let (name, default) = &given[0];
+    let sky = Syntax::Notes.pair(name, &Syntax::Notes.values(default));
+    assert_eq!(render(&scene("", "")), render(&scene("", &sky)));
+}
