@@ -10,10 +10,6 @@
 //! The footprint whose mean is known the least is cut into quarters, again and again, until the mean of the whole pixel is
 //! known well enough.
 
-mod brightness;
-
-pub use brightness::Brightness;
-
 use crate::geometry::image_point::ImagePoint;
 use crate::geometry::sight::Line;
 use crate::render::bytes::shown;
@@ -29,7 +25,8 @@ use tabray_exact::interval::Interval;
 use tabray_exact::scalar::Scalar;
 
 /// How far the rays of a footprint are followed: branches are left out that add no more than 1/400 of a level.
-const LIMITS: Limits = Limits { hits: 48, depth: 24, places: 6, negligible: 1e-5, tolerable: f64::INFINITY };
+pub(super) const LIMITS: Limits =
+    Limits { hits: 48, depth: 24, places: 6, negligible: 1e-5, tolerable: f64::INFINITY };
 
 /// The maximum number of footprints that are examined for a pixel.
 pub(crate) const MAX_FOOTPRINTS: usize = 1 + 4 * 256;
@@ -195,7 +192,7 @@ fn proof(all: &[Footprint], count: usize) -> Proof {
 
 /// Returns the primary rays through a square of the image, given by its middle and half its width in pixels; `None` where
 /// the camera does not say.
-fn lines(camera: &Film, middle: [f64; 2], half: f64) -> Option<Line<Affine>> {
+pub(super) fn lines(camera: &Film, middle: [f64; 2], half: f64) -> Option<Line<Affine>> {
     let at = [0, 1].map(|side| Affine::variable(side, middle[side], half));
     camera.camera.footprint(ImagePoint { at, pixels: camera.pixels })
 }

@@ -1,5 +1,6 @@
 //! From a model to colours: the plan, the BVH, the tracer, and its observers.
 
+pub mod brightness;
 pub mod bytes;
 mod culling;
 pub mod decisions;

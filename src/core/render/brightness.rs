@@ -1,7 +1,7 @@
 //! Bounds on what the rays through a part of an image return, each by itself.
 
-use super::{LIMITS, lines};
 use crate::render::enclosed::{LightPoints, Scene, SceneBounds, Tracer};
+use crate::render::footprint::{LIMITS, lines};
 use crate::render::plan::depth::{Depth, clearance};
 use crate::scene::model::Model;
 use crate::world::film::Film;
