@@ -217,3 +217,93 @@ fn over_white(picture: DynamicImage, remarks: &mut Vec<&'static str>) -> RgbImag
     };
     RgbImage::from_fn(picture.width(), picture.height(), |x, y| Texel(over(picture.get_pixel(x, y).0)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::{ImageEncoder, RgbaImage};
+    use tempfile::TempDir;
+
+    fn texture(folder: &TempDir, name: &str, bytes: &[u8]) -> Texture {
+        let path = folder.path().join(name);
+        fs::write(&path, bytes).expect("a file");
+        Texture::new(path)
+    }
+
+    /// Returns an image of three by two texels, in a format that keeps its colours.
+    fn written(format: ImageFormat) -> Vec<u8> {
+        let image = RgbImage::from_fn(3, 2, |x, y| Texel([50 * x as u8, 90 * y as u8, 200]));
+        let mut bytes = io::Cursor::new(Vec::new());
+        DynamicImage::ImageRgb8(image).write_to(&mut bytes, format).expect("an image");
+        bytes.into_inner()
+    }
+
+    #[test]
+    fn images_of_all_formats_are_read_whatever_their_names() {
+        let folder = TempDir::new().expect("a folder");
+        for format in
+            [ImageFormat::Png, ImageFormat::Pnm, ImageFormat::Bmp, ImageFormat::Tiff, ImageFormat::WebP]
+        {
+            let texture = texture(&folder, "a.jpg", &written(format));
+            assert_eq!(texture.load().map(|image| image.get_pixel(2, 1).0), Ok([100, 90, 200]), "{format:?}");
+            assert!(texture.remarks().is_empty());
+        }
+        let near =
+            |texel: [u8; 3]| texel.iter().zip([100, 90, 200]).all(|(one, other)| one.abs_diff(other) < 25);
+        let texture = texture(&folder, "a.png", &written(ImageFormat::Jpeg));
+        assert!(texture.load().is_ok_and(|image| near(image.get_pixel(2, 1).0)));
+    }
+
+    #[test]
+    fn an_image_that_takes_too_much_memory_is_refused_before_it_is_decoded() {
+        let folder = TempDir::new().expect("a folder");
+        for format in
+            [ImageFormat::Png, ImageFormat::Bmp, ImageFormat::Tiff, ImageFormat::WebP, ImageFormat::Jpeg]
+        {
+            let texture = texture(&folder, "a", &written(format));
+            let refusal = texture.load_within(17).expect_err("too large");
+            assert!(refusal.contains("it takes more than 17 B of memory"), "{format:?} {refusal}");
+        }
+    }
+
+    #[test]
+    fn transparent_texels_show_the_objects_own_colour() {
+        let folder = TempDir::new().expect("a folder");
+        let image = RgbaImage::from_fn(2, 1, |x, _| image::Rgba([200, 100, 0, if x == 0 { 0 } else { 51 }]));
+        let mut bytes = io::Cursor::new(Vec::new());
+        image.write_to(&mut bytes, ImageFormat::Png).expect("an image");
+        let texture = texture(&folder, "a.png", &bytes.into_inner());
+        let image = texture.load().expect("an image");
+        assert_eq!([image.get_pixel(0, 0).0, image.get_pixel(1, 0).0], [[255; 3], [244, 224, 204]]);
+        assert_eq!(texture.remarks().len(), 1);
+    }
+
+    #[test]
+    fn a_photograph_is_turned_as_it_says() {
+        let folder = TempDir::new().expect("a folder");
+        let mut bytes = Vec::new();
+        let mut encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(&mut bytes, 100);
+        // An orientation of 6: to be turned clockwise.
+        let exif = b"II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0".to_vec();
+        encoder.set_exif_metadata(exif).expect("metadata");
+        let image = RgbImage::from_fn(32, 16, |x, _| Texel([if x < 16 { 0 } else { 255 }; 3]));
+        encoder.write_image(image.as_raw(), 32, 16, image::ExtendedColorType::Rgb8).expect("an image");
+        let texture = texture(&folder, "a.jpg", &bytes);
+        assert_eq!(texture.size(), [16, 32]);
+        let image = texture.load().expect("an image");
+        assert!(image.get_pixel(8, 2).0[0] < 9 && image.get_pixel(8, 30).0[0] > 246);
+    }
+
+    #[test]
+    fn other_files_are_named_with_the_cure() {
+        let folder = TempDir::new().expect("a folder");
+        for (bytes, said) in [
+            (&b"GIF89a\x01\0\x01\0\0\0\0"[..], "it is a GIF, which is not read: save it as PNG"),
+            (b"<svg xmlns='x'/>", "it is XML, as SVG is: save it as PNG"),
+            (b"\0\0\0\x18ftypheic\0\0\0\0", "it is a HEIC, an AVIF or a film: save it as PNG"),
+            (b"one two three", text::NO_IMAGE),
+        ] {
+            assert_eq!(texture(&folder, "a.png", bytes).load(), Err(said));
+        }
+    }
+}
