@@ -4,8 +4,8 @@
 //! The space around a mesh can then be told apart by any face that a ray meets first, and by counting crossings, and both
 //! say the same.
 
-use super::solid::DIRECTIONS;
 use super::surface::Surface;
+use super::winding::DIRECTIONS;
 use crate::geometry::orientation::side_of_plane;
 use crate::geometry::sight::Line;
 use crate::parallel;

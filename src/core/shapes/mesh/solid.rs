@@ -1,20 +1,12 @@
 //! Closed meshes as solids.
 
 use super::surface::Surface;
+use super::winding::DIRECTIONS;
 use crate::geometry::facet::Facet;
 use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::world::accuracy::Bounded;
 use crate::world::coincidence::ROUNDING;
 use glam::DVec3;
-
-/// Directions in which it is looked for the face that tells whether a point lies inside; along none of them do the edges
-/// of made-up shapes run.
-pub(super) const DIRECTIONS: [DVec3; 4] = [
-    DVec3::new(0.615_947, 0.359_214, 0.701_135),
-    DVec3::new(-0.271_803, 0.857_241, -0.437_365),
-    DVec3::new(0.480_163, -0.692_127, -0.538_843),
-    DVec3::new(-0.733_019, -0.226_591, 0.641_357),
-];
 
 /// The least cosine between a direction and the normal of a face that tells its sides apart.
 const LEAST_COSINE: f64 = 1e-3;

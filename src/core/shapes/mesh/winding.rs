@@ -2,13 +2,21 @@
 //! to have their outer sides outside.
 
 use super::edges::Edges;
-use super::solid::DIRECTIONS;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::Bvh;
 use crate::geometry::orientation::side_of_plane;
 use glam::DVec3;
 use std::cmp::Ordering;
 use tabray_exact::double_double::{exponent_to_one, times_power_of_two};
+
+/// Directions in which it is looked for the face that tells whether a point lies inside; along none of them do the edges
+/// of made-up shapes run.
+pub(super) const DIRECTIONS: [DVec3; 4] = [
+    DVec3::new(0.615_947, 0.359_214, 0.701_135),
+    DVec3::new(-0.271_803, 0.857_241, -0.437_365),
+    DVec3::new(0.480_163, -0.692_127, -0.538_843),
+    DVec3::new(-0.733_019, -0.226_591, 0.641_357),
+];
 
 /// The volume of a part that rounding leaves open, as a fraction of the sum of the products of three edges each.
 const FLAT: f64 = 1e-12;
