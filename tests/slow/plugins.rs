@@ -298,7 +298,7 @@ fn pixels_that_a_shape_without_an_equation_may_cover_are_not_certified() {
     assert_eq!(of("not_certified"), open.count() as u64);
     let said = BUILT.prints(&["verify", scene]);
     let counted = format!(", 0 ties, {} not certified: `pill`, 0 contradicted\n", of("not_certified"));
-    assert!(said.ends_with(&counted), "{said}");
+    assert!(said.contains(&counted), "{said}");
 }
 
 // What `tabray new plugin` writes
