@@ -31,7 +31,7 @@ use tabray_tools::chart::{self, Cost, Estimate, Estimates, Goal};
 /// line to use. First takes about 1 million rays to compare the choices (2 million with `--worst`), beside those that are
 /// timed, and up to 4 million for lamps, wires and glints that are smaller than what is between samples. Then measures the likely choice
 /// on as many pixels as the bound needs, with 8 to 64 samples beside its own: on all pixels, if the error is small or the
-/// image is. Gives up after 10 seconds or after --time-limit, and may take a tenth longer.
+/// image is. Gives up after 30 seconds or after --time-limit, and may take a tenth longer.
 #[derive(clap::Args)]
 #[command(group = ArgGroup::new("limit").args(["max_error", "max_time"]).required(true))]
 #[command(after_long_help = EXAMPLES)]
@@ -48,7 +48,7 @@ pub struct Args {
     /// count
     #[arg(long)]
     worst: bool,
-    /// The time that choosing may take, such as 30s or 2m, instead of 10 seconds
+    /// The time that choosing may take, such as 30s or 2m, instead of 30 seconds
     #[arg(long, value_name = "TIME", value_parser = stop::time)]
     time_limit: Option<Duration>,
 }
@@ -59,7 +59,7 @@ Examples:
   tabray choose ball.ray --max-time 2 --worst";
 
 /// The time that choosing may take if no time limit is given.
-const LIMIT: Duration = Duration::from_secs(10);
+const LIMIT: Duration = Duration::from_secs(30);
 
 /// The ratio of costs or errors from which on another choice than the first is worth taking.
 const GAIN: f64 = 0.8;
