@@ -178,7 +178,7 @@ pub fn frame(normal: DVec3, xdir: DVec3) -> DMat3 {
     DMat3::from_cols(x, normal.cross(x), normal)
 }
 
-/// Returns the sides of [`exact_sides`], rounded.
+/// Returns the sides of `exact_sides`, rounded.
 pub fn rounded_sides(upright: [DoubleDouble; 3], xdir: DVec3) -> [DVec3; 2] {
     exact_sides(upright, xdir).map(|side| DVec3::from(side.map(|part| part.high)))
 }

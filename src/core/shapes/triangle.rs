@@ -173,7 +173,7 @@ fn scale_to_one(x: f64, y: f64, z: f64) -> (f64, bool) {
 /// Computes the distances at which eight rays cross the plane of a triangle each; NaN where that takes more than plain or
 /// compensated arithmetic.
 ///
-/// They are those of [`plane_for_distances`], to the bit.
+/// They are those of `plane_for_distances`, to the bit.
 #[inline(always)]
 pub fn crossings<A: Bounded>(corners: &[Vectors<LANES>; 3], rays: RayPacket, distances: &mut [f64; LANES]) {
     let corners_of = |lane: usize| [corners[0].get(lane), corners[1].get(lane), corners[2].get(lane)];
