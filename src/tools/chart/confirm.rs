@@ -8,7 +8,7 @@ use super::needed;
 use super::places::Draw;
 use super::progress::Progress;
 use super::right::Colours;
-use super::sampled::{Errors, Image};
+use super::sampled::{Errors, Image, doubt_of_each};
 use super::small::{Missed, SmallThings};
 use super::timings;
 use std::io;
@@ -25,7 +25,7 @@ const GAIN: f64 = 0.8;
 
 /// The pixels that are measured at once, and the part of those so far that is added before the bound is computed again.
 const AT_ONCE: usize = 4096;
-const AGAIN: f64 = 0.2;
+const AGAIN: f64 = 0.5;
 
 /// The numbers of samples of each of the two images that count as right, the part of the greatest mean square that their
 /// noise may add to a bound, and the pixels after which a mean that is too large ends a measurement.
@@ -53,6 +53,19 @@ pub(super) fn likely(goal: Goal, estimates: &[Estimate]) -> Option<&Estimate> {
         Goal::Error { most, worst: false } => estimates.iter().find(|one| one.error <= LIKELY * most),
         _ => goal.first_meeting(estimates),
     }
+}
+
+/// Returns the number of pixels after which the bound is computed again.
+fn after(count: usize) -> usize {
+    count + (AGAIN * count as f64) as usize
+}
+
+/// Returns how often the bound is computed at most, with so many pixels in the end.
+fn looks(pixels: usize) -> usize {
+    std::iter::successors(Some(AT_ONCE), |count| Some(after(*count)))
+        .take_while(|count| *count < pixels)
+        .count()
+        + 1
 }
 
 /// What is known before a choice is confirmed.
@@ -151,6 +164,7 @@ fn confirm_one(
         if is_error { draw.rest() } else { (PART * estimate.rays * draw.all() as f64 / of_pixel) as usize };
     // All but one: the samples that count as right are too few for what is said of an image of which all is known.
     let pixels = draw.first(most.min(draw.rest() - 1));
+    let doubt = doubt_of_each(TRIES * looks(pixels.len()));
     let (mut errors, mut next) = (Errors::new(1), AT_ONCE);
     for part in pixels.chunks(AT_ONCE) {
         progress.more((part.len() as f64 * of_pixel / 10.0) as usize);
@@ -162,8 +176,8 @@ fn confirm_one(
         if count < next && !is_late && !is_last {
             continue;
         }
-        next = count + (AGAIN * count as f64) as usize;
-        let [error, bound] = errors.bounds(0, image, false);
+        next = after(count);
+        let [error, bound] = errors.bounds(0, image, false, doubt);
         if bound < estimate.bound {
             (estimate.error, estimate.bound) = (error, bound);
             estimate.pixels = count + missed.pixels.len();

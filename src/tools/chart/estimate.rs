@@ -12,7 +12,7 @@ use super::needed;
 use super::places::Draw;
 use super::progress::Progress;
 use super::right::{Colours, Right};
-use super::sampled::{Errors, Image};
+use super::sampled::{Errors, Image, doubt_of_each};
 use super::small::{Missed, SmallThings};
 use super::times::Times;
 use super::timings::{self, Cost, Timings, plan};
@@ -39,6 +39,9 @@ const PART: f64 = 0.5;
 
 /// The number of samples that an image must need for pixels with different numbers of them to be a choice.
 const ADAPTIVE_FROM: u32 = 16;
+
+/// The bounds among which one is looked for while choices are compared, at most.
+const COMPARED: usize = 128;
 
 /// The numbers of pixels that are measured before it is asked whether they suffice: at first, and when time runs out.
 const FIRST: usize = 1024;
@@ -185,7 +188,8 @@ impl Study {
             let of_small = one.colours.split_off(drawn);
             errors.add(&[take(&mut one.colours)], &right[..drawn]);
             small.add(&[of_small], &right[drawn..]);
-            let [error, bound] = errors.bounds(0, Image { all, small: &small, missed }, self.goal.is_worst());
+            let image = Image { all, small: &small, missed };
+            let [error, bound] = errors.bounds(0, image, self.goal.is_worst(), doubt_of_each(COMPARED));
             let (rays, worst) = (one.rays, errors.worst(0).max(small.worst(0)));
             let cost = self.timings.cost_of(rays, &one.timing);
             let pixels = pixels.len();
@@ -299,7 +303,8 @@ impl Study {
                 kept.iter().zip(errors.iter().zip(&of_small)).flat_map(|(index, (errors, small))| {
                     let image = Image { all, small, missed };
                     let choice = move |(place, samples): (usize, &u32)| {
-                        let [error, bound] = errors.bounds(place, image, goal.is_worst());
+                        let [error, bound] =
+                            errors.bounds(place, image, goal.is_worst(), doubt_of_each(COMPARED));
                         Estimate {
                             accuracy: models[*index].0,
                             samples: *samples,

@@ -8,13 +8,20 @@ use tabray_core::world::material::Rgb;
 /// The part of the pixels that may be worse than the error of the worst pixels.
 const WORST: f64 = 0.001;
 
-/// The probability with which a bound may be wrong: a bound on the mean for half of it, since two choices may be measured
-/// to the end.
+/// The probability with which a promise may be wrong.
 const DOUBT: f64 = 0.01;
 
-/// The number of standard deviations of the noise of the right colours that is added to a bound: a normal distribution stays
-/// below 2.58 with a confidence of 99.5 %.
-const DEVIATIONS: f64 = 2.58;
+/// Returns the probability with which each part of one of so many bounds may be wrong. There are two parts, the pixels that
+/// are not measured and the noise of the right colours, and two phases: comparing choices, and confirming one.
+pub(super) fn doubt_of_each(bounds: usize) -> f64 {
+    0.25 * DOUBT / bounds as f64
+}
+
+/// Returns the number of standard deviations that a normal distribution exceeds with a probability of at most `doubt`: what
+/// is added to a bound for the noise of the right colours.
+fn deviations(doubt: f64) -> f64 {
+    (-2.0 * libm::log(doubt)).sqrt()
+}
 
 /// The error of a pixel.
 #[derive(Clone, Copy)]
@@ -94,10 +101,11 @@ impl Errors {
     }
 
     /// Returns the error of a choice and an upper bound for the image: the root of the mean square, or with `worst` the
-    /// 99.9th percentile. The pixels have been drawn at random from those of the image that are not small ones.
-    pub fn bounds(&self, choice: usize, image: Image, worst: bool) -> [f64; 2] {
+    /// 99.9th percentile. The pixels have been drawn at random from those of the image that are not small ones; what they
+    /// say about the others is wrong with a probability of at most `doubt`.
+    pub fn bounds(&self, choice: usize, image: Image, worst: bool, doubt: f64) -> [f64; 2] {
         if worst {
-            return self.percentile(choice, image);
+            return self.percentile(choice, image, doubt);
         }
         let (errors, small) = (&self.choices[choice], &image.small.choices[choice]);
         let all = image.all as f64;
@@ -107,7 +115,7 @@ impl Errors {
             [0.0; 2]
         } else {
             let drawn = Drawn { numbers: &squares, all: rest };
-            [squares.iter().sum::<f64>() / squares.len() as f64, drawn.bound(0.5 * DOUBT)]
+            [squares.iter().sum::<f64>() / squares.len() as f64, drawn.bound(doubt)]
         };
         let of_small: f64 = small.iter().map(|error| error.square).sum();
         let noise = errors.iter().chain(small).map(|error| error.noise).sum::<f64>().sqrt();
@@ -116,14 +124,14 @@ impl Errors {
         let spread: f64 = known.iter().chain(small).map(|error| error.spread).sum();
         let root = |square: f64| square.max(0.0).sqrt();
         let error = root((rest as f64 * mean + of_small) / all);
-        let bound = root((rest as f64 * most + of_small + spread + DEVIATIONS * noise) / all)
+        let bound = root((rest as f64 * most + of_small + spread + deviations(doubt) * noise) / all)
             + image.missed.error(image.all);
         [error, bound.max(error)]
     }
 
     /// Returns the error that one of a thousand pixels exceeds, and an upper bound for the image: an error that so many
     /// of the pixels exceed that it is no accident.
-    fn percentile(&self, choice: usize, image: Image) -> [f64; 2] {
+    fn percentile(&self, choice: usize, image: Image, doubt: f64) -> [f64; 2] {
         let sorted = |errors: &mut dyn Iterator<Item = f64>| {
             let mut errors: Vec<_> = errors.collect();
             errors.sort_unstable_by(|one, other| other.total_cmp(one));
@@ -158,7 +166,7 @@ impl Errors {
             let (mut term, mut sum, mut above) = (libm::exp(-part * count), 0.0, 0);
             loop {
                 sum += term;
-                if sum > DOUBT {
+                if sum > doubt {
                     break;
                 }
                 above += 1;
@@ -185,7 +193,7 @@ mod tests {
 
     fn bounds(errors: &Errors, all: usize, worst: bool) -> [f64; 2] {
         let image = Image { all, small: &Errors::new(1), missed: &Missed::default() };
-        errors.bounds(0, image, worst)
+        errors.bounds(0, image, worst, DOUBT)
     }
 
     #[test]
@@ -202,7 +210,8 @@ mod tests {
     fn what_small_things_may_hide_is_added_to_the_error_of_all() {
         let (rest, small) = (errors((0..900).map(|_| 0.0)), errors((0..100).map(|_| 0.1)));
         let missed = Missed { pixels: vec![0.05; 100], largest: 0.0 };
-        let [error, bound] = rest.bounds(0, Image { all: 1000, small: &small, missed: &missed }, false);
+        let [error, bound] =
+            rest.bounds(0, Image { all: 1000, small: &small, missed: &missed }, false, DOUBT);
         assert!((error - 0.1 * 0.1_f64.sqrt()).abs() < 1e-12, "{error}");
         assert!((bound - error - missed.error(1000)).abs() < 1e-12 && bound > 1.2 * error, "{bound}");
     }
