@@ -3,7 +3,7 @@
 use super::step::Function;
 
 /// A function of formulas.
-pub(super) struct Named {
+pub(super) struct FormulaFunction {
     pub name: &'static str,
     /// The names of its arguments.
     pub arguments: &'static [&'static str],
@@ -22,34 +22,38 @@ pub(super) enum Meaning {
 use Meaning::{Formula, Operation};
 
 /// The functions of formulas.
-static FUNCTIONS: [Named; 21] = [
-    Named { name: "sin", arguments: &["x"], meaning: Operation(Function::Sin) },
-    Named { name: "cos", arguments: &["x"], meaning: Operation(Function::Cos) },
-    Named { name: "tan", arguments: &["x"], meaning: Operation(Function::Tan) },
-    Named { name: "exp", arguments: &["x"], meaning: Operation(Function::Exp) },
-    Named { name: "ln", arguments: &["x"], meaning: Operation(Function::Ln) },
-    Named { name: "sqrt", arguments: &["x"], meaning: Operation(Function::Sqrt) },
-    Named { name: "abs", arguments: &["x"], meaning: Operation(Function::Abs) },
-    Named { name: "floor", arguments: &["x"], meaning: Operation(Function::Floor) },
-    Named { name: "min", arguments: &["x", "y"], meaning: Operation(Function::Min) },
-    Named { name: "max", arguments: &["x", "y"], meaning: Operation(Function::Max) },
-    Named { name: "ceil", arguments: &["x"], meaning: Formula("-floor(-x)") },
-    Named { name: "round", arguments: &["x"], meaning: Formula("floor(x + 0.5)") },
-    Named { name: "fract", arguments: &["x"], meaning: Formula("x - floor(x)") },
-    Named { name: "mod", arguments: &["x", "m"], meaning: Formula("x - m*floor(x/m)") },
-    Named { name: "clamp", arguments: &["x", "low", "high"], meaning: Formula("min(max(x, low), high)") },
-    Named { name: "mix", arguments: &["a", "b", "t"], meaning: Formula("a + (b - a)*t") },
-    Named {
+static FUNCTIONS: [FormulaFunction; 21] = [
+    FormulaFunction { name: "sin", arguments: &["x"], meaning: Operation(Function::Sin) },
+    FormulaFunction { name: "cos", arguments: &["x"], meaning: Operation(Function::Cos) },
+    FormulaFunction { name: "tan", arguments: &["x"], meaning: Operation(Function::Tan) },
+    FormulaFunction { name: "exp", arguments: &["x"], meaning: Operation(Function::Exp) },
+    FormulaFunction { name: "ln", arguments: &["x"], meaning: Operation(Function::Ln) },
+    FormulaFunction { name: "sqrt", arguments: &["x"], meaning: Operation(Function::Sqrt) },
+    FormulaFunction { name: "abs", arguments: &["x"], meaning: Operation(Function::Abs) },
+    FormulaFunction { name: "floor", arguments: &["x"], meaning: Operation(Function::Floor) },
+    FormulaFunction { name: "min", arguments: &["x", "y"], meaning: Operation(Function::Min) },
+    FormulaFunction { name: "max", arguments: &["x", "y"], meaning: Operation(Function::Max) },
+    FormulaFunction { name: "ceil", arguments: &["x"], meaning: Formula("-floor(-x)") },
+    FormulaFunction { name: "round", arguments: &["x"], meaning: Formula("floor(x + 0.5)") },
+    FormulaFunction { name: "fract", arguments: &["x"], meaning: Formula("x - floor(x)") },
+    FormulaFunction { name: "mod", arguments: &["x", "m"], meaning: Formula("x - m*floor(x/m)") },
+    FormulaFunction {
+        name: "clamp",
+        arguments: &["x", "low", "high"],
+        meaning: Formula("min(max(x, low), high)"),
+    },
+    FormulaFunction { name: "mix", arguments: &["a", "b", "t"], meaning: Formula("a + (b - a)*t") },
+    FormulaFunction {
         name: "smoothstep",
         arguments: &["low", "high", "x"],
         meaning: Formula(
             "clamp((x - low)/(high - low), 0, 1)^2 * (3 - 2*clamp((x - low)/(high - low), 0, 1))",
         ),
     },
-    Named { name: "hypot", arguments: &["x", "y"], meaning: Formula("sqrt(x^2 + y^2)") },
-    Named { name: "sinh", arguments: &["x"], meaning: Formula("(exp(x) - exp(-x))/2") },
-    Named { name: "cosh", arguments: &["x"], meaning: Formula("(exp(x) + exp(-x))/2") },
-    Named { name: "tanh", arguments: &["x"], meaning: Formula("1 - 2/(exp(2*x) + 1)") },
+    FormulaFunction { name: "hypot", arguments: &["x", "y"], meaning: Formula("sqrt(x^2 + y^2)") },
+    FormulaFunction { name: "sinh", arguments: &["x"], meaning: Formula("(exp(x) - exp(-x))/2") },
+    FormulaFunction { name: "cosh", arguments: &["x"], meaning: Formula("(exp(x) + exp(-x))/2") },
+    FormulaFunction { name: "tanh", arguments: &["x"], meaning: Formula("1 - 2/(exp(2*x) + 1)") },
 ];
 
 /// Returns the names of the functions of formulas, each with the names of its arguments.
@@ -58,11 +62,11 @@ pub fn functions() -> impl Iterator<Item = (&'static str, &'static [&'static str
 }
 
 /// Finds a function by its name.
-pub(super) fn find(name: &str) -> Option<&'static Named> {
+pub(super) fn find(name: &str) -> Option<&'static FormulaFunction> {
     FUNCTIONS.iter().find(|function| function.name == name)
 }
 
-impl Named {
+impl FormulaFunction {
     /// Tells whether the function takes more arguments than it names: the smallest of many.
     pub fn takes_more(&self) -> bool {
         matches!(self.meaning, Operation(_)) && self.arguments.len() > 1

@@ -286,6 +286,13 @@ mod tests {
     }
 
     #[test]
+    fn a_power_that_is_too_great_is_told() {
+        assert_eq!(Formula::parse("y¹⁰⁰⁰").expect("a power").at(1.0), 1.0);
+        let fault = Formula::parse("y¹⁰⁰¹").expect_err("too great");
+        assert_eq!((fault.message.as_str(), fault.place), ("a power is at most 1000", 1.."y¹⁰⁰¹".len()));
+    }
+
+    #[test]
     fn what_is_written_with_named_numbers_means_the_same_without_them() {
         let named = |name: &str| {
             [("n", 5.0), ("mod", -2.0), ("k", 0.5)].iter().find(|of| of.0 == name).map(|of| of.1)

@@ -31,8 +31,11 @@ pub(super) type Operations = (Vec<Step>, Vec<(Range<usize>, f64)>);
 /// Returns whether a name means something in every formula, so that a scene cannot give it to a number.
 pub fn is_taken(name: &str) -> bool {
     ["x", "y", "z", "pi", "π"].contains(&name)
-        || function::find(name).is_some_and(function::Named::is_reserved)
+        || function::find(name).is_some_and(function::FormulaFunction::is_reserved)
 }
+
+/// The greatest whole exponent of a power that is computed by multiplications.
+const MAX_POWER: i32 = 1000;
 
 /// The digits of exponents, from 0.
 const SUPERSCRIPTS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
@@ -227,7 +230,7 @@ impl<'t> Parser<'t> {
     fn power(&mut self) -> Parsed {
         self.atom()?;
         let exponent = self.steps.len();
-        if let Some(power) = self.superscript() {
+        if let Some(power) = self.superscript()? {
             self.steps.push(Step::Powi(power));
             return Ok(());
         }
@@ -243,7 +246,7 @@ impl<'t> Parser<'t> {
         if self.steps[exponent..].iter().all(is_constant) {
             let number = (self.value)(&self.steps[exponent..]);
             self.steps.truncate(exponent);
-            let is_whole = number.fract() == 0.0 && number.abs() <= 1000.0;
+            let is_whole = number.fract() == 0.0 && number.abs() <= f64::from(MAX_POWER);
             if is_whole {
                 self.steps.push(Step::Powi(number as i32));
                 return Ok(());
@@ -255,17 +258,20 @@ impl<'t> Parser<'t> {
     }
 
     /// Consumes the digits of an exponent: `²`, `¹²`.
-    fn superscript(&mut self) -> Option<i32> {
+    fn superscript(&mut self) -> Result<Option<i32>, FormulaFault> {
         let value = |digit: char| SUPERSCRIPTS.iter().position(|known| *known == digit);
         self.peek();
-        let mut power = None;
+        let (start, mut power) = (self.at, None);
         while let Some((digit, letter)) =
             self.text[self.at..].chars().next().and_then(|letter| Some((value(letter)?, letter)))
         {
             self.at += letter.len_utf8();
-            power = Some((10 * power.unwrap_or(0) + digit as i32).min(1000));
+            power = Some((10 * power.unwrap_or(0) + digit as i32).min(MAX_POWER + 1));
         }
-        power
+        if power > Some(MAX_POWER) {
+            return Err(self.fault(start..self.at, "a power is at most 1000"));
+        }
+        Ok(power)
     }
 
     fn atom(&mut self) -> Parsed {
@@ -379,7 +385,7 @@ impl<'t> Parser<'t> {
     }
 
     /// Parses the arguments of a function, and applies it.
-    fn call(&mut self, function: &function::Named, place: Range<usize>) -> Parsed {
+    fn call(&mut self, function: &function::FormulaFunction, place: Range<usize>) -> Parsed {
         let (name, count, open) = (function.name, function.arguments.len(), self.at);
         if self.take(&['(']).is_none() {
             return Err(self.fault(place, format!("`{name}` needs its argument in parentheses")));
