@@ -33,7 +33,11 @@ const ENOUGH: usize = 2;
 const OTHERS: [Language; 4] = [
     Language { name: "a Mitsuba scene", begins: &["<?xml", "<scene", "<!--"], has: &["<scene"] },
     Language { name: "an XML file, not a scene", begins: &["<?xml", "<"], has: &["</"] },
-    Language { name: "a JSON file, not a scene", begins: &["{", "[{", "[ {", "[\n"], has: &["\":", "\" :"] },
+    Language {
+        name: "a JSON file, not a scene",
+        begins: &["{", "[{", "[ {", "[\n", "[\r\n"],
+        has: &["\":", "\" :"],
+    },
     Language {
         name: "a pbrt scene",
         begins: &[],
@@ -46,7 +50,7 @@ struct Language {
     name: &'static str,
     /// What its texts may begin with; empty where they may begin with anything.
     begins: &'static [&'static str],
-    /// Of these, a text has at least one, and two where it may begin with anything.
+    /// Signs of which a text has at least one, and two where it may begin with anything.
     has: &'static [&'static str],
 }
 
@@ -79,16 +83,19 @@ pub fn recognised(
     syntax: Syntax,
 ) -> Result<Report<'static>, Report<'static>> {
     let fault = match syntax {
-        Syntax::Toml => of_notes(registry, name, text),
+        Syntax::Toml => of_notes(registry, name, text).or_else(|| of_others(text)),
         Syntax::Notes => {
-            let other = || OTHERS.iter().find_map(|other| other.recognised(text));
-            of_pov(text, name).or_else(other).or_else(|| of_numbers(registry, text))
+            of_pov(text, name).or_else(|| of_others(text)).or_else(|| of_numbers(registry, text))
         }
     };
     let Some(fault) = fault else { return Err(report) };
     let mut report = Report::new(name, text.to_owned(), syntax);
     report.add(fault);
     Ok(report)
+}
+
+fn of_others(text: &str) -> Option<Fault> {
+    OTHERS.iter().find_map(|other| other.recognised(text))
 }
 
 /// Recognises a text in the notes' syntax.
