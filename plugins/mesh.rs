@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use tabray::prelude::*;
 use tabray::shapes::mesh::{Look, Mesh, Painted, Surface, SurfaceError, ToWorld, read};
-use tabray::text;
 
 static FILE: Pparm<PathBuf> =
     Pparm::required("file", "an OBJ, PLY or STL file, relative to the scene's folder");
@@ -46,8 +45,8 @@ inventory::submit! {
         } else {
             let materials = surface.materials.iter().map(|name| args.setting.materials.get(name).cloned()).collect();
             let painted = Painted { surface: surface.clone(), materials };
-            warnings.extend(unknown(args, &painted));
-            warnings.extend(unlike(args, &painted));
+            warnings.extend(painted.unknown_materials(&args.setting.materials));
+            warnings.extend(painted.unlike_materials(&args.material()));
             Body::shaded(shape, painted)
         };
         Ok(Body { warnings, bytes: surface.bytes(), ..body })
@@ -107,61 +106,4 @@ fn surface(args: &Args) -> Result<Surface, Refusal> {
             refusal("has no face with an area".to_owned(), "the corners of a face must not lie on one line")
         }
     })
-}
-
-/// Warns of materials that the scene does not have.
-fn unknown(args: &Args, painted: &Painted) -> Option<Warning> {
-    let known = &args.setting.materials;
-    let unknown: Vec<_> =
-        painted.surface.materials.iter().filter(|name| !known.contains_key(*name)).collect();
-    let first = unknown.first()?;
-    let near = text::nearest(first, known.keys().map(String::as_str));
-    let guess = near.map_or(String::new(), |near| format!(" (did you mean `{near}`?)"));
-    Some(Warning {
-        attribute: "file",
-        message: format!(
-            "names {} that the scene does not have: {}{guess}",
-            text::count(unknown.len(), "material"),
-            some(&unknown)
-        ),
-        help: "define a material of each name; until then these faces have the material of the mesh"
-            .to_owned(),
-    })
-}
-
-/// Warns of materials whose shininess or transparency differs from that of the mesh, which are those of all its faces.
-fn unlike(args: &Args, painted: &Painted) -> Option<Warning> {
-    let own = args.material();
-    let is_unlike = |material: &Material| {
-        material.shininess != own.shininess || material.transparency != own.transparency
-    };
-    let named = painted.surface.materials.iter().zip(&painted.materials);
-    let unlike =
-        named.filter(|(_, material)| material.as_deref().is_some_and(is_unlike)).map(|(name, _)| name);
-    let unlike: Vec<_> = unlike.collect();
-    (!unlike.is_empty()).then(|| Warning {
-        attribute: "material",
-        message: format!(
-            "ignores the shininess and transparency of its faces' materials: {}",
-            some(&unlike)
-        ),
-        help:
-            "only the ambient, diffuse and specular colours can differ from face to face: make these faces a mesh of their own"
-                .to_owned(),
-    })
-}
-
-/// Lists the first few names.
-fn some(names: &[&String]) -> String {
-    const FEW: usize = 5;
-    let listed = text::list(
-        names
-            .iter()
-            .take(FEW)
-            .map(|name| text::abridged(name))
-            .collect::<Vec<_>>()
-            .iter()
-            .map(|name| &**name),
-    );
-    if names.len() > FEW { format!("{listed} and {} more", names.len() - FEW) } else { listed }
 }

@@ -1,10 +1,13 @@
 //! The materials of a mesh whose file names them.
 
 use super::surface::Surface;
+use crate::text;
+use crate::world::body::Warning;
 use crate::world::certify::Precise;
 use crate::world::material::{Look, Material, Rgb};
 use crate::world::shader::{LookBounds, PointBounds, Shader, SurfacePoint};
 use glam::{DVec2, DVec3};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use tabray_exact::interval::Interval;
 
@@ -33,6 +36,55 @@ impl Painted {
     fn at<'m>(&'m self, own: &'m Material, at: DVec3) -> &'m Material {
         self.material(own, self.slot(at))
     }
+
+    /// Warns of materials that the scene, which has those `known`, does not have.
+    pub fn unknown_materials(&self, known: &BTreeMap<String, Arc<Material>>) -> Option<Warning> {
+        let unknown: Vec<_> =
+            self.surface.materials.iter().filter(|name| !known.contains_key(*name)).collect();
+        let near = text::nearest(unknown.first()?, known.keys().map(String::as_str));
+        let guess = near.map_or(String::new(), |near| format!(" (did you mean `{near}`?)"));
+        Some(Warning {
+            attribute: "file",
+            message: format!(
+                "names {} that the scene does not have: {}{guess}",
+                text::count(unknown.len(), "material"),
+                first_of(&unknown)
+            ),
+            help: "define a material of each name; until then these faces have the material of the mesh"
+                .to_owned(),
+        })
+    }
+
+    /// Warns of materials whose shininess or transparency differs from those of the mesh itself, `own`, which are those
+    /// of all its faces.
+    pub fn unlike_materials(&self, own: &Material) -> Option<Warning> {
+        let is_unlike = |material: &Material| {
+            material.shininess != own.shininess || material.transparency != own.transparency
+        };
+        let named = self.surface.materials.iter().zip(&self.materials);
+        let unlike: Vec<_> = named
+            .filter(|(_, material)| material.as_deref().is_some_and(is_unlike))
+            .map(|(name, _)| name)
+            .collect();
+        (!unlike.is_empty()).then(|| Warning {
+            attribute: "material",
+            message: format!(
+                "ignores the shininess and transparency of its faces' materials: {}",
+                first_of(&unlike)
+            ),
+            help: "only the ambient, diffuse and specular colours can differ from face to face: make these faces a mesh \
+                   of their own"
+                .to_owned(),
+        })
+    }
+}
+
+/// Lists the first few names.
+fn first_of(names: &[&String]) -> String {
+    const FEW: usize = 5;
+    let shown: Vec<_> = names.iter().take(FEW).map(|name| text::abridged(name)).collect();
+    let listed = text::list(shown.iter().map(|name| &**name));
+    if names.len() > FEW { format!("{listed} and {} more", names.len() - FEW) } else { listed }
 }
 
 impl Shader for Painted {

@@ -335,7 +335,11 @@ mod tests {
         };
         // Where it lies is of no matter, as long as faces have areas.
         let place = |index: u32| {
-            DVec3::new(f64::from(index).sin(), f64::from(index).cos(), (0.37 * f64::from(index)).sin())
+            DVec3::new(
+                libm::sin(f64::from(index)),
+                libm::cos(f64::from(index)),
+                libm::sin(0.37 * f64::from(index)),
+            )
         };
         let vertices = (0..columns * (rows + 1)).map(place).collect();
         let cells = (0..columns).flat_map(|column| (0..rows).map(move |row| (column, row)));
