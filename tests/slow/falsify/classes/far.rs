@@ -20,12 +20,12 @@ const STEPS: u64 = 52;
 /// The number of directions among which two are searched that see different surfaces.
 const TRIES: usize = 12;
 
-/// Returns a coordinate up to about 1e13 from 0.
+/// Returns a coordinate up to about 2.7e11 from 0, which is 10^12 times the size of the smallest shapes.
 fn coordinate(random: &mut Random) -> f64 {
     match random.below(4) {
         0 => 0.0,
-        1 => random.sign() * 2_f64.powf(random.whole(20, 43)),
-        _ => (random.sign() * random.power(6.0, 13.0)).round(),
+        1 => random.sign() * 2_f64.powf(random.whole(20, 38)),
+        _ => (random.sign() * random.power(6.0, 11.4)).round(),
     }
 }
 
