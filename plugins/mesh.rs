@@ -23,9 +23,13 @@ static TRANSLATION: Pparm<DVec3> =
 static SMOOTH: Pparm<i64> =
     Pparm::or("smooth", "1 shades the mesh as if it were smooth, 0 shades each face flat", 0)
         .must("0 or 1", |smooth| (0..=1).contains(smooth));
+static CREASE: Pparm<f64> =
+    Pparm::or("crease", "the angle between faces up to which `smooth 1` shades across their edge", 30.0)
+        .unit("degrees")
+        .between(0.0, 180.0);
 static SIDES: Pparm<Sides> = Pparm::or("sides", "which sides of its faces are lit", Sides::Both);
 
-const TABLE: Table = &[&FILE, &SCALE, &ROTATION, &TRANSLATION, &SMOOTH, &SIDES];
+const TABLE: Table = &[&FILE, &SCALE, &ROTATION, &TRANSLATION, &SMOOTH, &CREASE, &SIDES];
 
 inventory::submit! {
     Entity::shape("mesh", "a surface of triangles from a file", &[TABLE], |args| {
@@ -93,7 +97,8 @@ fn surface(args: &Args) -> Result<Surface, Refusal> {
         )
     })?;
     let placement = ToWorld::new(args.get(&SCALE), args.get(&ROTATION), args.get(&TRANSLATION));
-    let look = Look { is_smooth: args.get(&SMOOTH) == 1, is_two_sided: args.get(&SIDES) == Sides::Both };
+    let crease = (args.get(&SMOOTH) == 1).then(|| args.get(&CREASE));
+    let look = Look { crease, is_two_sided: args.get(&SIDES) == Sides::Both };
     Surface::new(model, &placement, look).map_err(|error| match error {
         SurfaceError::TooLarge => refusal(
             "has coordinates so large that their squares overflow".to_owned(),

@@ -8,6 +8,7 @@
 
 mod along;
 mod approach;
+mod creases;
 mod edges;
 mod face;
 mod hits;

@@ -97,7 +97,7 @@ impl<A: Bounded> Hittable for Mesh<A> {
     }
 
     fn is_smooth(&self) -> bool {
-        !self.surface.normals.is_empty()
+        self.surface.is_smooth()
     }
 
     fn shading_normal(&self, at: DVec3, normal: DVec3) -> DVec3 {
@@ -179,7 +179,7 @@ impl<A: Bounded> Hittable for Mesh<A> {
         if self.surface.are_rounded {
             each(Assumption::Vertices);
         }
-        if !self.surface.normals.is_empty() {
+        if self.surface.is_smooth() {
             each(Assumption::Normals);
         }
     }

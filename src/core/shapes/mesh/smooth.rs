@@ -11,7 +11,7 @@ impl Surface {
     /// the face's normal, turned to the ray where both sides are lit, and so is the result.
     #[inline(always)]
     pub(super) fn smoothed(&self, face: usize, at: DVec3, flat: DVec3) -> DVec3 {
-        if self.normals.is_empty() { flat } else { self.interpolated(face, at, flat) }
+        if self.is_smooth() { self.interpolated(face, at, flat) } else { flat }
     }
 
     /// Encloses [`smoothed`](Self::smoothed); `None` where it is open.
@@ -21,7 +21,7 @@ impl Surface {
         at: [Interval<F>; 3],
         flat: [Interval<F>; 3],
     ) -> Option<[Interval<F>; 3]> {
-        if self.normals.is_empty() {
+        if !self.is_smooth() {
             return Some(flat);
         }
         let n = Interval::<F>::constant;
@@ -34,8 +34,7 @@ impl Surface {
         };
         let weights = [part(b, c), part(c, a), part(a, b)];
         let mut sum = [n(0.0); 3];
-        for (corner, weight) in self.faces[face].iter().zip(weights) {
-            let normal = self.normals[*corner as usize].map(f64::from);
+        for (normal, weight) in self.corner_normals(face).into_iter().zip(weights) {
             sum = per_axis(|axis| sum[axis] + weight * n(normal[axis]));
         }
         let side = dot(flat, across);
@@ -52,6 +51,18 @@ impl Surface {
         if cosine.has_zero() { None } else { Some(if cosine.low > zero { normal } else { flat }) }
     }
 
+    /// Tells whether the mesh looks smooth.
+    #[inline(always)]
+    pub(super) fn is_smooth(&self) -> bool {
+        !self.normals.corners.is_empty()
+    }
+
+    /// Returns the normals at the corners of a face of a smooth mesh.
+    #[inline(always)]
+    pub(super) fn corner_normals(&self, face: usize) -> [[f64; 3]; 3] {
+        self.normals.corners[face].map(|normal| self.normals.normals[normal as usize].map(f64::from))
+    }
+
     fn interpolated(&self, face: usize, at: DVec3, flat: DVec3) -> DVec3 {
         let [a, b, c] = self.corners(face);
         let across = (b - a).cross(c - a);
@@ -61,10 +72,8 @@ impl Surface {
         // The parts of the face's area that lie opposite to each corner.
         let part = |from: DVec3, to: DVec3| ((to - from).cross(at - from) * scale).dot(across).max(0.0);
         let weights = [part(b, c), part(c, a), part(a, b)];
-        let sum = self.faces[face].iter().zip(weights).fold(DVec3::ZERO, |sum, (corner, weight)| {
-            let normal = self.normals[*corner as usize].map(f64::from);
-            sum + weight * DVec3::from(normal)
-        });
+        let normals = self.corner_normals(face).into_iter().zip(weights);
+        let sum = normals.fold(DVec3::ZERO, |sum, (normal, weight)| sum + weight * DVec3::from(normal));
         // Normals are those of the faces' outer sides.
         let sum = if flat.dot(across) < 0.0 { -sum } else { sum };
         sum.try_normalize().filter(|normal| normal.dot(flat) > 0.0).unwrap_or(flat)

@@ -1,5 +1,6 @@
 //! The surface of a mesh: its vertices, its faces, and the tree in which rays find them.
 
+use super::creases::Normals;
 use super::edges::Edges;
 use super::face;
 use super::read::{Model, Remark};
@@ -9,17 +10,14 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::Bvh;
 use crate::parallel;
 use crate::scene::attribute::MOST_LENGTH;
-use crate::shapes::triangle::Triangle;
 use crate::simd::soa::{LANES, Vectors};
 use crate::text;
-use crate::world::accuracy::Exact;
 use glam::DVec3;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::mem::take;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
-use tabray_exact::double_double::{exponent_to_one, times_power_of_two};
 
 /// The largest number of faces.
 const MAX_FACES: usize = 1 << 28;
@@ -44,8 +42,8 @@ pub struct Surface {
     pub(super) order: Vec<u32>,
     /// For each face, the index of its material plus 1; 0 for none. Empty where no face has any.
     pub(super) slots: Vec<u16>,
-    /// The normals at the vertices, where the mesh looks smooth; 0 where the normals around a vertex cancel.
-    pub(super) normals: Vec<[f32; 3]>,
+    /// The normals at the corners of faces, where the mesh looks smooth.
+    pub(super) normals: Normals,
     pub(super) tree: Bvh,
     /// A bounding box of the vertices, in world coordinates.
     pub(super) bounds: Aabb,
@@ -66,8 +64,8 @@ pub struct Surface {
 /// How the triangles of a file become a surface.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Look {
-    /// Whether the surface looks smooth.
-    pub is_smooth: bool,
+    /// The angle between faces, in degrees, up to which their edge looks smooth; `None` where faces are flat.
+    pub crease: Option<f64>,
     /// Whether faces are turned to agree, and are lit on both sides. Otherwise, an open surface is lit on the side from which
     /// the corners of a face run counterclockwise.
     pub is_two_sided: bool,
@@ -119,13 +117,15 @@ impl Surface {
             }
         }
         let openness = winding::openness(&edges);
+        let normals =
+            look.crease.map_or_else(Normals::default, |crease| Normals::of(&vertices, &kept, &edges, crease));
         drop(edges);
-        let normals = if look.is_smooth { smooth(&vertices, &kept) } else { Vec::new() };
         let mut tree =
             Bvh::of(kept.len(), |face| Aabb::around(&kept[face].map(|corner| vertices[corner as usize])));
         let sorted = tree.take_order();
         let mut faces: Vec<_> = sorted.iter().map(|face| kept[*face as usize]).collect();
-        let (vertices, normals) = in_order_of_use(&vertices, &normals, &mut faces);
+        let vertices = in_order_of_use(&vertices, &mut faces);
+        let normals = normals.sorted(&sorted);
         let mut order: Vec<_> = sorted.iter().map(|face| order[*face as usize]).collect();
         let slots =
             if slots.is_empty() { slots } else { order.iter().map(|face| slots[*face as usize]).collect() };
@@ -172,7 +172,8 @@ impl Surface {
             size_of_val(&faces[..]),
             size_of_val(&order[..]),
             size_of_val(&slots[..]),
-            size_of_val(&normals[..]),
+            size_of_val(&normals.normals[..]),
+            size_of_val(&normals.corners[..]),
         ];
         (arrays.iter().sum::<usize>() + tree.bytes()) as u64
     }
@@ -183,7 +184,8 @@ impl Surface {
         vertices.iter().flat_map(|at| at.to_array()).for_each(|part| each(&part.to_le_bytes()));
         faces.iter().flatten().chain(order).for_each(|index| each(&index.to_le_bytes()));
         slots.iter().for_each(|slot| each(&slot.to_le_bytes()));
-        normals.iter().flatten().for_each(|part| each(&part.to_le_bytes()));
+        normals.normals.iter().flatten().for_each(|part| each(&part.to_le_bytes()));
+        normals.corners.iter().flatten().for_each(|index| each(&index.to_le_bytes()));
         materials.iter().for_each(|name| each(name.as_bytes()));
     }
 
@@ -238,29 +240,19 @@ fn merge(vertices: Vec<DVec3>, faces: &mut [[u32; 3]], placement: &ToWorld) -> V
     merged
 }
 
-/// Sorts vertices, and their normals if there are any, in the order in which faces use them, so that those of a node
-/// lie close together in memory.
-fn in_order_of_use(
-    vertices: &[DVec3],
-    normals: &[[f32; 3]],
-    faces: &mut [[u32; 3]],
-) -> (Vec<DVec3>, Vec<[f32; 3]>) {
-    let (mut places, mut order) = (vec![u32::MAX; vertices.len()], Vec::with_capacity(vertices.len()));
+/// Sorts what the corners of faces refer to in the order in which faces use it, so that what belongs to a node of the tree
+/// lies close together in memory.
+pub(super) fn in_order_of_use<T: Copy>(all: &[T], faces: &mut [[u32; 3]]) -> Vec<T> {
+    let (mut places, mut sorted) = (vec![u32::MAX; all.len()], Vec::with_capacity(all.len()));
     for corner in faces.iter_mut().flatten() {
         let place = &mut places[*corner as usize];
         if *place == u32::MAX {
-            *place = order.len() as u32;
-            order.push(*corner);
+            *place = sorted.len() as u32;
+            sorted.push(all[*corner as usize]);
         }
         *corner = *place;
     }
-    let sorted = order.iter().map(|vertex| vertices[*vertex as usize]).collect();
-    let normals = if normals.is_empty() {
-        Vec::new()
-    } else {
-        order.iter().map(|vertex| normals[*vertex as usize]).collect()
-    };
-    (sorted, normals)
+    sorted
 }
 
 /// Tells of faces without an area, if there are any.
@@ -277,24 +269,4 @@ fn turned(count: usize, all: usize) -> Option<Remark> {
         message: format!("turns {count} of {}", text::count(all, "face")),
         help: "its faces now agree, with the outside of closed parts outside; `sides one` leaves them as the file has them",
     })
-}
-
-/// Computes normals at the vertices: the sums of the normals of the faces around each, weighted by their angles there.
-fn smooth(vertices: &[DVec3], faces: &[[u32; 3]]) -> Vec<[f32; 3]> {
-    let mut normals = vec![DVec3::ZERO; vertices.len()];
-    for face in faces {
-        let corners = face.map(|corner| vertices[corner as usize]);
-        let Some(triangle) = Triangle::<Exact>::new(corners) else { continue };
-        for (side, corner) in face.iter().enumerate() {
-            // By powers of two, so that products of tiny or huge edges neither underflow nor overflow.
-            let edge = |to: usize| {
-                let edge = corners[(side + to) % 3] - corners[side];
-                edge * times_power_of_two(1.0, exponent_to_one(edge.abs().max_element()))
-            };
-            let (to, from) = (edge(1), edge(2));
-            let angle = libm::atan2(to.cross(from).length(), to.dot(from));
-            normals[*corner as usize] += angle * triangle.plane.normal;
-        }
-    }
-    normals.into_iter().map(|normal| normal.normalize_or_zero().to_array().map(|part| part as f32)).collect()
 }

@@ -261,7 +261,7 @@ mod tests {
 
     fn made(model: Model) -> Surface {
         let placement = ToWorld::new(DVec3::ONE, Rotation::NONE, DVec3::ZERO);
-        Surface::new(model, &placement, Look { is_smooth: true, is_two_sided: true })
+        Surface::new(model, &placement, Look { crease: Some(180.0), is_two_sided: true })
             .unwrap_or_else(|_| panic!("a surface"))
     }
 
@@ -301,10 +301,11 @@ mod tests {
             let message = format!("turns {count} of {all} faces");
             assert_eq!(told(&surface), Vec::from_iter((count > 0).then_some(&message[..])));
             // Smooth normals are those of the turned faces.
-            assert!((0..surface.normals.len()).all(|vertex| {
-                DVec3::from(surface.normals[vertex].map(f64::from)).dot(surface.vertices[vertex] - body[0].1)
-                    > 0.0
-            }));
+            let is_outward = |face: usize| {
+                let corners = surface.corners(face).into_iter().zip(surface.corner_normals(face));
+                corners.map(|(at, normal)| DVec3::from(normal).dot(at - body[0].1)).all(|out| out > 0.0)
+            };
+            assert!((0..surface.face_count()).all(is_outward));
         }
     }
 
