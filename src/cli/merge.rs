@@ -6,8 +6,9 @@ use crate::options::number::whole;
 use crate::process::failure::Failure;
 use crate::process::progress::Progress;
 use crate::process::{memory, messages};
+use crate::rendering::part::beside as beside_image;
 use crate::rendering::part_files::{Parts, open, refuse};
-use crate::rendering::{aov, full_range, part};
+use crate::rendering::{aov, full_range};
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::iter;
@@ -20,7 +21,7 @@ use tabray_core::output::picture::Format;
 use tabray_core::render::renderer::Renderer;
 use tabray_core::render::tiles::TILE;
 use tabray_core::text;
-use tabray_tools::part::{PixelFormat, Reader, put_tile};
+use tabray_tools::part::{self, PixelFormat, Reader};
 use tabray_tools::threads::renderer_with;
 
 /// The maximum number of parts that are named in a message.
@@ -101,7 +102,7 @@ impl Parts {
         };
         let of = self.paths.len();
         let is_named_like_it = |(index, path): (usize, &PathBuf)| {
-            path.file_name() == part::beside(image, [index + 1, of]).file_name()
+            path.file_name() == beside_image(image, [index + 1, of]).file_name()
         };
         if is_right || image == Path::new("-") || self.paths.iter().enumerate().all(is_named_like_it) {
             return Ok(());
@@ -210,25 +211,19 @@ impl Parts {
 
     /// Reads the parts, and returns the bytes of each row of tiles, from the top.
     fn rows(&self, pixel: usize) -> impl Iterator<Item = Result<Vec<u8>, Failure>> + '_ {
-        let (grid, [width, height]) = (self.label.grid(), self.label.size);
         let (mut paths, mut reader) = (self.paths.iter(), None::<(&PathBuf, Reader)>);
-        let mut tile = Vec::new();
-        (0..height.div_ceil(TILE)).map(move |strip| {
-            let mut rows = vec![0; pixel * width * TILE.min(height - TILE * strip)];
-            for index in strip * grid.across()..(strip + 1) * grid.across() {
-                if reader.as_ref().is_none_or(|(_, reader)| reader.label.tiles[1] == index) {
-                    let Some(path) = paths.next() else {
-                        return Err(refuse("the parts have changed".to_owned(), "begin again"));
-                    };
-                    reader = Some((path, open(path)?));
+        let grid = self.label.grid();
+        part::strips(grid, 0..grid.count(), pixel, move |index, tile| {
+            let (path, reader) = match &mut reader {
+                Some((path, reader)) if reader.label.tiles[1] != index => (path, reader),
+                reader => {
+                    let changed = || refuse("the parts have changed".to_owned(), "begin again");
+                    let path = paths.next().ok_or_else(changed)?;
+                    let (path, reader) = reader.insert((path, open(path)?));
+                    (path, reader)
                 }
-                let Some((path, reader)) = &mut reader else { continue };
-                tile.resize(pixel * grid.pixels(index), 0);
-                reader.read(&mut tile).map_err(|error| self.damaged(path, &error))?;
-                let [columns, at] = grid.tile(index);
-                put_tile(&mut rows, pixel * width, [columns, 0..at.len()], pixel, &tile);
-            }
-            Ok(rows)
+            };
+            reader.read(tile).map_err(|error| self.damaged(path, &error))
         })
     }
 

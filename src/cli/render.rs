@@ -306,7 +306,7 @@ fn share(
     let plan = args.keep.plan(model);
     stats.building += start.elapsed();
     let main = args.main(path);
-    let share = part::Share {
+    let share = part::PartRender {
         part: number,
         made,
         plan: &plan,

@@ -1,4 +1,4 @@
-//! Checkpoints: the finished part of an image, in a file from which a later render continues.
+//! Checkpoints: what is finished of an image or of a part of one, in a file from which a later render continues.
 //!
 //! A checkpoint is a PNG whose pixels are opaque where they are rendered and transparent elsewhere. A text chunk says
 //! what the image depends on.
@@ -13,7 +13,7 @@ use std::io::{self, BufReader, Read, Write};
 use std::iter;
 use std::ops::Range;
 use std::path::Path;
-use tabray_core::output::picture::{AS_SHOWN, Rows};
+use tabray_core::output::picture::AS_SHOWN;
 use tabray_core::parallel;
 use tabray_core::render::tiles::{Band, Strip, TILE, Tiles};
 use tabray_core::scene::choice::Choice;
@@ -56,6 +56,9 @@ pub struct Identity {
     size: [usize; 2],
     /// The hashes of the textures' images, by the names of the textures.
     textures: BTreeMap<String, String>,
+    /// The first of the tiles that a checkpoint of a part is for, and the first after them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tiles: Option<[usize; 2]>,
     /// The version of tabray.
     version: String,
 }
@@ -92,8 +95,14 @@ impl Identity {
             scene: scene(model),
             size: camera.pixels,
             textures: textures.collect(),
+            tiles: None,
             version: env!("CARGO_PKG_VERSION").to_owned(),
         })
+    }
+
+    /// Describes the checkpoint of a part that has these tiles of the image.
+    pub fn of_tiles(self, Range { start, end }: &Range<usize>) -> Self {
+        Self { tiles: Some([*start, *end]), ..self }
     }
 
     /// Tells whether this build of the program has made it.
@@ -140,6 +149,9 @@ impl Identity {
         ];
         let others = values.into_iter().filter(|(_, was, is)| was != is);
         differences.extend(others.map(|(what, was, is)| format!("the {what} was {was} and is {is}")));
+        if self.tiles != old.tiles {
+            differences.push("it is another part".to_owned());
+        }
         differences
     }
 }
@@ -201,17 +213,17 @@ fn shown(hasher: Sha256) -> String {
     text::sha256(&hasher.finalize())
 }
 
-/// Writes a checkpoint of the top of an image, with this number of columns and rows. `picture` has these rows, whether
-/// they are rendered or not.
+/// Writes a checkpoint of the top of an image, with this number of columns and rows. `next` fills in the bytes of one row
+/// after the other, whether they are rendered or not.
 ///
 /// # Errors
-/// Those of `out` and `picture`, and an error where a PNG cannot have the size.
+/// Those of `out` and `next`, and an error where a PNG cannot have the size.
 pub fn write(
     mut out: impl Write,
     [width, height]: [usize; 2],
     identity: &Identity,
     tiles: &Tiles,
-    mut picture: Rows,
+    mut next: impl FnMut(&mut [u8]) -> io::Result<()>,
 ) -> io::Result<()> {
     let side = |pixels: usize| u32::try_from(pixels).map_err(io::Error::other);
     let mut encoder = png::Encoder::new(&mut out as &mut dyn Write, side(width)?, side(height)?);
@@ -224,7 +236,7 @@ pub fn write(
     let mut stream = writer.stream_writer()?;
     let (mut colours, mut pixels) = (vec![[0; 3]; width], vec![[0; 4]; width]);
     for row in 0..height {
-        picture.next(colours.as_flattened_mut())?;
+        next(colours.as_flattened_mut())?;
         for ((pixel, [red, green, blue]), is_done) in iter::zip(&mut pixels, &colours).zip(tiles.row(row)) {
             *pixel = if is_done { [*red, *green, *blue, u8::MAX] } else { [0; 4] };
         }
@@ -322,7 +334,6 @@ fn invalid(error: png::DecodingError) -> io::Error {
 mod tests {
     use super::*;
     use std::io::Seek;
-    use tabray_core::output::picture::Format;
 
     const SIZE: [usize; 2] = [20, 18];
 
@@ -359,16 +370,13 @@ mod tests {
     #[test]
     fn a_damaged_byte_anywhere_is_noticed_or_harmless() {
         let pixels: Vec<u8> = (0..3 * SIZE[0] * SIZE[1]).map(|byte| (byte * byte / 97) as u8).collect();
-        let mut picture = file(b"");
-        Format::Ppm.write(&mut picture, SIZE, [Ok(pixels.clone())]).expect("a file takes it");
-        picture.rewind().expect("a file");
         let band = blank();
         (0..2).for_each(|index| band.strip(index).tiles.fill(true));
         let mut tiles = Tiles::none(SIZE);
         tiles.add(&band);
-        let picture = Format::Ppm.read(picture).expect("a picture");
-        let mut bytes = Vec::new();
-        write(&mut bytes, SIZE, &Identity::default(), &tiles, picture).expect("memory takes it");
+        let (mut bytes, mut left) = (Vec::new(), &pixels[..]);
+        let next = |row: &mut [u8]| left.read_exact(row);
+        write(&mut bytes, SIZE, &Identity::default(), &tiles, next).expect("memory takes it");
         let whole = (pixels, vec![true; 4]);
         assert!(filled(&bytes).expect("nothing is damaged") == whole);
         for at in 0..bytes.len() {

@@ -1,8 +1,7 @@
 //! Parts of images: the pixels of some tiles, in a file from which the image is put together.
 //!
 //! A file is a line that says what it is, a line of JSON, the [`Label`], the pixels, and the SHA-256 of all that. The
-//! pixels come tile by tile, and in a tile in rows from the top. A part that is not finished yet has a byte for each of
-//! its tiles before the pixels, 1 where the tile is rendered.
+//! pixels come tile by tile, and in a tile in rows from the top.
 
 use crate::checkpoint::Identity;
 use serde::{Deserialize, Serialize};
@@ -15,6 +14,7 @@ use tabray_core::output::deflate::Compression;
 use tabray_core::output::full_range::FullRange;
 use tabray_core::output::picture::Format;
 use tabray_core::render::division::Grid;
+use tabray_core::render::tiles::TILE;
 use tabray_core::text;
 
 /// The maximum number of parts of an image.
@@ -133,8 +133,6 @@ pub struct Label {
     pub identity: Identity,
     /// The texts that a PNG records about how the image was made, each with its keyword.
     pub made: Vec<(String, String)>,
-    /// Whether tiles may be missing.
-    pub unfinished: bool,
 }
 
 impl Label {
@@ -167,8 +165,7 @@ impl Label {
 
     /// Returns the number of bytes between the label and the checksum.
     fn len(&self) -> u64 {
-        let mask = if self.unfinished { self.tiles().len() } else { 0 };
-        (mask + self.what.pixel() * self.grid().pixels_of(self.tiles())) as u64
+        (self.what.pixel() * self.grid().pixels_of(self.tiles())) as u64
     }
 }
 
@@ -194,7 +191,7 @@ impl<W: Write> Writer<W> {
         Ok(writer)
     }
 
-    /// Writes bytes of pixels, or of the tiles that are rendered.
+    /// Writes bytes of pixels.
     ///
     /// # Errors
     /// Those of `out`.
@@ -320,8 +317,29 @@ pub fn take_tile(
 }
 
 /// Copies the bytes of a tile to where [`take_tile`] takes them from.
-pub fn put_tile(image: &mut [u8], row: usize, [columns, rows]: [Range<usize>; 2], pixel: usize, tile: &[u8]) {
+fn put_tile(image: &mut [u8], row: usize, [columns, rows]: [Range<usize>; 2], pixel: usize, tile: &[u8]) {
     for (at, bytes) in rows.zip(tile.chunks(pixel * columns.len())) {
         image[row * at..][pixel * columns.start..pixel * columns.end].copy_from_slice(bytes);
     }
+}
+
+/// Puts tiles together: returns the bytes of each row of tiles that has some of them, from the top, 0 where there are no
+/// others. `read` reads the bytes of the next tile, given its index.
+pub fn strips<E>(
+    grid: Grid,
+    tiles: Range<usize>,
+    pixel: usize,
+    mut read: impl FnMut(usize, &mut [u8]) -> Result<(), E>,
+) -> impl Iterator<Item = Result<Vec<u8>, E>> {
+    let ([width, height], across, mut tile) = (grid.size, grid.across(), Vec::new());
+    (tiles.start / across..tiles.end.div_ceil(across)).map(move |strip| {
+        let mut rows = vec![0; pixel * width * TILE.min(height - TILE * strip)];
+        for index in tiles.start.max(strip * across)..tiles.end.min((strip + 1) * across) {
+            tile.resize(pixel * grid.pixels(index), 0);
+            read(index, &mut tile)?;
+            let [columns, at] = grid.tile(index);
+            put_tile(&mut rows, pixel * width, [columns, 0..at.len()], pixel, &tile);
+        }
+        Ok(rows)
+    })
 }

@@ -17,7 +17,7 @@ use hyper::Request;
 use hyper::body::Bytes;
 use std::cell::Cell;
 use std::fs::File;
-use std::io::{self, Seek};
+use std::io::{self, Read};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::pin::Pin;
@@ -25,7 +25,6 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::task::{Context, Poll};
-use tabray_core::output::picture::Format;
 use tabray_core::render::tiles::{Band, TILE, Tiles};
 use tabray_core::scene::model::Model;
 use tabray_lang::reader::Loaded;
@@ -52,7 +51,7 @@ impl Image {
     /// top, each from the left.
     ///
     /// # Errors
-    /// Those of a temporary file.
+    /// None but those of the PNG.
     pub fn checkpoint(&self, pixels: &[[u8; 3]], tiles: &[bool]) -> io::Result<Vec<u8>> {
         let (band, size) = (self.blank(), self.part.size());
         for (index, (pixels, tiles)) in
@@ -64,11 +63,8 @@ impl Image {
         }
         let mut is_rendered = Tiles::none(size);
         is_rendered.add(&band);
-        let mut file = tempfile::tempfile()?;
-        Format::Ppm.write(&mut file, size, band.bytes(usize::MAX).into_iter().map(Ok))?;
-        file.rewind()?;
-        let mut bytes = Vec::new();
-        checkpoint::write(&mut bytes, size, &self.identity, &is_rendered, Format::Ppm.read(file)?)?;
+        let (mut bytes, mut left) = (Vec::new(), pixels.as_flattened());
+        checkpoint::write(&mut bytes, size, &self.identity, &is_rendered, |row| left.read_exact(row))?;
         Ok(bytes)
     }
 

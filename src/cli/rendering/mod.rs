@@ -5,7 +5,6 @@ pub mod debug;
 pub mod full_range;
 pub mod job;
 pub mod part;
-pub mod part_begun;
 pub mod part_files;
 pub mod resume;
 pub mod stats;

@@ -7,14 +7,15 @@ use crate::process::failure::{self, Failure};
 use crate::process::progress::Progress;
 use crate::process::{memory, messages};
 use crate::rendering::job::{report_proofs, warn_of};
-use crate::rendering::part_begun::{UnfinishedPart, is_complete, remove};
+use crate::rendering::resume::ResumedImage;
 use crate::rendering::stats::Stats;
 use crate::rendering::{aov, full_range, resume, unfinished};
-use std::fs;
-use std::io::{self, BufWriter, Write};
+use std::fs::File;
+use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::thread;
+use tabray_core::files;
 use tabray_core::output::aov::{Aov, Setting};
 use tabray_core::output::aov_values::Values;
 use tabray_core::output::picture::Format;
@@ -23,9 +24,10 @@ use tabray_core::render::division::{self, Grid};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::ray_stats::RayStats;
 use tabray_core::render::renderer::{RenderCallbacks, Renderer};
-use tabray_core::render::tiles::{Band, TILE};
+use tabray_core::render::tiles::{Band, TILE, Tiles};
 use tabray_core::text;
-use tabray_tools::part::{self, Label, MOST_PARTS, PixelFormat, Writer};
+use tabray_tools::checkpoint::Identity;
+use tabray_tools::part::{self, Label, MOST_PARTS, PixelFormat, Reader, Writer};
 
 /// The message if a part is stopped of which nothing is kept.
 const UNKEPT: &str = "the part was not finished, and nothing is written";
@@ -60,7 +62,7 @@ pub fn beside(picture: &Path, [number, of]: [usize; 2]) -> PathBuf {
 }
 
 /// A part that is to be rendered.
-pub struct Share<'a> {
+pub struct PartRender<'a> {
     pub part: [usize; 2],
     /// The texts that a PNG records about how the image was made.
     pub made: &'a [(&'a str, String)],
@@ -80,7 +82,7 @@ pub struct Share<'a> {
     pub stats: &'a Stats,
 }
 
-impl Share<'_> {
+impl PartRender<'_> {
     /// Renders the part of the main image and of those beside it. `truth` calls what it is given with the plan of the
     /// reference for errors.
     pub fn run(
@@ -90,21 +92,24 @@ impl Share<'_> {
     ) -> Result<(), Failure> {
         let (tiles, [path, beside]) = (self.tiles()?, self.paths);
         let identity = resume::identity(self.plan.model, self.region)?;
-        let label = |what, unfinished| {
+        let label = |what| {
             let identity = identity.clone();
             let (part, size, beside) = (self.part, self.region.size(), self.beside.to_vec());
             let made = self.made.iter().map(|(keyword, text)| ((*keyword).to_owned(), text.clone()));
             let (made, tiles) = (made.collect(), [tiles.start, tiles.end]);
-            Label { part, tiles, size, what, beside, identity, made, unfinished }
+            Label { part, tiles, size, what, beside, identity, made }
         };
-        let main = beside_and_label(path, label(self.what, false));
+        let main = beside_and_label(path, label(self.what));
         if resumes && is_complete(&main)? {
             // Where the program was killed just after it had finished the part, its checkpoint is still there.
-            UnfinishedPart::remove(&resume::beside(&main.0), &main.1)?;
+            // What belongs to another part stays.
+            if let Ok(Some(begun)) = self.begun(&main) {
+                begun.remove()?;
+            }
         } else {
             match self.what {
                 PixelFormat::Exr | PixelFormat::Pfm => self.full_range(&main)?,
-                _ => self.bytes(&main, resumes, label(self.what, true))?,
+                _ => self.bytes(&main, resumes)?,
             }
             add_writing_time(&main.0, &main.1);
         }
@@ -119,7 +124,7 @@ impl Share<'_> {
                     Format::Ppm => None,
                 };
                 let what = PixelFormat::Beside(*aov, compression, Setting::of(&self.plan.camera));
-                let file = beside_and_label(&aov::picture(beside, *aov), label(what, false));
+                let file = beside_and_label(&aov::picture(beside, *aov), label(what));
                 if !(resumes && is_complete(&file)?) {
                     self.values(&file, *aov, truth)?;
                     add_writing_time(&file.0, &file.1);
@@ -147,12 +152,22 @@ impl Share<'_> {
         Ok(ends[number - 1]..ends[number])
     }
 
+    /// Opens the checkpoint of the part, if there is one.
+    fn begun(&self, (path, label): &(PathBuf, Label)) -> Result<Option<ResumedImage>, Failure> {
+        let size = self.rows_size(&label.tiles());
+        ResumedImage::find(resume::beside(path), || Ok(checkpoint_of(label)), size)
+    }
+
+    /// Returns the width and the height of the rows of tiles that the part has some of, which are the rows of its
+    /// checkpoint.
+    fn rows_size(&self, tiles: &Range<usize>) -> [usize; 2] {
+        [self.region.columns.len(), self.grid().rows(tiles).len()]
+    }
+
     /// Renders bytes, or stops and leaves what is done.
-    fn bytes(&self, file: &(PathBuf, Label), resumes: bool, unfinished: Label) -> Result<(), Failure> {
+    fn bytes(&self, file: &(PathBuf, Label), resumes: bool) -> Result<(), Failure> {
         let (path, label) = file;
-        let checkpoint = resume::beside(path);
-        let mut begun = if resumes { UnfinishedPart::open(&checkpoint, label)? } else { None };
-        let was_begun = begun.is_some();
+        let mut begun = if resumes { self.begun(file)? } else { None };
         let tiles = label.tiles();
         let progress = Progress::new(self.grid().rows(&tiles).len());
         let overseer = RenderCallbacks { stops: &|| self.stop.is_due(), row: &|| progress.step() };
@@ -160,28 +175,25 @@ impl Share<'_> {
         let add = |tally: RayStats| sum.add(&tally);
         let cannot = |error: io::Error| Failure::cannot_write(path, &error);
         let mut writer = begin(path, label)?;
-        let mut mask = Vec::new();
+        let mut rendered = Tiles::none(self.rows_size(&tiles));
         self.stop.begin();
         thread::scope(|scope| {
             let (all, mut bytes) = (self.region.columns.len(), Vec::new());
             for rows in Band::split(&(0..all), &self.grid().rows(&tiles), self.at_once) {
-                if self.stop.is_due() && begun.is_none() {
+                if self.stop.is_due() && begun.as_ref().is_none_or(ResumedImage::is_over) {
                     break;
                 }
                 memory::refuse_too_large(3 * rows.len() * all, "the image")?;
                 let mut band = self.band(&tiles, rows.clone(), begun.as_mut())?;
-                if begun.as_ref().is_some_and(UnfinishedPart::is_over) {
-                    begun = None;
-                }
                 self.stats
                     .timed(|| unfinished::fill(scope, (self.renderer, self.plan), &mut band, overseer, &add));
+                self.mark_others(&band, &tiles, &rows, false);
+                rendered.add(&band);
                 for index in self.of_rows(&tiles, &rows) {
-                    let (columns, at) = self.place(index);
+                    let [columns, at] = self.grid().tile(index);
                     let strip = band.strip((at.start - rows.start) / TILE);
-                    let inside = 0..at.len();
                     let pixels = strip.pixels.as_flattened();
-                    part::take_tile(pixels, 3 * all, [columns.clone(), inside], 3, &mut bytes);
-                    mask.push(u8::from(strip.tiles[columns.start / TILE]));
+                    part::take_tile(pixels, 3 * all, [columns, 0..at.len()], 3, &mut bytes);
                     writer.put(&bytes).map_err(cannot)?;
                 }
             }
@@ -189,19 +201,18 @@ impl Share<'_> {
             let tally = &self.stats.tally;
             warn_of(&tally.flaws(), self.plan.model);
             report_proofs(tally.proofs(), self.plan);
-            let is_whole = mask.len() == tiles.len() && mask.iter().all(|done| *done == 1);
-            if is_whole {
+            if rendered.pixels() == self.grid().pixels_of(tiles.clone()) {
                 return Ok::<_, Failure>(());
             }
             self.stop.report();
             // Threads may be at work on tiles of which nothing is kept.
-            failure::end(&match self.leave(&checkpoint, unfinished, &mask, writer.begin, &mut writer) {
+            failure::end(&match self.leave(file, &rendered, &mut writer) {
                 Ok(()) => Failure::Stopped,
                 Err(failure) => failure,
             })
         })?;
         finish(path, writer)?;
-        if was_begun { remove(&checkpoint) } else { Ok(()) }
+        begun.map_or(Ok(()), ResumedImage::remove)
     }
 
     /// Returns the tiles of the part that lie in some rows.
@@ -211,68 +222,58 @@ impl Share<'_> {
         tiles.start.max(all.start)..tiles.end.min(all.end)
     }
 
-    /// Returns the columns and rows of a tile.
-    fn place(&self, index: usize) -> (Range<usize>, Range<usize>) {
-        let [columns, rows] = self.grid().tile(index);
-        (columns, rows)
-    }
-
     /// Makes a band of rows of the region in which only the tiles of the part are to be rendered that the checkpoint does
     /// not have.
     fn band(
         &self,
         tiles: &Range<usize>,
         rows: Range<usize>,
-        mut begun: Option<&mut UnfinishedPart>,
+        begun: Option<&mut ResumedImage>,
     ) -> Result<Band, Failure> {
         let Part { columns, rows: all } = self.region;
         let band = Band::blank(columns.clone(), all.start + rows.start..all.start + rows.end);
-        let across = self.grid().across();
-        for index in rows.start / TILE * across..rows.end.div_ceil(TILE) * across {
-            let (place, at) = self.place(index);
-            let mut strip = band.strip((at.start - rows.start) / TILE);
-            let is_done = match begun.as_deref_mut().filter(|_| tiles.contains(&index)) {
-                Some(begun) => {
-                    let pixels = strip.pixels.as_flattened_mut();
-                    begun.tile(pixels, 3 * columns.len(), [place.clone(), 0..at.len()])?
-                }
-                None => !tiles.contains(&index),
-            };
-            strip.tiles[place.start / TILE] = is_done;
-        }
+        begun.map_or(Ok(()), |begun| begun.fill(&band))?;
+        self.mark_others(&band, tiles, &rows, true);
         Ok(band)
     }
 
-    /// Writes what is done of a part, from what was written of it so far.
+    /// Marks the tiles of a band that do not belong to the part.
+    fn mark_others(&self, band: &Band, tiles: &Range<usize>, rows: &Range<usize>, is_done: bool) {
+        for index in self.of_rows(&(0..self.grid().count()), rows).filter(|index| !tiles.contains(index)) {
+            let [columns, at] = self.grid().tile(index);
+            band.strip((at.start - rows.start) / TILE).tiles[columns.start / TILE] = is_done;
+        }
+    }
+
+    /// Writes a checkpoint of what is done of a part, from what was written of it so far.
     fn leave(
         &self,
-        path: &Path,
-        label: Label,
-        mask: &[u8],
-        begin_at: u64,
+        (path, label): &(PathBuf, Label),
+        rendered: &Tiles,
         written: &mut Writer<BufWriter<Output>>,
     ) -> Result<(), Failure> {
-        let done = mask.iter().filter(|done| **done == 1).count();
-        if done == 0 {
+        if rendered.pixels() == 0 {
             messages::note("nothing has been rendered yet, and nothing is written");
             return Ok(());
         }
-        let cannot = |error: io::Error| Failure::cannot_write(path, &error);
-        let tiles = label.tiles();
-        let mut mask = mask.to_vec();
-        let kept = self.grid().pixels_of(tiles.start..tiles.start + mask.len());
-        let rest = self.grid().pixels_of(tiles.start + mask.len()..tiles.end);
-        mask.resize(tiles.len(), 0);
-        let mut writer = begin(path, &label)?;
-        let mut file = read_from(written, begin_at).map_err(cannot)?;
-        let mut copied = || -> io::Result<()> {
-            writer.put(&mask)?;
-            copy(&mut io::Read::take(&mut file, 3 * kept as u64), &mut writer)?;
-            copy(&mut io::Read::take(io::repeat(0), 3 * rest as u64), &mut writer)
+        let (path, tiles, width) = (resume::beside(path), label.tiles(), self.region.columns.len());
+        let cannot = |error: io::Error| Failure::cannot_write(&path, &error);
+        let mut file = BufReader::new(read_from(written, written.begin).map_err(cannot)?);
+        let mut strips = part::strips(self.grid(), tiles.clone(), 3, |_, tile| file.read_exact(tile));
+        let (mut strip, mut at) = (Vec::new(), 0);
+        let next = |row: &mut [u8]| {
+            if at == strip.len() {
+                (strip, at) = (strips.next().unwrap_or(Err(io::ErrorKind::UnexpectedEof.into()))?, 0);
+            }
+            row.copy_from_slice(&strip[at..at + row.len()]);
+            at += row.len();
+            Ok(())
         };
-        copied().map_err(cannot)?;
-        finish(path, writer)?;
-        let share = (1000.0 * done as f64 / tiles.len() as f64).floor() / 10.0;
+        let size = [width, rendered.rows_begun()];
+        let checkpoint = resume::write(&path, size, &checkpoint_of(label), rendered, next)?;
+        checkpoint.finish().map_err(cannot)?;
+        let of_all = rendered.pixels() as f64 / self.grid().pixels_of(tiles) as f64;
+        let share = (1000.0 * of_all).floor() / 10.0;
         let ([number, of], path) = (self.part, path.display());
         messages::note(&format!(
             "wrote {share:.1} % of part {number}/{of} to {path}, from which `--resume` renders the rest"
@@ -310,7 +311,7 @@ impl Share<'_> {
             };
             let bytes: Vec<u8> = colours.iter().flat_map(|number| number.to_le_bytes()).collect();
             for index in run {
-                let (of, at) = self.place(index);
+                let [of, at] = self.grid().tile(index);
                 let (of, at) =
                     (of.start - wide.start..of.end - wide.start, at.start - tall.start..at.end - tall.start);
                 part::take_tile(&bytes, 12 * wide.len(), [of, at], 12, &mut tile);
@@ -348,6 +349,19 @@ impl Share<'_> {
     }
 }
 
+/// Tells whether a complete part exists.
+fn is_complete((path, label): &(PathBuf, Label)) -> Result<bool, Failure> {
+    let Ok(mut reader) = files::open(path).and_then(Reader::open) else { return Ok(false) };
+    let there = &reader.label;
+    let is_same = label.identity.differences(&there.identity).is_empty()
+        && (label.tiles, label.what, &label.beside) == (there.tiles, there.what, &there.beside);
+    let is_complete = is_same && reader.check().is_ok();
+    if is_complete {
+        messages::note(&format!("{} exists already", path.display()));
+    }
+    Ok(is_complete)
+}
+
 fn beside_and_label(picture: &Path, label: Label) -> (PathBuf, Label) {
     (beside(picture, label.part), label)
 }
@@ -362,22 +376,17 @@ fn finish(path: &Path, writer: Writer<BufWriter<Output>>) -> Result<(), Failure>
     output::finished(path, Ok(()), finished)
 }
 
-fn copy(from: &mut dyn io::Read, to: &mut Writer<BufWriter<Output>>) -> io::Result<()> {
-    let mut block = vec![0; 1 << 16];
-    loop {
-        match from.read(&mut block)? {
-            0 => return Ok(()),
-            read => to.put(&block[..read])?,
-        }
-    }
+/// Describes the checkpoint of a part.
+fn checkpoint_of(label: &Label) -> Identity {
+    label.identity.clone().of_tiles(&label.tiles())
 }
 
 /// Opens what was written so far, from this byte on.
-fn read_from(written: &mut Writer<BufWriter<Output>>, byte: u64) -> io::Result<fs::File> {
+fn read_from(written: &mut Writer<BufWriter<Output>>, byte: u64) -> io::Result<File> {
     let out = written.out();
     out.flush()?;
     let mut file = out.get_ref().read()?;
-    io::Seek::seek(&mut file, io::SeekFrom::Start(byte))?;
+    file.seek(SeekFrom::Start(byte))?;
     Ok(file)
 }
 

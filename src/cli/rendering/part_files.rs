@@ -45,12 +45,6 @@ impl Parts {
             if !is(label.what) {
                 continue;
             }
-            if label.unfinished {
-                return Err(refuse(
-                    format!("`{}` is an unfinished part", path.display()),
-                    "`tabray render --part K/N --resume` renders the rest of it",
-                ));
-            }
             if let Some((other, first)) = &first {
                 same((&path, &label), (other, first))?;
             }

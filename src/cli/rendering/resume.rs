@@ -52,17 +52,26 @@ impl ResumedImage {
             }
             return Ok(None);
         }
+        let missing = format!("there is no {shown} to continue from: the render starts from the beginning");
+        let begun = Self::find(path, || identity(model, part), part.size())?;
+        if begun.is_none() {
+            messages::note(&missing);
+        }
+        Ok(begun)
+    }
+
+    /// Opens the checkpoint of this path, if there is one. Refuses that of another image.
+    pub fn find(
+        path: PathBuf,
+        identity: impl FnOnce() -> Result<Identity, Failure>,
+        size: [usize; 2],
+    ) -> Result<Option<Self>, Failure> {
         let file = match files::open(&path) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                messages::note(&format!(
-                    "there is no {shown} to continue from: the render starts from the beginning"
-                ));
-                return Ok(None);
-            }
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
             file => file,
         };
         let begun = Self::read(path, file)?;
-        begun.refuse_other_image(&identity(model, part)?, part.size())?;
+        begun.refuse_other_image(&identity()?, size)?;
         Ok(Some(begun))
     }
 
@@ -120,6 +129,22 @@ fn cannot_read(path: &Path, error: &io::Error) -> Failure {
     Failure::Usage(format!("cannot read `{}`: {reason}", path.display()), Some(BEGIN_ANEW.to_owned()))
 }
 
+/// Writes a checkpoint, which is not moved to its path yet. The other arguments are those of [`checkpoint::write`].
+pub fn write(
+    path: &Path,
+    size: [usize; 2],
+    identity: &Identity,
+    tiles: &Tiles,
+    next: impl FnMut(&mut [u8]) -> io::Result<()>,
+) -> Result<Output, Failure> {
+    let mut checkpoint = Output::open(path)?;
+    let mut out = BufWriter::with_capacity(1 << 16, &mut checkpoint);
+    let written = checkpoint::write(&mut out, size, identity, tiles, next).and_then(|()| out.flush());
+    drop(out);
+    written.map_err(|error| Failure::cannot_write(path, &error))?;
+    Ok(checkpoint)
+}
+
 /// Writes an unfinished image to its path, and a checkpoint beside it, whose path is returned. `written` contains
 /// `rows` rows of the image, black where nothing is rendered.
 ///
@@ -134,17 +159,9 @@ pub fn leave(
     let [width, height] = part.size();
     let path = beside(picture);
     let cannot_write = |error: io::Error| Failure::cannot_write(&path, &error);
-    let mut checkpoint = Output::open(&path)?;
+    let mut shown = written.read().and_then(|file| format.read(file)).map_err(cannot_write)?;
     let identity = identity(model, part)?;
-    written
-        .read()
-        .and_then(|file| format.read(file))
-        .and_then(|picture| {
-            let mut out = BufWriter::with_capacity(1 << 16, &mut checkpoint);
-            checkpoint::write(&mut out, [width, rows], &identity, tiles, picture)?;
-            out.flush()
-        })
-        .map_err(cannot_write)?;
+    let checkpoint = write(&path, [width, rows], &identity, tiles, |row| shown.next(row))?;
     let partial = match format {
         Format::Ppm => {
             // The missing end of the file becomes a hole, which reads as black.
