@@ -143,45 +143,54 @@ pub trait Value: Clone + Send + Sync + 'static {
     fn from_datum(datum: &Datum) -> Option<Self>;
 }
 
-impl Value for f64 {
-    const TYPE: Type = Type::Number;
-    const ARITY: Counts = Counts::Of(&[1]);
+/// Makes a type a value that takes one word: of which type, and how it is made to a datum and from one.
+macro_rules! one_word {
+    ($(#[$doc:meta])* $Value:ty, $type:expr, $value:ident => $datum:expr, $($from:pat $(if $fits:expr)? => $to:expr),+) => {
+        $(#[$doc])*
+        impl $crate::scene::value::Value for $Value {
+            const TYPE: $crate::scene::value::Type = $type;
+            const ARITY: $crate::scene::counts::Counts = $crate::scene::counts::Counts::Of(&[1]);
 
-    fn to_datum(&self) -> Datum {
-        [*self].to_datum()
-    }
+            fn to_datum(&self) -> $crate::scene::value::Datum {
+                let $value = self;
+                $datum
+            }
 
-    fn from_datum(datum: &Datum) -> Option<Self> {
-        <[f64; 1]>::from_datum(datum).map(|[number]| number)
-    }
+            fn from_datum(datum: &$crate::scene::value::Datum) -> Option<Self> {
+                match datum {
+                    $($from $(if $fits)? => $to,)+
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+pub(crate) use one_word;
+
+/// Makes a type the value that an array of numbers is.
+macro_rules! of_array {
+    ($Value:ty, $type:ident, $Array:ty, $names:expr, $value:ident => $array:expr, $from:expr) => {
+        impl Value for $Value {
+            const EACH: &[&str] = $names;
+            const TYPE: Type = Type::$type;
+            const ARITY: Counts = <$Array>::ARITY;
+
+            fn to_datum(&self) -> Datum {
+                let $value = *self;
+                $array.to_datum()
+            }
+
+            fn from_datum(datum: &Datum) -> Option<Self> {
+                <$Array>::from_datum(datum).map($from)
+            }
+        }
+    };
 }
 
-impl Value for DVec2 {
-    const TYPE: Type = Type::Number;
-    const ARITY: Counts = Counts::Of(&[2]);
-
-    fn to_datum(&self) -> Datum {
-        self.to_array().to_datum()
-    }
-
-    fn from_datum(datum: &Datum) -> Option<Self> {
-        <[f64; 2]>::from_datum(datum).map(DVec2::from)
-    }
-}
-
-impl Value for DVec3 {
-    const EACH: &[&str] = &["x", "y", "z"];
-    const TYPE: Type = Type::Number;
-    const ARITY: Counts = Counts::Of(&[3]);
-
-    fn to_datum(&self) -> Datum {
-        self.to_array().to_datum()
-    }
-
-    fn from_datum(datum: &Datum) -> Option<Self> {
-        <[f64; 3]>::from_datum(datum).map(DVec3::from)
-    }
-}
+of_array!(f64, Number, [f64; 1], &[], number => [number], |[number]| number);
+of_array!(i64, Whole, [i64; 1], &[], number => [number], |[number]| number);
+of_array!(DVec2, Number, [f64; 2], &[], vector => vector.to_array(), DVec2::from);
+of_array!(DVec3, Number, [f64; 3], &["x", "y", "z"], vector => vector.to_array(), DVec3::from);
 
 /// A number for each of red, green and blue, written as three numbers, or as one number where the three are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -220,114 +229,52 @@ impl Value for WholePerChannel {
     }
 }
 
-impl<const N: usize> Value for [i64; N] {
-    const TYPE: Type = Type::Whole;
-    const ARITY: Counts = Counts::Of(&[N]);
+/// Makes arrays of numbers values.
+macro_rules! numbers {
+    ($Number:ty, $type:ident, $datum:ident) => {
+        impl<const N: usize> Value for [$Number; N] {
+            const TYPE: Type = Type::$type;
+            const ARITY: Counts = Counts::Of(&[N]);
 
-    fn to_datum(&self) -> Datum {
-        Datum::Whole(self.to_vec())
-    }
+            fn to_datum(&self) -> Datum {
+                Datum::$datum(self.to_vec())
+            }
 
-    fn from_datum(datum: &Datum) -> Option<Self> {
-        match datum {
-            Datum::Whole(numbers) => numbers.as_slice().try_into().ok(),
-            _ => None,
+            fn from_datum(datum: &Datum) -> Option<Self> {
+                match datum {
+                    Datum::$datum(numbers) => numbers.as_slice().try_into().ok(),
+                    _ => None,
+                }
+            }
         }
-    }
+    };
 }
 
-impl Value for i64 {
-    const TYPE: Type = Type::Whole;
-    const ARITY: Counts = Counts::Of(&[1]);
+numbers!(f64, Number, Numbers);
+numbers!(i64, Whole, Whole);
 
-    fn to_datum(&self) -> Datum {
-        Datum::Whole(vec![*self])
-    }
+one_word!(String, Type::Word, word => Datum::Word(word.clone()), Datum::Word(word) => Some(word.clone()));
 
-    fn from_datum(datum: &Datum) -> Option<Self> {
-        <[i64; 1]>::from_datum(datum).map(|[number]| number)
-    }
-}
+one_word!(
+    /// The name of a file.
+    PathBuf, Type::File,
+    path => Datum::Word(path.display().to_string()),
+    Datum::Word(path) => Some(path.into())
+);
 
-impl<const N: usize> Value for [f64; N] {
-    const TYPE: Type = Type::Number;
-    const ARITY: Counts = Counts::Of(&[N]);
+one_word!(
+    /// A formula in y.
+    Arc<Formula>, Type::Formula(HEIGHT),
+    formula => Datum::Formula(formula.clone()),
+    Datum::Formula(formula) if formula.variables() == HEIGHT => Some(formula.clone())
+);
 
-    fn to_datum(&self) -> Datum {
-        Datum::Numbers(self.to_vec())
-    }
-
-    fn from_datum(datum: &Datum) -> Option<Self> {
-        match datum {
-            Datum::Numbers(numbers) => numbers.as_slice().try_into().ok(),
-            _ => None,
-        }
-    }
-}
-
-impl Value for String {
-    const TYPE: Type = Type::Word;
-    const ARITY: Counts = Counts::Of(&[1]);
-
-    fn to_datum(&self) -> Datum {
-        Datum::Word(self.clone())
-    }
-
-    fn from_datum(datum: &Datum) -> Option<Self> {
-        match datum {
-            Datum::Word(word) => Some(word.clone()),
-            _ => None,
-        }
-    }
-}
-
-/// The name of a file.
-impl Value for PathBuf {
-    const TYPE: Type = Type::File;
-    const ARITY: Counts = Counts::Of(&[1]);
-
-    fn to_datum(&self) -> Datum {
-        Datum::Word(self.display().to_string())
-    }
-
-    fn from_datum(datum: &Datum) -> Option<Self> {
-        String::from_datum(datum).map(Self::from)
-    }
-}
-
-/// A formula in y.
-impl Value for Arc<Formula> {
-    const TYPE: Type = Type::Formula(HEIGHT);
-    const ARITY: Counts = Counts::Of(&[1]);
-
-    fn to_datum(&self) -> Datum {
-        Datum::Formula(self.clone())
-    }
-
-    fn from_datum(datum: &Datum) -> Option<Self> {
-        match datum {
-            Datum::Formula(formula) if formula.variables() == HEIGHT => Some(formula.clone()),
-            _ => None,
-        }
-    }
-}
-
-/// A formula in x, y and z.
-impl Value for Field {
-    const TYPE: Type = Type::Formula(SPACE);
-    const ARITY: Counts = Counts::Of(&[1]);
-
-    fn to_datum(&self) -> Datum {
-        Datum::Formula(self.formula().clone())
-    }
-
-    fn from_datum(datum: &Datum) -> Option<Self> {
-        match datum {
-            Datum::Formula(formula) => Self::new(formula.clone()),
-            _ => None,
-        }
-    }
-}
+one_word!(
+    /// A formula in x, y and z.
+    Field, Type::Formula(SPACE),
+    field => Datum::Formula(field.formula().clone()),
+    Datum::Formula(formula) => Self::new(formula.clone())
+);
 
 /// A formula of a surface for each of red, green and blue, written as three formulas, or as one where the three are equal.
 impl Value for [SurfaceField; 3] {
@@ -351,22 +298,10 @@ impl Value for [SurfaceField; 3] {
     }
 }
 
-/// Yes or no.
-impl Value for bool {
-    const TYPE: Type = Type::Truth;
-    const ARITY: Counts = Counts::Of(&[1]);
-
-    fn to_datum(&self) -> Datum {
-        Datum::Truth(*self)
-    }
-
-    fn from_datum(datum: &Datum) -> Option<Self> {
-        match datum {
-            Datum::Truth(truth) => Some(*truth),
-            _ => None,
-        }
-    }
-}
+one_word!(
+    /// Yes or no.
+    bool, Type::Truth, truth => Datum::Truth(*truth), Datum::Truth(truth) => Some(*truth)
+);
 
 /// Writes a truth as the notes' syntax does.
 pub fn yes_or_no(truth: bool) -> &'static str {
