@@ -99,69 +99,51 @@ impl<T: Hittable + Equation, S> Proofs for Shape<T, S, ByFormula> {
     }
 }
 
-impl<T: Certified, S> Proofs for Shape<T, S, ByEquation> {
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        self.shape.touches(at, error)
-    }
+/// Lets the equation of shapes prove what is certain about their hits.
+macro_rules! by_equation {
+    ($Bound:ident, $Strategy:ty, $($more:tt)*) => {
+        impl<T: $Bound, S> Proofs for Shape<T, S, $Strategy> {
+            fn touches(&self, at: DVec3, error: f64) -> bool {
+                self.shape.touches(at, error)
+            }
 
-    fn holds(&self, at: DVec3, error: f64) -> Option<bool> {
-        certify::holds(&self.shape, at, error)
-    }
+            fn holds(&self, at: DVec3, error: f64) -> Option<bool> {
+                certify::holds(&self.shape, at, error)
+            }
 
-    fn facet(&self, at: DVec3, error: f64) -> Option<Facet> {
-        self.shape.facet(at, error)
-    }
+            fn facet(&self, at: DVec3, error: f64) -> Option<Facet> {
+                self.shape.facet(at, error)
+            }
 
-    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
-        self.shape.fine_distance(ray, distance)
-    }
+            fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
+                self.shape.fine_distance(ray, distance)
+            }
 
-    fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
-        assumed(&self.shape, of, each);
-    }
+            fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
+                assumed(&self.shape, of, each);
+            }
 
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        certify::first_hit(&self.shape, sight, precision)
-    }
+            fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+                certify::first_hit(&self.shape, sight, precision)
+            }
 
-    fn proven(&self) -> Option<&dyn Proven> {
-        Some(&self.shape)
-    }
+            fn proven(&self) -> Option<&dyn Proven> {
+                Some(&self.shape)
+            }
+
+            $($more)*
+        }
+    };
 }
 
-impl<T: Searched, S> Proofs for Shape<T, S, ByRoots> {
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        self.shape.touches(at, error)
-    }
-
-    fn holds(&self, at: DVec3, error: f64) -> Option<bool> {
-        certify::holds(&self.shape, at, error)
-    }
-
-    fn facet(&self, at: DVec3, error: f64) -> Option<Facet> {
-        self.shape.facet(at, error)
-    }
-
-    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
-        self.shape.fine_distance(ray, distance)
-    }
-
-    fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
-        assumed(&self.shape, of, each);
-    }
-
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        certify::first_hit(&self.shape, sight, precision)
-    }
-
-    fn proven(&self) -> Option<&dyn Proven> {
-        Some(&self.shape)
-    }
-
+by_equation!(Certified, ByEquation,);
+by_equation!(
+    Searched,
+    ByRoots,
     fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> Option<f64> {
         Some(self.shape.distance_by(method, ray, range))
     }
-}
+);
 
 /// Passes on what proofs by the equation of a shape assume.
 fn assumed(shape: &impl Hittable, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
