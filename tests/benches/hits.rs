@@ -85,13 +85,7 @@ fn meet(bencher: Bencher, name: &str) {
             let (mut near, mut far) = ([MISS; WIDE], [MISS; WIDE]);
             let (mut met, mut doubt) = ([0; WIDE], [0; WIDE]);
             let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
-            shape.closest_hits(
-                cpu,
-                RayPacket { origin: origin.view(WIDE), dir: dir.view(WIDE), origin_error: 0.0 },
-                None,
-                1,
-                nearest,
-            );
+            shape.closest_hits(cpu, RayPacket::new(origin.view(WIDE), dir.view(WIDE), 0.0), 1, nearest);
             black_box((&near, &far, &met));
         }
     });

@@ -123,54 +123,31 @@ impl Hittable for Counted {
 }
 
 impl Packets for Counted {
-    fn brackets(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        drift: Drift,
-        sides: Option<&[Side]>,
-        ends: &[f64],
-        brackets: (&mut [f64], &mut [f64]),
-    ) {
+    fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], brackets: (&mut [f64], &mut [f64])) {
         count(brackets.0.len() as u64);
-        self.packets().brackets(cpu, rays, drift, sides, ends, brackets);
+        self.packets().brackets(cpu, rays, ends, brackets);
     }
 
-    fn closest_hits(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        sides: Option<&[Side]>,
-        id: u64,
-        nearest: Nearest,
-    ) -> bool {
+    fn closest_hits(&self, cpu: Cpu, rays: RayPacket, id: u64, nearest: Nearest) -> bool {
         count(rays.len() as u64);
-        self.packets().closest_hits(cpu, rays, sides, id, nearest)
+        self.packets().closest_hits(cpu, rays, id, nearest)
     }
 
     fn occluded(
         &self,
         cpu: Cpu,
         rays: RayPacket,
-        sides: Option<&[Side]>,
         t_max: &[f64],
         blocked: &mut [u64],
         doubt: &mut [u64],
     ) -> bool {
         count(t_max.len() as u64);
-        self.packets().occluded(cpu, rays, sides, t_max, blocked, doubt)
+        self.packets().occluded(cpu, rays, t_max, blocked, doubt)
     }
 
-    fn refine(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        sides: Option<&[Side]>,
-        brackets: (&[f64], &[f64]),
-        out: &mut [f64],
-    ) {
+    fn refine(&self, cpu: Cpu, rays: RayPacket, brackets: (&[f64], &[f64]), out: &mut [f64]) {
         count(out.len() as u64);
-        self.packets().refine(cpu, rays, sides, brackets, out);
+        self.packets().refine(cpu, rays, brackets, out);
     }
 
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction) {

@@ -5,7 +5,7 @@
 //! instructions ([`cpu`](crate::simd::cpu)). Arrays are as long as a multiple of [`LANES`](crate::simd::soa::LANES);
 //! the lanes beyond the last ray are copies of it, whose results are ignored.
 
-use crate::geometry::ray::{Bracket, MISS, Ray};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, Side};
 use crate::simd::cpu::kernels;
 use crate::simd::soa::View;
 use std::ops::Range;
@@ -27,9 +27,31 @@ pub struct RayPacket<'r> {
     pub dir: View<'r>,
     /// The largest distance of any origin from the point that it stands for, in world units; 0 for camera rays.
     pub origin_error: f64,
+    /// How far the rays that each ray stands for may be from it.
+    pub drift: Drift,
+    /// The side of the shape that each ray leaves, if the rays leave the shape against which they are tested.
+    pub leaving: Option<&'r [Side]>,
 }
 
-impl RayPacket<'_> {
+impl<'r> RayPacket<'r> {
+    /// Makes a packet of rays that stand for themselves and leave nothing.
+    #[inline(always)]
+    pub fn new(origin: View<'r>, dir: View<'r>, origin_error: f64) -> Self {
+        Self { origin, dir, origin_error, drift: Drift::NONE, leaving: None }
+    }
+
+    /// Returns the rays as they leave a shape to these sides, at least as many as there are rays.
+    #[inline(always)]
+    pub fn leaving(self, leaving: Option<&'r [Side]>) -> Self {
+        Self { leaving, ..self }
+    }
+
+    /// Returns the side of the shape that a ray leaves, if it leaves the shape.
+    #[inline(always)]
+    pub fn side(&self, index: usize) -> Option<Side> {
+        self.leaving.map(|sides| sides[index])
+    }
+
     /// Returns the number of rays.
     #[inline(always)]
     pub fn len(&self) -> usize {
@@ -50,13 +72,15 @@ impl RayPacket<'_> {
     /// Returns the first `count` rays.
     #[inline(always)]
     pub fn first(&self, count: usize) -> Self {
-        Self { origin: self.origin.first(count), dir: self.dir.first(count), ..*self }
+        let leaving = self.leaving.map(|sides| &sides[..count]);
+        Self { origin: self.origin.first(count), dir: self.dir.first(count), leaving, ..*self }
     }
 
     /// Returns the rays in a range of indices.
     #[inline(always)]
     pub fn part(&self, range: Range<usize>) -> Self {
-        Self { origin: self.origin.part(range.clone()), dir: self.dir.part(range), ..*self }
+        let leaving = self.leaving.map(|sides| &sides[range.clone()]);
+        Self { origin: self.origin.part(range.clone()), dir: self.dir.part(range), leaving, ..*self }
     }
 }
 

@@ -185,7 +185,7 @@ mod tests {
             let (origins, dirs, count) = rays(&ways);
             for cpu in Cpu::all() {
                 let frusta =
-                    around(cpu, RayPacket { origin: origins.view(count), dir: dirs.view(count), origin_error: 0.0 }, false);
+                    around(cpu, RayPacket::new(origins.view(count), dirs.view(count), 0.0), false);
                 let (part, mut met) = (1 << (chosen / PART), [0]);
                 meet(cpu, &frusta, &[(0, bounds)], &mut met);
                 prop_assert!(met[0] & part != 0, "{} to {}, {}", from, to, cpu);
@@ -206,11 +206,7 @@ mod tests {
             .collect();
         let (origins, dirs, count) = rays(&ways);
         for cpu in Cpu::all() {
-            let frusta = around(
-                cpu,
-                RayPacket { origin: origins.view(count), dir: dirs.view(count), origin_error: 0.0 },
-                false,
-            );
+            let frusta = around(cpu, RayPacket::new(origins.view(count), dirs.view(count), 0.0), false);
             let at = |x: f64, y: f64| Aabb {
                 low: DVec3::new(x, y, -1.0),
                 high: DVec3::new(x + 2.0, y + 1.0, 1.0),

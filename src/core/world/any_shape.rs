@@ -90,18 +90,10 @@ impl AnyShape {
     }
 
     /// Merges the hits of a packet's rays with this shape into the nearest hits so far, and tells whether the order of
-    /// any two hits is in doubt. `sides` is the side of this shape that each ray leaves, if the rays leave this shape;
-    /// `id` is the object's index in the scene plus 1.
+    /// any two hits is in doubt. `id` is the object's index in the scene plus 1.
     #[inline]
-    pub fn closest_hits(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        sides: Option<&[Side]>,
-        id: u64,
-        nearest: Nearest,
-    ) -> bool {
-        self.0.closest_hits(cpu, rays, sides, id, nearest)
+    pub fn closest_hits(&self, cpu: Cpu, rays: RayPacket, id: u64, nearest: Nearest) -> bool {
+        self.0.closest_hits(cpu, rays, id, nearest)
     }
 }
 

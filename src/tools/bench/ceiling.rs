@@ -40,8 +40,7 @@ impl TextbookTest {
             origin.set(lane, DVec3::new(4.0, 3.0, 7.0));
             dir.set(lane, DVec3::new(0.1 * x - 0.3, 0.1 * y - 0.3, -1.0).normalize());
         }
-        let rays =
-            RayPacket { origin: origin.view(PACKET_SIZE), dir: dir.view(PACKET_SIZE), origin_error: 0.0 };
+        let rays = RayPacket::new(origin.view(PACKET_SIZE), dir.view(PACKET_SIZE), 0.0);
         let shapes: [[DVec3; 3]; SHAPES] = std::array::from_fn(|index| {
             let corner = DVec3::new(4.0, 3.0, -4.0 - 0.1 * index as f64);
             [corner, DVec3::X + 0.1 * DVec3::Z, DVec3::Y]

@@ -43,11 +43,7 @@ struct RayBundle {
 
 impl RayBundle {
     fn rays(&self) -> RayPacket<'_> {
-        RayPacket {
-            origin: self.origin.view(PACKET_SIZE),
-            dir: self.dir.view(PACKET_SIZE),
-            origin_error: 0.0,
-        }
+        RayPacket::new(self.origin.view(PACKET_SIZE), self.dir.view(PACKET_SIZE), 0.0)
     }
 }
 
@@ -142,7 +138,7 @@ pub(super) fn times(
             for object in objects {
                 let (near, far, met, doubt) = (&mut near[..], &mut far[..], &mut met[..], &mut doubt[..]);
                 let nearest = Nearest { near, far, met, doubt };
-                shape(*object).closest_hits(cpu, packet.view.rays(), None, *object as u64 + 1, nearest);
+                shape(*object).closest_hits(cpu, packet.view.rays(), *object as u64 + 1, nearest);
             }
             black_box((&near, &far, &met));
         }
@@ -152,14 +148,8 @@ pub(super) fn times(
             let (mut blocked, mut doubt) = ([0; PACKET_SIZE], [0; PACKET_SIZE]);
             for object in objects {
                 let sides = (*object == met.object).then_some(&met.sides[..]);
-                shape(*object).packets().occluded(
-                    cpu,
-                    met.toward.rays(),
-                    sides,
-                    &met.t_max,
-                    &mut blocked,
-                    &mut doubt,
-                );
+                let rays = met.toward.rays().leaving(sides);
+                shape(*object).packets().occluded(cpu, rays, &met.t_max, &mut blocked, &mut doubt);
             }
             black_box(&blocked);
         }
@@ -170,14 +160,14 @@ pub(super) fn times(
             let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
             let (mut met, mut doubt) = ([0; PACKET_SIZE], [0; PACKET_SIZE]);
             let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
-            shape(view.object).closest_hits(cpu, view.view.rays(), None, 1, nearest);
+            shape(view.object).closest_hits(cpu, view.view.rays(), 1, nearest);
             (near, far)
         })
         .collect();
     let mut refine = || {
         for (met, (near, far)) in met.iter().zip(&brackets) {
             let mut distances = [0.0; PACKET_SIZE];
-            shape(met.object).packets().refine(cpu, met.view.rays(), None, (near, far), &mut distances);
+            shape(met.object).packets().refine(cpu, met.view.rays(), (near, far), &mut distances);
             black_box(&distances);
         }
     };

@@ -55,7 +55,7 @@ impl Packet {
     /// Returns all lanes, with the copies of rays that fill up the packet.
     fn all(&self) -> RayPacket<'_> {
         let count = self.len.next_multiple_of(LANES);
-        RayPacket { origin: self.origin.view(count), dir: self.dir.view(count), origin_error: 0.0 }
+        RayPacket::new(self.origin.view(count), self.dir.view(count), 0.0)
     }
 
     /// Returns the distances at which the rays first hit the object, in world units; [`MISS`] where they do not.
@@ -66,7 +66,7 @@ impl Packet {
         let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
         let (mut met, mut doubt) = ([0; PACKET_SIZE], [0; PACKET_SIZE]);
         let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
-        if shape.closest_hits(cpu, rays, None, 1, nearest) {
+        if shape.closest_hits(cpu, rays, 1, nearest) {
             for lane in (0..len).filter(|lane| doubt[*lane] != 0) {
                 near[lane] = exactly(lane);
                 far[lane] = near[lane];
@@ -76,7 +76,7 @@ impl Packet {
         if near[..len] != far[..len] {
             let count = rays.len();
             let brackets = (&near[..count], &far[..count]);
-            shape.packets().refine(cpu, rays, None, brackets, &mut hits[..count]);
+            shape.packets().refine(cpu, rays, brackets, &mut hits[..count]);
             for lane in 0..len {
                 hits[lane] = if near[lane] == far[lane] {
                     near[lane]

@@ -96,11 +96,11 @@ impl RayTrial<'_> {
         let lanes = |of: DVec3| Vectors::<LANES> { x: [of.x; LANES], y: [of.y; LANES], z: [of.z; LANES] };
         let (origin, dir) = (lanes(ray.origin), lanes(ray.dir));
         for cpu in Cpu::all() {
-            let rays = RayPacket { origin: origin.view(LANES), dir: dir.view(LANES), origin_error: 0.0 };
+            let rays = RayPacket::new(origin.view(LANES), dir.view(LANES), 0.0);
             let (mut near, mut far) = ([MISS; LANES], [MISS; LANES]);
             let (mut met, mut doubt) = ([0; LANES], [0; LANES]);
             let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
-            shape.closest_hits(cpu, rays, None, 1, nearest);
+            shape.closest_hits(cpu, rays, 1, nearest);
             let (low, high) = (near[0], far[0]);
             if doubt[0] == 0 && !(low <= distance && distance <= high) {
                 return fault(format!("`distance` gives {distance}, and packets {low} to {high} ({cpu})"));
@@ -108,7 +108,7 @@ impl RayTrial<'_> {
             // As in the tracer, which does not refine a distance that is known exactly.
             if doubt[0] == 0 && low < high {
                 let mut many = near;
-                shape.packets().refine(cpu, rays, None, (&near, &far), &mut many);
+                shape.packets().refine(cpu, rays, (&near, &far), &mut many);
                 if !many[0].is_nan() && many[0].to_bits() != distance.to_bits() {
                     return fault(format!("`distance` gives {distance}, and {} in packets ({cpu})", many[0]));
                 }

@@ -116,7 +116,7 @@ mod tests {
         // Past the first box at 0.51, through rows of boxes.
         let ray = Ray { origin: DVec3::new(0.51, 0.25, -2.0), dir: DVec3::Z };
         let (origin, dir) = (Vectors::<LANES>::of(ray.origin), Vectors::<LANES>::of(ray.dir));
-        let rays = RayPacket { origin: origin.view(LANES), dir: dir.view(LANES), origin_error: 0.0 };
+        let rays = RayPacket::new(origin.view(LANES), dir.view(LANES), 0.0);
         for (drift, all) in [
             (Drift::NONE, 0),
             (Drift { origin: 0.02, dir: 0.0 }, 10),

@@ -343,7 +343,7 @@ mod tests {
                 dir.set(lane, (to - from).try_normalize().unwrap_or(DVec3::X));
                 t_max[lane] = if ends { 0.0 } else { (to - from).length() };
             }
-            let rays = RayPacket { origin: origin.view(count), dir: dir.view(count), origin_error: 0.0 };
+            let rays = RayPacket::new(origin.view(count), dir.view(count), 0.0);
             let tree = Bvh::new(&boxes);
             for cpu in Cpu::all() {
                 let mut counter = Counter { tests: vec![vec![0; count]; boxes.len()] };

@@ -139,12 +139,12 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
         distances.copy_from_slice(near);
         if near[..len] != far[..len] {
             let shape = &self.model.objects[object].shape;
-            let sides = group.sides_of(object);
-            shape.packets().refine(self.cpu, group.rays(), sides, (near, far), distances);
+            let rays = group.rays().leaving(group.sides_of(object));
+            shape.packets().refine(self.cpu, rays, (near, far), distances);
             if clamp_to_brackets(self.cpu, near, far, distances) {
                 for lane in 0..len {
                     if distances[lane].is_nan() {
-                        let origin_side = sides.map(|sides| sides[lane]);
+                        let origin_side = rays.side(lane);
                         let distance = exact(shape, &self.start(group, lane), origin_side, MISS);
                         distances[lane] = distance.max(near[lane]).min(far[lane]);
                     }
@@ -296,19 +296,13 @@ impl<W: TraceObserver> ClosestHitSearch<'_, '_, '_, W> {
     /// Tests an object against the current sub-packets.
     fn test_part(&mut self, index: usize) {
         let shape = &self.tracer.model.objects[index].shape;
-        let sides = self.group.sides_of(index).map(|sides| &sides[self.part.clone()]);
         self.tracer.observer.count(Count::Tested(index, self.len()));
-        let rays = self.group.rays().part(self.part.clone());
-        if shape.closest_hits(
-            self.tracer.cpu,
-            rays,
-            sides,
-            index as u64 + 1,
-            self.hits.part(self.part.clone()),
-        ) {
+        let rays = self.group.rays().leaving(self.group.sides_of(index)).part(self.part.clone());
+        let nearest = self.hits.part(self.part.clone());
+        if shape.closest_hits(self.tracer.cpu, rays, index as u64 + 1, nearest) {
             for lane in 0..self.len() {
                 if self.hits.doubt[self.part.start + lane] != 0 {
-                    self.decide(self.part.start + lane, index, sides.map(|sides| sides[lane]));
+                    self.decide(self.part.start + lane, index, rays.side(lane));
                 }
             }
         }
@@ -341,8 +335,8 @@ impl<W: TraceObserver> PacketVisitor for ClosestHitSearch<'_, '_, '_, W> {
         let (mut met, mut doubt) = ([hits.met[lane]; LANES], [0; LANES]);
         let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
         let sides = side.map(|side| [side; LANES]);
-        let sides = sides.as_ref().map(|sides| &sides[..]);
-        let is_open = shape.closest_hits(self.tracer.cpu, single.rays(group), sides, id, nearest);
+        let rays = single.rays(group).leaving(sides.as_ref().map(|sides| &sides[..]));
+        let is_open = shape.closest_hits(self.tracer.cpu, rays, id, nearest);
         (hits.near[lane], hits.far[lane], hits.met[lane]) = (near[0], far[0], met[0]);
         if is_open && doubt[0] != 0 {
             self.decide(lane, index, side);
@@ -361,6 +355,6 @@ impl RepeatedRay {
     /// Returns the copies as a packet.
     fn rays(&self, group: &RayGroup) -> RayPacket<'_> {
         let origin_error = group.errors.most;
-        RayPacket { origin: self.origin.view(LANES), dir: self.dir.view(LANES), origin_error }
+        RayPacket::new(self.origin.view(LANES), self.dir.view(LANES), origin_error)
     }
 }

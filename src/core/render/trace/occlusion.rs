@@ -124,13 +124,13 @@ impl<W: TraceObserver> Occlusion<'_, '_, '_, W> {
         let ShadowRays { rays, t_max, surface, sides, .. } = *self.shadow_rays;
         let (rays, t_max) = (rays.part(self.part.clone()), &t_max[self.part.clone()]);
         let shape = &self.tracer.model.objects[index].shape;
-        let sides = (index == surface.index).then(|| &sides[self.part.clone()]);
+        let rays = rays.leaving((index == surface.index).then(|| &sides[self.part.clone()]));
         self.tracer.observer.count(Count::Tested(index, self.shadow_rays.count(&self.part)));
         let (blocked, doubt) = (&mut self.blocked[self.part.clone()], &mut self.doubt[self.part.clone()]);
-        if shape.packets().occluded(self.tracer.cpu, rays, sides, t_max, blocked, doubt) {
+        if shape.packets().occluded(self.tracer.cpu, rays, t_max, blocked, doubt) {
             for lane in 0..t_max.len() {
                 if doubt[lane] != 0 {
-                    let origin_side = sides.map(|sides| sides[lane]);
+                    let origin_side = rays.side(lane);
                     let error = self.shadow_rays.error(self.part.start + lane);
                     let distance = exact(
                         shape,

@@ -155,7 +155,7 @@ impl RayGroup {
     pub fn rays(&self) -> RayPacket<'_> {
         let count = self.padded();
         let origin_error = self.errors.most;
-        RayPacket { origin: self.origin.view(count), dir: self.dir.view(count), origin_error }
+        RayPacket::new(self.origin.view(count), self.dir.view(count), origin_error)
     }
 
     /// Returns a bound on the error of one ray's origin, in world units.

@@ -57,8 +57,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             return;
         }
         self.observer.count(Count::Rays(RayKind::Shadow, len));
-        let rays =
-            RayPacket { origin: surface.points.view(count), dir: paths.toward.view(count), origin_error };
+        let rays = RayPacket::new(surface.points.view(count), paths.toward.view(count), origin_error);
         let cast = (0..group.len).filter(|lane| t_max[*lane] > 0.0);
         self.charge_searches(rays, Some((surface.index, &surface.sides)), cast, &mut group.ray_budget);
         if 2 * len > group.len {
@@ -77,7 +76,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         gather(sides, &surface.sides, lanes, count);
         let their_blocked = resized(their_blocked, count);
         their_blocked.fill(0);
-        let rays = RayPacket { origin: origin.view(count), dir: dir.view(count), origin_error };
+        let rays = RayPacket::new(origin.view(count), dir.view(count), origin_error);
         let (t_max, sides) = (&their_t_max[..count], &sides[..count]);
         let shadow_rays = ShadowRays { rays, len, going: len, t_max, surface, lanes: Some(lanes), sides };
         self.occlude(&shadow_rays, &paths.from, &paths.to, their_blocked);

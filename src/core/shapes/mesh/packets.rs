@@ -16,18 +16,10 @@ use crate::world::packets::shape::Packets;
 use crate::world::shape::{ByPackets, Shape};
 
 impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
-    fn brackets(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        drift: Drift,
-        sides: Option<&[Side]>,
-        ends: &[f64],
-        (near, far): (&mut [f64], &mut [f64]),
-    ) {
+    fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {
         near.fill(MISS);
         far.fill(MISS);
-        let (mesh, side, ends) = (&self.shape, sides.map(|sides| sides[0]), &ends[..near.len()]);
+        let (mesh, side, ends, drift) = (&self.shape, rays.side(0), &ends[..near.len()], rays.drift);
         if side.is_some() && !mesh.can_hit_itself {
             return;
         }
@@ -54,7 +46,6 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
         &self,
         cpu: Cpu,
         rays: RayPacket,
-        sides: Option<&[Side]>,
         t_max: &[f64],
         blocked: &mut [u64],
         doubt: &mut [u64],
@@ -62,7 +53,7 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
         let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
         let count = t_max.len();
         let mesh = &self.shape;
-        let side = sides.map(|sides| sides[0]);
+        let side = rays.side(0);
         if side.is_none() || mesh.can_hit_itself {
             let aims =
                 Aims { leaving: mesh.leaving(side, rays.origin_error), drift: Drift::NONE, is_any: true };
@@ -82,17 +73,10 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
         ray_packet::occluded_by_brackets(cpu, &near[..count], &far[..count], t_max, blocked, doubt)
     }
 
-    fn refine(
-        &self,
-        _cpu: Cpu,
-        rays: RayPacket,
-        sides: Option<&[Side]>,
-        (near, far): (&[f64], &[f64]),
-        out: &mut [f64],
-    ) {
+    fn refine(&self, _cpu: Cpu, rays: RayPacket, (near, far): (&[f64], &[f64]), out: &mut [f64]) {
         let mesh = &self.shape;
         for lane in 0..out.len() {
-            let leaving = mesh.leaving(sides.map(|sides| sides[lane]), rays.origin_error);
+            let leaving = mesh.leaving(rays.side(lane), rays.origin_error);
             let bracket = Bracket { near: near[lane], far: far[lane] };
             out[lane] = match bracket.near == bracket.far {
                 true => bracket.near,

@@ -243,7 +243,7 @@ proptest! {
             dir.set(lane, if is_there { aside.normalize() } else { toward });
             ends[lane] = [0.0, reach, 4.0 * reach, MISS][lane % 4];
         }
-        let rays = RayPacket { origin: origin.view(count), dir: dir.view(count), origin_error: 0.0 };
+        let rays = RayPacket::new(origin.view(count), dir.view(count), 0.0);
         let error = coincidence::ROUNDING * reach;
         let leaving = if leaves { Leaving { least: error, most: 2.0 * error } } else { NOTHING };
         let drift = Drift { origin: drift * reach, dir: drift };
@@ -328,7 +328,7 @@ fn no_doubled_face_at_an_outline_is_seen_from_behind() {
                     continue;
                 }
                 let (from, along) = (Vectors::<LANES>::of(origin), Vectors::<LANES>::of(dir));
-                let rays = RayPacket { origin: from.view(LANES), dir: along.view(LANES), origin_error: 0.0 };
+                let rays = RayPacket::new(from.view(LANES), along.view(LANES), 0.0);
                 let (mut points, mut normals) = (Vectors::<LANES>::ZERO, Vectors::<LANES>::ZERO);
                 let mut unbent = Vectors::<LANES>::ZERO;
                 let interaction = SurfaceInteraction {
@@ -378,7 +378,7 @@ fn faces_of_which_none_lies_beside_another_are_found() {
             origin.set(lane, middle + (a - b).length() * way);
             dir.set(lane, -way.normalize());
         }
-        let rays = RayPacket { origin: origin.view(LANES), dir: dir.view(LANES), origin_error: 0.0 };
+        let rays = RayPacket::new(origin.view(LANES), dir.view(LANES), 0.0);
         let rights: Vec<_> = (0..LANES).map(|lane| among(&surface, &rays.get(lane))).collect();
         for cpu in Cpu::all() {
             let aims = Aims { leaving: NOTHING, drift: Drift::NONE, is_any: false };

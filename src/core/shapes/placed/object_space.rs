@@ -48,8 +48,7 @@ impl<const N: usize> ObjectSpaceRays<N> {
     /// Returns the first `count` rays.
     #[inline(always)]
     pub fn rays(&self, count: usize) -> RayPacket<'_> {
-        let (origin, dir) = (self.origin.view(count), self.dir.view(count));
-        RayPacket { origin, dir, origin_error: self.origin_error }
+        RayPacket::new(self.origin.view(count), self.dir.view(count), self.origin_error)
     }
 }
 

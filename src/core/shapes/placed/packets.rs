@@ -21,17 +21,14 @@ impl Placed {
         &self,
         cpu: Cpu,
         rays: RayPacket,
-        drift: Drift,
-        sides: Option<&[Side]>,
         ends: &[f64],
         (near, far): (&mut [f64], &mut [f64]),
     ) {
         let (count, shape) = (near.len(), self.body.shape.packets());
-        let is_from_camera = sides.is_none() && rays.origin_error == 0.0;
+        let is_from_camera = rays.leaving.is_none() && rays.origin_error == 0.0;
         if shape.is_of_the_notes() {
             for lane in 0..count {
-                let origin_side = sides.map(|sides| sides[lane]);
-                let range = RayRange { far: ends[lane], origin_side, ..RayRange::ALL };
+                let range = RayRange { far: ends[lane], origin_side: rays.side(lane), ..RayRange::ALL };
                 near[lane] = self.distance(&rays.get(lane), &range);
                 far[lane] = near[lane];
             }
@@ -43,7 +40,7 @@ impl Placed {
         let mut own_drift = Drift::NONE;
         if is_from_camera {
             let origins = (0..count).map(|lane| rays.origin.get(lane));
-            match self.object_drift(origins, drift) {
+            match self.object_drift(origins, rays.drift) {
                 Some(drift) => own_drift = drift,
                 None => {
                     near.fill(0.0);
@@ -52,7 +49,8 @@ impl Placed {
                 }
             }
         }
-        shape.brackets(cpu, own.rays(count), own_drift, sides, &own.ends[..count], (&mut *near, &mut *far));
+        let own_rays = RayPacket { drift: own_drift, ..own.rays(count).leaving(rays.leaving) };
+        shape.brackets(cpu, own_rays, &own.ends[..count], (&mut *near, &mut *far));
         to_world(cpu, own_drift.dir, &own.lengths[..count], rays, ends, near, far);
         if self.max_z.0.is_some() {
             for lane in 0..count {
@@ -61,7 +59,7 @@ impl Placed {
                     self.max_z.kept_bracket(&rays.get(lane), bracket, rays.origin_error);
             }
         }
-        if is_from_camera && drift.is_none() {
+        if is_from_camera && rays.drift.is_none() {
             let mut bounds = None;
             for lane in 0..count {
                 let bracket = Bracket { near: near[lane], far: far[lane] };
@@ -73,20 +71,14 @@ impl Placed {
 
     /// Searches again in the object's own coordinates, as for a single ray: a root depends on its bracket in the last bits,
     /// and a bracket that was taken to the world depends on the drift.
-    fn few_refine(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        sides: Option<&[Side]>,
-        (near, far): (&[f64], &[f64]),
-        out: &mut [f64],
-    ) {
+    fn few_refine(&self, cpu: Cpu, rays: RayPacket, (near, far): (&[f64], &[f64]), out: &mut [f64]) {
         let (count, shape) = (out.len(), self.body.shape.packets());
         let mut own = ObjectSpaceRays::<PART>::NONE;
         own.set(cpu, self, rays, &[MISS; PART][..count]);
         let (mut low, mut high) = ([MISS; PART], [MISS; PART]);
         let (low, high) = (&mut low[..count], &mut high[..count]);
-        shape.brackets(cpu, own.rays(count), Drift::NONE, sides, &own.ends[..count], (&mut *low, &mut *high));
+        let own_rays = own.rays(count).leaving(rays.leaving);
+        shape.brackets(cpu, own_rays, &own.ends[..count], (&mut *low, &mut *high));
         // A ray by itself decides what is doubtful.
         let mut is_open = [false; PART];
         for lane in 0..count {
@@ -95,7 +87,7 @@ impl Placed {
         }
         let mut distances = [MISS; PART];
         distances[..count].copy_from_slice(low);
-        shape.refine(cpu, own.rays(count), sides, (&*low, &*high), &mut distances[..count]);
+        shape.refine(cpu, own_rays, (&*low, &*high), &mut distances[..count]);
         for lane in (0..count).filter(|lane| near[*lane] != far[*lane]) {
             let distance = if low[lane] == high[lane] { low[lane] } else { distances[lane] };
             let kept = RayRange::ALL.keep(distance / own.lengths[lane]);
@@ -113,7 +105,6 @@ impl Placed {
         &self,
         cpu: Cpu,
         rays: RayPacket,
-        sides: Option<&[Side]>,
         (t_max, bounds): (&[f64], &Aabb),
         blocked: &mut [u64],
         doubt: &mut [u64],
@@ -130,7 +121,8 @@ impl Placed {
                 ends_within |= t_max[lane] > 0.0;
             }
         }
-        let any = shape.occluded(cpu, own.rays(count), sides, &own.ends[..count], blocked, doubt);
+        let own_rays = own.rays(count).leaving(rays.leaving);
+        let any = shape.occluded(cpu, own_rays, &own.ends[..count], blocked, doubt);
         if ends_within {
             for lane in 0..count {
                 let is_open = own.ends[lane] < 0.0 && t_max[lane] > 0.0 && blocked[lane] == 0;
@@ -171,23 +163,13 @@ impl Placed {
 }
 
 impl Packets for Shape<Placed, ByPackets, ByPlacement> {
-    fn brackets(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        drift: Drift,
-        sides: Option<&[Side]>,
-        ends: &[f64],
-        (near, far): (&mut [f64], &mut [f64]),
-    ) {
+    fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {
         if near.len() <= LANES {
-            return self.shape.few_brackets::<LANES>(cpu, rays, drift, sides, ends, (near, far));
+            return self.shape.few_brackets::<LANES>(cpu, rays, ends, (near, far));
         }
         for part in split(near.len(), PART) {
-            let sides = sides.map(|sides| &sides[part.clone()]);
             let brackets = (&mut near[part.clone()], &mut far[part.clone()]);
-            let (rays, ends) = (rays.part(part.clone()), &ends[part]);
-            self.shape.few_brackets::<PART>(cpu, rays, drift, sides, ends, brackets);
+            self.shape.few_brackets::<PART>(cpu, rays.part(part.clone()), &ends[part], brackets);
         }
     }
 
@@ -195,7 +177,6 @@ impl Packets for Shape<Placed, ByPackets, ByPlacement> {
         &self,
         cpu: Cpu,
         rays: RayPacket,
-        sides: Option<&[Side]>,
         t_max: &[f64],
         blocked: &mut [u64],
         doubt: &mut [u64],
@@ -204,31 +185,22 @@ impl Packets for Shape<Placed, ByPackets, ByPlacement> {
         // The shape does not know where its copy ends.
         let is_whole = placed.max_z.0.is_none() && !placed.body.shape.packets().is_of_the_notes();
         let Some(bounds) = placed.bounds().filter(|_| is_whole) else {
-            return shape::occluded_by_brackets(self, cpu, rays, sides, t_max, blocked, doubt);
+            return shape::occluded_by_brackets(self, cpu, rays, t_max, blocked, doubt);
         };
         if count <= LANES {
-            return placed.few_occluded::<LANES>(cpu, rays, sides, (t_max, &bounds), blocked, doubt);
+            return placed.few_occluded::<LANES>(cpu, rays, (t_max, &bounds), blocked, doubt);
         }
         split(count, PART).fold(false, |any, part| {
-            let sides = sides.map(|sides| &sides[part.clone()]);
             let (blocked, doubt) = (&mut blocked[part.clone()], &mut doubt[part.clone()]);
             let (rays, t_max) = (rays.part(part.clone()), &t_max[part]);
-            placed.few_occluded::<PART>(cpu, rays, sides, (t_max, &bounds), blocked, doubt) | any
+            placed.few_occluded::<PART>(cpu, rays, (t_max, &bounds), blocked, doubt) | any
         })
     }
 
-    fn refine(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        sides: Option<&[Side]>,
-        (near, far): (&[f64], &[f64]),
-        out: &mut [f64],
-    ) {
+    fn refine(&self, cpu: Cpu, rays: RayPacket, (near, far): (&[f64], &[f64]), out: &mut [f64]) {
         for part in split(out.len(), PART) {
-            let sides = sides.map(|sides| &sides[part.clone()]);
             let brackets = (&near[part.clone()], &far[part.clone()]);
-            self.shape.few_refine(cpu, rays.part(part.clone()), sides, brackets, &mut out[part]);
+            self.shape.few_refine(cpu, rays.part(part.clone()), brackets, &mut out[part]);
         }
     }
 

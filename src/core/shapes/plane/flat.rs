@@ -47,7 +47,7 @@ impl<T: Flat, P> OneRay for Shape<T, ByPlane, P> {
 
     /// Refines by the plane alone: a hit that is certain is in the plane, whatever is cut out of it.
     #[inline(always)]
-    fn refine_each(&self, rays: RayPacket, _sides: Option<&[Side]>, out: &mut [f64]) {
+    fn refine_each(&self, rays: RayPacket, out: &mut [f64]) {
         let plane = *self.shape.flat();
         match T::Accuracy::ACCURACY {
             // With a normal along an axis, dot products have one term, and nothing cancels.

@@ -12,7 +12,7 @@ use super::slab::Slab;
 use super::surface::Revolution;
 use crate::geometry::aabb::{from_order, larger, order, smaller};
 use crate::geometry::frame::Frame;
-use crate::geometry::ray::{Drift, MISS, Ray, Side};
+use crate::geometry::ray::{MISS, Ray};
 use crate::geometry::ray_packet::RayPacket;
 use crate::simd::cpu::{Cpu, kernels};
 
@@ -31,20 +31,19 @@ const MOST_OFF: f64 = 1e-4;
 pub(super) const MAX_RAYS: usize = 64;
 
 impl Revolution {
-    /// Computes the brackets of the first hits of all rays within a drift of each ray of up to `N`, which may leave the
-    /// surface to these sides. Hits beyond `ends`, in world units, are of no interest.
+    /// Computes the brackets of the first hits of all rays that each ray of up to `N` stands for. Hits beyond `ends`, in
+    /// world units, are of no interest.
     pub(super) fn t_bounds<const N: usize>(
         &self,
         cpu: Cpu,
         frame: &Frame,
-        (rays, drift): (RayPacket, Drift),
-        sides: Option<&[Side]>,
+        rays: RayPacket,
         ends: &[f64],
         lanes: &mut Lanes<N>,
     ) {
-        lanes.prepare(rays.len(), sides);
-        if !drift.is_none() {
-            spread(cpu, lanes, frame, rays, drift, self.size());
+        lanes.prepare(rays.len(), rays.leaving);
+        if !rays.drift.is_none() {
+            spread(cpu, lanes, frame, rays, self.size());
         }
         let reach = self.slabs.reach();
         if let Some((low, high)) = enter(cpu, lanes, frame, rays, self.size(), reach, ends) {
@@ -77,7 +76,7 @@ impl Revolution {
 kernels! {
     /// Sets how far all rays within a drift of each ray are from it, as far as any of them may be on the surface. From the
     /// point closest to the axis, that is no farther than the radius divided by the direction's part across the axis.
-    fn spread<const N>(lanes: &mut Lanes<N>, frame: &Frame, rays: RayPacket, drift: Drift, size: [f64; 2]) {
+    fn spread<const N>(lanes: &mut Lanes<N>, frame: &Frame, rays: RayPacket, size: [f64; 2]) {
         let count = rays.len().min(N);
         let (rays, [height, widest]) = (rays.first(count), size);
         for lane in 0..count {
@@ -86,7 +85,7 @@ kernels! {
             let closest = larger(-(origin.x * dir.x + origin.z * dir.z) / a, 0.0);
             let across = closest + 2.0 * widest / a.sqrt();
             let along = (origin.y.abs() + height) / dir.y.abs();
-            lanes.off[lane] = drift.origin + drift.dir * smaller(across, along);
+            lanes.off[lane] = rays.drift.origin + rays.drift.dir * smaller(across, along);
         }
     }
 

@@ -7,7 +7,7 @@ use super::normal;
 use super::surface::Revolution;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::frame::Frame;
-use crate::geometry::ray::{Bracket, Drift, Ray, RayBall, RayRange, Side};
+use crate::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
 use crate::geometry::ray_packet::{RayPacket, split};
 use crate::geometry::sight::Line;
 use crate::shapes::uv;
@@ -147,33 +147,17 @@ impl<P> Packets for Shape<InFrame<Revolution>, ByPackets, P>
 where
     Self: Proofs,
 {
-    fn brackets(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        drift: Drift,
-        sides: Option<&[Side]>,
-        ends: &[f64],
-        (near, far): (&mut [f64], &mut [f64]),
-    ) {
+    fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {
         let InFrame { surface, frame } = &self.shape;
         let mut lanes = Lanes::<MAX_RAYS>::none();
         for part in split(near.len(), MAX_RAYS) {
-            let (rays, sides) = (rays.part(part.clone()), sides.map(|sides| &sides[part.clone()]));
-            surface.t_bounds(cpu, frame, (rays, drift), sides, &ends[part.clone()], &mut lanes);
+            surface.t_bounds(cpu, frame, rays.part(part.clone()), &ends[part.clone()], &mut lanes);
             near[part.clone()].copy_from_slice(&lanes.near[..part.len()]);
             far[part.clone()].copy_from_slice(&lanes.far[..part.len()]);
         }
     }
 
-    fn refine(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        _sides: Option<&[Side]>,
-        brackets: (&[f64], &[f64]),
-        out: &mut [f64],
-    ) {
+    fn refine(&self, cpu: Cpu, rays: RayPacket, brackets: (&[f64], &[f64]), out: &mut [f64]) {
         self.shape.surface.roots(cpu, &self.shape.frame, rays, brackets, out);
     }
 

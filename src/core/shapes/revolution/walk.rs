@@ -84,10 +84,10 @@ impl Revolution {
 
     /// Brackets one ray in plain arithmetic.
     fn alone(&self, frame: &Frame, ray: &RayBall, origin_side: Option<Side>) -> Lanes<1> {
-        let rays = RayPacket { origin: view(&ray.ray.origin), dir: view(&ray.ray.dir), origin_error: 0.0 };
+        let rays = RayPacket::new(view(&ray.ray.origin), view(&ray.ray.dir), 0.0);
+        let rays = RayPacket { drift: ray.drift, ..rays.leaving(origin_side.as_ref().map(from_ref)) };
         let mut lanes = Lanes::none();
-        let sides = origin_side.as_ref().map(from_ref);
-        self.t_bounds(Cpu::best(), frame, (rays, ray.drift), sides, &[MISS], &mut lanes);
+        self.t_bounds(Cpu::best(), frame, rays, &[MISS], &mut lanes);
         lanes
     }
 

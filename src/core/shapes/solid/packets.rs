@@ -1,7 +1,7 @@
 //! Packets of rays that may hit a part of a solid.
 
 use super::trimmed::{ByParts, Trimmed};
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayBall, RayRange, Side};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
 use crate::geometry::ray_packet::{Nearest, PACKET_SIZE, RayPacket};
 use crate::simd::cpu::Cpu;
 use crate::world::hittable::Hittable;
@@ -10,56 +10,51 @@ use crate::world::packets::shape::{self, Packets};
 use crate::world::shape::{ByPackets, Shape};
 
 impl Trimmed {
-    /// Returns sides of the solid as sides of the part.
-    fn sides(&self, of: Option<&[Side]>) -> Option<[Side; PACKET_SIZE]> {
-        of.map(|of| {
+    /// Calls a function with rays that leave the solid as rays that leave the part.
+    fn with_own_sides<R>(&self, rays: RayPacket, call: impl FnOnce(RayPacket) -> R) -> R {
+        let own = rays.leaving.map(|of| {
             let mut own = [Side::Outside; PACKET_SIZE];
             own.iter_mut().zip(of).for_each(|(own, side)| *own = self.side(*side));
             own
-        })
+        });
+        call(rays.leaving(own.as_ref().map(|own| &own[..rays.len()])))
     }
 }
 
 impl Packets for Shape<Trimmed, ByPackets, ByParts> {
-    fn brackets(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        drift: Drift,
-        sides: Option<&[Side]>,
-        ends: &[f64],
-        (near, far): (&mut [f64], &mut [f64]),
-    ) {
+    fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {
         let (part, count) = (&self.shape, near.len());
-        let own = part.sides(sides);
-        let own = own.as_ref().map(|own| &own[..count]);
-        part.own().packets().brackets(cpu, rays, drift, own, ends, (&mut *near, &mut *far));
+        part.with_own_sides(rays, |own| {
+            part.own().packets().brackets(cpu, own, ends, (&mut *near, &mut *far))
+        });
         if part.is_whole() {
             return;
         }
         // Where a hit of the part is certain, its distance is that of a single ray, to the last bit.
         let mut distances = [f64::NAN; PACKET_SIZE];
         let is_wide = |lane: usize| near[lane] < far[lane] && far[lane] < MISS;
-        if drift.is_none() && (0..count).any(is_wide) {
+        if rays.drift.is_none() && (0..count).any(is_wide) {
             let mut known = [MISS; PACKET_SIZE];
             for lane in 0..count {
                 known[lane] = if is_wide(lane) { far[lane] } else { near[lane] };
             }
             let brackets = (&*near, &known[..count]);
-            part.own().packets().refine(cpu, rays.first(count), own, brackets, &mut distances[..count]);
+            part.with_own_sides(rays.first(count), |own| {
+                part.own().packets().refine(cpu, own, brackets, &mut distances[..count]);
+            });
         }
         for lane in 0..count {
             let bracket = Bracket { near: near[lane], far: far[lane] };
             let range = RayRange {
                 near: 0.0,
                 far: ends[lane],
-                origin_side: sides.map(|sides| sides[lane]),
+                origin_side: rays.side(lane),
                 origin_error: rays.origin_error,
             };
             let first = if bracket.near == bracket.far { bracket.near } else { distances[lane] };
             let first = (!bracket.is_doubtful() && !first.is_nan()).then_some(first);
             let bracket = if bracket.near < ends[lane] {
-                part.t_bounds_from(&RayBall { ray: rays.get(lane), drift }, &range, first)
+                part.t_bounds_from(&RayBall { ray: rays.get(lane), drift: rays.drift }, &range, first)
             } else {
                 Bracket::MISS
             };
@@ -67,56 +62,35 @@ impl Packets for Shape<Trimmed, ByPackets, ByParts> {
         }
     }
 
-    fn closest_hits(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        sides: Option<&[Side]>,
-        id: u64,
-        nearest: Nearest,
-    ) -> bool {
+    fn closest_hits(&self, cpu: Cpu, rays: RayPacket, id: u64, nearest: Nearest) -> bool {
         if !self.shape.is_whole() {
-            return shape::closest_by_brackets(self, cpu, rays, sides, id, nearest);
+            return shape::closest_by_brackets(self, cpu, rays, id, nearest);
         }
-        let own = self.shape.sides(sides);
-        let own = own.as_ref().map(|own| &own[..rays.len()]);
-        self.shape.own().closest_hits(cpu, rays, own, id, nearest)
+        self.shape.with_own_sides(rays, |own| self.shape.own().closest_hits(cpu, own, id, nearest))
     }
 
     fn occluded(
         &self,
         cpu: Cpu,
         rays: RayPacket,
-        sides: Option<&[Side]>,
         t_max: &[f64],
         blocked: &mut [u64],
         doubt: &mut [u64],
     ) -> bool {
         if !self.shape.is_whole() {
-            return shape::occluded_by_brackets(self, cpu, rays, sides, t_max, blocked, doubt);
+            return shape::occluded_by_brackets(self, cpu, rays, t_max, blocked, doubt);
         }
-        let own = self.shape.sides(sides);
-        let own = own.as_ref().map(|own| &own[..t_max.len()]);
-        self.shape.own().packets().occluded(cpu, rays, own, t_max, blocked, doubt)
+        let own = self.shape.own().packets();
+        self.shape.with_own_sides(rays, |rays| own.occluded(cpu, rays, t_max, blocked, doubt))
     }
 
-    fn refine(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        sides: Option<&[Side]>,
-        brackets: (&[f64], &[f64]),
-        out: &mut [f64],
-    ) {
+    fn refine(&self, cpu: Cpu, rays: RayPacket, (near, far): (&[f64], &[f64]), out: &mut [f64]) {
         if self.shape.is_whole() {
-            let own = self.shape.sides(sides);
-            let own = own.as_ref().map(|own| &own[..out.len()]);
-            self.shape.own().packets().refine(cpu, rays, own, brackets, out);
-            return;
+            let own = self.shape.own().packets();
+            return self.shape.with_own_sides(rays, |rays| own.refine(cpu, rays, (near, far), out));
         }
-        let (near, far) = brackets;
         for lane in (0..out.len()).filter(|lane| near[*lane] != far[*lane]) {
-            out[lane] = self.refine_one(&rays.get(lane), sides.map(|sides| sides[lane]));
+            out[lane] = self.refine_one(&rays.get(lane), rays.side(lane));
         }
     }
 

@@ -34,31 +34,14 @@ where
 
 /// A shape against which packets of rays are tested.
 pub trait Packets: Send + Sync {
-    /// Computes brackets of the first hits, before `ends`, of all rays within a drift of each ray of a packet. `sides` has
-    /// the side of this shape that each ray leaves, if the rays leave this shape. Hits beyond an
+    /// Computes brackets of the first hits, before `ends`, of all rays that each ray of a packet stands for. Hits beyond an
     /// end may be left out.
-    fn brackets(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        drift: Drift,
-        sides: Option<&[Side]>,
-        ends: &[f64],
-        brackets: (&mut [f64], &mut [f64]),
-    );
+    fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], brackets: (&mut [f64], &mut [f64]));
 
     /// Merges the hits of a packet's rays with this shape into the nearest hits so far, and tells whether the order of
-    /// any is in doubt. `sides` has the side of this shape that each ray leaves, if the rays leave this shape; `id` is
-    /// the object's index in the scene plus 1.
-    fn closest_hits(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        sides: Option<&[Side]>,
-        id: u64,
-        nearest: Nearest,
-    ) -> bool {
-        closest_by_brackets(self, cpu, rays, sides, id, nearest)
+    /// any is in doubt. `id` is the object's index in the scene plus 1.
+    fn closest_hits(&self, cpu: Cpu, rays: RayPacket, id: u64, nearest: Nearest) -> bool {
+        closest_by_brackets(self, cpu, rays, id, nearest)
     }
 
     /// Marks in `blocked` the rays that this shape blocks before `t_max`, and in `doubt` the rays for which that is
@@ -67,24 +50,16 @@ pub trait Packets: Send + Sync {
         &self,
         cpu: Cpu,
         rays: RayPacket,
-        sides: Option<&[Side]>,
         t_max: &[f64],
         blocked: &mut [u64],
         doubt: &mut [u64],
     ) -> bool {
-        occluded_by_brackets(self, cpu, rays, sides, t_max, blocked, doubt)
+        occluded_by_brackets(self, cpu, rays, t_max, blocked, doubt)
     }
 
     /// Computes the distances of certain hits that [`closest_hits`](Self::closest_hits) has bracketed; NaN where a
     /// distance takes more than plain arithmetic. Where a bracket has no width, the distance is known, and may be left.
-    fn refine(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        sides: Option<&[Side]>,
-        brackets: (&[f64], &[f64]),
-        out: &mut [f64],
-    );
+    fn refine(&self, cpu: Cpu, rays: RayPacket, brackets: (&[f64], &[f64]), out: &mut [f64]);
 
     /// Computes the points, normals and sides that the rays of a packet hit at these distances, in world units.
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction);
@@ -107,12 +82,11 @@ pub(crate) fn closest_by_brackets(
     shape: &(impl Packets + ?Sized),
     cpu: Cpu,
     rays: RayPacket,
-    sides: Option<&[Side]>,
     id: u64,
     nearest: Nearest,
 ) -> bool {
     with_brackets(rays.len(), |near, far| {
-        shape.brackets(cpu, rays, Drift::NONE, sides, nearest.far, (&mut *near, &mut *far));
+        shape.brackets(cpu, rays, nearest.far, (&mut *near, &mut *far));
         ray_packet::closest_of_brackets(cpu, near, far, id, nearest)
     })
 }
@@ -122,14 +96,13 @@ pub(crate) fn occluded_by_brackets(
     shape: &(impl Packets + ?Sized),
     cpu: Cpu,
     rays: RayPacket,
-    sides: Option<&[Side]>,
     t_max: &[f64],
     blocked: &mut [u64],
     doubt: &mut [u64],
 ) -> bool {
     let count = t_max.len();
     with_brackets(count, |near, far| {
-        shape.brackets(cpu, rays.first(count), Drift::NONE, sides, t_max, (&mut *near, &mut *far));
+        shape.brackets(cpu, rays.first(count), t_max, (&mut *near, &mut *far));
         ray_packet::occluded_by_brackets(cpu, near, far, t_max, blocked, doubt)
     })
 }
@@ -163,9 +136,9 @@ pub trait OneRay: Send + Sync {
 
     /// Writes what [`refine`](Self::refine) returns for each ray of a packet.
     #[inline(always)]
-    fn refine_each(&self, rays: RayPacket, sides: Option<&[Side]>, out: &mut [f64]) {
+    fn refine_each(&self, rays: RayPacket, out: &mut [f64]) {
         let (count, rays) = (out.len(), rays.first(out.len()));
-        match sides {
+        match rays.leaving {
             None => {
                 for lane in 0..count {
                     out[lane] = self.refine(&rays.get(lane), None);
@@ -267,50 +240,27 @@ impl<T: Hittable, S, P> Packets for Shape<T, S, P>
 where
     Self: OneRay<Author = T>,
 {
-    fn brackets(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        drift: Drift,
-        sides: Option<&[Side]>,
-        ends: &[f64],
-        (near, far): (&mut [f64], &mut [f64]),
-    ) {
-        brackets(cpu, self, rays, drift, sides, ends, near, far);
+    fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {
+        brackets(cpu, self, rays, ends, near, far);
     }
 
-    fn closest_hits(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        sides: Option<&[Side]>,
-        id: u64,
-        nearest: Nearest,
-    ) -> bool {
-        closest_hits(cpu, self, rays, sides, id, nearest)
+    fn closest_hits(&self, cpu: Cpu, rays: RayPacket, id: u64, nearest: Nearest) -> bool {
+        closest_hits(cpu, self, rays, id, nearest)
     }
 
     fn occluded(
         &self,
         cpu: Cpu,
         rays: RayPacket,
-        sides: Option<&[Side]>,
         t_max: &[f64],
         blocked: &mut [u64],
         doubt: &mut [u64],
     ) -> bool {
-        occluded(cpu, self, rays, sides, t_max, blocked, doubt)
+        occluded(cpu, self, rays, t_max, blocked, doubt)
     }
 
-    fn refine(
-        &self,
-        cpu: Cpu,
-        rays: RayPacket,
-        sides: Option<&[Side]>,
-        _brackets: (&[f64], &[f64]),
-        out: &mut [f64],
-    ) {
-        refine(cpu, self, rays, sides, out);
+    fn refine(&self, cpu: Cpu, rays: RayPacket, _brackets: (&[f64], &[f64]), out: &mut [f64]) {
+        refine(cpu, self, rays, out);
     }
 
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction) {
@@ -340,42 +290,39 @@ pub(crate) fn interact_each<T: Hittable>(
 
 kernels! {
     /// Merges a shape's hits into the nearest so far. Returns whether the order of any is in doubt.
-    fn closest_hits[T: OneRay](shape: &T, rays: RayPacket, sides: Option<&[Side]>, id: u64, nearest: Nearest) -> bool {
+    fn closest_hits[T: OneRay](shape: &T, rays: RayPacket, id: u64, nearest: Nearest) -> bool {
         let (count, rays) = (rays.len(), rays.first(rays.len()));
+        let rays = RayPacket { drift: Drift::NONE, ..rays };
         let Nearest { near, far, met, doubt } = nearest;
-        match sides {
-            None => merge_nearest(count, &ShapeBounds { shape, rays, drift: Drift::NONE }, id, near, far, met, doubt),
-            Some(sides) => {
-                merge_nearest(count, &LeavingBounds { shape, rays, drift: Drift::NONE, sides: &sides[..count] }, id, near, far, met, doubt)
-            }
+        match rays.leaving {
+            None => merge_nearest(count, &ShapeBounds { shape, rays }, id, near, far, met, doubt),
+            Some(sides) => merge_nearest(count, &LeavingBounds { shape, rays, sides }, id, near, far, met, doubt),
         }
     }
 
     /// Marks the rays that a shape blocks before `t_max`. Returns whether any is in doubt.
     fn occluded[T: OneRay](
-        shape: &T, rays: RayPacket, sides: Option<&[Side]>, t_max: &[f64], blocked: &mut [u64], doubt: &mut [u64]
+        shape: &T, rays: RayPacket, t_max: &[f64], blocked: &mut [u64], doubt: &mut [u64]
     ) -> bool {
-        let (count, rays) = (t_max.len(), rays.first(t_max.len()));
-        match sides {
-            None => mark_occluded(&ShapeBounds { shape, rays, drift: Drift::NONE }, t_max, blocked, doubt),
-            Some(sides) => mark_occluded(&LeavingBounds { shape, rays, drift: Drift::NONE, sides: &sides[..count] }, t_max, blocked, doubt),
+        let rays = RayPacket { drift: Drift::NONE, ..rays.first(t_max.len()) };
+        match rays.leaving {
+            None => mark_occluded(&ShapeBounds { shape, rays }, t_max, blocked, doubt),
+            Some(sides) => mark_occluded(&LeavingBounds { shape, rays, sides }, t_max, blocked, doubt),
         }
     }
 
-    /// Computes brackets of the first hits of all rays within a drift of each ray.
-    fn brackets[T: OneRay](
-        shape: &T, rays: RayPacket, drift: Drift, sides: Option<&[Side]>, ends: &[f64], near: &mut [f64], far: &mut [f64]
-    ) {
-        let (count, rays) = (near.len(), rays.first(near.len()));
-        match sides {
-            None => write(&ShapeBounds { shape, rays, drift }, &ends[..count], near, far),
-            Some(sides) => write(&LeavingBounds { shape, rays, drift, sides: &sides[..count] }, &ends[..count], near, far),
+    /// Computes brackets of the first hits of all rays that each ray stands for.
+    fn brackets[T: OneRay](shape: &T, rays: RayPacket, ends: &[f64], near: &mut [f64], far: &mut [f64]) {
+        let (ends, rays) = (&ends[..near.len()], rays.first(near.len()));
+        match rays.leaving {
+            None => write(&ShapeBounds { shape, rays }, ends, near, far),
+            Some(sides) => write(&LeavingBounds { shape, rays, sides }, ends, near, far),
         }
     }
 
     /// Computes the distances of a shape's hits, as [`OneRay::refine`] returns them.
-    fn refine[T: OneRay](shape: &T, rays: RayPacket, sides: Option<&[Side]>, out: &mut [f64]) {
-        shape.refine_each(rays, sides, out);
+    fn refine[T: OneRay](shape: &T, rays: RayPacket, out: &mut [f64]) {
+        shape.refine_each(rays, out);
     }
 
     /// Computes the arrays of [`interact_each`].
@@ -415,14 +362,13 @@ fn write(brackets: &impl Brackets, ends: &[f64], near: &mut [f64], far: &mut [f6
 struct ShapeBounds<'b, T> {
     shape: &'b T,
     rays: RayPacket<'b>,
-    drift: Drift,
 }
 
 impl<T: OneRay> Brackets for ShapeBounds<'_, T> {
     #[inline(always)]
     fn get(&self, lane: usize, far: f64) -> Bracket {
         let origin_error = self.rays.origin_error;
-        let ray = RayBall { ray: self.rays.get(lane), drift: self.drift };
+        let ray = RayBall { ray: self.rays.get(lane), drift: self.rays.drift };
         self.shape.t_bounds(&ray, &RayRange { far, origin_error, ..RayRange::ALL })
     }
 }
@@ -431,7 +377,6 @@ impl<T: OneRay> Brackets for ShapeBounds<'_, T> {
 struct LeavingBounds<'b, T> {
     shape: &'b T,
     rays: RayPacket<'b>,
-    drift: Drift,
     sides: &'b [Side],
 }
 
@@ -443,7 +388,7 @@ impl<T: OneRay> Brackets for LeavingBounds<'_, T> {
             return Bracket::MISS;
         }
         let (origin_side, origin_error) = (Some(origin_side), self.rays.origin_error);
-        let ray = RayBall { ray: self.rays.get(lane), drift: self.drift };
+        let ray = RayBall { ray: self.rays.get(lane), drift: self.rays.drift };
         self.shape.t_bounds(&ray, &RayRange { far, origin_side, origin_error, ..RayRange::ALL })
     }
 }
