@@ -22,8 +22,8 @@ struct Bumps {
 }
 
 impl Shader for Bumps {
-    fn sees(&self) -> Sees {
-        Sees { normal: true, ..self.colours.sees() }
+    fn sees(&self) -> ShaderInputs {
+        ShaderInputs { normal: true, ..self.colours.sees() }
     }
 
     fn bends(&self) -> bool {

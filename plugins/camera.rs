@@ -20,7 +20,7 @@ const TABLE: Table = &[&WORLDDIM, &VIEWPOINT];
 
 inventory::submit! {
     Entity::camera("camera", "the viewer, and an image plane that extends right and up from the world's origin", &[TABLE], |args| {
-        if args.get(&VIEWPOINT).abs().max_element() < LEAST_LENGTH {
+        if args.get(&VIEWPOINT).abs().max_element() < MIN_LENGTH {
             return Err(Refusal {
                 attribute: Some("viewpoint"),
                 message: "is so close to the image plane that squared distances underflow".to_owned(),

@@ -34,7 +34,7 @@ impl Implicit for Capsule {
         x.powi(2) + z.powi(2) + beyond - N::constant(self.radius).powi(2)
     }
 
-    fn openness(&self) -> Option<&'static str> {
+    fn why_not_closed(&self) -> Option<&'static str> {
         None
     }
 

@@ -32,8 +32,8 @@ impl Checker {
 }
 
 impl Shader for Checker {
-    fn sees(&self) -> Sees {
-        Sees::UV
+    fn sees(&self) -> ShaderInputs {
+        ShaderInputs::UV
     }
 
     fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {

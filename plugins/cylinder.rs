@@ -49,7 +49,7 @@ impl Implicit for Cylinder {
         if self.is_open { y.min(N::constant(self.height) - y) } else { N::constant(1.0) }
     }
 
-    fn openness(&self) -> Option<&'static str> {
+    fn why_not_closed(&self) -> Option<&'static str> {
         self.is_open.then_some("its two ends are left out")
     }
 

@@ -39,8 +39,8 @@ impl Faces {
 }
 
 impl Shader for Faces {
-    fn sees(&self) -> Sees {
-        Sees::FACE
+    fn sees(&self) -> ShaderInputs {
+        ShaderInputs::FACE
     }
 
     fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {

@@ -57,8 +57,8 @@ fn colour(formulas: Option<&Formulas>, own: Rgb, at: &SurfacePoint) -> Rgb {
 }
 
 impl Shader for ByFormula {
-    fn sees(&self) -> Sees {
-        Sees { uv: self.uses(3..5), normal: self.uses(5..8), face: false }
+    fn sees(&self) -> ShaderInputs {
+        ShaderInputs { uv: self.uses(3..5), normal: self.uses(5..8), face: false }
     }
 
     fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {

@@ -43,7 +43,7 @@ impl Implicit for Heart {
         ellipsoid.powi(3) - bend * y.powi(3)
     }
 
-    fn openness(&self) -> Option<&'static str> {
+    fn why_not_closed(&self) -> Option<&'static str> {
         None
     }
 

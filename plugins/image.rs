@@ -85,8 +85,8 @@ impl Image {
 }
 
 impl Shader for Image {
-    fn sees(&self) -> Sees {
-        Sees::UV
+    fn sees(&self) -> ShaderInputs {
+        ShaderInputs::UV
     }
 
     fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {

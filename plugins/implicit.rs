@@ -48,7 +48,7 @@ impl Implicit for Surface {
         self.formula.at(at)
     }
 
-    fn openness(&self) -> Option<&'static str> {
+    fn why_not_closed(&self) -> Option<&'static str> {
         (!field::is_outside(&self.formula, self.corners)).then_some("its box may cut its surface")
     }
 

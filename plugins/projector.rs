@@ -38,7 +38,7 @@ impl<A> Projector<A> {
     }
 }
 
-impl<A: Marker> Light for Projector<A> {
+impl<A: AccuracyTag> Light for Projector<A> {
     #[inline]
     fn location(&self) -> DVec3 {
         self.light.location

@@ -66,7 +66,7 @@ impl<A> Sphere<A> {
     }
 }
 
-impl<A: Marker> Hittable for Sphere<A> {
+impl<A: AccuracyTag> Hittable for Sphere<A> {
     #[inline(always)]
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         if A::IS_CLASSIC {
@@ -97,7 +97,7 @@ impl<A: Marker> Hittable for Sphere<A> {
         !A::IS_CLASSIC && leaving == Side::Inside
     }
 
-    fn openness(&self) -> Option<&'static str> {
+    fn why_not_closed(&self) -> Option<&'static str> {
         None
     }
 

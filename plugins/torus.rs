@@ -33,7 +33,7 @@ impl Implicit for Torus {
         from_circle.powi(2) + y.powi(2) - N::constant(self.tube).powi(2)
     }
 
-    fn openness(&self) -> Option<&'static str> {
+    fn why_not_closed(&self) -> Option<&'static str> {
         None
     }
 

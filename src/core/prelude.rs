@@ -4,7 +4,7 @@
 //! [`double_double`](tabray_exact::double_double).
 
 // Registration of an entity type: its table, its constructor, and the constructor's arguments.
-pub use crate::scene::attribute::{LEAST_LENGTH, Pose};
+pub use crate::scene::attribute::{MIN_LENGTH, Pose};
 pub use crate::scene::counts::{Counts, OneOf};
 pub use crate::scene::entity::{Args, Entity, Refusal};
 pub use crate::scene::list::List;
@@ -13,7 +13,7 @@ pub use crate::scene::value::{COLOUR, Datum, PerChannel, Type, Value, WholePerCh
 pub use inventory;
 
 // What a constructor returns: a camera, a material, a texture, a shader, an object, a light or a background.
-pub use crate::world::accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Marker, Strict};
+pub use crate::world::accuracy::{Accuracy, AccuracyTag, Bounded, Classic, Draft, Exact, Strict};
 pub use crate::world::any_shape::AnyShape;
 pub use crate::world::background::Background;
 pub use crate::world::body::{AnyShader, Body, NamedBody, Paint, Warning};
@@ -25,7 +25,7 @@ pub use crate::world::light::Light;
 pub use crate::world::material::{Look, Material, Rgb};
 pub use crate::world::pinhole::Pinhole;
 pub use crate::world::sample::Sampler;
-pub use crate::world::shader::{Anchor, LookBounds, PointBounds, Sees, Shader, SurfacePoint};
+pub use crate::world::shader::{Anchor, LookBounds, PointBounds, Shader, ShaderInputs, SurfacePoint};
 pub use crate::world::shape::Shape;
 pub use crate::world::texture::Texture;
 
@@ -41,7 +41,7 @@ pub use crate::geometry::aabb::{Aabb, SLACK};
 pub use crate::geometry::frame::Frame;
 pub use crate::geometry::image_point::{ImagePoint, from_middle};
 pub use crate::geometry::placement::Rotation;
-pub use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayBall, RayRange, Side};
+pub use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
 pub use crate::geometry::sight::{Line, Sight};
 pub use crate::geometry::view_frame::{ViewFrame, half_tangent};
 pub use crate::shapes::implicit::Implicit;

@@ -8,17 +8,15 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 use tabray::exact::double_double::DoubleDouble;
-use tabray::geometry::{
-    Aabb, Bracket, Drift, Facet, Nearest, Ray, RayBall, RayPacket, RayRange, Side, Sight,
-};
+use tabray::geometry::{Aabb, Bracket, Facet, Nearest, Ray, RayBall, RayPacket, RayRange, Side, Sight};
 use tabray::glam::{DVec2, DVec3};
 use tabray::prelude::{Entity, MISS, Pparm, Table};
 use tabray::scene::model::Object;
 use tabray::scene::{self, Kind, Model, Registry};
 use tabray::simd::cpu::Cpu;
-use tabray::world::certify::{Enclosure, Precision, Premise, Proven};
+use tabray::world::certify::{Enclosure, Precision, Premise, ProofMethods};
 use tabray::world::interaction::SurfaceInteraction;
-use tabray::world::packets::shape::{PacketShape, Packets, Proofs};
+use tabray::world::packets::shape::{HitQueries, PacketIntersect, PacketShape};
 use tabray::world::{Accuracy, AnyShape, Body, Hittable, NamedBody, Shape};
 
 /// The most that a shape may cost as a part of something else, as a multiple of what it costs alone.
@@ -93,8 +91,8 @@ impl Hittable for Counted {
         self.0.shape.is_two_sided()
     }
 
-    fn openness(&self) -> Option<&str> {
-        self.0.shape.openness()
+    fn why_not_closed(&self) -> Option<&str> {
+        self.0.shape.why_not_closed()
     }
 
     fn uv(&self, at: DVec3) -> Option<DVec2> {
@@ -122,7 +120,7 @@ impl Hittable for Counted {
     }
 }
 
-impl Packets for Counted {
+impl PacketIntersect for Counted {
     fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], brackets: (&mut [f64], &mut [f64])) {
         count(brackets.0.len() as u64);
         self.packets().brackets(cpu, rays, ends, brackets);
@@ -170,7 +168,7 @@ impl Packets for Counted {
     }
 }
 
-impl Proofs for Counted {
+impl HitQueries for Counted {
     fn touches(&self, at: DVec3, error: f64) -> bool {
         count(1);
         self.packets().touches(at, error)
@@ -200,7 +198,7 @@ impl Proofs for Counted {
         self.packets().certify(sight, precision)
     }
 
-    fn proven(&self) -> Option<&dyn Proven> {
+    fn proven(&self) -> Option<&dyn ProofMethods> {
         self.packets().proven()
     }
 
@@ -306,7 +304,7 @@ fn ratios(folder: &Path, text: &str, is_meant: &dyn Fn(&Object) -> bool) -> Vec<
         object.and_then(|object| object.shape.bounds()).expect("a closed shape")
     };
     let work = |text: &str| work(&registry, folder, text);
-    let closed = names(&|object| object.shape.openness().is_none());
+    let closed = names(&|object| object.shape.why_not_closed().is_none());
     let names = names(&|_| true);
     let with = |names: &[String], line: &dyn Fn(&str) -> String| {
         names.iter().fold(text.to_owned(), |mut text, name| {

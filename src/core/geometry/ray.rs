@@ -61,7 +61,7 @@ pub struct RayBall {
     /// The ray.
     pub ray: Ray,
     /// The maximum distance of the rays that it stands for.
-    pub drift: Drift,
+    pub drift: RayError,
 }
 
 impl RayBall {
@@ -75,7 +75,7 @@ impl RayBall {
 impl From<Ray> for RayBall {
     #[inline(always)]
     fn from(ray: Ray) -> Self {
-        Self { ray, drift: Drift::NONE }
+        Self { ray, drift: RayError::NONE }
     }
 }
 
@@ -97,14 +97,14 @@ impl Deref for RayBall {
 
 /// The maximum distance of a ray that was transformed and rounded from the ray that it stands for.
 #[derive(Clone, Copy, Debug)]
-pub struct Drift {
+pub struct RayError {
     /// A bound on the distance between the origins, in units of the coordinates that the ray was taken to.
     pub origin: f64,
     /// A bound on the length of the difference between the directions, which are unit vectors.
     pub dir: f64,
 }
 
-impl Drift {
+impl RayError {
     /// The drift of a ray that was not transformed.
     pub const NONE: Self = Self { origin: 0.0, dir: 0.0 };
 

@@ -5,7 +5,7 @@
 //! instructions ([`cpu`](crate::simd::cpu)). Arrays are as long as a multiple of [`LANES`](crate::simd::soa::LANES);
 //! the lanes beyond the last ray are copies of it, whose results are ignored.
 
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray, Side};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayError, Side};
 use crate::simd::cpu::kernels;
 use crate::simd::soa::View;
 use std::ops::Range;
@@ -28,7 +28,7 @@ pub struct RayPacket<'r> {
     /// The largest distance of any origin from the point that it stands for, in world units; 0 for camera rays.
     pub origin_error: f64,
     /// How far the rays that each ray stands for may be from it.
-    pub drift: Drift,
+    pub drift: RayError,
     /// The side of the shape that each ray leaves, if the rays leave the shape against which they are tested.
     pub leaving: Option<&'r [Side]>,
 }
@@ -37,7 +37,7 @@ impl<'r> RayPacket<'r> {
     /// Makes a packet of rays that stand for themselves and leave nothing.
     #[inline(always)]
     pub fn new(origin: View<'r>, dir: View<'r>, origin_error: f64) -> Self {
-        Self { origin, dir, origin_error, drift: Drift::NONE, leaving: None }
+        Self { origin, dir, origin_error, drift: RayError::NONE, leaving: None }
     }
 
     /// Returns the rays as they leave a shape to these sides, at least as many as there are rays.

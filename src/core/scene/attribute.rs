@@ -7,11 +7,11 @@ use std::borrow::Cow;
 
 /// The least length in world units other than 0. Its square, 1e-304, is above the least normal number (2.2e-308), so it
 /// keeps its full precision.
-pub const LEAST_LENGTH: f64 = 1e-152;
+pub const MIN_LENGTH: f64 = 1e-152;
 
 /// The greatest length or coordinate in world units. Its square is 1e304, so thousands of squares can be added without
 /// an overflow (at 1.8e308).
-pub const MOST_LENGTH: f64 = 1e152;
+pub const MAX_LENGTH: f64 = 1e152;
 
 /// An attribute, independent of the Rust type of its values.
 pub trait Attribute: Sync {
@@ -66,10 +66,10 @@ impl dyn Attribute + '_ {
         // The sides of a rectangle or of the image plane, which come in pairs, are not squared.
         let is_alone = is_length && numbers.len() == 1;
         let why = |number: f64| match number.abs() {
-            size if size > MOST_LENGTH && (is_length || self.unit() == "world coordinates") => {
+            size if size > MAX_LENGTH && (is_length || self.unit() == "world coordinates") => {
                 Some("so large that its square overflows")
             }
-            size if size > 0.0 && size < LEAST_LENGTH && is_alone => {
+            size if size > 0.0 && size < MIN_LENGTH && is_alone => {
                 Some("so small that its square underflows")
             }
             _ => None,

@@ -6,7 +6,7 @@ use crate::geometry::sight::Sight;
 use crate::world::any_shape::AnyShape;
 use crate::world::certify::{Enclosure, Precision, Premise};
 use crate::world::hittable::Hittable;
-use crate::world::packets::shape::{Coincidence, Proofs};
+use crate::world::packets::shape::{HitQueries, TieBreaking};
 use crate::world::shape::{ByDistance, Shape};
 use glam::DVec3;
 use tabray_exact::double_double::DoubleDouble;
@@ -55,9 +55,9 @@ impl Hittable for WithMethod {
     }
 }
 
-impl Coincidence for OriginalProofs {}
+impl TieBreaking for OriginalProofs {}
 
-impl Proofs for Shape<WithMethod, ByDistance, OriginalProofs> {
+impl HitQueries for Shape<WithMethod, ByDistance, OriginalProofs> {
     fn touches(&self, at: DVec3, error: f64) -> bool {
         self.shape.shape.touches(at, error)
     }

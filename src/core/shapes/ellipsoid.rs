@@ -3,7 +3,7 @@
 mod hits;
 
 use crate::geometry::aabb::Aabb;
-use crate::geometry::ray::{Bracket, Drift, Ray, RayBall, RayRange};
+use crate::geometry::ray::{Bracket, Ray, RayBall, RayError, RayRange};
 use crate::shapes::sphere::{self, SphereLine};
 use crate::world::accuracy::Bounded;
 use glam::DVec3;
@@ -100,8 +100,8 @@ impl<A: Bounded> Ellipsoid<A> {
         let (from, dir) = self.scaled(ray);
         let (inverse, error) = (1.0 / dir.dot(dir), range.origin_error / self.scale.min_element());
         let spread = self.largest_inverse_scale * inverse.sqrt();
-        let Drift { origin, dir: turn } = ray.drift;
-        let drift = Drift { origin: origin * self.largest_inverse_scale, dir: turn * spread };
+        let RayError { origin, dir: turn } = ray.drift;
+        let drift = RayError { origin: origin * self.largest_inverse_scale, dir: turn * spread };
         let spread =
             if ray.is_single() { spread } else { 1.0 + spread + sphere::spread(from, self.radius, drift) };
         sphere::t_bounds(from, dir, inverse, spread, self.radius, range.origin_side, error)

@@ -4,7 +4,7 @@ use super::plane::{Flat, Plane};
 use super::rectangle::{FinitePlane, along_sides};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
-use crate::world::accuracy::{Bounded, Marker};
+use crate::world::accuracy::{AccuracyTag, Bounded};
 use crate::world::certify::Equation;
 use crate::world::hittable::{Bracketed, Certified, Hittable};
 use glam::{DVec2, DVec3};
@@ -12,7 +12,7 @@ use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, constants, per_axis};
 
-impl<A: Marker> Hittable for FinitePlane<A> {
+impl<A: AccuracyTag> Hittable for FinitePlane<A> {
     #[inline(always)]
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         let distance = self.plane.keep(self.plane.crossing(ray), ray, range);

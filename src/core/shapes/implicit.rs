@@ -9,7 +9,7 @@ mod formula;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::facet::Facet;
 use crate::geometry::frame::{self, BLUR, Frame};
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayBall, RayRange, Side};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
 use crate::geometry::sight::Line;
 use crate::world::body::Body;
 use crate::world::certify::Equation;
@@ -94,8 +94,8 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
         Some(self.frame.bounds(&own))
     }
 
-    fn openness(&self) -> Option<&'static str> {
-        self.formula.openness()
+    fn why_not_closed(&self) -> Option<&'static str> {
+        self.formula.why_not_closed()
     }
 
     fn is_two_sided(&self) -> bool {
@@ -230,7 +230,7 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
     }
 
     /// Stands for all rays within a drift.
-    fn within(self, drift: Drift) -> Self {
+    fn within(self, drift: RayError) -> Self {
         let blur = self.blur + drift.origin + self.closest.abs() * drift.dir;
         Self { blur, turn: self.turn + drift.dir, by_proof: true, ..self }
     }

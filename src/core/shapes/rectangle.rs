@@ -3,7 +3,7 @@
 use crate::geometry::aabb::{Aabb, larger, smaller};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange};
 use crate::shapes::plane::Plane;
-use crate::world::accuracy::Marker;
+use crate::world::accuracy::AccuracyTag;
 use glam::{DMat3, DVec2, DVec3};
 use tabray_exact::double_double::vectors::{cross, product, unit};
 use tabray_exact::double_double::{DoubleDouble, power_of_two, scaled};
@@ -110,7 +110,7 @@ impl<A> FinitePlane<A> {
     }
 }
 
-impl<A: Marker> FinitePlane<A> {
+impl<A: AccuracyTag> FinitePlane<A> {
     /// Returns bounds of the distance of a hit in a range.
     #[inline(always)]
     pub fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {

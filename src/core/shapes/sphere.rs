@@ -5,8 +5,8 @@
 //! step of Newton's method, and what rounding could decide is decided in double-double arithmetic.
 
 use crate::geometry::aabb::{Aabb, SLACK, larger};
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
-use crate::world::accuracy::{Accuracy, Marker};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayError, RayRange, Side};
+use crate::world::accuracy::{Accuracy, AccuracyTag};
 use glam::DVec3;
 use tabray_exact::double_double::{DoubleDouble, exponent_to_one, times_power_of_two, two_product};
 use tabray_exact::scalar::per_axis;
@@ -53,7 +53,7 @@ pub fn clearance(center: DVec3, radius: f64, from: DVec3) -> f64 {
 }
 
 /// Returns the method of intersection, in a few words.
-pub fn method<A: Marker>() -> &'static str {
+pub fn method<A: AccuracyTag>() -> &'static str {
     match A::ACCURACY {
         Accuracy::Classic => "the notes' formula",
         Accuracy::Draft => "a closed form, in twice the precision where rounding could decide",
@@ -79,14 +79,14 @@ pub fn classic(from: DVec3, dir: DVec3, radius: f64) -> f64 {
 /// Returns the distance of the first hit of a sphere: of its near side, or from inside of its far side. A tangent line
 /// misses it, as in the course notes.
 #[inline(always)]
-pub fn first_hit<A: Marker>(line: &SphereLine, radius: f64) -> f64 {
+pub fn first_hit<A: AccuracyTag>(line: &SphereLine, radius: f64) -> f64 {
     let quick = quick_hit::<A>(line, radius);
     if quick.is_nan() { in_double_double(line, radius) } else { quick }
 }
 
 /// Computes [`first_hit`], or NaN where rounding could decide it.
 #[inline(always)]
-pub(crate) fn quick_hit<A: Marker>(line: &SphereLine, radius: f64) -> f64 {
+pub(crate) fn quick_hit<A: AccuracyTag>(line: &SphereLine, radius: f64) -> f64 {
     let (from, dir) = (high(&line.from), high(&line.dir));
     let a = dir.dot(dir);
     let toward = -from.dot(dir);
@@ -132,7 +132,7 @@ pub(crate) fn quick_hit<A: Marker>(line: &SphereLine, radius: f64) -> f64 {
 /// discriminant, the start is taken for a point of the sphere, whose far root is twice as far as the midpoint of the
 /// chord.
 #[inline(always)]
-pub(crate) fn far_hit<A: Marker>(line: &SphereLine, radius: f64) -> f64 {
+pub(crate) fn far_hit<A: AccuracyTag>(line: &SphereLine, radius: f64) -> f64 {
     let (from, dir) = (high(&line.from), high(&line.dir));
     let a = dir.dot(dir);
     let toward = -from.dot(dir);
@@ -147,7 +147,7 @@ pub(crate) fn far_hit<A: Marker>(line: &SphereLine, radius: f64) -> f64 {
 
 /// Returns the distance of the first hit of a ray that leaves the sphere to a side, or does not start on it.
 #[inline(always)]
-pub fn distance<A: Marker>(line: &SphereLine, radius: f64, origin_side: Option<Side>) -> f64 {
+pub fn distance<A: AccuracyTag>(line: &SphereLine, radius: f64, origin_side: Option<Side>) -> f64 {
     match origin_side {
         None => first_hit::<A>(line, radius),
         Some(Side::Inside) => far_hit::<A>(line, radius),
@@ -157,7 +157,7 @@ pub fn distance<A: Marker>(line: &SphereLine, radius: f64, origin_side: Option<S
 
 /// Computes [`distance`], or NaN where rounding could decide it.
 #[inline(always)]
-pub fn refine<A: Marker>(line: &SphereLine, radius: f64, origin_side: Option<Side>) -> f64 {
+pub fn refine<A: AccuracyTag>(line: &SphereLine, radius: f64, origin_side: Option<Side>) -> f64 {
     let distance = match origin_side {
         None => quick_hit::<A>(line, radius),
         Some(Side::Inside) => far_hit::<A>(line, radius),
@@ -248,7 +248,7 @@ pub fn t_bounds(
 /// spread `K`, that moves half the chord by less than `k EPSILON size / sqrt(32,768 EPSILON K)`, of which half of
 /// `ERROR K size` is more than enough for `K = 1 + k / 8`.
 #[inline(always)]
-pub fn spread(from: DVec3, radius: f64, drift: Drift) -> f64 {
+pub fn spread(from: DVec3, radius: f64, drift: RayError) -> f64 {
     if drift.is_none() {
         return 0.0;
     }

@@ -4,7 +4,7 @@ mod hits;
 mod sides;
 
 use crate::geometry::aabb::larger;
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayBall, RayRange};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange};
 use crate::geometry::ray_packet::RayPacket;
 use crate::shapes::plane::Plane;
 use crate::simd::soa::{LANES, Vectors};
@@ -106,7 +106,7 @@ impl<A> Triangle<A> {
     /// through between them (Woop, Benthin and Wald 2013).
     #[inline(always)]
     pub(crate) fn is_passed_by(&self, ray: &Ray) -> bool {
-        passed(self.corners, ray, Drift::NONE).unwrap_or_else(|| {
+        passed(self.corners, ray, RayError::NONE).unwrap_or_else(|| {
             let [a, b, c] = self.corners;
             let sides = [(a, b), (b, c), (c, a)].map(|(from, to)| exact_side(from, to, ray));
             sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0)

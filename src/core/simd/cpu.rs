@@ -79,20 +79,20 @@ impl fmt::Display for Cpu {
 ///
 /// ```text
 /// kernels! {
-///     fn refine[T: OneRay](shape: &T, out: &mut [f64]) { ... }
+///     fn refine[T: ScalarIntersect](shape: &T, out: &mut [f64]) { ... }
 /// }
 /// ```
 ///
 /// expands to
 ///
 /// ```text
-/// fn refine<T: OneRay>(cpu: Cpu, shape: &T, out: &mut [f64]) {
+/// fn refine<T: ScalarIntersect>(cpu: Cpu, shape: &T, out: &mut [f64]) {
 ///     #[inline(always)]
-///     fn body<T: OneRay>(shape: &T, out: &mut [f64]) { ... }
+///     fn body<T: ScalarIntersect>(shape: &T, out: &mut [f64]) { ... }
 ///     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
-///     fn avx512<T: OneRay>(shape: &T, out: &mut [f64]) { body(shape, out) }
+///     fn avx512<T: ScalarIntersect>(shape: &T, out: &mut [f64]) { body(shape, out) }
 ///     #[target_feature(enable = "avx2")]
-///     fn avx2<T: OneRay>(shape: &T, out: &mut [f64]) { body(shape, out) }
+///     fn avx2<T: ScalarIntersect>(shape: &T, out: &mut [f64]) { body(shape, out) }
 ///     match cpu.level() {
 ///         Level::Avx512 => unsafe { avx512(shape, out) },
 ///         Level::Avx2 => unsafe { avx2(shape, out) },

@@ -66,7 +66,7 @@ pub struct Exact;
 pub struct Strict;
 
 /// A marker of an accuracy: [`Classic`], [`Draft`], [`Exact`] or [`Strict`].
-pub trait Marker: Copy + Send + Sync + 'static {
+pub trait AccuracyTag: Copy + Send + Sync + 'static {
     /// The accuracy that the marker stands for.
     const ACCURACY: Accuracy;
 
@@ -74,24 +74,24 @@ pub trait Marker: Copy + Send + Sync + 'static {
     const IS_CLASSIC: bool = matches!(Self::ACCURACY, Accuracy::Classic);
 }
 
-impl Marker for Classic {
+impl AccuracyTag for Classic {
     const ACCURACY: Accuracy = Accuracy::Classic;
 }
 
-impl Marker for Draft {
+impl AccuracyTag for Draft {
     const ACCURACY: Accuracy = Accuracy::Draft;
 }
 
-impl Marker for Exact {
+impl AccuracyTag for Exact {
     const ACCURACY: Accuracy = Accuracy::Exact;
 }
 
-impl Marker for Strict {
+impl AccuracyTag for Strict {
     const ACCURACY: Accuracy = Accuracy::Strict;
 }
 
 /// A marker of an accuracy that finds first hits with error bounds: [`Draft`], [`Exact`] or [`Strict`].
-pub trait Bounded: Marker {}
+pub trait Bounded: AccuracyTag {}
 
 impl Bounded for Draft {}
 impl Bounded for Exact {}

@@ -5,9 +5,9 @@ use crate::geometry::ray::{Bracket, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{Nearest, RayPacket};
 use crate::geometry::sight::Sight;
 use crate::simd::cpu::Cpu;
-use crate::world::certify::{Enclosure, HitEnclosure, HitProofs, Precision, Premise, Proven};
+use crate::world::certify::{Enclosure, HitEnclosure, HitProofs, Precision, Premise, ProofMethods};
 use crate::world::hittable::Hittable;
-use crate::world::packets::shape::{PacketShape, Packets, Proofs};
+use crate::world::packets::shape::{HitQueries, PacketIntersect, PacketShape};
 use crate::world::shape::Shape;
 use glam::DVec3;
 use std::ops::Deref;
@@ -85,7 +85,7 @@ impl AnyShape {
     }
 
     /// Returns the functions for proofs about other rays than primary ones; `None` for a shape without an equation.
-    pub fn proven(&self) -> Option<&dyn Proven> {
+    pub fn proven(&self) -> Option<&dyn ProofMethods> {
         self.0.proven()
     }
 
@@ -114,7 +114,7 @@ impl<T: Hittable + 'static> From<T> for AnyShape {
 
 impl<T: Hittable + 'static, S: 'static, P: 'static> From<Shape<T, S, P>> for AnyShape
 where
-    Shape<T, S, P>: Packets + Proofs,
+    Shape<T, S, P>: PacketIntersect + HitQueries,
 {
     fn from(shape: Shape<T, S, P>) -> Self {
         Self(Box::new(shape))

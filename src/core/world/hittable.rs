@@ -65,7 +65,7 @@ pub trait Hittable: Send + Sync {
 
     /// Says why the surface is not closed, phrased to follow "is not a closed shape: "; `None` for a closed surface, whose normal
     /// points outward and whose equation, if it has one, is below 0 inside. Only closed shapes can be parts of solids.
-    fn openness(&self) -> Option<&str> {
+    fn why_not_closed(&self) -> Option<&str> {
         Some("it has no inside")
     }
 

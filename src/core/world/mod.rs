@@ -24,7 +24,7 @@ pub mod shape;
 pub mod solid;
 pub mod texture;
 
-pub use accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Marker, Strict};
+pub use accuracy::{Accuracy, AccuracyTag, Bounded, Classic, Draft, Exact, Strict};
 pub use any_shape::AnyShape;
 pub use background::{AnyBackground, Background};
 pub use body::{AnyLight, AnyShader, Body, NamedBody, Paint, Part, Solid, Warning};
@@ -34,5 +34,5 @@ pub use hittable::{Bracketed, Certified, Hittable, Searched};
 pub use interface::{AnyInterface, Crossing, Interface};
 pub use light::Light;
 pub use material::{Material, Rgb};
-pub use shader::{Anchor, PointBounds, Sees, Shader, SurfacePoint};
+pub use shader::{Anchor, PointBounds, Shader, ShaderInputs, SurfacePoint};
 pub use shape::Shape;

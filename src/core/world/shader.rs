@@ -1,7 +1,7 @@
 //! Shaders: the trait that a plugin implements for one point of a surface.
 
 use crate::geometry::ray::Side;
-use crate::world::certify::{Precise, Proven};
+use crate::world::certify::{Precise, ProofMethods};
 use crate::world::hittable::Hittable;
 use crate::world::material::{Look, Material, Rgb};
 use glam::{DVec2, DVec3};
@@ -13,7 +13,7 @@ use tabray_exact::scalar::{Scalar, per_axis};
 pub struct SurfacePoint {
     /// The point, in world coordinates.
     pub position: DVec3,
-    /// The unit normal for shading, outward. It is 0 unless the shader [sees](Sees) it.
+    /// The unit normal for shading, outward. It is 0 unless the shader [sees](ShaderInputs) it.
     pub normal: DVec3,
     /// The side that a ray hits. It is the outside unless the shader sees normals.
     pub side: Side,
@@ -32,7 +32,13 @@ impl SurfacePoint {
     }
 
     /// Returns a point of a shape with what a shader sees of it. `normal` is the outward one.
-    pub fn seen(shape: &dyn Hittable, sees: Sees, position: DVec3, normal: DVec3, side: Side) -> Self {
+    pub fn seen(
+        shape: &dyn Hittable,
+        sees: ShaderInputs,
+        position: DVec3,
+        normal: DVec3,
+        side: Side,
+    ) -> Self {
         let (uv, face) = (sees.uv.then(|| shape.uv(position)), sees.face.then(|| shape.face(position)));
         let (uv, face) = (uv.flatten(), face.flatten());
         let (normal, side) = if sees.normal { (normal, side) } else { (DVec3::ZERO, Side::Outside) };
@@ -42,7 +48,7 @@ impl SurfacePoint {
 
 /// The properties of a point that a shader needs beside its position. The others are not computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Sees {
+pub struct ShaderInputs {
     /// Whether it sees the normal and the side.
     pub normal: bool,
     /// Whether it sees u and v.
@@ -51,7 +57,7 @@ pub struct Sees {
     pub face: bool,
 }
 
-impl Sees {
+impl ShaderInputs {
     /// The position alone.
     pub const POSITION: Self = Self { normal: false, uv: false, face: false };
     /// The position, the normal and the side.
@@ -84,8 +90,8 @@ pub struct PointBounds<F> {
 impl<F: Precise> PointBounds<F> {
     /// Returns bounds of points of a part of a shape, with what a shader sees of them.
     pub fn seen(
-        shape: &dyn Proven,
-        sees: Sees,
+        shape: &dyn ProofMethods,
+        sees: ShaderInputs,
         part: usize,
         position: [Interval<F>; 3],
         normal: Option<[Interval<F>; 3]>,
@@ -113,8 +119,8 @@ pub struct Anchor {
 pub trait Shader: Send + Sync {
     /// Tells what the shader sees of a point beside its position. It is the same in every call.
     #[inline(always)]
-    fn sees(&self) -> Sees {
-        Sees::POSITION
+    fn sees(&self) -> ShaderInputs {
+        ShaderInputs::POSITION
     }
 
     /// Returns the reflectivity for ambient light at a point.

@@ -7,7 +7,7 @@ use super::parsed::{Form, MAX_VALUES, Parsed, VALUES, Word};
 use super::report::Report;
 use super::values;
 use crate::registry::Registry;
-use tabray_core::scene::attribute::{Attribute, LEAST_LENGTH, MOST_LENGTH};
+use tabray_core::scene::attribute::{Attribute, MAX_LENGTH, MIN_LENGTH};
 use tabray_core::scene::choice::Choices;
 use tabray_core::scene::entity::Entity;
 use tabray_core::scene::kind::Kind;
@@ -253,7 +253,7 @@ impl AttributeChecker<'_, '_> {
             let message = format!("`{}` of {title} is {why}", attribute.name());
             let place = words.get(index).map_or(word.place.clone(), |word| word.place.clone());
             self.report.add(Fault::error(place, message).help(format!(
-                "lengths and coordinates other than 0 must be between {LEAST_LENGTH:e} and {MOST_LENGTH:e} world units"
+                "lengths and coordinates other than 0 must be between {MIN_LENGTH:e} and {MAX_LENGTH:e} world units"
             )));
             return None;
         }

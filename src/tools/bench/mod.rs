@@ -25,7 +25,7 @@ use tabray_core::scene::model::{Model, Object};
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::world::body::AnyShader;
 use tabray_core::world::material::{Look, Material, Rgb};
-use tabray_core::world::shader::{Sees, Shader, SurfacePoint};
+use tabray_core::world::shader::{Shader, ShaderInputs, SurfacePoint};
 
 /// The speed at which a scene is traced.
 #[derive(Clone, Debug)]
@@ -192,7 +192,7 @@ fn matt(model: Model) -> Model {
 struct WithoutReflections(AnyShader);
 
 impl Shader for WithoutReflections {
-    fn sees(&self) -> Sees {
+    fn sees(&self) -> ShaderInputs {
         self.0.sees()
     }
 

@@ -195,7 +195,7 @@ mod tests {
     use tabray_core::world::body::Paint;
     use tabray_core::world::light::Light;
     use tabray_core::world::material::{Look, Material, Rgb};
-    use tabray_core::world::shader::{Anchor, Plain, Sees, Shader, SurfacePoint};
+    use tabray_core::world::shader::{Anchor, Plain, Shader, ShaderInputs, SurfacePoint};
 
     static SOUND: Profile = Profile::new("sound", "a cone", "4 - y");
     static UNBOUNDED: Profile = Profile::new("unbounded", "a horn", "1 / y");
@@ -274,8 +274,8 @@ mod tests {
     struct Leaning;
 
     impl Shader for Leaning {
-        fn sees(&self) -> Sees {
-            Sees::NORMAL
+        fn sees(&self) -> ShaderInputs {
+            ShaderInputs::NORMAL
         }
 
         fn bends(&self) -> bool {

@@ -3,7 +3,7 @@
 use super::looks::same_bits;
 use super::promise::{Fault, Promise};
 use glam::DVec3;
-use tabray_core::geometry::ray::{Drift, MISS, Ray, RayBall, RayRange, Side};
+use tabray_core::geometry::ray::{MISS, Ray, RayBall, RayError, RayRange, Side};
 use tabray_core::geometry::ray_packet::{Nearest, RayPacket};
 use tabray_core::geometry::sight::Sight;
 use tabray_core::simd::cpu::Cpu;
@@ -157,7 +157,7 @@ impl RayTrial<'_> {
     /// Checks that the bracket of a ray that stands for others holds the hits of these, as where a copy is placed.
     pub fn check_drift(&self) -> Result<(), Fault> {
         let Self { shape, ray, .. } = self;
-        let drift = Drift { origin: DRIFT * self.size(0.0), dir: DRIFT };
+        let drift = RayError { origin: DRIFT * self.size(0.0), dir: DRIFT };
         let bracket = shape.packets().t_bounds(&RayBall { ray: *ray, drift }, &RayRange::ALL);
         // A shape of which only the distance is known answers for the ray alone.
         if bracket.near == bracket.far {

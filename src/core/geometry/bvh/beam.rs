@@ -1,7 +1,7 @@
 //! A ray, or a bundle of rays, prepared for tests against boxes.
 
 use crate::geometry::aabb::{Aabb, SLACK, larger, smaller};
-use crate::geometry::ray::{Drift, Ray};
+use crate::geometry::ray::{Ray, RayError};
 use crate::geometry::ray_packet::RayPacket;
 use crate::simd::soa::{LANES, Vectors};
 use glam::DVec3;
@@ -52,14 +52,14 @@ pub struct Beam {
 impl Beam {
     /// Prepares one ray, and all rays within a drift of it.
     #[inline(always)]
-    pub fn of(ray: &Ray, drift: Drift) -> Self {
+    pub fn of(ray: &Ray, drift: RayError) -> Self {
         Self::between([ray.origin; 2], [ray.dir; 2], drift)
     }
 
     /// Bounds the rays of a packet that end beyond 0, given the distances in world units at which its rays end, and all
     /// rays within a drift of those. Returns `None` if there are none.
     #[inline(always)]
-    pub fn around(rays: RayPacket, t_max: &[f64], drift: Drift) -> Option<Self> {
+    pub fn around(rays: RayPacket, t_max: &[f64], drift: RayError) -> Option<Self> {
         let lane = t_max.iter().position(|t_max| *t_max > 0.0)?;
         let ray = rays.get(lane);
         let (origin, dir) = (rays.origin, rays.dir);
@@ -84,7 +84,7 @@ impl Beam {
 
     /// Bounds rays by the least and the greatest coordinates of their origins, and components of their directions.
     #[inline(always)]
-    fn between([low, high]: [DVec3; 2], [mut least, mut greatest]: [DVec3; 2], drift: Drift) -> Self {
+    fn between([low, high]: [DVec3; 2], [mut least, mut greatest]: [DVec3; 2], drift: RayError) -> Self {
         let reach = larger(low.abs().max_element(), high.abs().max_element());
         let slack = SLACK * reach + LEAST_SLACK + drift.origin;
         if drift.dir > 0.0 {

@@ -54,7 +54,7 @@ mod tests {
     use super::*;
     use crate::geometry::bvh::packet::{PacketVisitor, visit};
     use crate::geometry::bvh::tree::Stack;
-    use crate::geometry::ray::{Drift, Ray};
+    use crate::geometry::ray::{Ray, RayError};
     use crate::geometry::ray_packet::RayPacket;
     use crate::simd::cpu::Cpu;
     use crate::simd::soa::{LANES, Vectors};
@@ -118,10 +118,10 @@ mod tests {
         let (origin, dir) = (Vectors::<LANES>::of(ray.origin), Vectors::<LANES>::of(ray.dir));
         let rays = RayPacket::new(origin.view(LANES), dir.view(LANES), 0.0);
         for (drift, all) in [
-            (Drift::NONE, 0),
-            (Drift { origin: 0.02, dir: 0.0 }, 10),
+            (RayError::NONE, 0),
+            (RayError { origin: 0.02, dir: 0.0 }, 10),
             // Enough from z = 6 on.
-            (Drift { origin: 0.0, dir: 0.00126 }, 4),
+            (RayError { origin: 0.0, dir: 0.00126 }, 4),
         ] {
             for cpu in Cpu::all() {
                 let (mut alone, mut together) = (Vec::new(), Visited::default());

@@ -9,7 +9,7 @@ use crate::geometry::bvh::beam::{Beam, Eight};
 use crate::geometry::bvh::node::WIDTH;
 use crate::geometry::bvh::order::Order;
 use crate::geometry::bvh::tree::{Ahead, Bvh, OBJECT, Stack, descend, push};
-use crate::geometry::ray::Drift;
+use crate::geometry::ray::RayError;
 use crate::geometry::ray_packet::{RayPacket, split};
 use crate::simd::cpu::kernels;
 use crate::simd::soa::LANES;
@@ -52,7 +52,7 @@ kernels! {
     /// Visits the objects whose boxes the rays of a packet enter before their ends, roughly in the visitor's order. A ray that
     /// ends at 0 or less is not searched for. With a drift, so do the objects that rays within it may hit.
     pub fn visit(
-        tree: &Bvh, stack: &mut Stack, rays: RayPacket, drift: Drift, t_max: &mut [f64], visitor: &mut dyn PacketVisitor
+        tree: &Bvh, stack: &mut Stack, rays: RayPacket, drift: RayError, t_max: &mut [f64], visitor: &mut dyn PacketVisitor
     ) {
         if tree.nodes.is_empty() {
             return;
@@ -71,7 +71,7 @@ struct Search<'s, 'v> {
     stack: &'s mut Vec<Ahead>,
     /// The rays of the packet.
     rays: RayPacket<'s>,
-    drift: Drift,
+    drift: RayError,
     order: Order,
     /// The distances at which they end, in world units.
     t_max: &'s mut [f64],

@@ -5,7 +5,7 @@ use crate::geometry::bvh::beam::{Beam, Eight};
 use crate::geometry::bvh::build;
 use crate::geometry::bvh::node::{Entered, Node, WIDTH};
 use crate::geometry::bvh::order::Order;
-use crate::geometry::ray::{Drift, Ray};
+use crate::geometry::ray::{Ray, RayError};
 use crate::simd::cpu::{Cpu, kernels};
 use std::mem::take;
 
@@ -110,7 +110,7 @@ impl Bvh {
         t_max: f64,
         visit: impl FnMut(usize, f64) -> f64,
     ) {
-        self.closest_within(cpu, stack, ray, Drift::NONE, t_max, visit);
+        self.closest_within(cpu, stack, ray, RayError::NONE, t_max, visit);
     }
 
     /// Visits the objects whose boxes any ray within a drift of one enters, as [`closest`](Self::closest) does.
@@ -119,7 +119,7 @@ impl Bvh {
         cpu: Cpu,
         stack: &mut Stack,
         ray: &Ray,
-        drift: Drift,
+        drift: RayError,
         t_max: f64,
         mut visit: impl FnMut(usize, f64) -> f64,
     ) {
@@ -147,7 +147,7 @@ impl Bvh {
 kernels! {
     /// Visits objects along a ray, as [`Bvh::closest_within`] does.
     fn search(
-        tree: &Bvh, stack: &mut Stack, ray: &Ray, drift: Drift, t_max: f64, visit: &mut dyn FnMut(usize, f64) -> f64
+        tree: &Bvh, stack: &mut Stack, ray: &Ray, drift: RayError, t_max: f64, visit: &mut dyn FnMut(usize, f64) -> f64
     ) {
         if tree.nodes.is_empty() {
             return;
@@ -347,7 +347,7 @@ mod tests {
             let tree = Bvh::new(&boxes);
             for cpu in Cpu::all() {
                 let mut counter = Counter { tests: vec![vec![0; count]; boxes.len()] };
-                visit(cpu, &tree, &mut Stack::default(), rays, Drift::NONE, &mut t_max.clone(), &mut counter);
+                visit(cpu, &tree, &mut Stack::default(), rays, RayError::NONE, &mut t_max.clone(), &mut counter);
                 for (index, bounds) in boxes.iter().enumerate() {
                     for lane in 0..count {
                         let times = counter.tests[index][lane];

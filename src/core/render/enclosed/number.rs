@@ -3,7 +3,7 @@
 use crate::geometry::sight::Line;
 use crate::scene::model::Object;
 use crate::world::certify::{
-    FootprintHit, HitEnclosure, Precise, Proven, gradient, gradient_over, shading_normals,
+    FootprintHit, HitEnclosure, Precise, ProofMethods, gradient, gradient_over, shading_normals,
 };
 use crate::world::packets::light::{EncloseLight, PacketLight};
 use crate::world::packets::shader::{EncloseLook, PacketShader};
@@ -99,19 +99,23 @@ pub trait Number: Scalar + PartialEq {
     /// first that every line certainly has, or until `met` returns false. `leaves` is the part on which the lines' true
     /// starts lie, if they lie on the shape.
     fn hits(
-        shape: &dyn Proven,
+        shape: &dyn ProofMethods,
         line: &Line<Self>,
         leaves: Option<usize>,
         met: &mut dyn FnMut(Hit<Self>, usize) -> bool,
     );
 
     /// Encloses vectors along the normals at points of a part of a shape.
-    fn gradient(shape: &dyn Proven, at: [Self; 3], part: usize) -> [Self; 3];
+    fn gradient(shape: &dyn ProofMethods, at: [Self; 3], part: usize) -> [Self; 3];
 
     /// Encloses the unit normals with which points of a part are shaded, given those of the surface; `None` where they are
     /// open.
-    fn shading_normal(shape: &dyn Proven, at: [Self; 3], part: usize, normal: [Self; 3])
-    -> Option<[Self; 3]>;
+    fn shading_normal(
+        shape: &dyn ProofMethods,
+        at: [Self; 3],
+        part: usize,
+        normal: [Self; 3],
+    ) -> Option<[Self; 3]>;
 }
 
 impl<F: Endpoint> Number for Interval<F> {
@@ -146,7 +150,7 @@ impl<F: Endpoint> Number for Interval<F> {
     }
 
     fn hits(
-        shape: &dyn Proven,
+        shape: &dyn ProofMethods,
         line: &Line<Self>,
         leaves: Option<usize>,
         met: &mut dyn FnMut(Hit<Self>, usize) -> bool,
@@ -176,12 +180,12 @@ impl<F: Endpoint> Number for Interval<F> {
         }
     }
 
-    fn gradient(shape: &dyn Proven, at: [Self; 3], part: usize) -> [Self; 3] {
+    fn gradient(shape: &dyn ProofMethods, at: [Self; 3], part: usize) -> [Self; 3] {
         gradient(F::proofs(shape), at, part)
     }
 
     fn shading_normal(
-        shape: &dyn Proven,
+        shape: &dyn ProofMethods,
         at: [Self; 3],
         part: usize,
         normal: [Self; 3],
@@ -225,7 +229,7 @@ impl Number for Affine {
     }
 
     fn hits(
-        shape: &dyn Proven,
+        shape: &dyn ProofMethods,
         line: &Line<Self>,
         leaves: Option<usize>,
         met: &mut dyn FnMut(Hit<Self>, usize) -> bool,
@@ -241,12 +245,12 @@ impl Number for Affine {
         });
     }
 
-    fn gradient(shape: &dyn Proven, at: [Self; 3], part: usize) -> [Self; 3] {
+    fn gradient(shape: &dyn ProofMethods, at: [Self; 3], part: usize) -> [Self; 3] {
         gradient_over(shape, at, part)
     }
 
     fn shading_normal(
-        shape: &dyn Proven,
+        shape: &dyn ProofMethods,
         at: [Self; 3],
         part: usize,
         normal: [Self; 3],

@@ -51,7 +51,7 @@ pub(super) fn shut_out(model: &Model, objects: &Objects) -> Vec<(usize, usize)> 
         object.material.transparency == 0.0
             && !is_behind_glass(model, *index)
             && is_inside.is_some_and(|is_inside| self::is_inside(object, at, size) == Some(!is_inside))
-            && object.shape.openness().is_none()
+            && object.shape.why_not_closed().is_none()
     };
     let lights = model.lights.iter().enumerate();
     let by = lights.filter_map(|(light, item)| {

@@ -7,7 +7,7 @@ use super::one_ray::{Located, RoundedRay, exact, located};
 use super::order;
 use super::ray_group::RayGroup;
 use crate::geometry::bvh::{self, PacketVisitor, Stack};
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray, Side};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayError, Side};
 use crate::geometry::ray_packet::{Nearest, RayPacket};
 use crate::render::culling;
 use crate::render::frusta::{self, PART};
@@ -209,7 +209,7 @@ impl<W: TraceObserver> ClosestHitSearch<'_, '_, '_, W> {
         if let Some(tree) = &plan.tree {
             ends.clear();
             ends.extend_from_slice(&self.hits.far[..self.group.padded()]);
-            bvh::visit(self.tracer.cpu, tree, stack, self.group.rays(), Drift::NONE, ends, &mut self);
+            bvh::visit(self.tracer.cpu, tree, stack, self.group.rays(), RayError::NONE, ends, &mut self);
         }
     }
 

@@ -6,7 +6,7 @@ use super::one_ray::{RoundedRay, exact};
 use super::surface::Surface;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::{self, Order, PacketVisitor, Stack};
-use crate::geometry::ray::{Drift, Side};
+use crate::geometry::ray::{RayError, Side};
 use crate::geometry::ray_packet::RayPacket;
 use crate::render::culling;
 use crate::render::observer::{Count, TraceObserver};
@@ -103,7 +103,7 @@ impl<W: TraceObserver> Occlusion<'_, '_, '_, W> {
             ends.clear();
             ends.extend_from_slice(t_max);
             self.end_blocked(0..t_max.len(), ends);
-            bvh::visit(self.tracer.cpu, tree, stack, self.shadow_rays.rays, Drift::NONE, ends, &mut self);
+            bvh::visit(self.tracer.cpu, tree, stack, self.shadow_rays.rays, RayError::NONE, ends, &mut self);
         }
     }
 

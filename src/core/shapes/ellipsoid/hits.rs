@@ -4,14 +4,14 @@ use super::Ellipsoid;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
 use crate::shapes::{sphere, uv};
-use crate::world::accuracy::{Bounded, Marker};
+use crate::world::accuracy::{AccuracyTag, Bounded};
 use crate::world::certify::Equation;
 use crate::world::hittable::{Bracketed, Certified, Hittable};
 use glam::{DVec2, DVec3};
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, per_axis};
 
-impl<A: Marker> Hittable for Ellipsoid<A> {
+impl<A: AccuracyTag> Hittable for Ellipsoid<A> {
     #[inline(always)]
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         if A::IS_CLASSIC {
@@ -39,7 +39,7 @@ impl<A: Marker> Hittable for Ellipsoid<A> {
         !A::IS_CLASSIC && leaving == Side::Inside
     }
 
-    fn openness(&self) -> Option<&'static str> {
+    fn why_not_closed(&self) -> Option<&'static str> {
         None
     }
 

@@ -27,7 +27,7 @@ pub trait Implicit: Send + Sync {
     }
 
     /// Says why the surface is not closed; `None` for a closed surface that lies within its box.
-    fn openness(&self) -> Option<&'static str> {
+    fn why_not_closed(&self) -> Option<&'static str> {
         Some("it has no inside")
     }
 

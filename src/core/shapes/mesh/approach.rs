@@ -1,7 +1,7 @@
 //! Rays that come from so far away that plain arithmetic cannot tell the faces of a mesh apart.
 
 use crate::geometry::aabb::Aabb;
-use crate::geometry::ray::{Drift, Ray};
+use crate::geometry::ray::{Ray, RayError};
 use glam::DVec3;
 use std::iter;
 use tabray_exact::double_double::exact::exact_sum;
@@ -16,7 +16,7 @@ pub(super) const FAR: f64 = (1_u64 << 30) as f64;
 pub(super) struct Approach {
     pub ray: Ray,
     /// A bound on the error of its origin.
-    pub drift: Drift,
+    pub drift: RayError,
     /// The distance of the new origin from the old one, in world units, and a bound on its error.
     pub travelled: f64,
     pub slack: f64,
@@ -25,7 +25,7 @@ pub(super) struct Approach {
 impl Approach {
     /// Leaves a ray as it is.
     pub(super) fn none(ray: &Ray) -> Self {
-        Self { ray: *ray, drift: Drift::NONE, travelled: 0.0, slack: 0.0 }
+        Self { ray: *ray, drift: RayError::NONE, travelled: 0.0, slack: 0.0 }
     }
 
     /// Starts a ray before a box that is far away for its size.
@@ -53,7 +53,7 @@ impl Approach {
         }
         let slack = 4.0 * f64::EPSILON * steps.iter().map(|step| step.abs()).sum::<f64>();
         let drift =
-            Drift { origin: 2.0 * f64::EPSILON * at.abs().max_element() + f64::MIN_POSITIVE, dir: 0.0 };
+            RayError { origin: 2.0 * f64::EPSILON * at.abs().max_element() + f64::MIN_POSITIVE, dir: 0.0 };
         Self { ray: Ray { origin: at, dir: ray.dir }, drift, travelled: steps.iter().sum(), slack }
     }
 }

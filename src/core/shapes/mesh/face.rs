@@ -1,7 +1,7 @@
 //! One face of a mesh: what plain arithmetic tells of a ray's hit, and its equation.
 
 use crate::geometry::aabb::{Aabb, larger};
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayError};
 use crate::shapes::triangle::{Triangle, UNDERFLOW, largest, passed};
 use crate::world::accuracy::Exact;
 use crate::world::certify::Equation;
@@ -54,7 +54,7 @@ impl Flat {
     /// Returns the product of the normal and the vector from a ray's origin to the face, and bounds on the errors of that
     /// and of the product with the direction.
     #[inline(always)]
-    fn away(&self, ray: &Ray, drift: Drift) -> (f64, f64, f64) {
+    fn away(&self, ray: &Ray, drift: RayError) -> (f64, f64, f64) {
         let (between, edges) = (self.corners[0] - ray.origin, self.edges);
         let largest = largest(between);
         let (away_error, toward_error) =
@@ -67,7 +67,7 @@ impl Flat {
 
     /// Returns the bracket of a ray that certainly leaves the face, or may leave it; `None` for any other.
     #[inline(always)]
-    pub(super) fn left(&self, ray: &Ray, leaving: Leaving, drift: Drift) -> Option<Bracket> {
+    pub(super) fn left(&self, ray: &Ray, leaving: Leaving, drift: RayError) -> Option<Bracket> {
         let (away, away_error, toward_error) = self.away(ray, drift);
         // The length is off by less than an error of a direction.
         let offset = |error: f64| error * (self.size - toward_error);
@@ -92,7 +92,7 @@ impl Flat {
         ray: &Ray,
         end: f64,
         leaving: Leaving,
-        drift: Drift,
+        drift: RayError,
         is_passed: bool,
     ) -> Bracket {
         let (away, away_error, toward_error) = self.away(ray, drift);
@@ -114,7 +114,13 @@ impl Flat {
 
 /// Returns bounds of the distance before `end` at which a ray hits a face; with a drift, of all rays within it.
 #[inline(always)]
-pub(super) fn t_bounds(corners: [DVec3; 3], ray: &Ray, end: f64, leaving: Leaving, drift: Drift) -> Bracket {
+pub(super) fn t_bounds(
+    corners: [DVec3; 3],
+    ray: &Ray,
+    end: f64,
+    leaving: Leaving,
+    drift: RayError,
+) -> Bracket {
     let passed = passed(corners, ray, drift);
     if passed == Some(false) {
         return Bracket::MISS;

@@ -7,7 +7,7 @@ use super::points::touches;
 use super::search::Scratch;
 use super::surface::Surface;
 use crate::geometry::aabb::{Aabb, larger};
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayBall, RayRange};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange};
 use crate::geometry::sight::Sight;
 use crate::shapes::plane::Plane;
 use crate::shapes::triangle::{Triangle, plane_for_distances};
@@ -28,7 +28,7 @@ impl Surface {
         ray: &Ray,
         range: &RayRange,
         leaving: Leaving,
-        drift: Drift,
+        drift: RayError,
         is_any: bool,
     ) -> Known {
         let mut nearest = Nearest::NONE;
@@ -54,7 +54,7 @@ impl Surface {
         range: &RayRange,
         leaving: Leaving,
     ) -> (Bracket, Option<usize>) {
-        let known = self.first(cpu, ray, range, leaving, Drift::NONE, false);
+        let known = self.first(cpu, ray, range, leaving, RayError::NONE, false);
         self.bracketed::<A>(known, self.crossing::<A>(known, ray), ray, range, leaving)
     }
 
@@ -208,7 +208,7 @@ impl Surface {
         let distance = way.length();
         let far = distance - 64.0 * f64::EPSILON * (distance + ray.origin.abs().max_element());
         let (toward, range) = (Ray { dir: way / distance, ..*ray }, RayRange { far, ..RayRange::ALL });
-        let first = || self.first(Cpu::best(), &toward, &range, NOTHING, Drift::NONE, false);
+        let first = || self.first(Cpu::best(), &toward, &range, NOTHING, RayError::NONE, false);
         // The upper end of a bracket may lie beyond the range.
         matches!(first(), Known::Bracket(bracket) | Known::Face { bracket, .. } if bracket.far < far)
     }

@@ -11,7 +11,7 @@ use crate::geometry::sight::Line;
 use crate::parallel;
 use crate::shapes::solid::Crossings;
 use crate::world::accuracy::Exact;
-use crate::world::certify::{Precise, Proven};
+use crate::world::certify::{Precise, ProofMethods};
 use f256::f256;
 use glam::DVec3;
 use std::cmp::Ordering;
@@ -21,7 +21,7 @@ use tabray_exact::scalar::{Scalar, constants, dot, per_axis};
 impl Surface {
     /// Says why a closed mesh has no inside, phrased to follow "is not a closed shape: "; `None` if it has one. `shape` is
     /// the mesh as a shape.
-    pub(super) fn fault(&self, shape: &(dyn Proven + Sync)) -> Option<&str> {
+    pub(super) fn fault(&self, shape: &(dyn ProofMethods + Sync)) -> Option<&str> {
         let fault = || {
             if self.is_star(shape) {
                 return None;
@@ -54,7 +54,7 @@ impl Surface {
 
     /// Returns how many bodies of a closed mesh the outer side of a face lies in, where those turned inside out count as
     /// less than none; `None` where no direction tells.
-    fn depth<F: Precise>(&self, shape: &dyn Proven, face: usize) -> Option<i32> {
+    fn depth<F: Precise>(&self, shape: &dyn ProofMethods, face: usize) -> Option<i32> {
         let third = Interval::constant(1.0) / Interval::constant(3.0);
         let triangle = self.triangle::<Exact>(face);
         let normal = triangle.area_normal::<Interval<F>>();
@@ -72,7 +72,7 @@ impl Surface {
     /// Then its faces meet only at edges and corners that they share, and it has an inside. Around an edge, a ray from the
     /// point meets as many faces on the one side as on the other, as the mesh is closed and all faces are turned alike. So
     /// all rays that meet no edge meet one face each; but where faces met elsewhere, some ray nearby would meet two.
-    fn is_star(&self, shape: &dyn Proven) -> bool {
+    fn is_star(&self, shape: &dyn ProofMethods) -> bool {
         let middle = self.vertices.iter().sum::<DVec3>() / self.vertices.len() as f64;
         let is_behind = |face: usize| side_of_plane(self.corners(face), middle) == Ordering::Greater;
         if parallel::find_first(self.face_count(), |face| !is_behind(face)).is_some() {
@@ -108,7 +108,11 @@ fn directions() -> impl Iterator<Item = DVec3> {
 
 /// Counts how often a line leaves a shape, less how often it enters it; `None` where that is not certain. Its start may lie
 /// on one part of the shape, which does not count.
-fn exits<F: Precise>(shape: &dyn Proven, line: &Line<Interval<F>>, leaves: Option<usize>) -> Option<i32> {
+fn exits<F: Precise>(
+    shape: &dyn ProofMethods,
+    line: &Line<Interval<F>>,
+    leaves: Option<usize>,
+) -> Option<i32> {
     let mut crossings = Crossings::new(shape, line, leaves);
     let mut exits = 0;
     for index in 0.. {

@@ -4,7 +4,7 @@ use super::known::Known;
 use super::memo::Memo;
 use super::search::Aims;
 use super::shape::{ByFaces, Mesh};
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayBall, RayRange, Side};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
 use crate::geometry::ray_packet::{self, PACKET_SIZE, RayPacket};
 use crate::shapes::triangle::{crossings, unit_normals};
 use crate::simd::cpu::{Cpu, kernels};
@@ -12,10 +12,10 @@ use crate::simd::soa::{LANES, Vectors};
 use crate::world::accuracy::Bounded;
 use crate::world::hittable::Hittable;
 use crate::world::interaction::{SurfaceInteraction, turned};
-use crate::world::packets::shape::Packets;
+use crate::world::packets::shape::PacketIntersect;
 use crate::world::shape::{ByPackets, Shape};
 
-impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
+impl<A: Bounded> PacketIntersect for Shape<Mesh<A>, ByPackets, ByFaces> {
     fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {
         near.fill(MISS);
         far.fill(MISS);
@@ -56,7 +56,7 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
         let side = rays.side(0);
         if side.is_none() || mesh.can_hit_itself {
             let aims =
-                Aims { leaving: mesh.leaving(side, rays.origin_error), drift: Drift::NONE, is_any: true };
+                Aims { leaving: mesh.leaving(side, rays.origin_error), drift: RayError::NONE, is_any: true };
             let mut ends = [0.0; PACKET_SIZE];
             for lane in 0..count {
                 ends[lane] = if blocked[lane] == 0 { t_max[lane] } else { 0.0 };
@@ -119,7 +119,7 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
         let (leaving, range) =
             (self.shape.leaving(origin_side, 0.0), RayRange { origin_side, ..RayRange::ALL });
-        match self.shape.surface.first(Cpu::best(), ray, &range, leaving, Drift::NONE, false) {
+        match self.shape.surface.first(Cpu::best(), ray, &range, leaving, RayError::NONE, false) {
             Known::Face { face, .. } => self.shape.surface.plane::<A>(face).quick_crossing(ray),
             Known::Bracket(_) => f64::NAN,
         }

@@ -4,7 +4,7 @@ use super::face::{Flat, Leaving, t_bounds};
 use super::known::Eight;
 use super::surface::Surface;
 use crate::geometry::bvh::{self, Order, PacketVisitor, Stack};
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayError};
 use crate::geometry::ray_packet::RayPacket;
 use crate::shapes::triangle::{UNDERFLOW, largest, side_error};
 use crate::simd::cpu::{Cpu, kernels};
@@ -41,7 +41,7 @@ impl Scratch {
 #[derive(Clone, Copy)]
 pub(super) struct Aims {
     pub leaving: Leaving,
-    pub drift: Drift,
+    pub drift: RayError,
     /// Whether any certain hit of a ray will do.
     pub is_any: bool,
 }
@@ -134,7 +134,7 @@ kernels! {
 ///
 /// [`passed`]: crate::shapes::triangle::passed
 #[inline(always)]
-fn passed(corners: [DVec3; 3], rays: RayPacket, drift: Drift) -> ([u64; LANES], [u64; LANES]) {
+fn passed(corners: [DVec3; 3], rays: RayPacket, drift: RayError) -> ([u64; LANES], [u64; LANES]) {
     let (error, more) = side_error(drift);
     let (mut missed, mut inside) = ([0; LANES], [0; LANES]);
     for lane in 0..LANES {

@@ -14,11 +14,11 @@ use crate::text;
 use crate::world::accuracy::{Accuracy, Bounded};
 use crate::world::certify::{
     Assumption, Enclosure, FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precise, Precision, Premise,
-    Proven,
+    ProofMethods,
 };
 use crate::world::coincidence::{CLOSE, ROUNDING};
 use crate::world::hittable::Hittable;
-use crate::world::packets::shape::Proofs;
+use crate::world::packets::shape::HitQueries;
 use crate::world::shape::{ByPackets, Shape};
 use glam::{DMat3, DVec2, DVec3};
 use std::marker::PhantomData;
@@ -131,8 +131,8 @@ impl<A: Bounded> Hittable for Mesh<A> {
         self.can_hit_itself
     }
 
-    fn openness(&self) -> Option<&str> {
-        match self.surface.openness {
+    fn why_not_closed(&self) -> Option<&str> {
+        match self.surface.why_not_closed {
             Openness { open: 0, clashing: 0 } => self.surface.fault(self),
             Openness { open: 0, .. } => Some("some of its faces are turned against their neighbours"),
             _ => Some("some of its edges belong to one face only"),
@@ -152,7 +152,7 @@ impl<A: Bounded> Hittable for Mesh<A> {
     }
 
     fn method(&self) -> String {
-        let Surface { openness: Openness { open, clashing }, tree, .. } = &*self.surface;
+        let Surface { why_not_closed: Openness { open, clashing }, tree, .. } = &*self.surface;
         let lit = if self.is_two_sided() { "lit on both sides" } else { "lit on one side" };
         let sides = match (open, clashing) {
             (0, 0) => format!("closed, and so {lit}"),
@@ -189,7 +189,7 @@ impl<A: Bounded> Hittable for Mesh<A> {
     }
 }
 
-impl<A: Bounded> Proofs for Shape<Mesh<A>, ByPackets, ByFaces> {
+impl<A: Bounded> HitQueries for Shape<Mesh<A>, ByPackets, ByFaces> {
     fn touches(&self, at: DVec3, error: f64) -> bool {
         self.shape.surface.touches::<A>(at, error)
     }
@@ -219,7 +219,7 @@ impl<A: Bounded> Proofs for Shape<Mesh<A>, ByPackets, ByFaces> {
         self.shape.surface.certify::<A>(sight, precision)
     }
 
-    fn proven(&self) -> Option<&dyn Proven> {
+    fn proven(&self) -> Option<&dyn ProofMethods> {
         Some(&self.shape)
     }
 }

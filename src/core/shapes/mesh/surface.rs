@@ -9,7 +9,7 @@ use super::winding::{self, Openness};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::Bvh;
 use crate::parallel;
-use crate::scene::attribute::MOST_LENGTH;
+use crate::scene::attribute::MAX_LENGTH;
 use crate::simd::soa::{LANES, Vectors};
 use crate::text;
 use glam::DVec3;
@@ -52,7 +52,7 @@ pub struct Surface {
     /// Why the mesh has no inside although it is closed, if it has none; found when it is first asked for.
     pub(super) fault: OnceLock<Option<String>>,
     /// The edges that keep the surface from being closed.
-    pub openness: Openness,
+    pub why_not_closed: Openness,
     /// Whether both sides of an open surface are lit.
     pub(super) is_two_sided: bool,
     /// What was not taken as the file says it.
@@ -92,7 +92,7 @@ impl Surface {
         }
         let Model { vertices, mut faces, materials, slots, sides, mut remarks } = model;
         let vertices = merge(vertices, &mut faces, placement);
-        let is_far = |at: DVec3| !at.is_finite() || at.abs().max_element() > MOST_LENGTH;
+        let is_far = |at: DVec3| !at.is_finite() || at.abs().max_element() > MAX_LENGTH;
         if parallel::find_first(vertices.len(), |vertex| is_far(vertices[vertex])).is_some() {
             return Err(SurfaceError::TooLarge);
         }
@@ -116,7 +116,7 @@ impl Surface {
                 edges = Edges::of(&kept, vertices.len());
             }
         }
-        let openness = winding::openness(&edges);
+        let why_not_closed = winding::why_not_closed(&edges);
         let normals =
             look.crease.map_or_else(Normals::default, |crease| Normals::of(&vertices, &kept, &edges, crease));
         drop(edges);
@@ -146,7 +146,7 @@ impl Surface {
             bounds,
             planes: OnceLock::new(),
             fault: OnceLock::new(),
-            openness,
+            why_not_closed,
             is_two_sided: look.is_two_sided,
             remarks,
             materials,
@@ -156,7 +156,7 @@ impl Surface {
     /// Tells whether each edge joins faces in pairs that are turned alike.
     #[inline]
     pub fn is_closed(&self) -> bool {
-        self.openness == Openness::default()
+        self.why_not_closed == Openness::default()
     }
 
     /// Returns the number of faces.

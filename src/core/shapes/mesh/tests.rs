@@ -6,7 +6,7 @@ use super::known::Known;
 use super::search::Aims;
 use super::{Look, Mesh, Openness, Surface, ToWorld, read::Model};
 use crate::geometry::placement::Rotation;
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayBall, RayRange, Side};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
 use crate::geometry::ray_packet::{PACKET_SIZE, RayPacket};
 use crate::geometry::sight::Sight;
 use crate::shapes::triangle::Triangle;
@@ -161,7 +161,7 @@ fn a_ray_through_a_vertex_hits_the_first_face_of_the_file() {
         let model =
             Model { vertices: vertices.map(DVec3::from).to_vec(), faces: faces.clone(), ..Model::default() };
         let surface = Arc::new(surface(model, &ToWorld::new(PLAIN, Rotation::NONE, DVec3::ZERO)));
-        assert_eq!(surface.openness, Openness { open: 4, clashing: 0 });
+        assert_eq!(surface.why_not_closed, Openness { open: 4, clashing: 0 });
         let ray = Ray { origin: DVec3::Z, dir: -DVec3::Z };
         assert_eq!(shape(&surface).distance(&ray, &RayRange::ALL), 1.0);
         assert_eq!(shape(&surface).part(&ray, 1.0).as_deref(), Some("face 1"));
@@ -246,7 +246,7 @@ proptest! {
         let rays = RayPacket::new(origin.view(count), dir.view(count), 0.0);
         let error = coincidence::ROUNDING * reach;
         let leaving = if leaves { Leaving { least: error, most: 2.0 * error } } else { NOTHING };
-        let drift = Drift { origin: drift * reach, dir: drift };
+        let drift = RayError { origin: drift * reach, dir: drift };
         for (cpu, is_any) in Cpu::all().flat_map(|cpu| [(cpu, false), (cpu, true)]) {
             let mut lanes = Vec::new();
             surface.search(cpu, rays, &ends, Aims { leaving, drift, is_any }, |first, found| {
@@ -278,7 +278,7 @@ fn a_face_that_only_another_ray_within_the_drift_hits_is_not_missed() {
     for cpu in Cpu::all() {
         let (exactly, _) = surface.bracket::<Exact>(cpu, &ray, &RayRange::ALL, NOTHING);
         assert_eq!(exactly.near, MISS);
-        for drift in [Drift { origin: 2e-6, dir: 0.0 }, Drift { origin: 0.0, dir: 1e-6 }] {
+        for drift in [RayError { origin: 2e-6, dir: 0.0 }, RayError { origin: 0.0, dir: 1e-6 }] {
             let within = surface.bracket_within::<Exact>(cpu, &RayBall { ray, drift }, &RayRange::ALL);
             assert!(within.near <= 2.0 && within.far == MISS, "{drift:?}: {within:?}");
         }
@@ -381,11 +381,11 @@ fn faces_of_which_none_lies_beside_another_are_found() {
         let rays = RayPacket::new(origin.view(LANES), dir.view(LANES), 0.0);
         let rights: Vec<_> = (0..LANES).map(|lane| among(&surface, &rays.get(lane))).collect();
         for cpu in Cpu::all() {
-            let aims = Aims { leaving: NOTHING, drift: Drift::NONE, is_any: false };
+            let aims = Aims { leaving: NOTHING, drift: RayError::NONE, is_any: false };
             surface.search(cpu, rays, &[MISS; LANES], aims, |_, found| {
                 for lane in 0..LANES {
                     let (ray, right) = (rays.get(lane), rights[lane]);
-                    let alone = surface.first(cpu, &ray, &RayRange::ALL, NOTHING, Drift::NONE, false);
+                    let alone = surface.first(cpu, &ray, &RayRange::ALL, NOTHING, RayError::NONE, false);
                     for known in [alone, found.get(lane).known(&ray, MISS, NOTHING, false)] {
                         let (Known::Face { bracket, .. } | Known::Bracket(bracket)) = known;
                         assert!(

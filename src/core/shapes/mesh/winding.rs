@@ -54,7 +54,7 @@ impl Part {
 }
 
 /// Counts the edges that keep a mesh from being closed.
-pub(super) fn openness(edges: &Edges) -> Openness {
+pub(super) fn why_not_closed(edges: &Edges) -> Openness {
     let mut found = Openness::default();
     for sides in edges.iter() {
         let back = sides.iter().filter(|side| side.is_back()).count();
@@ -356,13 +356,13 @@ mod tests {
     fn faces_that_cannot_agree_are_left_as_they_are() {
         let [columns, rows] = [9, 4];
         let plain = made(ring(columns, rows, false, false));
-        assert_eq!(plain.openness, Openness { open: 2 * columns as usize, clashing: 0 });
+        assert_eq!(plain.why_not_closed, Openness { open: 2 * columns as usize, clashing: 0 });
         assert_eq!(told(&plain), [""; 0]);
         let strip = made(ring(columns, rows, false, true));
-        assert_eq!(strip.openness, Openness { open: 2 * columns as usize, clashing: rows as usize });
+        assert_eq!(strip.why_not_closed, Openness { open: 2 * columns as usize, clashing: rows as usize });
         assert_eq!(told(&strip), [""; 0]);
         let bottle = made(ring(columns, rows, true, true));
-        assert_eq!(bottle.openness, Openness { open: 0, clashing: rows as usize });
+        assert_eq!(bottle.why_not_closed, Openness { open: 0, clashing: rows as usize });
         let torus = made(ring(columns, rows, true, false));
         assert!(torus.is_closed());
     }

@@ -6,7 +6,7 @@ use crate::world::body::{AnyShader, Body};
 use crate::world::certify::Precise;
 use crate::world::material::{Look, Material, Rgb};
 use crate::world::packets::shader::{EncloseLook, PacketShader};
-use crate::world::shader::{LookBounds, Plain, PointBounds, Sees, Shader, SurfacePoint};
+use crate::world::shader::{LookBounds, Plain, PointBounds, Shader, ShaderInputs, SurfacePoint};
 use crate::world::shape::{ByPackets, Shape};
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
@@ -62,7 +62,7 @@ impl PlacedShader {
 }
 
 impl Shader for PlacedShader {
-    fn sees(&self) -> Sees {
+    fn sees(&self) -> ShaderInputs {
         self.own().sees()
     }
 

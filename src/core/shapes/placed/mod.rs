@@ -1,6 +1,6 @@
 //! Copies of objects in other places, which share the object's shape.
 //!
-//! A ray is taken to the object's own coordinates, and its hit back to the world. A `Drift` bounds the rounding of
+//! A ray is taken to the object's own coordinates, and its hit back to the world. A `RayError` bounds the rounding of
 //! both, and the shape returns a bracket of the hits of all rays within the drift. Where the bracket leaves a hit in
 //! doubt, the ray as the scene gives it decides, with the sines and cosines of the angles enclosed in intervals.
 

@@ -4,13 +4,13 @@
 use super::object_space::{ObjectSpaceRays, take_out, to_world};
 use super::shape::{ByPlacement, Placed, entered};
 use crate::geometry::aabb::Aabb;
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayBall, RayRange, Side};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
 use crate::geometry::ray_packet::{RayPacket, split};
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::LANES;
 use crate::world::hittable::Hittable;
 use crate::world::interaction::SurfaceInteraction;
-use crate::world::packets::shape::{self, Packets};
+use crate::world::packets::shape::{self, PacketIntersect};
 use crate::world::shape::{ByPackets, Shape};
 
 /// The number of rays that are taken to an object's own coordinates together, where there are more than [`LANES`].
@@ -37,7 +37,7 @@ impl Placed {
         let mut own = ObjectSpaceRays::<N>::NONE;
         own.set(cpu, self, rays, &ends[..count]);
         // Rays that continue from a surface are taken as they are.
-        let mut own_drift = Drift::NONE;
+        let mut own_drift = RayError::NONE;
         if is_from_camera {
             let origins = (0..count).map(|lane| rays.origin.get(lane));
             match self.object_drift(origins, rays.drift) {
@@ -162,7 +162,7 @@ impl Placed {
     }
 }
 
-impl Packets for Shape<Placed, ByPackets, ByPlacement> {
+impl PacketIntersect for Shape<Placed, ByPackets, ByPlacement> {
     fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {
         if near.len() <= LANES {
             return self.shape.few_brackets::<LANES>(cpu, rays, ends, (near, far));

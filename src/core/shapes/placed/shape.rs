@@ -4,13 +4,13 @@ use super::image_plane::MaxZ;
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::facet::Facet;
 use crate::geometry::placement::Placement;
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayBall, RayRange, Side};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
 use crate::geometry::sight::Sight;
 use crate::world::body::Body;
-use crate::world::certify::{Enclosure, Precision, Premise, Proven};
+use crate::world::certify::{Enclosure, Precision, Premise, ProofMethods};
 use crate::world::coincidence::{CLOSE, ROUNDING, close};
 use crate::world::hittable::Hittable;
-use crate::world::packets::shape::Proofs;
+use crate::world::packets::shape::HitQueries;
 use crate::world::shape::{ByPackets, Shape};
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
@@ -41,7 +41,7 @@ pub struct ByPlacement;
 const TURN: f64 = 256.0 * f64::EPSILON;
 
 /// The drift of a camera ray in the world: a component of its direction is off by 3 units of 2^-53 at most.
-const CAMERA: Drift = Drift { origin: 0.0, dir: 3.0 * f64::EPSILON };
+const CAMERA: RayError = RayError { origin: 0.0, dir: 3.0 * f64::EPSILON };
 
 /// The largest drift of a direction for which brackets are computed. Lengths are off by as much, and must be known far
 /// better than the distance at which two hits count as coincident.
@@ -89,7 +89,11 @@ impl Placed {
 
     /// Returns the drift in the object's own coordinates of rays from these origins with a drift in the world. `None`
     /// where it is so large that brackets would say little.
-    pub(super) fn object_drift(&self, origins: impl Iterator<Item = DVec3>, drift: Drift) -> Option<Drift> {
+    pub(super) fn object_drift(
+        &self,
+        origins: impl Iterator<Item = DVec3>,
+        drift: RayError,
+    ) -> Option<RayError> {
         let Placement { scale, translation, .. } = self.placement;
         let away = origins.map(|origin| (origin - translation).abs().element_sum()).fold(0.0, f64::max);
         let (least, most) = (scale.min_element(), scale.max_element());
@@ -98,7 +102,7 @@ impl Placed {
         // Making two vectors unit vectors at most doubles the difference between them, relative to the shorter one,
         // which is as long as 1 / `most` at least.
         let dir = 2.0 * (drift.dir + TURN) * (most / least);
-        let own = Drift { origin: (drift.origin + TURN * away) / least, dir };
+        let own = RayError { origin: (drift.origin + TURN * away) / least, dir };
         (dir < MOST_DRIFT && own.origin < MISS).then_some(own)
     }
 
@@ -137,7 +141,7 @@ impl Placed {
             return Bracket::exactly(self.distance(ray, range));
         }
         let is_from_camera = range.origin_side.is_none() && range.origin_error == 0.0;
-        let mut drift = Drift::NONE;
+        let mut drift = RayError::NONE;
         if is_from_camera {
             match self.object_drift([ray.origin].into_iter(), ray.drift) {
                 Some(own) => drift = own,
@@ -251,8 +255,8 @@ impl Hittable for Placed {
         self.bounds
     }
 
-    fn openness(&self) -> Option<&str> {
-        self.body.shape.openness()
+    fn why_not_closed(&self) -> Option<&str> {
+        self.body.shape.why_not_closed()
     }
 
     fn can_hit_itself(&self, leaving: Side) -> bool {
@@ -293,7 +297,7 @@ fn touches(placed: &Placed, at: DVec3, error: f64) -> bool {
     placed.body.shape.touches(placed.object_point(at), placed.object_error(at, error))
 }
 
-impl Proofs for Shape<Placed, ByPackets, ByPlacement> {
+impl HitQueries for Shape<Placed, ByPackets, ByPlacement> {
     fn touches(&self, at: DVec3, error: f64) -> bool {
         touches(&self.shape, at, error)
     }
@@ -322,7 +326,7 @@ impl Proofs for Shape<Placed, ByPackets, ByPlacement> {
         shape.premises(entity.unwrap_or(of), each);
     }
 
-    fn proven(&self) -> Option<&dyn Proven> {
+    fn proven(&self) -> Option<&dyn ProofMethods> {
         Some(&self.shape)
     }
 

@@ -5,7 +5,7 @@ use super::surface::Plane;
 use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::geometry::ray_packet::RayPacket;
 use crate::simd::soa::LANES;
-use crate::world::accuracy::{Accuracy, Marker};
+use crate::world::accuracy::{Accuracy, AccuracyTag};
 use tabray_exact::double_double::exact::exact_sum;
 use tabray_exact::double_double::{DoubleDouble, dot, power_of_two, two_product, two_sum};
 use tabray_exact::scalar::per_axis;
@@ -77,7 +77,7 @@ impl<A> Plane<A> {
     }
 }
 
-impl<A: Marker> Plane<A> {
+impl<A: AccuracyTag> Plane<A> {
     /// Returns the distance in world units at which a ray intersects the plane, forward or backward; [`MISS`] for a
     /// parallel ray.
     #[inline(always)]

@@ -3,9 +3,9 @@
 use super::surface::Plane;
 use crate::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
 use crate::geometry::ray_packet::RayPacket;
-use crate::world::accuracy::{Accuracy, Bounded, Marker};
+use crate::world::accuracy::{Accuracy, AccuracyTag, Bounded};
 use crate::world::hittable::Bracketed;
-use crate::world::packets::shape::OneRay;
+use crate::world::packets::shape::ScalarIntersect;
 use crate::world::shape::Shape;
 
 /// A bracketed shape that is all or a part of a plane.
@@ -27,7 +27,7 @@ impl<T: Flat> Shape<T> {
     }
 }
 
-impl<T: Flat, P> OneRay for Shape<T, ByPlane, P> {
+impl<T: Flat, P> ScalarIntersect for Shape<T, ByPlane, P> {
     type Author = T;
 
     #[inline(always)]

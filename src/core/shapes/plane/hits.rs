@@ -3,12 +3,12 @@
 use super::{Flat, Plane};
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
-use crate::world::accuracy::{Bounded, Marker};
+use crate::world::accuracy::{AccuracyTag, Bounded};
 use crate::world::hittable::{Bracketed, Certified, Hittable};
 use glam::DVec3;
 use tabray_exact::double_double::DoubleDouble;
 
-impl<A: Marker> Hittable for Plane<A> {
+impl<A: AccuracyTag> Hittable for Plane<A> {
     #[inline(always)]
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         self.keep(self.crossing(ray), ray, range)

@@ -2,7 +2,7 @@
 
 use super::products::{MIN_TOWARD, Products, RECIPROCAL_ERROR, reciprocal};
 use crate::geometry::aabb::{Aabb, SLACK, larger};
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayBall, RayRange};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange};
 use crate::world::certify::Equation;
 use glam::DVec3;
 use std::marker::PhantomData;
@@ -110,7 +110,7 @@ impl<A> Plane<A> {
             let error = if inverse.abs() >= MIN_TOWARD.recip() { f64::INFINITY } else { error };
             return RoughCrossing { distance, error, aside: 0.0, is_parallel };
         }
-        let Drift { origin, dir } = ray.drift;
+        let RayError { origin, dir } = ray.drift;
         let aside = origin + distance.abs() * dir;
         let is_steep = inverse.abs() * (MIN_TOWARD + 4.0 * dir) < 1.0;
         let error = if is_steep { error + 2.0 * inverse.abs() * aside } else { f64::INFINITY };

@@ -3,13 +3,13 @@
 use super::Quadric;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
-use crate::world::accuracy::{Bounded, Marker};
+use crate::world::accuracy::{AccuracyTag, Bounded};
 use crate::world::certify::Equation;
 use crate::world::hittable::{Bracketed, Certified, Hittable};
 use glam::DVec3;
 use tabray_exact::scalar::Scalar;
 
-impl<A: Marker> Hittable for Quadric<A> {
+impl<A: AccuracyTag> Hittable for Quadric<A> {
     /// Returns the nearer of the two roots that lies in the box.
     #[inline(always)]
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
@@ -34,7 +34,7 @@ impl<A: Marker> Hittable for Quadric<A> {
         !A::IS_CLASSIC
     }
 
-    fn openness(&self) -> Option<&'static str> {
+    fn why_not_closed(&self) -> Option<&'static str> {
         (!self.is_closed())
             .then_some("it is not an ellipsoid within its box whose equation is below J inside")
     }

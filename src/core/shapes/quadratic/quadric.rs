@@ -5,14 +5,14 @@ use super::quick::QuickHit;
 use super::surface::{OwnRay, Quadratic};
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::clearance;
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayBall, RayRange, Side};
-use crate::world::accuracy::{Accuracy, Marker};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
+use crate::world::accuracy::{Accuracy, AccuracyTag};
 use glam::{DMat3, DVec3};
 use std::marker::PhantomData;
 use tabray_exact::scalar::{Scalar, per_axis};
 
 /// A bound of the error of a camera ray, whose direction is off by 3 units of 2^-53 in each component.
-const CAMERA: Drift = Drift { origin: 0.0, dir: 1.5 * f64::EPSILON };
+const CAMERA: RayError = RayError { origin: 0.0, dir: 1.5 * f64::EPSILON };
 
 /// A quadric `p·Sp + l·p + c = 0`, for points `p` relative to the center, in a box.
 #[derive(Clone, Debug)]
@@ -118,7 +118,7 @@ impl<A> Quadric<A> {
     }
 }
 
-impl<A: Marker> Quadric<A> {
+impl<A: AccuracyTag> Quadric<A> {
     /// The description of how hits are found, in a few words.
     pub const METHOD: &str = match A::ACCURACY {
         Accuracy::Classic => "the notes' formula",
@@ -172,7 +172,7 @@ impl<A: Marker> Quadric<A> {
             return f64::NAN;
         }
         let own = self.own_ray(ray);
-        let quick = self.own.quick_hit(&own, range.near, Drift::NONE);
+        let quick = self.own.quick_hit(&own, range.near, RayError::NONE);
         let corrected = self.own.corrected(&own, quick.distance);
         let is_unknown = quick.is_unknown | corrected.is_nan();
         let hit = if is_unknown { f64::NAN } else { range.keep(corrected) };

@@ -2,7 +2,7 @@
 
 use super::surface::{DD_ERROR, OwnRay, Quadratic};
 use crate::geometry::aabb::smaller;
-use crate::geometry::ray::Drift;
+use crate::geometry::ray::RayError;
 use glam::DVec3;
 use tabray_exact::double_double::{two_product, two_sum};
 
@@ -84,7 +84,7 @@ impl Quadratic {
     /// Computes the first hit beyond `near` in plain arithmetic without branches, for a ray whose origin and direction
     /// may be off by as much as a drift in each component.
     #[inline(always)]
-    pub fn quick_hit(&self, ray: &OwnRay, near: f64, drift: Drift) -> QuickHit {
+    pub fn quick_hit(&self, ray: &OwnRay, near: f64, drift: RayError) -> QuickHit {
         let along = self.along(ray, drift.origin * self.scale, drift.dir);
         let RayPolynomial { a, b, c, a_error, b_error, c_error, .. } = along;
         let (square, product) = (b * b, a * c);

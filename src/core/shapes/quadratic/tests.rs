@@ -1,6 +1,6 @@
 use super::surface::Quadratic;
-use crate::geometry::ray::Drift;
 use crate::geometry::ray::MISS;
+use crate::geometry::ray::RayError;
 use glam::DVec3;
 
 const BOX: [DVec3; 2] = [DVec3::splat(-1e9), DVec3::splat(1e9)];
@@ -9,7 +9,7 @@ fn hit(coefficients: [f64; 10], [low, high]: [DVec3; 2], origin: DVec3, dir: DVe
     let surface = Quadratic::new(coefficients, low, high);
     let ray = surface.own(origin, dir, DVec3::ZERO);
     let exact = surface.exact_hit(&ray, 0.0);
-    let quick = surface.quick_hit(&ray, 0.0, Drift::NONE);
+    let quick = surface.quick_hit(&ray, 0.0, RayError::NONE);
     if quick.is_missed {
         assert_eq!(exact, MISS);
     } else if !quick.is_unknown {

@@ -15,7 +15,7 @@ use crate::simd::cpu::Cpu;
 use crate::world::certify::Equation;
 use crate::world::hittable::{Certified, Hittable, Searched};
 use crate::world::interaction::SurfaceInteraction;
-use crate::world::packets::shape::{Packets, Proofs, by_distance};
+use crate::world::packets::shape::{HitQueries, PacketIntersect, by_distance};
 use crate::world::shape::{ByPackets, Shape};
 use glam::{DVec2, DVec3};
 use tabray_exact::interval::Interval;
@@ -100,8 +100,8 @@ impl Hittable for InFrame<Revolution> {
         Some(self.frame.bounds(&self.surface.bounds()))
     }
 
-    fn openness(&self) -> Option<&'static str> {
-        self.surface.openness()
+    fn why_not_closed(&self) -> Option<&'static str> {
+        self.surface.why_not_closed()
     }
 
     fn is_two_sided(&self) -> bool {
@@ -143,9 +143,9 @@ impl Shape<InFrame<Revolution>> {
     }
 }
 
-impl<P> Packets for Shape<InFrame<Revolution>, ByPackets, P>
+impl<P> PacketIntersect for Shape<InFrame<Revolution>, ByPackets, P>
 where
-    Self: Proofs,
+    Self: HitQueries,
 {
     fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {
         let InFrame { surface, frame } = &self.shape;

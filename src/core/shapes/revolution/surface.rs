@@ -56,7 +56,7 @@ impl Revolution {
 
     /// Says why the surface is not that of a solid; `None` for a profile that begins and ends on the axis, and nowhere
     /// crosses it, up to rounding.
-    pub fn openness(&self) -> Option<&'static str> {
+    pub fn why_not_closed(&self) -> Option<&'static str> {
         let rounding = SLACK * self.slabs.widest();
         let radius = |low: f64, high: f64| self.profile.at(Interval { low, high });
         let is_on_axis = |at: f64| radius(at, at).magnitude() <= rounding;

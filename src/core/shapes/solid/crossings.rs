@@ -1,7 +1,7 @@
 //! All crossings of a line and a closed shape, proven one after the other.
 
 use crate::geometry::sight::Line;
-use crate::world::certify::{HitEnclosure, Precise, Proven};
+use crate::world::certify::{HitEnclosure, Precise, ProofMethods};
 use tabray_exact::dual::Dual;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::Scalar;
@@ -19,7 +19,7 @@ pub struct Crossing<F> {
 
 /// The crossings of a line and a closed shape.
 pub struct Crossings<'l, F> {
-    shape: &'l dyn Proven,
+    shape: &'l dyn ProofMethods,
     line: &'l Line<Interval<F>>,
     start: Line<Interval<F>>,
     gone: Interval<F>,
@@ -31,7 +31,7 @@ pub struct Crossings<'l, F> {
 
 impl<'l, F: Precise> Crossings<'l, F> {
     /// Prepares the search along a line, whose true start lies on this part of the shape, if it lies on the shape.
-    pub fn new(shape: &'l dyn Proven, line: &'l Line<Interval<F>>, leaves: Option<usize>) -> Self {
+    pub fn new(shape: &'l dyn ProofMethods, line: &'l Line<Interval<F>>, leaves: Option<usize>) -> Self {
         let gone = Interval::constant(0.0);
         Self { shape, line, start: *line, gone, leaves, known: Vec::new(), end: None }
     }

@@ -1,15 +1,17 @@
 //! Proofs of the hits of a part of a solid.
 
 use super::crossings::Crossings;
-use super::trimmed::Trimmed;
+use super::solid_part::SolidPart;
 use crate::geometry::sight::Line;
-use crate::world::certify::{FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precise, Proven, coarse};
+use crate::world::certify::{
+    FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precise, ProofMethods, coarse,
+};
 use tabray_exact::affine::Affine;
 use tabray_exact::dual::Dual;
 use tabray_exact::interval::Interval;
 
-impl Trimmed {
-    fn proven(&self, part: usize) -> Option<&dyn Proven> {
+impl SolidPart {
+    fn proven(&self, part: usize) -> Option<&dyn ProofMethods> {
         self.parts[part].body.shape.proven()
     }
 
@@ -66,7 +68,7 @@ impl Trimmed {
     }
 }
 
-impl<F: Precise> HitProofs<F> for Trimmed {
+impl<F: Precise> HitProofs<F> for SolidPart {
     fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (HitEnclosure<F>, usize) {
         if let Some(around) = self.around()
             && line.clip(around.low, around.high).is_none()
@@ -106,7 +108,7 @@ impl<F: Precise> HitProofs<F> for Trimmed {
 }
 
 /// Where a hit of the part may be hidden, the hits behind it are not known.
-impl OverFootprint for Trimmed {
+impl OverFootprint for SolidPart {
     fn hits(&self, line: &Line<Affine>, leaves: Option<usize>, met: &mut dyn FnMut(FootprintHit, usize)) {
         if let Some(around) = self.around()
             && coarse(line).clip(around.low, around.high).is_none()

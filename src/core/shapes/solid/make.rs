@@ -1,7 +1,7 @@
 //! Solids as objects: one for each part whose surface is seen.
 
 use super::shader::PartShader;
-use super::trimmed::{ByParts, Trimmed};
+use super::solid_part::{ByParts, SolidPart};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::placement::Placement;
 use crate::scene::entity::{Args, Refusal};
@@ -85,7 +85,7 @@ impl Solid {
                 |part: &Part| Part { name: format!("{} of {name}", part.name).into(), ..part.clone() };
             return Ok(Self { parts: solid.parts.iter().map(named).collect(), tree: solid.tree.clone() });
         }
-        if let Some(why) = object.shape.openness() {
+        if let Some(why) = object.shape.why_not_closed() {
             return Err(NoSolid::Open(name, why.to_owned()));
         }
         let part = Part { name, body: object.clone(), material: object.material.clone().unwrap_or_default() };
@@ -168,7 +168,7 @@ fn seen(solid: &Solid) -> Vec<Body> {
         let tree = solid.tree.without(&|other| other != index && !meets(other));
         let (path, is_outer) = tree.path_to(index)?;
         let around = common(around, tree.bounds(&|part| bounds[part]));
-        let shape = Trimmed::new(&parts, &bounds, (index, is_outer), (tree, path), around);
+        let shape = SolidPart::new(&parts, &bounds, (index, is_outer), (tree, path), around);
         let part = &parts[index];
         let shader = PartShader(part.body.clone());
         let body = Body::shaded(Shape::new(shape).by::<ByPackets, ByParts>(), shader);

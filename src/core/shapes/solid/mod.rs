@@ -15,7 +15,7 @@ mod hit_proofs;
 mod make;
 mod packets;
 mod shader;
-mod trimmed;
+mod solid_part;
 
 pub(crate) use crossings::Crossings;
 pub use make::{Objects, combined};

@@ -1,15 +1,15 @@
 //! Packets of rays that may hit a part of a solid.
 
-use super::trimmed::{ByParts, Trimmed};
+use super::solid_part::{ByParts, SolidPart};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
 use crate::geometry::ray_packet::{Nearest, PACKET_SIZE, RayPacket};
 use crate::simd::cpu::Cpu;
 use crate::world::hittable::Hittable;
 use crate::world::interaction::SurfaceInteraction;
-use crate::world::packets::shape::{self, Packets};
+use crate::world::packets::shape::{self, PacketIntersect};
 use crate::world::shape::{ByPackets, Shape};
 
-impl Trimmed {
+impl SolidPart {
     /// Calls a function with rays that leave the solid as rays that leave the part.
     fn with_own_sides<R>(&self, rays: RayPacket, call: impl FnOnce(RayPacket) -> R) -> R {
         let own = rays.leaving.map(|of| {
@@ -21,7 +21,7 @@ impl Trimmed {
     }
 }
 
-impl Packets for Shape<Trimmed, ByPackets, ByParts> {
+impl PacketIntersect for Shape<SolidPart, ByPackets, ByParts> {
     fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {
         let (part, count) = (&self.shape, near.len());
         part.with_own_sides(rays, |own| {

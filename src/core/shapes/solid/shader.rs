@@ -4,7 +4,7 @@ use crate::world::body::Body;
 use crate::world::certify::Precise;
 use crate::world::material::{Look, Material, Rgb};
 use crate::world::packets::shader::EncloseLook;
-use crate::world::shader::{LookBounds, PointBounds, Sees, Shader, SurfacePoint};
+use crate::world::shader::{LookBounds, PointBounds, Shader, ShaderInputs, SurfacePoint};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 use tabray_exact::interval::{Fine, Fraction};
@@ -13,7 +13,7 @@ use tabray_exact::interval::{Fine, Fraction};
 pub struct PartShader(pub Arc<Body>);
 
 impl Shader for PartShader {
-    fn sees(&self) -> Sees {
+    fn sees(&self) -> ShaderInputs {
         self.0.shader.sees()
     }
 

@@ -5,7 +5,7 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
 use crate::shapes::plane::{Flat, Plane};
 use crate::shapes::uv;
-use crate::world::accuracy::{Bounded, Marker};
+use crate::world::accuracy::{AccuracyTag, Bounded};
 use crate::world::certify::Equation;
 use crate::world::hittable::{Bracketed, Certified, Hittable};
 use glam::{DVec2, DVec3};
@@ -13,7 +13,7 @@ use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, dot, per_axis};
 
-impl<A: Marker> Hittable for Triangle<A> {
+impl<A: AccuracyTag> Hittable for Triangle<A> {
     #[inline(always)]
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         let distance = self.plane.distance(ray, range);

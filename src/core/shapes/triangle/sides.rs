@@ -1,7 +1,7 @@
 //! On which sides of a triangle's edges a ray passes, in plain arithmetic.
 
 use crate::geometry::aabb::larger;
-use crate::geometry::ray::{Drift, Ray};
+use crate::geometry::ray::{Ray, RayError};
 use glam::DVec3;
 
 /// Far more than what products lose that are too small for all digits: the sum of a few of 5e-324. A product with such a
@@ -19,7 +19,7 @@ pub(crate) fn largest(vector: DVec3) -> f64 {
 /// Returns the error of a product of two corners, as seen from a ray's origin, and its direction: as a fraction of the
 /// product of the corners' largest components, and how much is to be added to each of these first.
 #[inline(always)]
-pub(crate) fn side_error(drift: Drift) -> (f64, f64) {
+pub(crate) fn side_error(drift: RayError) -> (f64, f64) {
     // Units of 2^-53 of the product of the largest components: a component of the cross product is off by 4 of its two
     // terms, the direction of a camera ray by 3 and the product by 4; components of the direction add up to at most 1.74,
     // so that the sum is off by 14 + 6 * 3 + 14 = 46, less than 64.
@@ -34,7 +34,7 @@ pub(crate) fn side_error(drift: Drift) -> (f64, f64) {
 ///
 /// For an edge that two triangles share, both compute the same number except for its sign.
 #[inline(always)]
-pub(crate) fn passed(corners: [DVec3; 3], ray: &Ray, drift: Drift) -> Option<bool> {
+pub(crate) fn passed(corners: [DVec3; 3], ray: &Ray, drift: RayError) -> Option<bool> {
     let [a, b, c] = [corners[0] - ray.origin, corners[1] - ray.origin, corners[2] - ray.origin];
     let (error, more) = side_error(drift);
     let largest = [largest(a) + more, largest(b) + more, largest(c) + more];

@@ -1,6 +1,6 @@
 //! Why the first hit of a ray stays open.
 
-use super::hit_proofs::{HitProofs, Proven};
+use super::hit_proofs::{HitProofs, ProofMethods};
 use crate::geometry::sight::Sight;
 use f256::f256;
 use std::fmt;
@@ -37,7 +37,7 @@ const JUMP: f64 = 4.0 * f64::EPSILON;
 
 impl Doubt {
     /// Returns why the first hit of a shape is open from a distance on, in lengths of the sight's direction.
-    pub fn of(shape: &dyn Proven, sight: &Sight, from: f256) -> Self {
+    pub fn of(shape: &dyn ProofMethods, sight: &Sight, from: f256) -> Self {
         let line = sight.line::<Wide>();
         let within = |width: f64| {
             let place = Wide { low: from, high: from * (f256::ONE + f256::from(width)) };

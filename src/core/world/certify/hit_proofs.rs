@@ -49,9 +49,9 @@ pub trait HitProofs<F: Float> {
 }
 
 /// Proofs about a shape's hits along any line, in every precision.
-pub trait Proven: HitProofs<f64> + HitProofs<f256> + HitProofs<Fraction> + OverFootprint {}
+pub trait ProofMethods: HitProofs<f64> + HitProofs<f256> + HitProofs<Fraction> + OverFootprint {}
 
-impl<T: HitProofs<f64> + HitProofs<f256> + HitProofs<Fraction> + OverFootprint> Proven for T {}
+impl<T: HitProofs<f64> + HitProofs<f256> + HitProofs<Fraction> + OverFootprint> ProofMethods for T {}
 
 impl<E: Equation, F: Precise> HitProofs<F> for E {
     fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (HitEnclosure<F>, usize) {
@@ -98,7 +98,7 @@ pub fn shading_normals(
 /// A precision that proofs are tried in.
 pub trait Precise: Float {
     /// Returns a shape's proofs in this precision.
-    fn proofs(shape: &dyn Proven) -> &dyn HitProofs<Self>;
+    fn proofs(shape: &dyn ProofMethods) -> &dyn HitProofs<Self>;
 
     /// Returns what is proven about a line's first hit. With `leaves`, the line's true start lies on the shape.
     fn along(shape: &impl Equation, line: &Line<Interval<Self>>, leaves: bool) -> HitEnclosure<Self>;
@@ -111,7 +111,7 @@ pub trait Precise: Float {
 }
 
 impl Precise for f64 {
-    fn proofs(shape: &dyn Proven) -> &dyn HitProofs<Self> {
+    fn proofs(shape: &dyn ProofMethods) -> &dyn HitProofs<Self> {
         shape
     }
 
@@ -134,7 +134,7 @@ impl Precise for f64 {
 }
 
 impl Precise for f256 {
-    fn proofs(shape: &dyn Proven) -> &dyn HitProofs<Self> {
+    fn proofs(shape: &dyn ProofMethods) -> &dyn HitProofs<Self> {
         shape
     }
 
@@ -153,7 +153,7 @@ impl Precise for f256 {
 
 /// Fractions decide ties of surfaces whose hits have closed forms; other surfaces are searched in 237 bits.
 impl Precise for Fraction {
-    fn proofs(shape: &dyn Proven) -> &dyn HitProofs<Self> {
+    fn proofs(shape: &dyn ProofMethods) -> &dyn HitProofs<Self> {
         shape
     }
 

@@ -17,7 +17,7 @@ mod search;
 pub use doubt::Doubt;
 pub use equation::{Equation, HitEnclosure};
 pub use footprint::{FootprintHit, OverFootprint, coarse, gradient_over};
-pub use hit_proofs::{HitProofs, Precise, Proven, gradient, shading_normals};
+pub use hit_proofs::{HitProofs, Precise, ProofMethods, gradient, shading_normals};
 pub use premise::{Assumption, Premise};
 
 use crate::geometry::aabb::{Aabb, SLACK};

@@ -3,7 +3,7 @@
 use crate::geometry::facet::Facet;
 use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::geometry::sight::Sight;
-use crate::world::certify::{self, Assumption, Enclosure, Equation, Precision, Premise, Proven};
+use crate::world::certify::{self, Assumption, Enclosure, Equation, Precision, Premise, ProofMethods};
 use crate::world::coincidence::ROUNDING;
 use crate::world::hittable::{Certified, Hittable, Searched};
 use crate::world::shape::{ByEquation, ByFormula, ByRoots, Shape, Unproven};
@@ -12,7 +12,7 @@ use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::roots::Method;
 
 /// A shape about whose hits something may be proven.
-pub trait Proofs: Send + Sync {
+pub trait HitQueries: Send + Sync {
     /// Tells whether a point lies on the surface, up to an error in world units and to the rounding of the shape's own
     /// numbers. Rays that start at such a point leave the shape.
     fn touches(&self, at: DVec3, error: f64) -> bool;
@@ -40,7 +40,7 @@ pub trait Proofs: Send + Sync {
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure;
 
     /// Returns the proofs about other rays than primary ones; `None` for a shape without an equation.
-    fn proven(&self) -> Option<&dyn Proven> {
+    fn proven(&self) -> Option<&dyn ProofMethods> {
         None
     }
 
@@ -56,7 +56,7 @@ pub trait Proofs: Send + Sync {
     }
 }
 
-impl<T: Hittable, S> Proofs for Shape<T, S, Unproven> {
+impl<T: Hittable, S> HitQueries for Shape<T, S, Unproven> {
     fn touches(&self, at: DVec3, error: f64) -> bool {
         is_met_within(&self.shape, at, error)
     }
@@ -77,7 +77,7 @@ impl<T: Hittable, S> Proofs for Shape<T, S, Unproven> {
     }
 }
 
-impl<T: Hittable + Equation, S> Proofs for Shape<T, S, ByFormula> {
+impl<T: Hittable + Equation, S> HitQueries for Shape<T, S, ByFormula> {
     fn is_of_the_notes(&self) -> bool {
         true
     }
@@ -102,7 +102,7 @@ impl<T: Hittable + Equation, S> Proofs for Shape<T, S, ByFormula> {
 /// Lets the equation of shapes prove what is certain about their hits.
 macro_rules! by_equation {
     ($Bound:ident, $Strategy:ty, $($more:tt)*) => {
-        impl<T: $Bound, S> Proofs for Shape<T, S, $Strategy> {
+        impl<T: $Bound, S> HitQueries for Shape<T, S, $Strategy> {
             fn touches(&self, at: DVec3, error: f64) -> bool {
                 self.shape.touches(at, error)
             }
@@ -127,7 +127,7 @@ macro_rules! by_equation {
                 certify::first_hit(&self.shape, sight, precision)
             }
 
-            fn proven(&self) -> Option<&dyn Proven> {
+            fn proven(&self) -> Option<&dyn ProofMethods> {
                 Some(&self.shape)
             }
 

@@ -1,12 +1,12 @@
 //! Shapes for packets of rays.
 //!
-//! A [`Shape`] has three interfaces. [`OneRay`] is the plugin author's functions for one ray, inlined into loops that
-//! are compiled for each instruction set. [`Packets`] takes packets; it is derived from [`OneRay`], except for shapes
-//! that take packets themselves. [`Proofs`] tells what is certain about hits.
+//! A [`Shape`] has three interfaces. [`ScalarIntersect`] is the plugin author's functions for one ray, inlined into loops that
+//! are compiled for each instruction set. [`PacketIntersect`] takes packets; it is derived from [`ScalarIntersect`], except for shapes
+//! that take packets themselves. [`HitQueries`] tells what is certain about hits.
 
-pub use super::proofs::Proofs;
+pub use super::proofs::HitQueries;
 
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayBall, RayRange, Side};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
 use crate::geometry::ray_packet::{
     self, Brackets, Nearest, PACKET_SIZE, RayPacket, mark_occluded, merge_nearest,
 };
@@ -18,14 +18,14 @@ use crate::world::interaction::{SurfaceInteraction, turned};
 use crate::world::shape::{ByBracket, ByDistance, ByEquation, ByFormula, ByRoots, Shape, Unproven};
 
 /// A shape of any type, with its interfaces for packets and proofs.
-pub trait PacketShape: Packets + Proofs {
+pub trait PacketShape: PacketIntersect + HitQueries {
     /// Returns the plugin author's shape.
     fn hittable(&self) -> &(dyn Hittable + 'static);
 }
 
 impl<T: Hittable + 'static, S, P> PacketShape for Shape<T, S, P>
 where
-    Self: Packets + Proofs,
+    Self: PacketIntersect + HitQueries,
 {
     fn hittable(&self) -> &(dyn Hittable + 'static) {
         &self.shape
@@ -33,7 +33,7 @@ where
 }
 
 /// A shape against which packets of rays are tested.
-pub trait Packets: Send + Sync {
+pub trait PacketIntersect: Send + Sync {
     /// Computes brackets of the first hits, before `ends`, of all rays that each ray of a packet stands for. Hits beyond an
     /// end may be left out.
     fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], brackets: (&mut [f64], &mut [f64]));
@@ -77,9 +77,9 @@ pub trait Packets: Send + Sync {
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64;
 }
 
-/// Merges hits as [`Packets::closest_hits`] does by default.
+/// Merges hits as [`PacketIntersect::closest_hits`] does by default.
 pub(crate) fn closest_by_brackets(
-    shape: &(impl Packets + ?Sized),
+    shape: &(impl PacketIntersect + ?Sized),
     cpu: Cpu,
     rays: RayPacket,
     id: u64,
@@ -91,9 +91,9 @@ pub(crate) fn closest_by_brackets(
     })
 }
 
-/// Marks rays as [`Packets::occluded`] does by default.
+/// Marks rays as [`PacketIntersect::occluded`] does by default.
 pub(crate) fn occluded_by_brackets(
-    shape: &(impl Packets + ?Sized),
+    shape: &(impl PacketIntersect + ?Sized),
     cpu: Cpu,
     rays: RayPacket,
     t_max: &[f64],
@@ -120,7 +120,7 @@ fn with_brackets(count: usize, call: impl FnOnce(&mut [f64], &mut [f64]) -> bool
 }
 
 /// A shape that is tested against one ray at a time.
-pub trait OneRay: Send + Sync {
+pub trait ScalarIntersect: Send + Sync {
     /// The type of the plugin author's shape.
     type Author: Hittable;
 
@@ -153,7 +153,7 @@ pub trait OneRay: Send + Sync {
     }
 }
 
-impl<T: Bracketed, P> OneRay for Shape<T, ByBracket, P> {
+impl<T: Bracketed, P> ScalarIntersect for Shape<T, ByBracket, P> {
     type Author = T;
 
     #[inline(always)]
@@ -174,9 +174,9 @@ impl<T: Bracketed, P> OneRay for Shape<T, ByBracket, P> {
 
 /// The bracket follows from the author's distance, and from whether the shape touches the ray's origin. In a copy's
 /// coordinates, too, the hit counts that the author finds there.
-impl<T: Hittable, P: Coincidence> OneRay for Shape<T, ByDistance, P>
+impl<T: Hittable, P: TieBreaking> ScalarIntersect for Shape<T, ByDistance, P>
 where
-    Self: Proofs,
+    Self: HitQueries,
 {
     type Author = T;
 
@@ -223,22 +223,22 @@ pub fn by_distance(
 }
 
 /// Whether the order of hits at nearly equal distances is refined.
-pub trait Coincidence {
+pub trait TieBreaking {
     /// Whether distances are taken as they are, without refinement.
     const IS_PLAIN: bool = false;
 }
 
-impl Coincidence for Unproven {}
-impl Coincidence for ByEquation {}
-impl Coincidence for ByRoots {}
-impl Coincidence for ByFormula {
+impl TieBreaking for Unproven {}
+impl TieBreaking for ByEquation {}
+impl TieBreaking for ByRoots {}
+impl TieBreaking for ByFormula {
     const IS_PLAIN: bool = true;
 }
 
 /// Tests packets one ray after the other, in loops that the compiler vectorizes.
-impl<T: Hittable, S, P> Packets for Shape<T, S, P>
+impl<T: Hittable, S, P> PacketIntersect for Shape<T, S, P>
 where
-    Self: OneRay<Author = T>,
+    Self: ScalarIntersect<Author = T>,
 {
     fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {
         brackets(cpu, self, rays, ends, near, far);
@@ -268,11 +268,11 @@ where
     }
 
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
-        OneRay::t_bounds(self, ray, range)
+        ScalarIntersect::t_bounds(self, ray, range)
     }
 
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
-        OneRay::refine(self, ray, origin_side)
+        ScalarIntersect::refine(self, ray, origin_side)
     }
 }
 
@@ -290,9 +290,9 @@ pub(crate) fn interact_each<T: Hittable>(
 
 kernels! {
     /// Merges a shape's hits into the nearest so far. Returns whether the order of any is in doubt.
-    fn closest_hits[T: OneRay](shape: &T, rays: RayPacket, id: u64, nearest: Nearest) -> bool {
+    fn closest_hits[T: ScalarIntersect](shape: &T, rays: RayPacket, id: u64, nearest: Nearest) -> bool {
         let (count, rays) = (rays.len(), rays.first(rays.len()));
-        let rays = RayPacket { drift: Drift::NONE, ..rays };
+        let rays = RayPacket { drift: RayError::NONE, ..rays };
         let Nearest { near, far, met, doubt } = nearest;
         match rays.leaving {
             None => merge_nearest(count, &ShapeBounds { shape, rays }, id, near, far, met, doubt),
@@ -301,10 +301,10 @@ kernels! {
     }
 
     /// Marks the rays that a shape blocks before `t_max`. Returns whether any is in doubt.
-    fn occluded[T: OneRay](
+    fn occluded[T: ScalarIntersect](
         shape: &T, rays: RayPacket, t_max: &[f64], blocked: &mut [u64], doubt: &mut [u64]
     ) -> bool {
-        let rays = RayPacket { drift: Drift::NONE, ..rays.first(t_max.len()) };
+        let rays = RayPacket { drift: RayError::NONE, ..rays.first(t_max.len()) };
         match rays.leaving {
             None => mark_occluded(&ShapeBounds { shape, rays }, t_max, blocked, doubt),
             Some(sides) => mark_occluded(&LeavingBounds { shape, rays, sides }, t_max, blocked, doubt),
@@ -312,7 +312,7 @@ kernels! {
     }
 
     /// Computes brackets of the first hits of all rays that each ray stands for.
-    fn brackets[T: OneRay](shape: &T, rays: RayPacket, ends: &[f64], near: &mut [f64], far: &mut [f64]) {
+    fn brackets[T: ScalarIntersect](shape: &T, rays: RayPacket, ends: &[f64], near: &mut [f64], far: &mut [f64]) {
         let (ends, rays) = (&ends[..near.len()], rays.first(near.len()));
         match rays.leaving {
             None => write(&ShapeBounds { shape, rays }, ends, near, far),
@@ -320,8 +320,8 @@ kernels! {
         }
     }
 
-    /// Computes the distances of a shape's hits, as [`OneRay::refine`] returns them.
-    fn refine[T: OneRay](shape: &T, rays: RayPacket, out: &mut [f64]) {
+    /// Computes the distances of a shape's hits, as [`ScalarIntersect::refine`] returns them.
+    fn refine[T: ScalarIntersect](shape: &T, rays: RayPacket, out: &mut [f64]) {
         shape.refine_each(rays, out);
     }
 
@@ -364,7 +364,7 @@ struct ShapeBounds<'b, T> {
     rays: RayPacket<'b>,
 }
 
-impl<T: OneRay> Brackets for ShapeBounds<'_, T> {
+impl<T: ScalarIntersect> Brackets for ShapeBounds<'_, T> {
     #[inline(always)]
     fn get(&self, lane: usize, far: f64) -> Bracket {
         let origin_error = self.rays.origin_error;
@@ -380,7 +380,7 @@ struct LeavingBounds<'b, T> {
     sides: &'b [Side],
 }
 
-impl<T: OneRay> Brackets for LeavingBounds<'_, T> {
+impl<T: ScalarIntersect> Brackets for LeavingBounds<'_, T> {
     #[inline(always)]
     fn get(&self, lane: usize, far: f64) -> Bracket {
         let origin_side = self.sides[lane];

@@ -5,10 +5,10 @@ use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
 use crate::geometry::sight::Sight;
 use crate::world::any_shape::AnyShape;
 use crate::world::body::Part;
-use crate::world::certify::{Enclosure, HitProofs, Precision, Premise, Proven};
+use crate::world::certify::{Enclosure, HitProofs, Precision, Premise, ProofMethods};
 use crate::world::coincidence::{self, CLOSE, LEAST_COSINE, ROUNDING};
 use crate::world::hittable::Hittable;
-use crate::world::packets::shape::{Proofs, by_distance};
+use crate::world::packets::shape::{HitQueries, by_distance};
 use crate::world::shape::{ByPackets, Shape};
 use crate::world::solid::Tree;
 use f256::f256;
@@ -31,7 +31,7 @@ const SHORTLY: f64 = 1e-6;
 pub struct ByParts;
 
 /// The surface of a part, where it is that of the solid.
-pub struct Trimmed {
+pub struct SolidPart {
     /// All parts of the solid, and a box around each.
     pub(super) parts: Arc<[Part]>,
     around: Arc<[Option<Aabb>]>,
@@ -46,7 +46,7 @@ pub struct Trimmed {
     bounds: Option<Aabb>,
 }
 
-impl Trimmed {
+impl SolidPart {
     /// Makes the surface of the part of an index.
     pub(super) fn new(
         parts: &Arc<[Part]>,
@@ -242,7 +242,7 @@ impl Trimmed {
     }
 }
 
-impl Hittable for Trimmed {
+impl Hittable for SolidPart {
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         if self.is_whole() {
             self.own().distance(ray, &self.own_range(range))
@@ -323,7 +323,7 @@ impl Hittable for Trimmed {
     }
 }
 
-impl Proofs for Shape<Trimmed, ByPackets, ByParts> {
+impl HitQueries for Shape<SolidPart, ByPackets, ByParts> {
     fn touches(&self, at: DVec3, error: f64) -> bool {
         let is_near = self
             .shape
@@ -349,7 +349,7 @@ impl Proofs for Shape<Trimmed, ByPackets, ByParts> {
         }
     }
 
-    fn proven(&self) -> Option<&dyn Proven> {
+    fn proven(&self) -> Option<&dyn ProofMethods> {
         Some(&self.shape)
     }
 }
