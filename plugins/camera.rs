@@ -13,7 +13,7 @@ static VIEWPOINT: Pparm<DVec3> = Pparm::required("viewpoint", "the position of t
     .alias(&["view_point"])
     .pose(Pose::Position)
     .unit("world coordinates")
-    .must("in front of the image plane (z above 0)", |at: &DVec3| at.z > 0.0)
+    .must("off the image plane (z other than 0)", |at: &DVec3| at.z != 0.0)
     .dumped("view_point", "\n");
 
 const TABLE: Table = &[&WORLDDIM, &VIEWPOINT];

@@ -9,7 +9,22 @@ use tabray::shapes::rectangle::along_sides;
 static ALTMATERIAL: Pparm<Arc<Material>> =
     Pparm::required("altmaterial", "the material of every other tile").not_dumped();
 
-const TABLE: Table = &[&ALTMATERIAL];
+static ORIGIN: Pparm<Option<DVec3>> =
+    Pparm::or("origin", "the point from which tiles are counted, in place of the world's origin", None)
+        .unit("world coordinates")
+        .not_dumped();
+static ALTMIRROR: Pparm<bool> = Pparm::or(
+    "altmirror",
+    "whether every other tile mirrors as `altmaterial` does; otherwise all mirror as `material` does",
+    false,
+)
+.not_dumped();
+
+const TABLE: Table = &[&ALTMATERIAL, &ORIGIN, &ALTMIRROR];
+
+/// The notes' program adds this to the distances along the sides, because a cast to an integer would make the tile at 0
+/// twice as wide.
+const OFFSET: f64 = 100_000.0;
 
 inventory::submit! {
     Entity::shape("tiled_plane", "an infinite plane, tiled with two materials", &[plane::TABLE, fplane::TABLE, TABLE], |args| {
@@ -17,7 +32,9 @@ inventory::submit! {
             sides: sides(args)?,
             given: [args.get(&plane::NORMAL), args.get(&XDIR)],
             dimensions: args.get(&DIMENSIONS),
+            origin: args.get(&ORIGIN),
             other: args.get(&ALTMATERIAL),
+            mirrors: args.get(&ALTMIRROR),
         };
         Ok(Body::shaded(plane::shape(args), tiles).anchored(args.get(&plane::POINT), 1.0))
     })
@@ -30,18 +47,22 @@ struct Tiles {
     /// The normal and `xdir`, of any length.
     given: [DVec3; 2],
     dimensions: DVec2,
+    /// The point from which tiles are counted; `None` for the world's origin, with [`OFFSET`].
+    origin: Option<DVec3>,
     other: Arc<Material>,
+    /// Whether every other tile has a mirror of its own.
+    mirrors: bool,
 }
 
 impl Tiles {
     #[inline]
     fn tile_at(&self, at: DVec3) -> DVec2 {
-        let tile = |side: usize| ((self.sides[side].dot(at) + 100_000.0) / self.dimensions[side]).floor();
+        let (at, offset) = self.origin.map_or((at, OFFSET), |origin| (at - origin, 0.0));
+        let tile = |side: usize| ((self.sides[side].dot(at) + offset) / self.dimensions[side]).floor();
         DVec2::new(tile(0), tile(1))
     }
 
-    /// Returns the material of the tile at a point. Tiles are counted from the world's origin, not from the plane's
-    /// point. The notes add the offset because a cast to an integer would make the tile at 0 twice as wide.
+    /// Returns the material of the tile at a point.
     #[inline]
     fn material<'m>(&'m self, own: &'m Material, at: DVec3) -> &'m Material {
         let tile = self.tile_at(at);
@@ -60,14 +81,23 @@ impl Shader for Tiles {
         self.material(material, at.position).diffuse
     }
 
+    #[inline]
+    fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        if self.mirrors { self.material(material, at.position).specular } else { material.specular }
+    }
+
     fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        let [normal, xdir] = self.given;
-        let [u, v] = along_sides(constants(normal), constants(xdir), at.position);
-        let tile = |along: Interval<F>, side: usize| {
-            let offset = Interval::constant(100_000.0);
-            ((along + offset) / Interval::constant(self.dimensions[side])).certain_floor()
+        let ([normal, xdir], n) = (self.given, Interval::<F>::constant);
+        let (position, offset) = match self.origin {
+            Some(origin) => (per_axis(|axis| at.position[axis] - n(origin[axis])), n(0.0)),
+            None => (at.position, n(OFFSET)),
         };
-        let other = Material { specular: material.specular, ..(*self.other).clone() };
+        let [u, v] = along_sides(constants(normal), constants(xdir), position);
+        let tile = |along: Interval<F>, side: usize| {
+            ((along + offset) / n(self.dimensions[side])).certain_floor()
+        };
+        let specular = if self.mirrors { self.other.specular } else { material.specular };
+        let other = Material { specular, ..(*self.other).clone() };
         let (own, other) = (LookBounds::from(material), LookBounds::from(&other));
         Some(match (tile(u, 0), tile(v, 1)) {
             (Some(i), Some(j)) if (i + j).rem_euclid(2.0) == 0.0 => other,
@@ -87,7 +117,7 @@ impl Shader for Tiles {
         is_sound.then(|| Look {
             ambient: one.ambient.abs().max(other.ambient.abs()),
             diffuse: one.diffuse.max(other.diffuse),
-            specular: one.specular,
+            specular: if self.mirrors { one.specular.abs().max(other.specular.abs()) } else { one.specular },
         })
     }
 }

@@ -15,7 +15,7 @@ use tabray::scene::{self, Type, dump, reference};
 
 #[test]
 fn every_scene_dumps_as_before() {
-    insta::glob!("../../scenes", "**/*.{ray,toml}", |path| {
+    insta::glob!("../../scenes", "**/*.{ray,toml,txt}", |path| {
         if let Some(settings) = settings(path) {
             let name = format!("{}.dump", stem(path));
             settings.bind(|| insta::assert_snapshot!(name, dump::notes(&load(path))));
@@ -25,7 +25,7 @@ fn every_scene_dumps_as_before() {
 
 #[test]
 fn every_scene_looks_as_before() {
-    insta::glob!("../../scenes", "**/*.{ray,toml}", |path| {
+    insta::glob!("../../scenes", "**/*.{ray,toml,txt}", |path| {
         if let Some(mut settings) = settings(path) {
             let mut model = load(path);
             if path.starts_with(root().join("scenes/gallery")) {
@@ -45,7 +45,7 @@ fn every_scene_looks_as_before() {
 
 #[test]
 fn every_mistake_is_explained_as_before() {
-    insta::glob!("../../scenes/wrong", "*.{ray,toml}", |path| {
+    insta::glob!("../../scenes/wrong", "*.{ray,toml,txt}", |path| {
         let name = path.strip_prefix(root()).expect("a scene of this package").display().to_string();
         let report = match scene::read(
             registry(),
@@ -164,7 +164,8 @@ fn no_snapshot_is_left_of_a_scene_that_is_gone() {
                 continue;
             }
             let scene = root().join("scenes").join(subject.expect("a subject")).join(stem);
-            let is_there = ["ray", "toml"].iter().any(|extension| scene.with_extension(extension).is_file());
+            let is_there =
+                ["ray", "toml", "txt"].iter().any(|extension| scene.with_extension(extension).is_file());
             assert!(is_there, "{} has no scene", path.display());
         }
     }

@@ -11,5 +11,6 @@ mod grammar;
 mod many;
 mod model;
 mod names;
+mod older;
 mod robust;
 mod toml;

@@ -17,7 +17,8 @@ const MAX_Z: f64 = 0.01;
 pub struct Pinhole {
     /// The image plane's width and height in world units.
     pub screen: DVec2,
-    /// The viewer's position in world coordinates, in front of the image plane (z > 0).
+    /// The viewer's position in world coordinates, off the image plane z = 0: in front of it, where z > 0, the viewer looks
+    /// along -z, and behind it along +z.
     pub viewpoint: DVec3,
 }
 
@@ -40,7 +41,7 @@ impl Camera for Pinhole {
 
     fn project(&self, point: DVec3, pixels: [usize; 2]) -> Projected {
         let (from, depth) = (self.viewpoint, self.viewpoint.z - point.z);
-        if depth.is_nan() || depth <= 0.0 || pixels.contains(&1) {
+        if depth.is_nan() || depth * from.z.signum() <= 0.0 || pixels.contains(&1) {
             return Projected::Nowhere;
         }
         let on_screen = from.truncate() + (point - from).truncate() * (from.z / depth);
@@ -61,7 +62,7 @@ impl Camera for Pinhole {
         let corner = |x: f64, y: f64| (DVec3::new(x * size.x, y * size.y, 0.0) - apex).normalize();
         let dirs = [corner(x[0], y[0]), corner(x[1], y[0]), corner(x[1], y[1]), corner(x[0], y[1])];
         // Within half of space.
-        dirs.iter().all(|dir| dir.is_finite() && dir.z < -1e-6).then_some(dirs)
+        dirs.iter().all(|dir| dir.is_finite() && -dir.z * apex.z.signum() > 1e-6).then_some(dirs)
     }
 
     fn sight(&self, at: &ImagePoint, _lens: DVec2) -> Sight {

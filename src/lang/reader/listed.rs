@@ -46,7 +46,7 @@ impl Statement<'_> {
 }
 
 /// Parses a part of a text.
-type Parse<'p, 'a, 't> = &'p dyn Fn(Range<usize>, &mut Report<'t>) -> Vec<Statement<'a>>;
+pub type Parse<'p, 'a, 't> = &'p dyn Fn(Range<usize>, &mut Report<'t>) -> Vec<Statement<'a>>;
 
 /// Finds the entities that follow from what a scene says.
 pub struct Lister<'a, 'r, 't> {

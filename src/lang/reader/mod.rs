@@ -21,6 +21,7 @@ mod names;
 mod notes;
 mod numbers;
 mod objects;
+mod older;
 mod parsed;
 mod parts;
 mod quick;
@@ -42,6 +43,7 @@ pub use fault::{Fault, Place, Places, Severity};
 pub(crate) use located::Located;
 pub use machine::Message;
 pub(crate) use notes::looks_like_number;
+pub(crate) use older::is_older;
 pub use parsed::Parsed;
 pub use toml_faults::toml_error;
 
@@ -73,8 +75,8 @@ pub struct Loaded {
     pub places: Places,
 }
 
-/// Reads a scene: in TOML if its name ends in `.toml` or its text begins as TOML does, otherwise in the notes' syntax.
-/// `name` is what messages call the scene, and the file names in it are relative to `folder`. An accuracy given here
+/// Reads a scene: in TOML if its name ends in `.toml` or its text begins as TOML does, as one of the course's older scenes
+/// if its lines are those of such a scene, and otherwise in the notes' syntax. `name` is what messages call the scene, and the file names in it are relative to `folder`. An accuracy given here
 /// overrides the scene's own.
 ///
 /// # Errors
@@ -106,6 +108,9 @@ pub fn read_by(
         Some(Syntax::Toml) => Syntax::Toml,
         _ => Syntax::of_text(text),
     };
+    if syntax == Syntax::Notes && is_older(registry, text) {
+        return read_older(registry, (name, folder), text, accuracy);
+    }
     let read = |text: &str| read_text(registry, (name, folder), text, syntax, accuracy);
     read(text).map_err(|report| match languages::recognised(registry, report, name, text, syntax) {
         Ok(report) => report,
@@ -145,11 +150,7 @@ fn read_text(
     let room = accuracy.memory.map_or(u64::MAX, |memory| memory / weight);
     let sources =
         Sources::read((name, folder), text, syntax, (accuracy.sets, accuracy.set_by), accuracy.open, room);
-    let begin = || {
-        let mut report = report::Report::new(name, &*sources.text, syntax).in_parts(&sources.parts);
-        sources.files.iter().for_each(|file| report.add_file(file.clone()));
-        report
-    };
+    let begin = || sources.report(name, syntax);
     let checked = |report: &mut report::Report<'_>, mut source: Source<'_, '_>| {
         build::model(registry, folder, accuracy, &mut source, report)
     };
@@ -158,11 +159,7 @@ fn read_text(
         let parse = |part: Range<usize>, report: &mut report::Report<'_>| {
             toml::parse(registry, &sources.text[..part.end], part.start, report)
         };
-        let parsed = listed::entities(registry, &sources, &parse, &mut report);
-        return match report.has_enough() {
-            true => Err(report.into_owned()),
-            false => finish(checked(&mut report, Source::List(&parsed)), registry, report),
-        };
+        return read_list(registry, folder, &sources, &parse, report, accuracy);
     }
     // A sound text is parsed and checked at one go.
     let mut errors = report.clone();
@@ -184,6 +181,37 @@ fn read_text(
         return Err(report.into_owned());
     };
     finish(checked(&mut report, Source::Text(&sources.text, Box::new(parser.reading_on()))), registry, report)
+}
+
+/// Reads one of the course's older scenes.
+fn read_older(
+    registry: &Registry,
+    (name, folder): (&str, &Path),
+    text: &str,
+    accuracy: ReadOptions<'_>,
+) -> Result<Loaded, Report> {
+    let sources = Sources::alone(name, text, (accuracy.sets, accuracy.set_by));
+    let parse = |part: Range<usize>, report: &mut report::Report<'_>| {
+        older::parse(&sources.text, part, folder, report)
+    };
+    read_list(registry, folder, &sources, &parse, sources.report(name, Syntax::Notes), accuracy)
+}
+
+/// Reads a scene of which all entities are parsed before any is checked.
+fn read_list<'s>(
+    registry: &Registry,
+    folder: &Path,
+    sources: &'s Sources<'s>,
+    parse: listed::Parse<'_, 's, 's>,
+    mut report: report::Report<'s>,
+    accuracy: ReadOptions<'_>,
+) -> Result<Loaded, Report> {
+    let parsed = listed::entities(registry, sources, parse, &mut report);
+    if report.has_enough() {
+        return Err(report.into_owned());
+    }
+    let checked = build::model(registry, folder, accuracy, &mut Source::List(&parsed), &mut report);
+    finish(checked, registry, report)
 }
 
 /// Makes a model without any text (the notes' `modelstat.c`). The entities are checked like those of a text; file names

@@ -57,19 +57,11 @@ impl<'t> Sources<'t> {
         open: &[(PathBuf, Arc<str>)],
         room: u64,
     ) -> Self {
-        let own = 0..text.len();
-        let mut sources = Self {
-            text: Cow::Borrowed(text),
-            parts: Vec::new(),
-            includes: HashMap::new(),
-            own: own.clone(),
-            options: None,
-            files: Vec::new(),
-        };
+        let mut sources = Self::of(text);
         if !text.contains("include") && sets.is_empty() {
             return sources;
         }
-        sources.parts.push(Part { name: name.to_owned(), range: own });
+        sources.parts.push(Part { name: name.to_owned(), range: sources.own.clone() });
         let own = folder.join(Path::new(name).file_name().unwrap_or_default());
         let mut readings = vec![OpenSource { path: own, includer: None }];
         let mut room = room.min(LARGEST).saturating_sub(text.len() as u64);
@@ -85,18 +77,49 @@ impl<'t> Sources<'t> {
             }
             at += 1;
         }
-        if !sets.is_empty() {
-            let (own, others) = sets.split_at(sets.len() - set_by.len());
-            let start = sources.text.len() + 1;
-            if !own.is_empty() {
-                sources.add(OPTION.to_owned(), &own.join("\n"));
-            }
-            for (name, set) in set_by.iter().zip(others) {
-                sources.add(name.clone(), set);
-            }
-            sources.options = Some(start..sources.text.len());
-        }
+        sources.add_options((sets, set_by));
         sources
+    }
+
+    /// Adds the options to a text that includes no file.
+    pub fn alone(name: &str, text: &'t str, options: (&[String], &[String])) -> Self {
+        let mut sources = Self::of(text);
+        sources.parts.push(Part { name: name.to_owned(), range: sources.own.clone() });
+        sources.add_options(options);
+        sources
+    }
+
+    fn of(text: &'t str) -> Self {
+        Self {
+            text: Cow::Borrowed(text),
+            parts: Vec::new(),
+            includes: HashMap::new(),
+            own: 0..text.len(),
+            options: None,
+            files: Vec::new(),
+        }
+    }
+
+    fn add_options(&mut self, (sets, set_by): (&[String], &[String])) {
+        if sets.is_empty() {
+            return;
+        }
+        let (own, others) = sets.split_at(sets.len() - set_by.len());
+        let start = self.text.len() + 1;
+        if !own.is_empty() {
+            self.add(OPTION.to_owned(), &own.join("\n"));
+        }
+        for (name, set) in set_by.iter().zip(others) {
+            self.add(name.clone(), set);
+        }
+        self.options = Some(start..self.text.len());
+    }
+
+    /// Begins the report on the texts of a scene.
+    pub fn report(&self, name: &str, syntax: Syntax) -> Report<'_> {
+        let mut report = Report::new(name, &*self.text, syntax).in_parts(&self.parts);
+        self.files.iter().for_each(|file| report.add_file(file.clone()));
+        report
     }
 
     /// Returns the range of the file that an `include` includes, or why it cannot; `None` if none can stand there.

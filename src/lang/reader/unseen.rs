@@ -1,4 +1,4 @@
-//! Warns of images that are black for certain, with the reason.
+//! Warns of images that are black for certain, or show no plane, with the reason.
 
 use super::fault::Fault;
 use glam::DVec3;
@@ -10,7 +10,7 @@ use tabray_core::world::material::Rgb;
 /// How much wider than it is the image is taken to be, as a fraction of it.
 const MARGIN: f64 = 0.01;
 
-/// Returns a warning if nothing in a scene can be seen.
+/// Returns a warning if nothing in a scene can be seen, or no plane.
 pub fn warning(model: &Model) -> Option<Fault> {
     if model.background.is_some() {
         return None;
@@ -37,11 +37,14 @@ pub fn warning(model: &Model) -> Option<Fault> {
         return black(
             "all objects are behind the viewer",
             match camera.camera.screen() {
-                Some(_) => format!(
-                    "the viewer at {} looks along -z: what can be seen has a z below {}",
-                    place(viewer),
-                    shortest(viewer.z)
-                ),
+                Some(_) => {
+                    let (along, side) = if viewer.z > 0.0 { ("-z", "below") } else { ("+z", "above") };
+                    let z = shortest(viewer.z);
+                    format!(
+                        "the viewer at {} looks along {along}: what can be seen has a z {side} {z}",
+                        place(viewer)
+                    )
+                }
                 None => format!("the viewer at {} looks the other way", place(viewer)),
             },
         );
@@ -65,7 +68,20 @@ pub fn warning(model: &Model) -> Option<Fault> {
             },
         );
     }
-    None
+    // Planes end before such a viewer's image plane.
+    let is_endless = |object: &Object| object.shape.bounds().is_none();
+    let ends = camera
+        .camera
+        .planes_end_at()
+        .filter(|end| viewer.z < *end && model.objects.iter().any(is_endless))?;
+    Some(
+        Fault::warning(None, "the viewer is behind the image plane, and planes are not seen beyond it").help(
+            format!(
+                "a viewer at a z below 0 looks along +z, and planes are not hit where z is above {}",
+                shortest(ends)
+            ),
+        ),
+    )
 }
 
 /// Tells whether an object is black where no light is.

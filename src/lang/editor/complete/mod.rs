@@ -9,6 +9,7 @@ mod values;
 
 use super::project::Group;
 use super::view::View;
+use crate::reader::is_older;
 use crate::registry::Registry;
 use crate::syntax::Syntax;
 use proposal::CompletionContext;
@@ -19,7 +20,7 @@ pub fn completions(registry: &Registry, group: &Group, at: usize) -> Vec<Complet
     let Some((path, view)) = group.first() else { return Vec::new() };
     let at = tabray_core::text::boundary(view.text.as_str(), at);
     let here = CompletionContext { registry, view, group, folder: path.parent().unwrap_or(path), at };
-    if in_comment(view, at) {
+    if in_comment(view, at) || is_older(registry, view.text.as_str()) {
         return Vec::new();
     }
     match view.syntax {

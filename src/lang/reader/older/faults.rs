@@ -1,0 +1,129 @@
+//! What may be wrong with a scene of numbers, in its own terms.
+
+use super::codes::{Numbers, PROJECTOR, Rule, UNREAD, VIEWPOINT};
+use super::rows::{Number, Row};
+use crate::reader::fault::Fault;
+use std::ops::Range;
+use tabray_core::text::shortest;
+
+/// How the numbers of a line are counted in messages.
+const COUNTED: [&str; 3] = ["first", "second", "third"];
+
+/// A line that is skipped, since it does not begin with what may stand there.
+pub fn skipped(row: &Row<'_>, expected: &str) -> Fault {
+    Fault::warning(Some(row.place()), format!("this line begins with no {expected}, and is skipped"))
+}
+
+/// A scene without its first two lines.
+pub fn fragment(place: Range<usize>, ([width, height], [x, y, z]): ([f64; 2], [f64; 3])) -> Fault {
+    Fault::warning(
+        Some(place),
+        "this scene is a fragment: the lines of the world size and of the viewpoint are missing",
+    )
+    .label(format!("read as after `{width} {height}` and `{x} {y} {z}`, which most scenes begin with"))
+}
+
+/// A code that stands for something else in this scene than in others.
+pub fn other_numbering(code: &Number) -> Fault {
+    let message = "this scene has another numbering, which is not read";
+    let label = match code.code() {
+        Some(PROJECTOR) => "12 is a plane there, and a projector in the numbering that is read",
+        _ => "a light has a radius there, and none in the numbering that is read",
+    };
+    Fault::error(Some(code.place.clone()), message).label(label).help(
+        "the codes that are read are 10 light, 11 spotlight, 13 sphere, 14 to 17 planes, 19 and 20 procedural, 21 to 23, \
+         and 25 to 28",
+    )
+}
+
+/// A code whose lines are not known.
+pub fn unread(code: u32, place: Range<usize>) -> Option<Fault> {
+    let (_, message) = UNREAD.iter().find(|(unread, _)| *unread == code)?;
+    Some(Fault::error(Some(place), *message).help("leave its lines out"))
+}
+
+/// The object whose lines are read, for messages: what it is called, the place of its code, and what follows that.
+pub struct Context {
+    pub name: &'static str,
+    pub place: Option<Range<usize>>,
+    pub usage: String,
+}
+
+impl Context {
+    fn fault(&self, place: Range<usize>, message: String) -> Fault {
+        let fault = Fault::error(Some(place), message).help(self.usage.clone());
+        match &self.place {
+            Some(place) if self.name != "scene" => {
+                fault.also(Some(place.clone()), format!("the {} begins here", self.name))
+            }
+            _ => fault,
+        }
+    }
+}
+
+/// A text that ends where a line is expected.
+pub fn ends_early(line: &str, context: &Context, end: usize) -> Fault {
+    let fault = context.fault(end..end, format!("the {line} of this {} is missing", context.name));
+    fault.label("the text ends here")
+}
+
+/// A line with fewer numbers than it should have.
+pub fn too_few(line: &Numbers, row: &Row<'_>, count: usize, begins_object: bool, context: &Context) -> Fault {
+    let Numbers { name, count: expected, .. } = line;
+    if begins_object {
+        let fault = context.fault(row.place(), format!("the {name} of this {} is missing", context.name));
+        return fault.label("another object begins here");
+    }
+    let numbers = if *expected == 1 { "number" } else { "numbers" };
+    let message = format!("the {name} of this {} has {expected} {numbers}, not {count}", context.name);
+    let next = COUNTED.get(count).copied().unwrap_or("next");
+    context.fault(row.place(), message).label(format!("the {next} number is missing"))
+}
+
+/// A number that goes on in a way that numbers do not, or that is too large.
+pub fn unlike_a_number(row: &Row<'_>, value: &Number) -> Option<Fault> {
+    let place = value.place.clone();
+    if value.value.is_infinite() {
+        return Some(Fault::error(Some(place), "this number is too large").help("the largest is 1.8e308"));
+    }
+    let more = row.more_digits(value)?;
+    let place = place.start..place.end + more.len();
+    let fault = Fault::error(Some(place), "this is not one number");
+    Some(fault.help("a number has a `.` before its fraction, and white space after it"))
+}
+
+/// Numbers that are not what they must be.
+pub fn against_rule(line: &Numbers, values: &[Number], context: &Context) -> Option<Fault> {
+    let is_bad = |value: &Number| match line.rule {
+        Rule::Any | Rule::Direction => false,
+        Rule::Point => line.name == VIEWPOINT.name && value.place == values[2].place && value.value == 0.0,
+        Rule::Lengths => value.value <= 0.0,
+        Rule::Fraction => !(0.0..=1.0).contains(&value.value),
+        Rule::Angle => !(value.value > 0.0 && value.value <= 180.0),
+        Rule::Mode => ![1.0, 2.0].contains(&value.value),
+    };
+    let must = match line.rule {
+        Rule::Point => "off the screen: its z must not be 0",
+        Rule::Lengths => "positive",
+        Rule::Fraction => "from 0, opaque, to 1",
+        Rule::Angle => "above 0 and at most 180 degrees",
+        Rule::Mode => "1, which fits the texture, or 2, which tiles it",
+        Rule::Any | Rule::Direction => "",
+    };
+    let Numbers { name, count, .. } = line;
+    if line.rule == Rule::Direction && values.iter().all(|value| value.value == 0.0) {
+        let place = values.first()?.place.start..values.last()?.place.end;
+        return Some(context.fault(place, format!("the {name} of this {} must not be 0 0 0", context.name)));
+    }
+    let at = values.iter().position(is_bad)?;
+    let value = &values[at];
+    let message = match line.rule {
+        Rule::Point => format!("the {name} of this {} must be {must}", context.name),
+        _ => {
+            let which = if *count > 1 { format!("the {} number of ", COUNTED[at]) } else { String::new() };
+            let not = shortest(value.value);
+            format!("{which}the {name} of this {} must be {must}, not {not}", context.name)
+        }
+    };
+    Some(context.fault(value.place.clone(), message))
+}

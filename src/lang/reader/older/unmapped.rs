@@ -1,0 +1,75 @@
+//! What is not drawn as the programs of the time drew it, in one note.
+
+use super::rows::Number;
+use crate::reader::fault::Fault;
+use std::ops::Range;
+use tabray_core::text::{count, shortest};
+
+/// The maximum number of differences that the note lists.
+const MOST: usize = 12;
+
+/// The differences, each with the place where it is found first, and how often it is found.
+#[derive(Default)]
+pub struct Unmapped(Vec<(String, Range<usize>, usize)>);
+
+impl Unmapped {
+    fn add(&mut self, what: String, place: Range<usize>) {
+        if let Some((.., count)) = self.0.iter_mut().find(|(known, ..)| *known == what) {
+            *count += 1;
+        } else if self.0.len() < MOST {
+            self.0.push((what, place, 1));
+        }
+    }
+
+    /// Notes a shader, whose number only its own program knows.
+    pub fn shader(&mut self, number: &Number) {
+        let value = shortest(number.value);
+        let what = match value.as_str() {
+            "1" => "shader 1 is taken for the swirl, which not all programs had under this number".to_owned(),
+            "2" => "shader 2 is taken for the hues, which not all programs had under this number".to_owned(),
+            _ => format!("shader {value} was its program's own: the plain colours stand in its place"),
+        };
+        self.add(what, number.place.clone());
+    }
+
+    /// Notes a transparency above 0.
+    pub fn transparency(&mut self, place: Range<usize>) {
+        self.add("what is transparent tints what is behind it, by its diffuse colour".to_owned(), place);
+    }
+
+    /// Notes a transparency of tiles that differs from that of the tiles between them.
+    pub fn transparent_tiles(&mut self, place: Range<usize>) {
+        self.add("all tiles of a plane are as transparent as the first".to_owned(), place);
+    }
+
+    /// Notes an index of refraction.
+    pub fn index(&mut self, index: &Number) {
+        if index.value != 0.0 {
+            let what = "an index of refraction bends no light here; a `glass` does, in a scene of words";
+            self.add(what.to_owned(), index.place.clone());
+        }
+    }
+
+    /// Notes a lens.
+    pub fn lens(&mut self, place: Range<usize>) {
+        self.add("a lens is drawn as a sphere".to_owned(), place);
+    }
+
+    /// Notes a displaced sphere.
+    pub fn displacement(&mut self, place: Range<usize>) {
+        self.add("a displaced sphere is drawn as a plain one".to_owned(), place);
+    }
+
+    /// Returns the note, if there is anything to say.
+    pub fn fault(self) -> Option<Fault> {
+        let text = |what: String, times: usize| match times {
+            1 => what,
+            times => format!("{what} ({})", count(times, "time")),
+        };
+        let mut all = self.0.into_iter();
+        let (what, place, times) = all.next()?;
+        let fault = Fault::warning(Some(place), "not all of this scene is drawn as its own program drew it");
+        let first = fault.label(text(what, times));
+        Some(all.fold(first, |fault, (what, place, times)| fault.also(Some(place), text(what, times))))
+    }
+}
