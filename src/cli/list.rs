@@ -1,7 +1,9 @@
-//! `tabray list`: the entity types and their attributes, from their tables.
+//! `tabray list`: the entity types and their attributes, from their tables, and what the file of a mesh holds.
 
+use crate::files::mesh;
 use crate::process::failure::{Failure, print};
 use crate::process::program;
+use std::path::Path;
 use tabray_core::scene::attribute::Attribute;
 use tabray_core::scene::entity::Entity;
 use tabray_core::scene::value::Datum;
@@ -11,11 +13,12 @@ use tabray_lang::reference;
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
 
-/// List the entity types, or the attributes of one
+/// List the entity types, the attributes of one, or what the file of a mesh holds
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
-    /// The entity type whose attributes to list
+    /// The entity type whose attributes to list, or the file of a mesh: its bounds, faces and parts, whether it is closed,
+    /// and a guess of its unit
     entity: Option<String>,
     /// Print the whole reference of the language as Markdown
     #[arg(long, conflicts_with = "entity")]
@@ -29,6 +32,7 @@ const EXAMPLES: &str = "\
 Examples:
   tabray list
   tabray list sphere
+  tabray list part.stl
   tabray list --json";
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
@@ -45,6 +49,10 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
                 .map(|entity| [entity.name.to_owned(), entity.kind().to_string(), entity.meaning.to_owned()]),
         ));
     };
+    // A type's name has no ending.
+    if registry.find(&name).is_none() && (name.contains('.') || Path::new(&name).is_file()) {
+        return print(&mesh::described(&mesh::read(Path::new(&name))?));
+    }
     let entity = registry.find(&name).ok_or_else(|| {
         let help = match registry.nearest(&name) {
             Some(near) => format!("did you mean `{near}`?"),

@@ -4,7 +4,9 @@ use crate::common::program::{folder, names_in, outcome, tabray};
 use crate::common::{load, render};
 use std::fs;
 use std::path::Path;
+use tabray::glam::{DVec2, DVec3};
 use tabray::scene::dump;
+use tabray::world::Projected;
 use tempfile::TempDir;
 
 #[test]
@@ -22,6 +24,77 @@ fn a_new_scene_is_sound_and_shows_something() {
     let picture = image::open(folder.path().join("still.life.png")).expect("a picture").into_rgb8();
     let red = picture.pixels().filter(|pixel| pixel.0[0] > 100 && pixel.0[1] < 80).count();
     assert!(red > 500, "a red ball and a red ring, {red} pixels");
+}
+
+/// Returns an OBJ of a box with these sides from a corner on; its last face is left out where it is open.
+fn block(corner: f64, sides: [f64; 3], is_open: bool) -> String {
+    let corners = (0..8).map(|index| {
+        let at = |axis: usize| corner + if index >> axis & 1 == 0 { 0.0 } else { sides[axis] };
+        format!("v {} {} {}\n", at(0), at(1), at(2))
+    });
+    let faces = ["1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"];
+    let faces = &faces[..if is_open { 5 } else { 6 }];
+    corners.chain(faces.iter().map(|face| format!("f {face}\n"))).collect()
+}
+
+#[test]
+fn a_new_scene_fits_its_mesh_at_any_scale() {
+    let folder = folder();
+    let mut means = Vec::new();
+    for (name, scale) in [("a", 1e-6), ("b", 1.0), ("c", 40.0), ("d", 1e6)] {
+        let text = block(3.0 * scale, [2.0 * scale, scale, 0.5 * scale], false);
+        fs::write(folder.path().join("block.obj"), text).expect("a file");
+        let (status, _, err) = outcome(tabray(&folder).args(["new", "scene", name, "--mesh", "block.obj"]));
+        assert_eq!(status, 0, "{err}");
+        let mut model = load(&folder.path().join(name).with_extension("ray"));
+        (model.camera.value.pixels, model.camera.value.samples) = ([80, 60], 1);
+        let mesh = model.objects.iter().find(|object| object.args.entity().name == "mesh").expect("a mesh");
+        let bounds = mesh.shape.bounds().expect("its box");
+        let mut seen = Vec::new();
+        for index in 0..8 {
+            let at = |axis: usize| if index >> axis & 1 == 0 { bounds.low[axis] } else { bounds.high[axis] };
+            let Projected::At(place) = model.camera.value.project(DVec3::new(at(0), at(1), at(2))) else {
+                panic!("a corner of the mesh is not seen");
+            };
+            seen.push(place);
+        }
+        let least = seen.iter().fold(DVec2::INFINITY, |least, place| least.min(*place));
+        let most = seen.iter().fold(DVec2::NEG_INFINITY, |most, place| most.max(*place));
+        assert!(least.min_element() > 0.0 && most.x < 79.0 && most.y < 59.0, "{name}: {least} {most}");
+        let filled = (most - least) / DVec2::new(80.0, 60.0);
+        assert!(filled.max_element() > 0.7, "{name}: {filled}");
+        let picture = render(&model);
+        let mean = picture.iter().map(|byte| f64::from(*byte)).sum::<f64>() / picture.len() as f64;
+        assert!((60.0..200.0).contains(&mean), "{name}: {mean}");
+        means.push(mean);
+    }
+    assert!(means.iter().all(|mean| (mean - means[0]).abs() < 2.0), "{means:?}");
+    let (status, _, err) = outcome(tabray(&folder).args(["new", "scene", "a.toml", "--mesh", "block.obj"]));
+    assert_eq!(status, 0, "{err}");
+    assert_eq!(
+        dump::notes(&load(&folder.path().join("a.toml"))),
+        dump::notes(&load(&folder.path().join("d.ray")))
+    );
+    let (status, _, err) = outcome(tabray(&folder).args(["new", "scene", "e", "--mesh", "blokc.obj"]));
+    assert_eq!(status, 2);
+    assert!(err.contains("it does not exist, but `block.obj` does"), "{err}");
+}
+
+#[test]
+fn a_mesh_is_described() {
+    let (folder, text) = (folder(), |out: Vec<u8>| String::from_utf8(out).expect("a text"));
+    for (name, is_open) in [("closed.obj", false), ("open.obj", true)] {
+        fs::write(folder.path().join(name), block(-1.0, [2.0, 40.0, 0.1], is_open)).expect("a file");
+    }
+    let (status, out, _) = outcome(tabray(&folder).args(["list", "closed.obj"]));
+    let expected = "bounds  -1 -1 -1 to 1 39 -0.9\nsize    2 x 40 x 0.1\nfaces   12 triangles\nparts   1\nclosed  yes\n\
+        units   not in the file; by its size perhaps millimetres\n";
+    assert_eq!((status, text(out).as_str()), (0, expected));
+    let (_, out, _) = outcome(tabray(&folder).args(["list", "open.obj"]));
+    let out = text(out);
+    assert!(out.contains("\nclosed  no: open at 4 edges\n"), "{out}");
+    let (status, _, err) = outcome(tabray(&folder).args(["list", "no.obj"]));
+    assert_eq!(status, 2, "{err}");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Scenes and images as files: how they are named, read and written.
 
 pub mod input;
+pub mod mesh;
 pub mod output;
 pub mod paths;
 pub mod picture;

@@ -1,5 +1,6 @@
 //! `tabray new`: templates to start from.
 
+mod mesh_scene;
 mod plugin;
 mod scene;
 
@@ -17,6 +18,7 @@ pub struct Args {
 const EXAMPLES: &str = "\
 Examples:
   tabray new scene ball
+  tabray new scene part --mesh part.stl
   tabray new plugin gem
   tabray new plugin stripes --kind shader";
 
@@ -28,7 +30,7 @@ enum Subcommand {
 
 pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
     match &args.subcommand {
-        Subcommand::Scene(args) => scene::run(args),
+        Subcommand::Scene(args) => scene::run(registry, args),
         Subcommand::Plugin(args) => plugin::run(registry, args),
     }
 }

@@ -1,10 +1,12 @@
-//! `tabray new scene`: a commented scene.
+//! `tabray new scene`: a commented scene, or one that shows a mesh.
 
+use super::mesh_scene;
 use crate::files::output;
 use crate::process::failure::Failure;
 use crate::process::{messages, program};
 use std::path::PathBuf;
 use tabray_core::text;
+use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
 
 /// Write a commented scene, ready to render
@@ -16,14 +18,18 @@ pub struct Args {
     /// Write TOML, as for a file that ends in .toml
     #[arg(long)]
     toml: bool,
+    /// Show the mesh of this file, with a camera, lights and a floor that fit it, whatever its size
+    #[arg(long, value_name = "FILE")]
+    mesh: Option<PathBuf>,
 }
 
 const EXAMPLES: &str = "\
 Examples:
   tabray new scene ball
-  tabray new scene ball --toml";
+  tabray new scene ball --toml
+  tabray new scene part --mesh part.stl";
 
-pub fn run(args: &Args) -> Result<(), Failure> {
+pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
     let ending = args.name.extension().and_then(|ending| ending.to_str());
     let mut path = args.name.clone().into_os_string();
     let syntax = match ending {
@@ -45,9 +51,10 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         }
     };
     let path = PathBuf::from(path);
-    let text = match syntax {
-        Syntax::Notes => include_str!("templates/scene.ray"),
-        Syntax::Toml => include_str!("templates/scene.toml"),
+    let text = match (&args.mesh, syntax) {
+        (Some(mesh), syntax) => mesh_scene::text(registry, mesh, &path, syntax)?,
+        (None, Syntax::Notes) => include_str!("templates/scene.ray").to_owned(),
+        (None, Syntax::Toml) => include_str!("templates/scene.toml").to_owned(),
     };
     let program = program::name();
     output::create(&path, &text.replace("`tabray ", &format!("`{program} ")))?;

@@ -76,6 +76,8 @@ pub struct ReadOptions<'s> {
     pub by_default: Accuracy,
     /// Whether there is no warning of entities that share a name and are all used.
     pub may_share_names: bool,
+    /// Whether there is no warning of colours that may be meant to be from 0 to 255.
+    pub may_be_bright: bool,
     /// The limit on the memory of the scene's textures and of its objects' files, in bytes; by default 1 GiB for the
     /// textures, and none for the objects, which take little more than their files do.
     pub memory: Option<u64>,
@@ -105,6 +107,8 @@ pub(super) struct Check<'r, 't> {
     accuracy: Option<Accuracy>,
     /// Whether there is no warning of entities that share a name and are all used.
     pub(super) may_share_names: bool,
+    /// Whether there is no warning of colours that may be meant to be from 0 to 255.
+    may_be_bright: bool,
     /// The entities as they were given, and where.
     pub(super) store: Store,
     pub(super) places: Places,
@@ -148,6 +152,7 @@ impl<'r, 't> Check<'r, 't> {
             setting: Arc::new(setting),
             accuracy: accuracy.above_all,
             may_share_names: accuracy.may_share_names,
+            may_be_bright: accuracy.may_be_bright,
             store: Store::default(),
             places: Places::default(),
             camera: None,
@@ -336,7 +341,7 @@ impl Check<'_, '_> {
 
     /// Warns of the colours of a material if they are from 0 to 255; one warning stands for all materials.
     fn warn_of_levels(&mut self, parsed: &Parsed<'_>, args: &Args) {
-        let Some((attribute, fault)) = levels::warning(args) else { return };
+        let Some((attribute, fault)) = levels::warning(args).filter(|_| !self.may_be_bright) else { return };
         let place = place_of(args.entity, parsed, Some(attribute));
         match &mut self.levels {
             Some(first) => first.count_similar(place),

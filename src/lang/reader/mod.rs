@@ -194,6 +194,8 @@ fn read_older(
     let parse = |part: Range<usize>, report: &mut report::Report<'_>| {
         older::parse(&sources.text, part, folder, report)
     };
+    // Their lamps are far away, and their colours were chosen accordingly.
+    let accuracy = ReadOptions { may_be_bright: true, ..accuracy };
     read_list(registry, folder, &sources, &parse, sources.report(name, Syntax::Notes), accuracy)
 }
 

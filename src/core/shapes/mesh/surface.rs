@@ -159,6 +159,16 @@ impl Surface {
         self.why_not_closed == Openness::default()
     }
 
+    /// Returns the low and the high corner of a box around the surface, in world coordinates.
+    pub fn bounds(&self) -> [DVec3; 2] {
+        [self.bounds.low, self.bounds.high]
+    }
+
+    /// Counts the parts of the surface: faces hang together by edges of two faces.
+    pub fn count_parts(&self) -> usize {
+        winding::count_parts(&self.faces, self.vertices.len())
+    }
+
     /// Returns the number of faces.
     pub fn face_count(&self) -> usize {
         self.faces.len()

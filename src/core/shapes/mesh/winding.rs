@@ -64,6 +64,11 @@ pub(super) fn why_not_closed(edges: &Edges) -> Openness {
     found
 }
 
+/// Counts the parts of faces that hang together by edges of two faces.
+pub(super) fn count_parts(faces: &[[u32; 3]], vertices: usize) -> usize {
+    parts(faces.len(), &Edges::of(faces, vertices)).0.len()
+}
+
 /// Turns faces so that those of each part agree: as most of them are turned; where the part is closed, and lies in no other,
 /// with the outer sides outside. A body that is inside out as a whole is turned with its cavities. Returns the number of
 /// faces that were turned.

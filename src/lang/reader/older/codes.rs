@@ -176,8 +176,8 @@ pub fn is_known(number: u32) -> bool {
 /// second line after those of the material has.
 pub fn of(number: u32, second: impl Fn() -> usize) -> Option<&'static Code> {
     match number {
-        25 if second() >= 3 => Some(&TORUS),
-        27 if second() >= 3 => Some(&TRIANGLE),
+        25 if second() > 1 => Some(&TORUS),
+        27 if second() > 1 => Some(&TRIANGLE),
         27 => Some(&DISC),
         _ => CODES.iter().find(|code| code.number == number),
     }

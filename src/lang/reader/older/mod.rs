@@ -201,7 +201,7 @@ impl<'a> Reader<'a, '_, '_> {
             line.map_or(0, |at| self.lines.numbers(at, 3).len())
         };
         if let Some(code) = codes::of(number, second) {
-            if let Some(index) = row.index() {
+            if let (Some(index), Some(Line::Material)) = (row.index(), code.lines.first()) {
                 self.unmapped.index(&index);
             }
             match self.lines_of(code, place) {
@@ -253,9 +253,13 @@ impl<'a> Reader<'a, '_, '_> {
         Some(if is_sound { Ok(found) } else { Err(()) })
     }
 
-    /// Reads a line of numbers, and reports what is wrong with it.
+    /// Reads one of the first two lines, and reports what is wrong with it.
     fn numbers(&mut self, line: Numbers, context: &Context) -> Option<Given> {
-        self.checked(line, context).flatten()
+        let given = self.checked(line, context);
+        if given.is_none() && !self.lines.begins_object(self.at) {
+            self.at += 1;
+        }
+        given.flatten()
     }
 
     /// Reads a line of numbers. Returns `None` where it has too few, and nothing in it where they are not what they must be.

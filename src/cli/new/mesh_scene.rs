@@ -1,0 +1,130 @@
+//! A scene that shows a mesh: its camera, lights and floor fit the mesh, whatever its size.
+
+use crate::files::mesh;
+use crate::process::failure::Failure;
+use glam::DVec3;
+use std::path::{Path, PathBuf};
+use tabray_core::scene::value::Datum;
+use tabray_core::text::shortest;
+use tabray_lang::dump;
+use tabray_lang::reader;
+use tabray_lang::registry::Registry;
+use tabray_lang::syntax::Syntax;
+
+/// Half of the diagonal of the box around the mesh in the scene, in world units.
+const HALF: f64 = 2.0;
+
+/// From the middle of the mesh toward the viewer, toward the lamp and toward a weaker one.
+const VIEWER: DVec3 = DVec3::new(0.6, 0.75, 1.0);
+const LAMP: DVec3 = DVec3::new(-0.7, 1.2, 0.6);
+const FILL: DVec3 = DVec3::new(1.0, 0.5, 0.5);
+
+/// The distance of the lamps from the middle of the mesh, in world units.
+const FAR: f64 = 8.0;
+
+/// The tangents of half the angles of view: 40 degrees across, and the height three quarters of the width.
+const TANGENTS: [f64; 2] = [0.363_970, 0.272_978];
+
+/// The part of the image's width or height that the mesh fills.
+const FILLED: f64 = 0.8;
+
+/// Returns the text of a scene in a file, which shows the mesh of another file.
+pub fn text(registry: &Registry, file: &Path, scene: &Path, syntax: Syntax) -> Result<String, Failure> {
+    let text = in_notes(file, scene)?;
+    let folder = scene.parent().unwrap_or(scene);
+    let name = scene.with_extension("ray").display().to_string();
+    let loaded = reader::read(registry, &name, folder, text.as_bytes(), None).map_err(Failure::Scene)?;
+    Ok(match syntax {
+        Syntax::Notes => text,
+        Syntax::Toml => dump::scene(&loaded.model, Syntax::Toml),
+    })
+}
+
+fn in_notes(file: &Path, scene: &Path) -> Result<String, Failure> {
+    let [low, high] = mesh::read(file)?.bounds();
+    // What draws parts to be made writes STL, and has z upward; what models for pictures has y.
+    let is_upright = !file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("stl"));
+    let turned = |at: DVec3| if is_upright { at } else { DVec3::new(at.x, at.z, -at.y) };
+    // Halves first, so that nothing overflows.
+    let middle = turned(low / 2.0 + high / 2.0);
+    let half = turned(high / 2.0 - low / 2.0).abs();
+    let scale = rounded_to_four_digits(HALF / (half / half.max_element()).length() / half.max_element());
+    let half = half * scale;
+    let translation = DVec3::new(0.0, half.y, 0.0) - middle * scale;
+    let target = DVec3::new(0.0, half.y, 0.0);
+    let distance = distance(half);
+    let at = |toward: DVec3, distance: f64| point(target + distance * toward.normalize());
+    let (scale, light) = (shortest(scale), Light { path: distance });
+    let size = (high - low).to_array().map(mesh::six_digits).join(" x ");
+    let words = [
+        ("FILE", Syntax::Notes.values(&Datum::Word(relative(file, scene))).concat()),
+        ("SIZE", size),
+        ("POSITION", at(VIEWER, distance)),
+        ("TARGET", point(target)),
+        ("SCALE", [scale.as_str(); 3].join(" ")),
+        ("ROTATION", if is_upright { "0 0 0" } else { "-90 0 0" }.to_owned()),
+        ("UP", if is_upright { "y" } else { "z" }.to_owned()),
+        ("TRANSLATION", point(translation)),
+        ("LAMP_AT", at(LAMP, FAR)),
+        ("LAMP_OF", light.of_lamp(1.0)),
+        ("FILL_AT", at(FILL, FAR)),
+        ("FILL_OF", light.of_lamp(0.3)),
+        ("METAL", light.of_surface([0.12, 0.13, 0.14])),
+        ("FLOOR", light.of_surface([0.12, 0.12, 0.12])),
+    ];
+    let template = include_str!("templates/mesh.ray");
+    Ok(words
+        .iter()
+        .fold(template.to_owned(), |text, (word, value)| text.replace(&format!("@{word}@"), value)))
+}
+
+/// How light is written so that it looks alike at any distance. The notes divide it by the length of the path to the
+/// viewer, and that of a lamp by its distance.
+struct Light {
+    /// The length of the path from the viewer.
+    path: f64,
+}
+
+impl Light {
+    fn of_lamp(&self, strength: f64) -> String {
+        let [warm, cold] =
+            [1.0, 0.94].map(|part| shortest((10.0 * strength * part * FAR * self.path).round() / 10.0));
+        format!("{warm} {warm} {cold}")
+    }
+
+    fn of_surface(&self, colour: [f64; 3]) -> String {
+        colour.map(|part| shortest((100.0 * part * self.path).round() / 100.0)).join(" ")
+    }
+}
+
+/// Returns how far from the middle the viewer must be to see a box with these half sides.
+fn distance(half: DVec3) -> f64 {
+    let toward = VIEWER.normalize();
+    let right = DVec3::Y.cross(toward).normalize();
+    let up = toward.cross(right);
+    let corners = (0..8)
+        .map(|corner| half * DVec3::from([1, 2, 4].map(|bit| if corner & bit == 0 { -1.0 } else { 1.0 })));
+    let needed = corners.map(|at| {
+        let across = [at.dot(right).abs() / TANGENTS[0], at.dot(up).abs() / TANGENTS[1]];
+        at.dot(toward) + across[0].max(across[1]) / FILLED
+    });
+    needed.fold(0.0, f64::max)
+}
+
+fn rounded_to_four_digits(number: f64) -> f64 {
+    format!("{number:.3e}").parse().unwrap_or(number)
+}
+
+fn point(at: DVec3) -> String {
+    at.to_array().map(|side| shortest((1e4 * side).round() / 1e4 + 0.0)).join(" ")
+}
+
+/// Returns the path of a file as a scene names it: relative to the scene's folder if it is below, and absolute otherwise.
+fn relative(file: &Path, scene: &Path) -> String {
+    let folder = scene.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let path = match (file.canonicalize(), folder.canonicalize()) {
+        (Ok(file), Ok(folder)) => file.strip_prefix(folder).map(PathBuf::from).unwrap_or(file),
+        _ => file.to_owned(),
+    };
+    path.display().to_string()
+}
