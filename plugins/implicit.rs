@@ -24,13 +24,15 @@ const TABLE: Table = &[&FORMULA, &CENTER, &BOX];
 inventory::submit! {
     Entity::shape("implicit", "a surface by its formula", &[TABLE], |args| {
         let [x, y, z, x2, y2, z2] = args.get(&BOX);
-        let surface =
-            Surface { formula: args.get(&FORMULA), corners: [DVec3::new(x, y, z), DVec3::new(x2, y2, z2)] };
+        let corners = [DVec3::new(x, y, z), DVec3::new(x2, y2, z2)];
+        let (formula, warnings) = field::reduced(args.get(&FORMULA));
+        let formula = formula.within(corners.map(|corner| corner.to_array()));
+        let surface = Surface { formula, corners };
         field::check(&surface.formula, surface.corners).map_err(|fault| {
             let (what, help) = fault.message();
             Refusal { attribute: Some("formula"), message: format!("has a formula {what}"), help }
         })?;
-        Ok(Body::implicit(surface, Frame::at(args.get(&CENTER))))
+        Ok(Body { warnings, ..Body::implicit(surface, Frame::at(args.get(&CENTER))) })
     })
     .known_as(&["isosurface", "sdf"])
 }
@@ -46,6 +48,10 @@ impl Implicit for Surface {
 
     fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         self.formula.at(at)
+    }
+
+    fn field(&self) -> Option<&Field> {
+        Some(&self.formula)
     }
 
     fn why_not_closed(&self) -> Option<&'static str> {

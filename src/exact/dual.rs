@@ -98,6 +98,11 @@ impl<N: Scalar> Scalar for Dual<N> {
     }
 
     #[inline(always)]
+    fn enclosure(self) -> crate::interval::Interval {
+        self.value.enclosure()
+    }
+
+    #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = self.value.sin_cos();
         (self.chain(sin, cos), self.chain(cos, -sin))

@@ -134,6 +134,11 @@ impl<N: Scalar> Scalar for Jet<N> {
     }
 
     #[inline(always)]
+    fn enclosure(self) -> crate::interval::Interval {
+        self.value.enclosure()
+    }
+
+    #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = self.dual().sin_cos();
         (self.chain(sin.value, cos), self.chain(cos.value, -sin))

@@ -4,6 +4,7 @@
 //! One formula evaluated with one type after the other gives values, derivatives and proven bounds. The functions are
 //! those of the `libm` crate, whose results do not depend on the machine.
 
+use crate::interval::Interval;
 use crate::spline::{Coefficient, Spline};
 use glam::DVec3;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -42,6 +43,12 @@ pub trait Scalar:
     fn about(value: f64, _error: f64) -> Self {
         Self::constant(value)
     }
+    /// Returns bounds of the number: all numbers for types that do not know any.
+    #[inline(always)]
+    fn enclosure(self) -> Interval {
+        Interval::WHOLE
+    }
+
     /// Returns the sine and the cosine of an angle in radians.
     fn sin_cos(self) -> (Self, Self);
     /// Returns the sine of an angle in radians.
@@ -159,6 +166,11 @@ impl Scalar for f64 {
     #[inline(always)]
     fn constant(value: f64) -> Self {
         value
+    }
+
+    #[inline(always)]
+    fn enclosure(self) -> Interval {
+        Interval { low: self, high: self }
     }
 
     fn sin_cos(self) -> (Self, Self) {

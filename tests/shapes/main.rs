@@ -16,5 +16,6 @@ mod implicit;
 mod mesh;
 mod notes;
 mod places;
+mod polynomials;
 mod solids;
 mod stability;

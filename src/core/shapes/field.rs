@@ -1,6 +1,7 @@
 //! The conditions on a formula in x, y and z under which its surface can be hit: on the whole surface within its box,
 //! the formula and its slope are bounded. Interval arithmetic proves that on smaller and smaller parts of the box.
 
+use crate::world::body::Warning;
 use glam::DVec3;
 use std::collections::VecDeque;
 use tabray_exact::dual::Dual;
@@ -61,6 +62,30 @@ impl NoField {
     }
 }
 
+/// Returns a formula without the powers of its factors, with a warning for what was left out, or of what could not be: where a
+/// squared factor is 0, the formula does not change its sign.
+pub fn reduced(field: Field) -> (Field, Vec<Warning>) {
+    let mut warnings = Vec::new();
+    let (reduced, names) = field.without_powers().unwrap_or((field, Vec::new()));
+    for name in names {
+        warnings.push(Warning {
+            attribute: "formula",
+            message: format!("has a formula with a power of the factor `{name}`"),
+            help: "the surface is the same without the power, and is drawn without it".to_owned(),
+        });
+    }
+    if reduced.has_repeated_factor() {
+        warnings.push(Warning {
+            attribute: "formula",
+            message: "has a formula that touches 0 without a change of sign on a part of its surface".to_owned(),
+            help: "a factor of the formula is squared, once its products are expanded: hits there take more time, and have \
+                   no inside and outside"
+                .to_owned(),
+        });
+    }
+    (reduced, warnings)
+}
+
 /// A part of the box, and the number of halvings that made it.
 type Part = ([DVec3; 2], u32);
 
@@ -69,12 +94,16 @@ type Part = ([DVec3; 2], u32);
 /// # Errors
 /// The reason why the formula makes no surface.
 pub fn check(field: &Field, corners: [DVec3; 2]) -> Result<(), NoField> {
-    let mut left = OPERATIONS / (field.formula().cost().max(1) * 16);
-    let (mut waiting, mut smooth) = (vec![(corners, 0)], Vec::new());
+    let (mut left, mut smooth) = (OPERATIONS, Vec::new());
+    let mut waiting: Vec<Part> = match field.cells() {
+        Some(cells) => cells.places().map(|place| (corners_of(place), 0)).collect(),
+        None => vec![(corners, 0)],
+    };
     while let Some(part) = waiting.pop() {
-        left = left.checked_sub(1).ok_or(NoField::Bends)?;
         let ([low, high], halvings) = part;
         let at = [0, 1, 2].map(|axis| Interval { low: low[axis], high: high[axis] });
+        // The value, and a slope along each axis, of which each takes several times as long.
+        left = left.checked_sub(16 * field.cost(at).max(1)).ok_or(NoField::Bends)?;
         let value = field.at(at);
         if !value.has_zero() {
             continue;
@@ -92,6 +121,10 @@ pub fn check(field: &Field, corners: [DVec3; 2]) -> Result<(), NoField> {
         }
     }
     if is_nowhere(field, smooth) { Err(NoField::Nowhere) } else { Ok(()) }
+}
+
+fn corners_of([x, y, z]: [Interval; 3]) -> [DVec3; 2] {
+    [DVec3::new(x.low, y.low, z.low), DVec3::new(x.high, y.high, z.high)]
 }
 
 /// Returns the number of parts in which a change of sign is looked for: fewer for a formula of thousands of operations.

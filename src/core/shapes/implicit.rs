@@ -4,6 +4,7 @@
 //! ray's first hit by interval arithmetic, or if the formula is a polynomial by its Bernstein coefficients along the ray,
 //! and [`Dual`] numbers give the normal.
 
+mod finely;
 mod formula;
 
 use crate::geometry::aabb::Aabb;
@@ -22,9 +23,9 @@ use glam::{DVec2, DVec3};
 use std::ops::Range;
 use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::dual::Dual;
+use tabray_exact::formula::field::Field;
 use tabray_exact::interval::Interval;
-use tabray_exact::polynomial::Polynomial;
-use tabray_exact::roots::bernstein::Bernstein;
+use tabray_exact::polynomial::{Coefficient, FEW, MOST, Polynomial};
 use tabray_exact::roots::stretch::Stretch;
 use tabray_exact::roots::taylor::{self, FirstRoot};
 use tabray_exact::roots::{Method, twice};
@@ -48,9 +49,9 @@ impl Body {
     /// Makes an object of an implicit surface with the reflectivities of its material.
     pub fn implicit(formula: impl Implicit + 'static, frame: Frame) -> Self {
         let [low, high] = formula.bounds();
-        let along_a_diagonal = formula.polynomial([Polynomial::along(Interval { low: -1.0, high: 1.0 }); 3]);
-        let is_polynomial = along_a_diagonal.error().is_finite();
-        let shape = ImplicitShape { formula, is_polynomial, frame, low, high };
+        let diagonal = Polynomial::<f64, MOST>::along(Interval { low: -1.0, high: 1.0 });
+        let degree = formula.along([diagonal; 3]).degree();
+        let shape = ImplicitShape { formula, degree, frame, low, high };
         Self::plain(Shape::new(shape).bracketed().searched())
     }
 }
@@ -58,8 +59,8 @@ impl Body {
 /// A shape whose hits and normals are found by its formula.
 struct ImplicitShape<T> {
     formula: T,
-    /// Whether the formula has a [`polynomial`](Implicit::polynomial), of a degree that a [`Polynomial`] may have.
-    is_polynomial: bool,
+    /// The degree of the formula's [`polynomial`](Implicit::polynomial), if there is one.
+    degree: Option<usize>,
     frame: Frame,
     low: DVec3,
     high: DVec3,
@@ -114,7 +115,8 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
     }
 
     fn method(&self) -> String {
-        let means = if self.is_polynomial { "coefficients of a polynomial" } else { "interval arithmetic" };
+        let means =
+            if self.degree.is_some() { "coefficients of a polynomial" } else { "interval arithmetic" };
         format!("first root isolated by {means}, then polished")
     }
 }
@@ -179,6 +181,18 @@ impl<T: Implicit> Equation for ImplicitShape<T> {
 
     fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         self.formula.value(at)
+    }
+
+    fn is_polynomial(&self) -> bool {
+        self.degree.is_some()
+    }
+
+    fn along<C: Coefficient, const N: usize>(&self, at: [Polynomial<C, N>; 3]) -> Polynomial<C, N> {
+        self.formula.along(at)
+    }
+
+    fn field(&self) -> Option<&Field> {
+        self.formula.field()
     }
 
     fn uv_bounds(&self, at: [Interval; 3]) -> Option<[Interval; 2]> {
@@ -278,7 +292,13 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
     /// Returns the first root of a stretch in a range, after judging at most this number of pieces.
     fn first_root(&self, stretch: &Stretch, range: &RayRange, mut pieces: usize) -> FirstRoot {
         let shortest = shortest(&stretch.outer);
-        taylor::first_root_within(self, stretch, self.closest, range, shortest, &mut pieces)
+        let found = taylor::first_root_within(self, stretch, self.closest, range, shortest, &mut pieces);
+        match found.root {
+            Some(root) if self.shape.degree.is_some() => {
+                FirstRoot { root: Some(self.polished(root)), ..found }
+            }
+            _ => found,
+        }
     }
 
     /// Whether the ray is rounded by more than the size of the shape, where rounding is this fraction of that in `f64`.
@@ -347,9 +367,19 @@ impl<T: Implicit> taylor::FunctionOnLine for FormulaOnRay<'_, T> {
         self.shape.formula.value(self.on_line(t))
     }
 
-    fn bernstein(&self, piece: Interval) -> Option<Bernstein> {
-        let form = || Bernstein::of(&self.shape.formula.polynomial(self.on_line(Polynomial::along(piece))));
-        if self.shape.is_polynomial { form() } else { None }
+    fn degree(&self) -> Option<usize> {
+        self.shape.degree
+    }
+
+    fn polynomial<const N: usize>(&self, piece: Interval) -> Polynomial<f64, N> {
+        self.shape.formula.along(self.on_line(Polynomial::along(piece)))
+    }
+
+    fn pieces(&self, ends: (f64, f64), mut visit: &mut dyn FnMut(f64, f64) -> Option<f64>) -> Option<f64> {
+        match self.shape.formula.field().and_then(Field::cells) {
+            Some(cells) => cells.visit(self.base.to_array(), self.dir.to_array(), ends, &mut visit),
+            None => visit(ends.0, ends.1),
+        }
     }
 
     fn wants_proof(&self) -> bool {
@@ -361,6 +391,13 @@ impl<T: Implicit> taylor::FunctionOnLine for FormulaOnRay<'_, T> {
     fn undecided(&self, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
         if self.is_lost(twice::STILL_HIDDEN) {
             return None;
+        }
+        if let Some(degree) = self.shape.degree {
+            return if degree < FEW {
+                self.finely::<FEW>(piece, origin_side)
+            } else {
+                self.finely::<MOST>(piece, origin_side)
+            };
         }
         let hidden = self.at(Interval::constant(piece.middle())).width();
         let exact = self.shape.frame.exactly(self.ray, self.closest);

@@ -72,6 +72,11 @@ impl Scalar for Affine {
         Self { centre: value, rest: error, ..Self::ZERO }
     }
 
+    #[inline(always)]
+    fn enclosure(self) -> Interval {
+        self.range()
+    }
+
     fn sin_cos(self) -> (Self, Self) {
         let ((sin, cos), (sines, cosines)) = (Interval::point(self.centre).sin_cos(), self.range().sin_cos());
         (self.chain(sin, cos, -sines), self.chain(cos, -sin, -cosines))

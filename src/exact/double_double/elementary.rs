@@ -71,6 +71,11 @@ impl Scalar for DoubleDouble {
         value.into()
     }
 
+    #[inline(always)]
+    fn enclosure(self) -> crate::interval::Interval {
+        crate::interval::Interval { low: self.high.next_down(), high: self.high.next_up() }
+    }
+
     fn sin_cos(self) -> (Self, Self) {
         self.reduced_sin_cos()
     }

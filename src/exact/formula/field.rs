@@ -1,6 +1,8 @@
 //! Formulas in x, y and z, and in all that is known of a point of a surface.
 
-use super::program::MOST_REGISTERS;
+use super::along::by_products;
+use super::cells::{Cells, is_choice};
+use super::program::{MOST_REGISTERS, Program, Values};
 use super::step::{Function, Step};
 use super::variables::{SPACE, SURFACE};
 use super::{FEW_REGISTERS, Formula};
@@ -24,6 +26,10 @@ pub struct FieldOf<const N: usize> {
     formula: Arc<Formula>,
     /// The same formula with fewer operations.
     quick: Formula,
+    /// The operations in which powers are products, for polynomials along lines.
+    products: Option<Program>,
+    /// The cells of a box, each with a program of its own.
+    cells: Option<Arc<Cells>>,
 }
 
 impl<const COUNT: usize> FieldOf<COUNT> {
@@ -41,7 +47,8 @@ impl<const COUNT: usize> FieldOf<COUNT> {
         if of_surface {
             quick = new(with_roots(&quick.steps));
         }
-        Some(Self { formula, quick })
+        let products = if COUNT == SPACE.len() { by_products(&quick.steps, COUNT) } else { None };
+        Some(Self { formula, quick, products, cells: None })
     }
 
     /// Tells whether the formula uses the variable of this index.
@@ -63,14 +70,27 @@ impl<const COUNT: usize> FieldOf<COUNT> {
         &self.formula
     }
 
+    /// Returns the operations.
+    pub(super) fn program(&self) -> &Program {
+        &self.quick.program
+    }
+
+    /// Returns the operations, with products for powers.
+    pub(super) fn by_products(&self) -> &Program {
+        self.products.as_ref().unwrap_or(self.program())
+    }
+
     /// Evaluates the formula at a point.
     #[inline(always)]
     pub fn at<N: Scalar>(&self, at: [N; COUNT]) -> N {
+        let cell =
+            self.cells.as_ref().and_then(|cells| cells.program([0, 1, 2].map(|axis| at[axis].enclosure())));
+        let program = cell.unwrap_or(&self.quick.program);
         let with = |registers: &mut [N]| {
             registers[..COUNT].copy_from_slice(&at);
-            self.quick.run(registers)
+            self.quick.run_part(program, registers)
         };
-        let registers = self.quick.program.registers;
+        let registers = program.registers;
         if registers <= FEW_REGISTERS {
             with(&mut [at[0]; FEW_REGISTERS])
         } else if registers <= SOME_REGISTERS {
@@ -78,6 +98,30 @@ impl<const COUNT: usize> FieldOf<COUNT> {
         } else {
             with(&mut [at[0]; MOST_REGISTERS])
         }
+    }
+}
+
+/// The number of operations from which a formula is cut into cells.
+const MANY: usize = 64;
+
+impl Field {
+    /// Returns the same formula, with cells in a box if it takes the smallest or the largest of many numbers.
+    pub fn within(self, corners: [[f64; 3]; 2]) -> Self {
+        let steps = &self.quick.steps;
+        let is_cut = self.program().instructions.len() >= MANY && steps.iter().any(|step| is_choice(*step));
+        let cells = is_cut.then(|| Cells::new(&Values::new(steps, 3), corners)).flatten();
+        Self { cells: cells.map(Arc::new), ..self }
+    }
+
+    /// Returns the cells, if there are any.
+    pub fn cells(&self) -> Option<&Cells> {
+        self.cells.as_deref()
+    }
+
+    /// Returns the estimated number of arithmetic operations per evaluation at some points, as [`Formula::cost`] does.
+    pub fn cost<N: Scalar>(&self, at: [N; 3]) -> u64 {
+        let cell = self.cells().and_then(|cells| cells.program(at.map(N::enclosure)));
+        cell.unwrap_or(self.program()).instructions.iter().map(|of| of.step.cost()).sum()
     }
 }
 

@@ -1,9 +1,13 @@
 //! Formulas, as a scene or a profile plugin writes them: `2 + sin(y)`, or in x, y and z.
 
+mod along;
+pub mod cells;
+mod factors;
 pub mod field;
 mod function;
 mod parser;
 mod program;
+pub mod rational;
 mod spline;
 mod step;
 pub mod variables;
@@ -14,7 +18,7 @@ pub use parser::{FormulaFault, Named, is_in_name, is_taken};
 use crate::dual::Dual;
 use crate::f64x8::F64x8;
 use crate::f64x8::LANES;
-use crate::scalar::{Scalar, apart_if};
+use crate::scalar::Scalar;
 use crate::spline::Spline;
 use crate::text;
 use program::{Instruction, MOST_REGISTERS, Program};
@@ -40,9 +44,6 @@ pub struct Formula {
 
 /// The number of registers that suffices for most formulas, in values.
 const FEW_REGISTERS: usize = 6;
-
-/// The size of a number, in bytes, from which each of its operations is a call.
-const LONG: usize = 64;
 
 impl Formula {
     /// Parses a formula in y.
@@ -129,21 +130,18 @@ impl Formula {
 
     /// Returns the estimated number of arithmetic operations per evaluation: 8 for a `libm` function, 24 for a power.
     pub fn cost(&self) -> u64 {
-        let cost = |step: &Step| match step {
-            Step::Call(Function::Abs | Function::Floor | Function::Min | Function::Max) => 1,
-            Step::Call(Function::Pow) => 24,
-            Step::Call(_) => 8,
-            Step::Spline => 12,
-            Step::Powi(exponent) => u64::from(exponent.unsigned_abs().max(1)),
-            _ => 1,
-        };
-        self.steps.iter().map(cost).sum()
+        self.steps.iter().map(|step| step.cost()).sum()
     }
 
     /// Evaluates the formula in registers, of which the first ones have the variables; one function for each number type,
     /// for any number of registers.
     fn run<N: Scalar>(&self, registers: &mut [N]) -> N {
-        self.run_inline::<N, true>(registers)
+        self.run_inline::<N, true>(&self.program, registers)
+    }
+
+    /// Evaluates a program of the formula, as [`run`](Self::run) does.
+    fn run_part<N: Scalar>(&self, program: &Program, registers: &mut [N]) -> N {
+        self.run_inline::<N, true>(program, registers)
     }
 
     /// Evaluates the formula and its derivative at eight y, for kernels.
@@ -151,7 +149,7 @@ impl Formula {
     pub fn at_eight(&self, y: [f64; LANES]) -> Dual<F64x8> {
         if self.is_plain {
             let y = Dual::variable(F64x8(y));
-            return self.run_inline::<_, false>(&mut [y; FEW_REGISTERS]);
+            return self.run_inline::<_, false>(&self.program, &mut [y; FEW_REGISTERS]);
         }
         let (mut value, mut slope) = ([0.0; LANES], [0.0; LANES]);
         for lane in 0..LANES {
@@ -161,46 +159,12 @@ impl Formula {
     }
 
     #[inline(always)]
-    fn run_inline<N: Scalar, const MAY_CALL: bool>(&self, registers: &mut [N]) -> N {
-        /// Calls an operation of a long number, such as one with derivatives in wide precision, which takes up to
-        /// thousands of instructions.
-        macro_rules! long {
-            ($operation:expr) => {
-                apart_if!(MAY_CALL && size_of::<N>() >= LONG, $operation)
-            };
-        }
-        for &Instruction { step, operands, result } in &self.program.instructions {
+    fn run_inline<N: Scalar, const MAY_CALL: bool>(&self, program: &Program, registers: &mut [N]) -> N {
+        for &Instruction { step, operands, result } in &program.instructions {
             let (a, b) = (registers[usize::from(operands[0])], registers[usize::from(operands[1])]);
-            registers[usize::from(result)] = match step {
-                // It is in its register.
-                Step::Variable(_) => a,
-                Step::Number(number) => N::constant(number),
-                Step::Neg => -a,
-                Step::Powi(exponent) => long!(a.powi(exponent)),
-                Step::Spline => match &self.spline {
-                    Some(spline) => long!(a.spline(spline, 0)),
-                    None => a,
-                },
-                Step::Scale(factor) => long!(a.scaled(factor)),
-                Step::Shift(by) => long!(a.shifted(by)),
-                Step::Add => long!(a + b),
-                Step::Sub => long!(a - b),
-                Step::Mul => long!(a * b),
-                Step::Div => long!(a / b),
-                Step::Call(Function::Sin) => long!(a.sin()),
-                Step::Call(Function::Cos) => long!(a.cos()),
-                Step::Call(Function::Tan) => long!(a.tan()),
-                Step::Call(Function::Exp) => long!(a.exp()),
-                Step::Call(Function::Ln) => long!(a.ln()),
-                Step::Call(Function::Sqrt) => long!(a.sqrt()),
-                Step::Call(Function::Abs) => long!(a.abs()),
-                Step::Call(Function::Floor) => long!(a.floor()),
-                Step::Call(Function::Min) => long!(a.min(b)),
-                Step::Call(Function::Max) => long!(a.max(b)),
-                Step::Call(Function::Pow) => long!(a.pow(b)),
-            };
+            registers[usize::from(result)] = step.of::<N, MAY_CALL>(a, b, self.spline.as_deref());
         }
-        registers[usize::from(self.program.result)]
+        registers[usize::from(program.result)]
     }
 }
 

@@ -29,9 +29,17 @@ pub(super) const MOST_REGISTERS: usize = SURFACE.len() + MAX_DEPTH + 1;
 
 /// An operation and the values that it is applied to, by their indices.
 #[derive(Clone, Copy)]
-struct Value {
-    step: Step,
-    operands: [usize; 2],
+pub(super) struct Value {
+    pub step: Step,
+    pub operands: [usize; 2],
+}
+
+/// The values of a formula, each after those that it is made of, the variables first.
+#[derive(Clone)]
+pub(super) struct Values {
+    pub list: Vec<Value>,
+    /// The index of the value that the formula has.
+    pub result: usize,
 }
 
 impl Value {
@@ -48,7 +56,7 @@ impl Value {
     }
 
     /// Returns the values that the operation is applied to.
-    fn used(&self) -> &[usize] {
+    pub fn used(&self) -> &[usize] {
         &self.operands[..self.step.operands()]
     }
 }
@@ -56,16 +64,11 @@ impl Value {
 impl Program {
     /// Makes a program of operations in postfix order. `variables` is the number of variables.
     pub fn new(steps: &[Step], variables: usize) -> Self {
-        let shared = Self::of(&values(steps, variables, true), variables);
-        // What is shared waits in a register until its last use.
-        if shared.registers <= MOST_REGISTERS {
-            return shared;
-        }
-        Self::of(&values(steps, variables, false), variables)
+        Self::of(&Values::new(steps, variables), variables)
     }
 
     /// Assigns a register to each value, until its last use.
-    fn of((values, result): &(Vec<Value>, usize), variables: usize) -> Self {
+    pub fn of(Values { list: values, result }: &Values, variables: usize) -> Self {
         let mut last_uses = vec![0; values.len()];
         for (index, value) in values.iter().enumerate() {
             value.used().iter().for_each(|used| last_uses[*used] = index);
@@ -79,10 +82,12 @@ impl Program {
             for (operand, used) in operands.iter_mut().zip(value.used()) {
                 *operand = places[*used] as u8;
             }
-            let mut ended = value.used().to_vec();
-            ended.dedup();
-            ended.retain(|used| *used >= variables && last_uses[*used] == index);
-            free.extend(ended.into_iter().map(|used| places[used]));
+            for (operand, used) in value.used().iter().enumerate() {
+                let is_ended = *used >= variables && last_uses[*used] == index;
+                if is_ended && !value.used()[..operand].contains(used) {
+                    free.push(places[*used]);
+                }
+            }
             let place = free.pop().unwrap_or_else(|| {
                 registers += 1;
                 registers - 1
@@ -94,9 +99,18 @@ impl Program {
     }
 }
 
-/// Returns the values of operations, the variables first, and the index of the last one; if they are shared, each value
-/// once.
-fn values(steps: &[Step], variables: usize, are_shared: bool) -> (Vec<Value>, usize) {
+impl Values {
+    /// Returns the values of operations in postfix order: each of them once, if there are registers for that. What is shared
+    /// waits in a register until its last use.
+    pub fn new(steps: &[Step], variables: usize) -> Self {
+        let shared = values(steps, variables, true);
+        let fits = Program::of(&shared, variables).registers <= MOST_REGISTERS;
+        if fits { shared } else { values(steps, variables, false) }
+    }
+}
+
+/// Returns the values of operations; if they are shared, each value once.
+fn values(steps: &[Step], variables: usize, are_shared: bool) -> Values {
     let variable = |index: usize| Value { step: Step::Variable(index as u8), operands: [0; 2] };
     let mut values: Vec<_> = (0..variables).map(variable).collect();
     let (mut known, mut waiting) = (HashMap::new(), Vec::new());
@@ -119,7 +133,7 @@ fn values(steps: &[Step], variables: usize, are_shared: bool) -> (Vec<Value>, us
         waiting.push(index);
     }
     let result = waiting.pop().unwrap_or(0);
-    (values, result)
+    Values { list: values, result }
 }
 
 #[cfg(test)]

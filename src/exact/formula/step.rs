@@ -1,5 +1,11 @@
 //! The operations of a formula.
 
+use crate::scalar::{Scalar, apart_if};
+use crate::spline::Spline;
+
+/// The size of a number, in bytes, from which each of its operations is a call.
+const LONG: usize = 64;
+
 /// An operation of a formula.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Step {
@@ -24,12 +30,65 @@ pub(super) enum Step {
 
 impl Step {
     /// Returns the number of values that the operation is applied to.
+    #[inline(always)]
     pub fn operands(self) -> usize {
         match self {
             Self::Variable(_) | Self::Number(_) => 0,
             Self::Add | Self::Sub | Self::Mul | Self::Div => 2,
             Self::Call(Function::Min | Function::Max | Function::Pow) => 2,
             Self::Neg | Self::Powi(_) | Self::Scale(_) | Self::Shift(_) | Self::Spline | Self::Call(_) => 1,
+        }
+    }
+
+    /// Returns the estimated number of arithmetic operations: 8 for a `libm` function, 24 for a power.
+    pub fn cost(self) -> u64 {
+        match self {
+            Self::Call(Function::Abs | Function::Floor | Function::Min | Function::Max) => 1,
+            Self::Call(Function::Pow) => 24,
+            Self::Call(_) => 8,
+            Self::Spline => 12,
+            Self::Powi(exponent) => u64::from(exponent.unsigned_abs().max(1)),
+            _ => 1,
+        }
+    }
+
+    /// Applies the operation to one value or two. `MAY_CALL` tells whether operations of long numbers are calls.
+    #[inline(always)]
+    pub fn of<N: Scalar, const MAY_CALL: bool>(self, a: N, b: N, spline: Option<&Spline>) -> N {
+        /// Calls an operation of a long number, such as one with derivatives in wide precision, which takes up to
+        /// thousands of instructions.
+        macro_rules! long {
+            ($operation:expr) => {
+                apart_if!(MAY_CALL && size_of::<N>() >= LONG, $operation)
+            };
+        }
+        match self {
+            // It is in its register.
+            Self::Variable(_) => a,
+            Self::Number(number) => N::constant(number),
+            Self::Neg => -a,
+            Self::Powi(exponent) => long!(a.powi(exponent)),
+            Self::Spline => match spline {
+                Some(spline) => long!(a.spline(spline, 0)),
+                None => a,
+            },
+            Self::Scale(factor) => long!(a.scaled(factor)),
+            Self::Shift(by) => long!(a.shifted(by)),
+            Self::Add => long!(a + b),
+            Self::Sub => long!(a - b),
+            Self::Mul => long!(a * b),
+            Self::Div => long!(a / b),
+            Self::Call(Function::Sin) => long!(a.sin()),
+            Self::Call(Function::Cos) => long!(a.cos()),
+            Self::Call(Function::Tan) => long!(a.tan()),
+            Self::Call(Function::Exp) => long!(a.exp()),
+            Self::Call(Function::Ln) => long!(a.ln()),
+            Self::Call(Function::Sqrt) => long!(a.sqrt()),
+            Self::Call(Function::Abs) => long!(a.abs()),
+            Self::Call(Function::Floor) => long!(a.floor()),
+            Self::Call(Function::Min) => long!(a.min(b)),
+            Self::Call(Function::Max) => long!(a.max(b)),
+            Self::Call(Function::Pow) => long!(a.pow(b)),
         }
     }
 }

@@ -131,6 +131,11 @@ impl<F: Float> Scalar for Interval<F> {
         })
     }
 
+    #[inline(always)]
+    fn enclosure(self) -> Interval {
+        self.coarse()
+    }
+
     fn sin_cos(self) -> (Self, Self) {
         let half_turn = F::PI;
         if !self.is_narrower(half_turn + half_turn) {

@@ -3,15 +3,31 @@
 //! Source: G. Farin, Curves and Surfaces for CAGD, fifth edition, 2002, sections 5.1 and 6.4: the convex hull property,
 //! subdivision at the middle, and variation diminution.
 
-use crate::polynomial::{MAX_DEGREE, Polynomial};
+use crate::polynomial::{Coefficient, FEW, MOST, Polynomial};
 
 /// Coefficients that are not above this many times their error are taken to be hidden by rounding.
-const HIDDEN: f64 = 64.0;
+const HIDDEN: f64 = 2.0;
+
+/// The binomial coefficients "n over k", by n and then by k.
+pub(super) static BINOMIALS: [[f64; MOST]; MOST] = {
+    let mut of = [[0.0; MOST]; MOST];
+    let mut n = 0;
+    while n < MOST {
+        of[n][0] = 1.0;
+        let mut k = 1;
+        while k <= n {
+            of[n][k] = of[n - 1][k - 1] + of[n - 1][k];
+            k += 1;
+        }
+        n += 1;
+    }
+    of
+};
 
 /// A polynomial on a piece of a line, and all that differ from it by at most its error.
 #[derive(Clone, Copy)]
-pub struct Bernstein {
-    coefficients: [f64; MAX_DEGREE + 1],
+pub struct Bernstein<C = f64, const N: usize = FEW> {
+    coefficients: [C; N],
     degree: usize,
     /// A bound of the error of each coefficient.
     error: f64,
@@ -42,53 +58,69 @@ pub enum Roots {
     Hidden,
 }
 
-impl Bernstein {
+impl<C: Coefficient, const N: usize> Bernstein<C, N> {
     /// Converts a polynomial for the piece with -1 <= s <= 1; `None` if nothing is known of it.
-    pub fn of(polynomial: &Polynomial) -> Option<Self> {
+    pub fn of(polynomial: &Polynomial<C, N>) -> Option<Self> {
         // A number that is not finite makes this infinite, or NaN.
         let is_known = polynomial.error() < f64::INFINITY;
-        let (given, mut coefficients) = (polynomial.coefficients(), [0.0; MAX_DEGREE + 1]);
+        let (given, mut coefficients) = (polynomial.coefficients(), [C::from(0.0); N]);
         let degree = given.len() - 1;
-        let mut norm = given[degree].abs();
+        let mut norm = given[degree].nearest().abs();
         coefficients[0] = given[degree];
-        // Horner's scheme: the product with s, whose own coefficients are -1 and 1, is of the next degree.
-        for (step, coefficient) in given[..degree].iter().rev().enumerate() {
-            let next = (step + 1) as f64;
-            for index in (0..=step + 1).rev() {
-                let upper = index as f64;
-                let (before, here) =
-                    (if index > 0 { coefficients[index - 1] } else { 0.0 }, coefficients[index]);
-                coefficients[index] = (upper * before - (next - upper) * here) / next + coefficient;
+        // Horner's scheme, in powers of x = (1 + s) / 2 and 1 - x: the product with s = x - (1 - x) is of the next degree,
+        // and so is a constant, times a power of 1 = x + (1 - x).
+        for step in 1..=degree {
+            let (coefficient, binomials) = (given[degree - step], &BINOMIALS[step]);
+            for index in (1..=step).rev() {
+                let shifted = coefficients[index - 1] - coefficients[index];
+                coefficients[index] = shifted + coefficient * C::from(binomials[index]);
             }
-            norm += coefficient.abs();
+            coefficients[0] = coefficient - coefficients[0];
+            norm += coefficient.nearest().abs();
         }
-        // Means of coefficients with these weights are no larger than these. Each step rounds four times, by half an EPSILON.
-        let rounding = 4.0 * f64::EPSILON * degree as f64 * norm;
-        is_known.then_some(Self { coefficients, degree, error: polynomial.error() + rounding })
+        for index in 0..=degree {
+            coefficients[index] = coefficients[index] / C::from(BINOMIALS[degree][index]);
+        }
+        // A coefficient of degree n is a binomial times a mean of coefficients, and no larger than that of their norm. Each step
+        // rounds three times, by half a ROUNDING.
+        let rounding = 4.0 * C::ROUNDING * (degree + 1) as f64 * norm;
+        let error = 1.001 * (polynomial.error() + rounding);
+        is_known.then_some(Self { coefficients, degree, error })
     }
 
-    fn coefficients(&self) -> &[f64] {
+    fn coefficients(&self) -> &[C] {
         &self.coefficients[..=self.degree]
+    }
+
+    /// Returns a bound of the error of the polynomial.
+    pub fn error(&self) -> f64 {
+        self.error
+    }
+
+    /// Returns the values at the ends of the piece.
+    pub fn ends(&self) -> [C; 2] {
+        [self.coefficients[0], self.coefficients[self.degree]]
     }
 
     /// Returns the forms for the lower and the upper half of the piece.
     pub fn halves(&self) -> [Self; 2] {
         let (mut lower, mut upper) = (*self, *self);
-        let (degree, largest) = (self.degree, self.largest());
+        let (degree, largest, half) = (self.degree, self.largest(), C::from(0.5));
         for step in 1..=degree {
-            for index in 0..=degree - step {
-                upper.coefficients[index] = 0.5 * (upper.coefficients[index] + upper.coefficients[index + 1]);
+            let row = &mut upper.coefficients[..degree - step + 2];
+            for index in 0..row.len() - 1 {
+                row[index] = half * (row[index] + row[index + 1]);
             }
-            lower.coefficients[step] = upper.coefficients[0];
+            lower.coefficients[step] = row[0];
         }
-        let error = self.error + f64::EPSILON * degree as f64 * largest;
+        let error = self.error + C::ROUNDING * degree as f64 * largest;
         [Self { error, ..lower }, Self { error, ..upper }]
     }
 
     fn largest(&self) -> f64 {
         let mut largest = 0.0_f64;
         for coefficient in self.coefficients() {
-            largest = largest.max(coefficient.abs());
+            largest = largest.max(coefficient.nearest().abs());
         }
         largest
     }
@@ -96,23 +128,38 @@ impl Bernstein {
     /// Tells what is known of the roots.
     pub fn roots(&self) -> Roots {
         let (coefficients, error) = (self.coefficients(), self.error);
-        let sign = |value: f64| i32::from(value > error) - i32::from(value < -error);
-        let (start, end) = (coefficients[0], coefficients[self.degree]);
-        let first_ones = coefficients.iter().take_while(|value| sign(**value) == sign(start)).count();
-        if sign(start) != 0 && first_ones == coefficients.len() {
+        let sign = |index: usize| {
+            let of = coefficients[index].nearest();
+            i32::from(of > error) - i32::from(of < -error)
+        };
+        let last = self.degree;
+        let (start, end) = (sign(0), sign(last));
+        let mut first_ones = 1;
+        while first_ones <= last && sign(first_ones) == start {
+            first_ones += 1;
+        }
+        if start != 0 && first_ones > last {
             return Roots::None;
         }
         if self.largest() <= HIDDEN * error {
             return Roots::Hidden;
         }
-        let (rises, near) = (start < end, start / (start - end));
-        let last_ones = coefficients.iter().rev().take_while(|value| sign(**value) == sign(end)).count();
+        let (low, high) = (coefficients[0].nearest(), coefficients[last].nearest());
+        let (rises, near) = (low < high, low / (low - high));
+        let mut last_ones = 1;
+        while last_ones <= last && sign(last - last_ones) == end {
+            last_ones += 1;
+        }
         // Whichever sign a single coefficient has between those of either sign, signs change once.
-        if sign(start) * sign(end) < 0 && first_ones + last_ones + 1 >= coefficients.len() {
+        if start * end < 0 && first_ones + last_ones >= last {
             return Roots::One { rises, near };
         }
-        let step = |pair: &[f64]| if rises { pair[1] - pair[0] } else { pair[0] - pair[1] };
-        if coefficients.windows(2).all(|pair| step(pair) > 4.0 * error) {
+        let mut is_monotone = true;
+        for index in 0..last {
+            let step = coefficients[index + 1].nearest() - coefficients[index].nearest();
+            is_monotone &= (if rises { step } else { -step }) > 4.0 * error;
+        }
+        if is_monotone {
             return Roots::Monotone { rises, near };
         }
         Roots::Unknown
@@ -127,7 +174,7 @@ mod tests {
 
     /// Returns the form, from 0 to 1, of the polynomial with these roots that is above 0 far to the right.
     fn with_roots(roots: &[f64]) -> Bernstein {
-        let place = Polynomial::along(Interval { low: 0.0, high: 1.0 });
+        let place = Polynomial::<f64, FEW>::along(Interval { low: 0.0, high: 1.0 });
         let product = roots
             .iter()
             .fold(Polynomial::constant(1.0), |product, root| product * (place - Polynomial::constant(*root)));

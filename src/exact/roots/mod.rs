@@ -9,6 +9,7 @@ pub mod bernstein;
 pub mod bisection;
 mod chandrupatla;
 mod intervals;
+pub mod isolation;
 pub mod newton;
 pub mod range;
 mod refiner;
@@ -19,6 +20,7 @@ pub mod taylor;
 mod tracing;
 mod turning;
 pub mod twice;
+pub mod whole;
 
 use crate::roots::range::RayRange;
 pub use refiner::Refiner;

@@ -7,12 +7,13 @@
 //! no root is stepped over: D. P. Mitchell, "Robust ray intersection with interval arithmetic" (1990), whose bounds are
 //! of the first order and shrink more slowly where a ray grazes.
 //!
-//! If the function is a polynomial, the signs of its [`bernstein`](super::bernstein) coefficients are judged first; pieces
-//! whose roots these do not tell are judged as above.
+//! If the function is a polynomial, the signs of its [`bernstein`](super::bernstein) coefficients are judged instead, on
+//! shorter and shorter pieces.
 
 use crate::dual::Dual;
 use crate::interval::Interval;
 use crate::jet::Jet;
+use crate::polynomial::{FEW, MOST, Polynomial};
 use crate::roots::bernstein::{Bernstein, Roots};
 use crate::roots::range::{RayRange, Side};
 use crate::roots::{newton, stretch::Stretch, twice};
@@ -39,9 +40,19 @@ pub trait FunctionOnLine {
         value.has_zero().then_some(second)
     }
 
-    /// Returns the function on a piece in Bernstein form, if it is a polynomial: that isolates roots with fewer operations.
-    fn bernstein(&self, _piece: Interval) -> Option<Bernstein> {
+    /// Returns the degree of the function, if it is a polynomial, less than [`MOST`]: that isolates roots with fewer operations.
+    fn degree(&self) -> Option<usize> {
         None
+    }
+
+    /// Returns the function on a piece, if it is a polynomial of less than `N` coefficients.
+    fn polynomial<const N: usize>(&self, _piece: Interval) -> Polynomial<f64, N> {
+        Polynomial::unknown()
+    }
+
+    /// Calls a function with the pieces between two places on which there may be a root, in their order, until it returns one.
+    fn pieces(&self, (low, high): (f64, f64), visit: &mut dyn FnMut(f64, f64) -> Option<f64>) -> Option<f64> {
+        visit(low, high)
     }
 
     /// Returns the root on a piece that bounds in `f64` cannot decide, however short: where rounding hides the
@@ -74,8 +85,11 @@ const MAX_UNDECIDED: usize = 256;
 /// bounds that shrinks with the length of the piece is at most three times the part that does not.
 const HIDDEN: f64 = 4.0;
 
-/// How often a piece is halved on which the function is a polynomial, before bounds judge what is left.
-const HALVINGS: usize = 8;
+/// The error of a root's guess, as a fraction of the piece.
+const NEAR: f64 = 1e-9;
+
+/// A polynomial is expanded once more on a piece where that makes its error smaller than this fraction.
+const SMALLER: f64 = 0.25;
 
 /// The capacity of the stack of pieces. A cut leaves pieces of at most half the length, and pieces of a few ulps are
 /// not cut, so that at most some 53 pieces wait.
@@ -117,18 +131,31 @@ pub fn first_root_within(
     if !(start <= end && start.is_finite() && end.is_finite()) {
         return FirstRoot { root: None, is_certain: true };
     }
-    let mut search = Search { line, start, base, range, shortest, pieces, undecided: 0, is_certain: true };
     // The line may have reached the ends outside of `inner`, and is certainly between them inside.
     let inner = stretch.inner.start.clamp(start, end)..stretch.inner.end.clamp(start, end);
-    let root = if inner.start < inner.end || start == end {
-        let before = search.at_an_end(start, inner.start);
-        let root = before.or_else(|| match line.bernstein(Interval { low: inner.start, high: inner.end }) {
-            Some(form) => search.on_a_polynomial(inner.start, inner.end, &form, HALVINGS),
-            None => search.on_a_piece(inner.start, inner.end),
-        });
-        root.or_else(|| search.at_an_end(inner.end, end))
-    } else {
-        search.at_an_end(start, end)
+    let mut search = Search {
+        line,
+        start,
+        inner: inner.clone(),
+        base,
+        range,
+        shortest,
+        pieces,
+        undecided: 0,
+        is_certain: true,
+        hidden: None,
+    };
+    let root = match line.degree() {
+        Some(degree) if degree < FEW => search.expand::<FEW>(start, end),
+        Some(_) => search.expand::<MOST>(start, end),
+        None if inner.start < inner.end || start == end => {
+            let before = search.at_an_end(start, inner.start);
+            let root = before.or_else(|| {
+                line.pieces((inner.start, inner.end), &mut |low, high| search.on_a_piece(low, high))
+            });
+            root.or_else(|| search.at_an_end(inner.end, end))
+        }
+        None => search.at_an_end(start, end),
     };
     FirstRoot { root, is_certain: search.is_certain }
 }
@@ -155,6 +182,8 @@ pub fn bracket(line: &impl FunctionOnLine, root: f64, mut width: f64) -> Option<
 struct Search<'l, L> {
     line: &'l L,
     start: f64,
+    /// Where the line is certainly between its ends.
+    inner: Range<f64>,
     base: f64,
     range: &'l RayRange,
     /// Pieces of this length are not cut.
@@ -163,6 +192,29 @@ struct Search<'l, L> {
     /// The number of pieces that bounds did not decide so far.
     undecided: usize,
     is_certain: bool,
+    /// A piece on which rounding hides a polynomial, to which the next one may be added.
+    hidden: Option<(f64, f64)>,
+}
+
+/// A polynomial, and the piece that it is expanded on.
+struct Expansion<'p, const N: usize> {
+    polynomial: &'p Polynomial<f64, N>,
+    low: f64,
+    high: f64,
+}
+
+impl<const N: usize> Expansion<'_, N> {
+    /// Returns a place near the only root on a part of the piece, from a guess: evaluating the polynomial is quicker than the
+    /// function.
+    fn near_root(&self, (low, high): (f64, f64), rises: bool, guess: f64) -> f64 {
+        let (middle, half) = (0.5 * self.low + 0.5 * self.high, 0.5 * (self.high - self.low));
+        let at = |t: f64| (t - middle) / half;
+        let line = |s: f64| {
+            let [value, slope] = self.polynomial.at(s);
+            Dual { value, slope }
+        };
+        middle + half * newton::root(line, (at(low), at(high)), !rises, at(guess), NEAR)
+    }
 }
 
 enum Judgement {
@@ -176,27 +228,109 @@ enum Judgement {
 
 impl<L: FunctionOnLine> Search<'_, L> {
     /// Returns the first root on a piece on which the function is a polynomial.
-    fn on_a_polynomial(&mut self, low: f64, high: f64, form: &Bernstein, halvings: usize) -> Option<f64> {
-        if self.base + high <= self.range.near || self.base + low >= self.range.far {
+    fn expand<const N: usize>(&mut self, low: f64, high: f64) -> Option<f64> {
+        let polynomial = self.line.polynomial::<N>(Interval { low, high });
+        match Bernstein::of(&polynomial) {
+            Some(form) => {
+                let expansion = Expansion { polynomial: &polynomial, low, high };
+                self.on_a_polynomial(low, high, &form, &expansion).or_else(|| self.reveal())
+            }
+            None => self.on_a_piece(low, high),
+        }
+    }
+
+    /// Returns the first root on a piece on which the function is a polynomial, or adds to what is [hidden](Self::reveal).
+    fn on_a_polynomial<const N: usize>(
+        &mut self,
+        low: f64,
+        high: f64,
+        form: &Bernstein<f64, N>,
+        expansion: &Expansion<'_, N>,
+    ) -> Option<f64> {
+        let is_given_up = self.line.wants_proof() && !self.is_certain;
+        if is_given_up || self.base + high <= self.range.near || self.base + low >= self.range.far {
             return None;
         }
-        let at = |part: f64| low + part * (high - low);
-        let root = match form.roots() {
-            Roots::None => None,
-            Roots::One { rises, near } if self.counts(rises) => Some(self.newton(low, high, rises, at(near))),
-            Roots::One { .. } => None,
-            Roots::Monotone { rises, near } => match self.judge_monotone(low, high, rises, at(near)) {
-                Judgement::Root(root) => Some(root),
-                _ => None,
-            },
-            Roots::Unknown if halvings > 0 => {
-                let (middle, [left, right]) = (at(0.5), form.halves());
-                let root = self.on_a_polynomial(low, middle, &left, halvings - 1);
-                return root.or_else(|| self.on_a_polynomial(middle, high, &right, halvings - 1));
+        let middle = low + 0.5 * (high - low);
+        let judgement = match form.roots() {
+            Roots::None => return self.reveal(),
+            Roots::Unknown if *self.pieces > 0 && high - low > self.shortest => {
+                *self.pieces -= 1;
+                let [left, right] = form.halves();
+                let root = self.on_a_polynomial(low, middle, &left, expansion);
+                return root.or_else(|| self.on_a_polynomial(middle, high, &right, expansion));
             }
-            Roots::Unknown | Roots::Hidden => self.on_a_piece(low, high),
+            Roots::Unknown | Roots::Hidden => {
+                let polynomial = self.line.polynomial::<N>(Interval { low, high });
+                return match Bernstein::of(&polynomial) {
+                    Some(again) if *self.pieces > 0 && again.error() < SMALLER * form.error() => {
+                        *self.pieces -= 1;
+                        let expansion = Expansion { polynomial: &polynomial, low, high };
+                        self.on_a_polynomial(low, high, &again, &expansion)
+                    }
+                    _ => self.hide(low, high),
+                };
+            }
+            Roots::One { rises, near } => {
+                if let Some(root) = self.reveal() {
+                    return Some(root);
+                }
+                self.note_ends(low, high);
+                match self.counts(rises) {
+                    true => {
+                        let near = expansion.near_root((low, high), rises, low + near * (high - low));
+                        Judgement::Root(self.newton(low, high, rises, near))
+                    }
+                    false => Judgement::Free,
+                }
+            }
+            Roots::Monotone { rises, near } => {
+                if let Some(root) = self.reveal() {
+                    return Some(root);
+                }
+                self.note_ends(low, high);
+                self.judge_monotone(low, high, rises, low + near * (high - low))
+            }
         };
-        root.filter(|root| self.is_in_range(*root))
+        match judgement {
+            Judgement::Root(root) if self.is_in_range(root) => Some(root),
+            _ => None,
+        }
+    }
+
+    /// Notes that nothing is certain where the root on a piece may lie where rounding hides whether the line is still between
+    /// the ends.
+    fn note_ends(&mut self, low: f64, high: f64) {
+        let Range { start, end } = self.inner;
+        let may_be_zero = |low: f64, high: f64| low < high && self.line.at(Interval { low, high }).has_zero();
+        if may_be_zero(low, start.min(high)) || may_be_zero(end.max(low), high) {
+            self.is_certain = false;
+        }
+    }
+
+    /// Adds a piece to what rounding hides, or judges what was hidden before, if that is not next to it. A line that leaves a
+    /// surface is on it at its start, and not on what follows.
+    fn hide(&mut self, low: f64, high: f64) -> Option<f64> {
+        match self.hidden {
+            Some((start, end)) if end == low && (start != self.start || self.range.origin_side.is_none()) => {
+                self.hidden = Some((start, high));
+                None
+            }
+            _ => {
+                let root = self.reveal();
+                self.hidden = Some((low, high));
+                root
+            }
+        }
+    }
+
+    /// Returns the first root on what is hidden.
+    fn reveal(&mut self) -> Option<f64> {
+        let (low, high) = self.hidden.take()?;
+        match self.undecided(low, high) {
+            Judgement::Root(root) if self.is_in_range(root) => Some(root),
+            _ => None,
+        }
     }
 
     /// Returns the first root on a piece.

@@ -1,7 +1,9 @@
 //! What a plugin says of an implicit surface.
 
 use glam::{DVec2, DVec3};
+use tabray_exact::formula::field::Field;
 use tabray_exact::interval::Interval;
+use tabray_exact::polynomial::{Coefficient, Polynomial};
 use tabray_exact::scalar::Scalar;
 
 /// An implicit surface, in coordinates of its own.
@@ -13,9 +15,23 @@ pub trait Implicit: Send + Sync {
     fn value<N: Scalar>(&self, at: [N; 3]) -> N;
 
     /// Returns the value of a polynomial that is below 0, 0 and above 0 where the formula is: first hits are isolated faster
-    /// by one of at most the twelfth degree. By default, this is the formula itself, which may be no polynomial.
+    /// by one of at most the fortieth degree. By default, this is the formula itself, which may be no polynomial.
     fn polynomial<N: Scalar>(&self, at: [N; 3]) -> N {
         self.value(at)
+    }
+
+    /// Returns the [`polynomial`](Self::polynomial) along a line.
+    fn along<C: Coefficient, const N: usize>(&self, at: [Polynomial<C, N>; 3]) -> Polynomial<C, N> {
+        match self.field() {
+            Some(field) => field.along(at),
+            None => self.polynomial(at),
+        }
+    }
+
+    /// Returns the formula itself, if it is one of a scene: where it is a polynomial with rational coefficients, no first hit is
+    /// left open.
+    fn field(&self) -> Option<&Field> {
+        None
     }
 
     /// Whether more than the box cuts the surface. If not, [`kept`](Self::kept) is not called.

@@ -3,8 +3,10 @@
 use crate::geometry::sight::Line;
 use glam::DVec3;
 use tabray_exact::dual::Dual;
+use tabray_exact::formula::field::Field;
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::jet::Jet;
+use tabray_exact::polynomial::{Coefficient, Polynomial};
 use tabray_exact::scalar::Scalar;
 
 /// A shape given by an equation, of whose solutions a part is kept.
@@ -30,6 +32,21 @@ pub trait Equation {
 
     /// Returns the equation's value at a point: 0 on the surface, with opposite signs on the two sides.
     fn value<N: Scalar>(&self, at: [N; 3]) -> N;
+
+    /// Tells whether [`along`](Self::along) a line is a polynomial of a degree that a [`Polynomial`] may have.
+    fn is_polynomial(&self) -> bool {
+        false
+    }
+
+    /// Returns a polynomial that has the sign of [`value`](Self::value) everywhere along a line.
+    fn along<C: Coefficient, const N: usize>(&self, at: [Polynomial<C, N>; 3]) -> Polynomial<C, N> {
+        self.value(at)
+    }
+
+    /// Returns the formula that [`value`](Self::value) is, if it is one of the scene.
+    fn field(&self) -> Option<&Field> {
+        None
+    }
 
     /// Returns the estimated number of arithmetic operations of [`value`](Self::value), if that is a formula of the scene.
     fn cost(&self) -> usize {
@@ -59,6 +76,9 @@ pub(super) trait Values<N: Scalar> {
     /// Transforms a line into the coordinates that the equation is written in.
     fn own(&self, line: Line<N>) -> Line<N>;
 
+    /// Returns [`Equation::field`].
+    fn field(&self) -> Option<&Field>;
+
     /// Encloses the value.
     fn value(&self, at: [N; 3]) -> N;
 
@@ -82,6 +102,10 @@ impl<E: Equation, N: Scalar> Values<N> for E {
 
     fn own(&self, line: Line<N>) -> Line<N> {
         Equation::own(self, line)
+    }
+
+    fn field(&self) -> Option<&Field> {
+        Equation::field(self)
     }
 
     fn value(&self, at: [N; 3]) -> N {

@@ -3,6 +3,7 @@
 //! Nothing about such a ray is a number of the scene. Its line has intervals as coefficients, and starts at the true point
 //! on the surface, somewhere in an enclosure. That the point lies on the surface is known, although no interval tells.
 
+use super::algebraic;
 use super::along::{PIECES, first_along, most_pieces};
 use super::equation::{Equation, HitEnclosure};
 use super::footprint::OverFootprint;
@@ -116,7 +117,8 @@ impl Precise for f64 {
     }
 
     fn along(shape: &impl Equation, line: &Line<Interval>, leaves: bool) -> HitEnclosure<Self> {
-        first_along(shape, line, leaves, PIECES)
+        let hit = if leaves { None } else { algebraic::first_hit::<f64>(shape, line) };
+        hit.unwrap_or_else(|| first_along(shape, line, leaves, PIECES))
     }
 
     fn narrow(of: Fine) -> Interval {
@@ -139,7 +141,8 @@ impl Precise for f256 {
     }
 
     fn along(shape: &impl Equation, line: &Line<Wide>, leaves: bool) -> HitEnclosure<Self> {
-        first_along(shape, line, leaves, most_pieces(shape))
+        let hit = if leaves { None } else { algebraic::first_hit::<f256>(shape, line) };
+        hit.unwrap_or_else(|| first_along(shape, line, leaves, most_pieces(shape)))
     }
 
     fn narrow(of: Fine) -> Wide {

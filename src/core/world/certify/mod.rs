@@ -5,6 +5,7 @@
 //! derived from them, and the ray is a [`Sight`]. Everything after that is computed with intervals, so that a proof
 //! holds for the real numbers.
 
+mod algebraic;
 mod along;
 mod closed;
 mod doubt;
@@ -14,6 +15,7 @@ mod hit_proofs;
 mod premise;
 mod search;
 
+pub use algebraic::exact_line;
 pub use doubt::Doubt;
 pub use equation::{Equation, HitEnclosure};
 pub use footprint::{FootprintHit, OverFootprint, coarse, gradient_over};
@@ -22,8 +24,6 @@ pub use premise::{Assumption, Premise};
 
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::sight::{Line, Sight};
-use along::{PIECES, first_along, most_pieces};
-use equation::Values;
 use f256::f256;
 use glam::DVec3;
 use tabray_exact::double_double::DoubleDouble;
@@ -116,8 +116,11 @@ pub enum Precision {
 /// Returns what is proven about a ray's first hit of a shape.
 pub fn first_hit(shape: &impl Equation, sight: &Sight, precision: Precision) -> Enclosure {
     match precision {
-        Precision::Double => solve::<f64>(shape, sight, PIECES).into(),
-        Precision::Octuple => solve::<f256>(shape, sight, most_pieces(shape)).into(),
+        Precision::Double => f64::along(shape, &sight.line(), false).into(),
+        Precision::Octuple => {
+            let exact = algebraic::exact_hit(shape, sight);
+            exact.unwrap_or_else(|| f256::along(shape, &sight.line(), false)).into()
+        }
     }
 }
 
@@ -143,10 +146,6 @@ pub fn holds(shape: &impl Equation, at: DVec3, error: f64) -> Option<bool> {
     }
     let value = shape.value(origin);
     (!value.has_zero()).then_some(value.high < 0.0)
-}
-
-fn solve<F: Float>(shape: &dyn Values<Interval<F>>, sight: &Sight, pieces: usize) -> HitEnclosure<F> {
-    first_along(shape, &sight.line(), false, pieces)
 }
 
 #[cfg(test)]

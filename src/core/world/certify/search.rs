@@ -3,6 +3,7 @@
 use super::equation::{HitEnclosure, Values, is_kept};
 use crate::geometry::sight::Line;
 use tabray_exact::dual::Dual;
+use tabray_exact::formula::field::Field;
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::jet::Jet;
 use tabray_exact::scalar::{Scalar, per_axis};
@@ -49,7 +50,7 @@ pub fn first_hit<F: Float>(
     let shortest = F::of(8.0) * F::EPSILON * (to - from);
     let shortest_jump = shortest.max(F::of(JUMP) * (to - from));
     let search = Search { shape, line: &near };
-    let mut pending = vec![(from, to)];
+    let mut pending = open_pieces(shape, &near, (from, to));
     for _ in 0..pieces {
         let Some((low, high)) = pending.pop() else { return HitEnclosure::Misses };
         let piece = Interval { low, high };
@@ -88,6 +89,24 @@ pub fn first_hit<F: Float>(
     HitEnclosure::Doubtful(
         pending.last().map_or(zero, |(low, _)| (base + Interval::point(*low)).low.max(zero)),
     )
+}
+
+/// Returns the pieces of a line between two places on which the value may be 0, the nearest one last.
+fn open_pieces<F: Float>(
+    shape: &dyn Values<Interval<F>>,
+    line: &Line<Interval<F>>,
+    (from, to): (F, F),
+) -> Vec<(F, F)> {
+    let Some(cells) = shape.field().and_then(Field::cells) else { return vec![(from, to)] };
+    let [base, dir] = [line.origin, line.dir].map(|of| of.map(|axis| axis.middle().to_f64()));
+    let mut pieces = Vec::new();
+    let nothing: Option<()> = cells.visit(base, dir, (from.to_f64(), to.to_f64()), &mut |low, high| {
+        pieces.push((F::of(low), F::of(high)));
+        None
+    });
+    debug_assert_eq!(nothing, None);
+    pieces.reverse();
+    pieces
 }
 
 /// Returns a length from a line's start, which lies on the surface, within which the value is strictly monotonic, and so

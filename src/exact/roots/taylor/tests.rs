@@ -1,7 +1,6 @@
 //! Tests of the search for roots.
 
 use super::*;
-use crate::polynomial::Polynomial;
 use std::cell::Cell;
 
 /// A double root at 1, and a single one at 3.
@@ -80,8 +79,12 @@ impl FunctionOnLine for Product {
         self.roots.iter().map(factor).fold(N::constant(1.0), |product, factor| product * factor)
     }
 
-    fn bernstein(&self, piece: Interval) -> Option<Bernstein> {
-        self.by_coefficients.then(|| Bernstein::of(&self.at(Polynomial::along(piece)))).flatten()
+    fn degree(&self) -> Option<usize> {
+        self.by_coefficients.then_some(self.roots.len())
+    }
+
+    fn polynomial<const N: usize>(&self, piece: Interval) -> Polynomial<f64, N> {
+        self.at(Polynomial::along(piece))
     }
 }
 

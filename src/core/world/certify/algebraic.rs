@@ -1,0 +1,108 @@
+//! First hits of a surface whose equation is a polynomial: by its coefficients along the line, rounded or exact.
+
+use super::equation::{Equation, HitEnclosure, Values, is_kept};
+use crate::geometry::sight::{Line, Sight};
+use f256::f256;
+use tabray_exact::formula::rational::Rational;
+use tabray_exact::interval::{Fine, Float, Interval, Wide};
+use tabray_exact::polynomial::{Coefficient, MOST, Polynomial};
+use tabray_exact::roots::isolation::{self, Part};
+use tabray_exact::scalar::per_axis;
+
+/// An equation that may be a polynomial with coefficients of one type.
+pub(super) trait Coefficients<C: Coefficient>: Values<Interval<C::End>> {
+    /// Returns the polynomial along a line; unknown for another equation.
+    fn polynomial(&self, at: [Polynomial<C, MOST>; 3]) -> Polynomial<C, MOST>;
+}
+
+impl<E: Equation, C: Coefficient> Coefficients<C> for E {
+    fn polynomial(&self, at: [Polynomial<C, MOST>; 3]) -> Polynomial<C, MOST> {
+        if self.is_polynomial() { self.along(at) } else { Polynomial::unknown() }
+    }
+}
+
+/// Finds the first hit with t > 0 of a line in world coordinates; `None` where the equation is no polynomial.
+pub(super) fn first_hit<C: Coefficient>(
+    shape: &dyn Coefficients<C>,
+    line: &Line<Interval<C::End>>,
+) -> Option<HitEnclosure<C::End>> {
+    let zero = C::End::of(0.0);
+    let line = shape.own(*line);
+    let [low, high] = shape.extent();
+    let Some((from, to)) = line.clip(low, high) else { return Some(HitEnclosure::Misses) };
+    if !to.is_finite() {
+        return None;
+    }
+    // The parameter counts from near the shape, so that a piece of the line is not a small difference of large numbers.
+    let half = (Interval::point(to) - Interval::point(from)).high * C::End::of(0.5);
+    let base = Interval::point(from + half);
+    let near = Line { origin: line.at(base), dir: line.dir };
+    let along = Polynomial::<C, MOST>::along(Interval { low: -1.0, high: 1.0 });
+    let place = |axis: usize| {
+        let step = near.dir[axis] * Interval::point(half);
+        Polynomial::enclosed(near.origin[axis]) + Polynomial::enclosed(step) * along
+    };
+    let polynomial = shape.polynomial(per_axis(place));
+    polynomial.degree()?;
+    let interval = |[low, high]: [C; 2]| {
+        let [low, high] = [low.bounds(0.0).low, high.bounds(0.0).high];
+        Interval::point(half) * Interval { low, high }
+    };
+    let found = isolation::visit(&polynomial, |part| match part {
+        Part::Root { ends, rises } => {
+            let at = interval(isolation::enclosed(&polynomial, ends, rises));
+            let distance = base + at;
+            if distance.high <= zero {
+                return None;
+            }
+            if distance.low <= zero {
+                return Some(HitEnclosure::Doubtful(zero));
+            }
+            match is_kept(shape, &near, at) {
+                Some(true) => Some(HitEnclosure::Hits(distance)),
+                Some(false) => None,
+                None => Some(HitEnclosure::Edge(distance)),
+            }
+        }
+        Part::Hidden(ends) => {
+            let at = interval(ends);
+            // A root that is certainly cut off is no hit.
+            let is_open = is_kept(shape, &near, at) != Some(false) && (base + at).high > zero;
+            is_open.then(|| HitEnclosure::Doubtful((base + at).low.max(zero)))
+        }
+    });
+    Some(found.unwrap_or(HitEnclosure::Misses))
+}
+
+/// Finds the first hit with t > 0 of a ray exactly; `None` where the equation is no polynomial, or its coefficients or the
+/// numbers of the ray are no fractions of so few digits.
+pub(super) fn exact_hit(shape: &impl Equation, sight: &Sight) -> Option<HitEnclosure<f256>> {
+    let field = shape.field()?;
+    let line = shape.own(sight.line::<Fine>());
+    let [origin, dir] = exact_line(&line)?;
+    let polynomial = field.exactly_along(&origin, &dir)?;
+    let near = Line { origin: line.origin.map(Interval::wide), dir: line.dir.map(Interval::wide) };
+    let [low, high] = shape.extent();
+    let Some((from, to)) = near.clip(low, high) else { return Some(HitEnclosure::Misses) };
+    let [from, to] = [from.to_f64().next_down().max(0.0), to.to_f64().next_up()];
+    if !to.is_finite() {
+        return None;
+    }
+    let is_hit = |at: Wide| {
+        let kept = (at.high > f256::ZERO).then(|| is_kept(shape, &near, at));
+        kept.unwrap_or(Some(false))
+    };
+    let root = polynomial.first_root(from, to, |root| is_hit(root.wide()) != Some(false));
+    Some(match root.map(|root| root.wide()) {
+        None => HitEnclosure::Misses,
+        Some(at) if is_hit(at).is_some() => HitEnclosure::Hits(at),
+        Some(at) => HitEnclosure::Edge(at),
+    })
+}
+
+/// Returns the start and the direction of a line, if its numbers are exact.
+pub fn exact_line(line: &Line<Fine>) -> Option<[[Rational; 3]; 2]> {
+    let exact = |of: &Fine| if of.low == of.high { Rational::of(of.low) } else { None };
+    let all = |[x, y, z]: &[Fine; 3]| Some([exact(x)?, exact(y)?, exact(z)?]);
+    Some([all(&line.origin)?, all(&line.dir)?])
+}

@@ -1,0 +1,101 @@
+//! Formulas along lines, as polynomials: their operations in place, as polynomials are too long to be copied for each.
+
+use super::field::Field;
+use super::program::{MOST_REGISTERS, Program, Value, Values};
+use super::step::Step;
+use crate::polynomial::{Coefficient, Polynomial};
+use crate::scalar::Scalar;
+
+impl Field {
+    /// Evaluates the formula at a point that is a polynomial.
+    pub fn along<C: Coefficient, const N: usize>(&self, at: [Polynomial<C, N>; 3]) -> Polynomial<C, N> {
+        let program = self.by_products();
+        let mut registers = Vec::with_capacity(program.registers.max(at.len()));
+        registers.extend_from_slice(&at);
+        for instruction in &program.instructions {
+            let (a, b) = (usize::from(instruction.operands[0]), usize::from(instruction.operands[1]));
+            let result = usize::from(instruction.result);
+            if result == registers.len() {
+                registers.push(Polynomial::constant(0.0));
+            }
+            match instruction.step {
+                Step::Mul => registers[result] = registers[a].times(&registers[b]),
+                Step::Add if result == a => add(&mut registers, result, b, 1.0),
+                Step::Add if result == b => add(&mut registers, result, a, 1.0),
+                Step::Sub if result == a => add(&mut registers, result, b, -1.0),
+                Step::Scale(factor) if result == a => registers[result].scale(factor),
+                Step::Shift(by) if result == a => registers[result].shift(by),
+                Step::Number(number) => registers[result].set(number),
+                step => registers[result] = step.of::<_, true>(registers[a], registers[b], None),
+            }
+        }
+        registers[usize::from(program.result)]
+    }
+}
+
+/// Adds one register to another, times a sign that is 1 or -1.
+fn add<C: Coefficient, const N: usize>(
+    registers: &mut [Polynomial<C, N>],
+    to: usize,
+    from: usize,
+    sign: f64,
+) {
+    if let Ok([to, from]) = registers.get_disjoint_mut([to, from]) {
+        to.add_times(from, sign);
+    } else {
+        registers[to] = registers[to] + registers[from].scaled(sign);
+    }
+}
+
+/// Returns a program in which powers are products, of other powers of the same number where they are known: `x^6` of `x^4` and
+/// `x^2`. `None` if it takes more registers than there are.
+pub(super) fn by_products(steps: &[Step], variables: usize) -> Option<Program> {
+    let given = Values::new(steps, variables);
+    let mut new = Products { list: given.list[..variables].to_vec(), powers: Vec::new() };
+    let mut places: Vec<usize> = (0..variables).collect();
+    for value in &given.list[variables..] {
+        let operands = value.operands.map(|operand| places.get(operand).copied().unwrap_or(0));
+        places.push(match value.step {
+            Step::Powi(exponent) if exponent > 1 => new.power(operands[0], exponent.unsigned_abs()),
+            step => new.push(step, operands),
+        });
+    }
+    let program = Program::of(&Values { list: new.list, result: places[given.result] }, variables);
+    (program.registers <= MOST_REGISTERS).then_some(program)
+}
+
+struct Products {
+    list: Vec<Value>,
+    /// Values, exponents, and the values that are these powers.
+    powers: Vec<(usize, u32, usize)>,
+}
+
+impl Products {
+    fn push(&mut self, step: Step, operands: [usize; 2]) -> usize {
+        self.list.push(Value { step, operands });
+        self.list.len() - 1
+    }
+
+    /// Returns the value that is a power of another one, which is 1 or more.
+    fn power(&mut self, of: usize, exponent: u32) -> usize {
+        if exponent == 1 {
+            return of;
+        }
+        let known = |exponent: u32| match exponent {
+            1 => Some(of),
+            _ => self.powers.iter().find(|power| (power.0, power.1) == (of, exponent)).map(|power| power.2),
+        };
+        if let Some(power) = known(exponent) {
+            return power;
+        }
+        let parts =
+            (exponent / 2..exponent).rev().find_map(|part| Some([known(part)?, known(exponent - part)?]));
+        let parts = parts.unwrap_or_else(|| {
+            let half = self.power(of, exponent / 2);
+            [if exponent.is_multiple_of(2) { half } else { self.power(of, exponent - exponent / 2) }, half]
+        });
+        let product = self.push(Step::Mul, parts);
+        self.powers.push((of, exponent, product));
+        product
+    }
+}

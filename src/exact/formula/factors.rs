@@ -1,0 +1,191 @@
+//! Factors that a formula has more than once: where one of them is 0, its sign does not change, or the slope is 0.
+
+use super::Formula;
+use super::field::Field;
+use super::rational::Rational;
+use super::step::{Function, Step};
+use crate::text;
+use std::sync::Arc;
+
+/// The starts and the directions of lines of few digits, in general position.
+const LINES: [[[f64; 3]; 2]; 3] = [
+    [[0.3125, -0.71875, 0.453125], [0.59375, 0.8125, -0.40625]],
+    [[-0.859375, 0.15625, 0.6875], [0.78125, -0.34375, 0.90625]],
+    [[0.546875, 0.9375, -0.265625], [-0.421875, 0.65625, 0.71875]],
+];
+
+impl Field {
+    /// Returns the formula without the powers of its factors as they are written, and the factors whose powers were left out;
+    /// `None` if it has none. The new formula is 0 where the old one is.
+    pub fn without_powers(&self) -> Option<(Self, Vec<String>)> {
+        let mut factors = Factors::default();
+        let sign = factors.add(&self.formula().steps, 1);
+        if factors.powers.iter().all(|(_, power)| *power == 1) {
+            return None;
+        }
+        let mut steps = Vec::new();
+        for (index, (factor, _)) in factors.powers.iter().enumerate() {
+            steps.extend_from_slice(factor);
+            if index > 0 {
+                steps.push(Step::Mul);
+            }
+        }
+        if sign < 0.0 {
+            steps.push(Step::Neg);
+        }
+        let repeated = factors.powers.iter().filter(|(_, power)| *power > 1);
+        let names = repeated.map(|(factor, _)| written(factor)).collect();
+        let formula = Formula::new(self.formula().to_string(), Self::VARIABLES, steps);
+        Some((Self::new(Arc::new(formula))?, names))
+    }
+
+    /// Tells whether the formula is a polynomial that has a factor more than once, as three lines tell that meet every factor,
+    /// unless they meet one in as few places as no line in a million does.
+    pub fn has_repeated_factor(&self) -> bool {
+        LINES.iter().all(|[origin, dir]| {
+            let along = self.exactly_along(&origin.map(Rational::from), &dir.map(Rational::from));
+            along.is_some_and(|along| along.degree() > 1 && !along.has_no_repeated_factor())
+        })
+    }
+}
+
+/// The factors of a product, each once, with its power.
+#[derive(Default)]
+struct Factors<'s> {
+    powers: Vec<(&'s [Step], u32)>,
+}
+
+impl<'s> Factors<'s> {
+    /// Adds the factors of a power of a product. Returns the sign of the constants among them.
+    fn add(&mut self, of: &'s [Step], power: u32) -> f64 {
+        let Some((last, operands)) = of.split_last() else { return 1.0 };
+        if !has_variable(of) {
+            let value: f64 = Formula::new(String::new(), &[], of.to_vec()).at(0.0);
+            // A power of 0 is a factor like any other.
+            if value != 0.0 && value.is_finite() {
+                return if value < 0.0 && !power.is_multiple_of(2) { -1.0 } else { 1.0 };
+            }
+        }
+        match last {
+            Step::Mul => {
+                let (left, right) = operands.split_at(start_of_last(operands));
+                self.add(left, power) * self.add(right, power)
+            }
+            Step::Div if !has_variable(&operands[start_of_last(operands)..]) => {
+                let (left, right) = operands.split_at(start_of_last(operands));
+                self.add(left, power) * self.add(right, power)
+            }
+            Step::Neg => self.add(operands, power) * if power.is_multiple_of(2) { 1.0 } else { -1.0 },
+            Step::Powi(exponent) if *exponent > 0 => {
+                self.add(operands, power.saturating_mul(exponent.unsigned_abs()))
+            }
+            _ => {
+                match self.powers.iter_mut().find(|(factor, _)| *factor == of) {
+                    Some((_, known)) => *known = known.saturating_add(power),
+                    None => self.powers.push((of, power)),
+                }
+                1.0
+            }
+        }
+    }
+}
+
+fn has_variable(steps: &[Step]) -> bool {
+    steps.iter().any(|step| matches!(step, Step::Variable(_)))
+}
+
+/// Returns where the operations of the last operand start.
+fn start_of_last(steps: &[Step]) -> usize {
+    let (mut at, mut missing) = (steps.len(), 1);
+    while missing > 0 && at > 0 {
+        at -= 1;
+        missing = missing - 1 + steps[at].operands();
+    }
+    at
+}
+
+/// Returns the text of a formula in x, y and z.
+fn written(steps: &[Step]) -> String {
+    /// How tightly the last operation of a text binds: sums 0, products 1, signs 2, powers 3, values 4.
+    type Part = (String, u8);
+    fn within((text, binds): Part, least: u8) -> String {
+        if binds < least { format!("({text})") } else { text }
+    }
+    let mut waiting: Vec<Part> = Vec::new();
+    for step in steps {
+        let second = if step.operands() == 2 { waiting.pop() } else { None };
+        let first = if step.operands() > 0 { waiting.pop() } else { None };
+        let (a, b) = (first.unwrap_or_default(), second.unwrap_or_default());
+        waiting.push(match step {
+            Step::Variable(index) => (Field::VARIABLES[usize::from(*index)].to_owned(), 4),
+            Step::Number(number) => (text::shortest(*number), if *number < 0.0 { 2 } else { 4 }),
+            Step::Neg => (format!("-{}", within(a, 3)), 2),
+            Step::Add | Step::Shift(_) => (format!("{} + {}", within(a, 0), within(b, 0)), 0),
+            Step::Sub => (format!("{} - {}", within(a, 0), within(b, 1)), 0),
+            Step::Mul | Step::Scale(_) => (format!("{}*{}", within(a, 1), within(b, 1)), 1),
+            Step::Div => (format!("{}/{}", within(a, 1), within(b, 2)), 1),
+            Step::Powi(exponent) => (format!("{}^{exponent}", within(a, 4)), 3),
+            Step::Spline => a,
+            Step::Call(Function::Pow) => (format!("{}^{}", within(a, 4), within(b, 4)), 3),
+            Step::Call(function) => {
+                let name = format!("{function:?}").to_lowercase();
+                let arguments = if step.operands() == 2 { format!("{}, {}", a.0, b.0) } else { a.0 };
+                (format!("{name}({arguments})"), 4)
+            }
+        });
+    }
+    waiting.pop().unwrap_or_default().0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formula::variables::SPACE;
+
+    fn field(text: &str) -> Field {
+        let formula = Formula::parse_in(text, SPACE).unwrap_or_else(|fault| panic!("{text}: {fault:?}"));
+        Field::new(Arc::new(formula)).expect("its variables are x, y and z")
+    }
+
+    #[test]
+    fn powers_of_factors_are_left_out() {
+        for (text, factors, left) in [
+            (
+                "(x^2 + y^2 + z^2 - 1)^2*(x - 2*y + 0.25)",
+                "x^2 + y^2 + z^2 - 1",
+                "(x^2+y^2+z^2-1)*(x-2*y+0.25)",
+            ),
+            ("-2*x*(y - z)*x^3", "x", "-x*(y - z)"),
+            ("(-(x*y)^2)^3*z/1", "x, y", "-x*y*z"),
+            ("(sin(x) - y/2)^4", "sin(x) - y/2", "sin(x) - y/2"),
+        ] {
+            let (reduced, names) = field(text).without_powers().expect(text);
+            assert_eq!(names.join(", "), factors, "{text}");
+            let expected = field(left);
+            for at in [[0.3, 0.7, -1.1], [1.7, -0.4, 0.6]] {
+                let (found, expected): (f64, f64) = (reduced.at(at), expected.at(at));
+                assert!((found - expected).abs() < 1e-12, "{text}: {found} is not {expected}");
+            }
+        }
+        for text in ["x^2 + y^2 - 1", "x*y*z", "2*(x - 1)*(y - 1)", "-x"] {
+            assert_eq!(field(text).without_powers(), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn repeated_factors_are_seen_however_they_are_written() {
+        for text in [
+            "(x + y)^2*z",
+            "x^2 + 2*x*y + y^2",
+            "(x^2 - y^2)*(x - y)*z",
+            "x^4 + y^4 + 2*x^2*y^2 - 2*(x^2 + y^2)*z + z^2",
+        ] {
+            assert!(field(text).has_repeated_factor(), "{text}");
+        }
+        for text in
+            ["x^2 + y^2 + z^2 - 1", "x^2*y^2 + y^2*z^2 + z^2*x^2 - 2*x*y*z", "x^2 - y^2*z", "sin(x)^2", "x"]
+        {
+            assert!(!field(text).has_repeated_factor(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! Formulas along lines of rational numbers, exactly: polynomials with whole coefficients.
+//!
+//! The numbers of a formula are `f64`, and so fractions. A formula that adds, subtracts and multiplies, and divides by numbers
+//! alone, is a polynomial along a line, whose coefficients are fractions if the line's are.
+
+use super::field::Field;
+use super::program::{Instruction, Program};
+use super::step::Step;
+use crate::interval::Fraction;
+use crate::polynomial::MOST;
+use crate::roots::whole::{Dyadic, Whole};
+use dashu_int::IBig;
+use dashu_int::ops::Abs;
+
+/// The largest power of two by which numbers are scaled to add them, or to make them whole: a number of 1e-300 to the 12th
+/// power is smaller, and not worth the time.
+const MOST_BITS: i64 = 1 << 14;
+
+/// A polynomial whose coefficients are these whole numbers times a power of two, divided by a positive number.
+#[derive(Clone, Debug)]
+pub struct Rational {
+    numerators: Vec<IBig>,
+    exponent: i64,
+    denominator: IBig,
+}
+
+impl From<f64> for Rational {
+    fn from(value: f64) -> Self {
+        let Dyadic { digits, exponent } = value.into();
+        Self::new(digits, exponent, IBig::ONE)
+    }
+}
+
+impl Rational {
+    fn new(numerator: IBig, exponent: i64, denominator: IBig) -> Self {
+        Self { numerators: vec![numerator], exponent, denominator }
+    }
+
+    /// Takes a fraction, if it is exact.
+    pub fn of(fraction: Fraction) -> Option<Self> {
+        let [above, below] = fraction.exactly()?;
+        Some(Self::new(above.digits, above.exponent - below.exponent, below.digits))
+    }
+
+    /// Returns whether the polynomial is a number.
+    fn is_number(&self) -> bool {
+        self.numerators.len() == 1
+    }
+
+    fn negated(mut self) -> Self {
+        self.numerators.iter_mut().for_each(|of| *of = -std::mem::take(of));
+        self
+    }
+
+    /// Returns the polynomial that has another one as its coefficient of t.
+    fn with_slope(&self, slope: &Self) -> Option<Self> {
+        let rises = Self { numerators: vec![IBig::ZERO, slope.numerators[0].clone()], ..slope.clone() };
+        self.plus(&rises)
+    }
+
+    fn plus(&self, other: &Self) -> Option<Self> {
+        let exponent = self.exponent.min(other.exponent);
+        let is_same = self.denominator == other.denominator;
+        let scaled = |of: &Self, by: &IBig| {
+            let up = of.exponent - exponent;
+            let up = (up <= MOST_BITS).then_some(up as usize)?;
+            let scaled = |number: &IBig| if is_same { number << up } else { (number << up) * by };
+            Some(of.numerators.iter().map(scaled).collect::<Vec<_>>())
+        };
+        let (mut numerators, mut others) =
+            (scaled(self, &other.denominator)?, scaled(other, &self.denominator)?);
+        if numerators.len() < others.len() {
+            std::mem::swap(&mut numerators, &mut others);
+        }
+        for (sum, other) in numerators.iter_mut().zip(others) {
+            *sum += other;
+        }
+        while numerators.len() > 1 && numerators.last().is_some_and(IBig::is_zero) {
+            numerators.pop();
+        }
+        let denominator = match is_same {
+            true => self.denominator.clone(),
+            false => &self.denominator * &other.denominator,
+        };
+        Some(Self { numerators, exponent, denominator })
+    }
+
+    fn times(&self, other: &Self) -> Option<Self> {
+        let count = self.numerators.len() + other.numerators.len() - 1;
+        if count > MOST {
+            return None;
+        }
+        let mut numerators = vec![IBig::ZERO; count];
+        for (power, one) in self.numerators.iter().enumerate().filter(|(_, one)| !one.is_zero()) {
+            for (sum, other) in numerators[power..].iter_mut().zip(&other.numerators) {
+                *sum += one * other;
+            }
+        }
+        let denominator = &self.denominator * &other.denominator;
+        let exponent = self.exponent + other.exponent;
+        (exponent.abs() <= 4 * MOST_BITS).then_some(Self { numerators, exponent, denominator })
+    }
+
+    fn over(&self, other: &Self) -> Option<Self> {
+        let divisor = &other.numerators[0];
+        if !other.is_number() || divisor.is_zero() {
+            return None;
+        }
+        let is_negative = *divisor < IBig::ZERO;
+        let numerator = &other.denominator * IBig::from(if is_negative { -1 } else { 1 });
+        let inverse = Self::new(numerator, -other.exponent, divisor.clone().abs());
+        self.times(&inverse)
+    }
+
+    fn power(&self, exponent: u32) -> Option<Self> {
+        if exponent == 0 {
+            return Some(Self::from(1.0));
+        }
+        let half = self.power(exponent / 2);
+        let half = if exponent == 1 { return Some(self.clone()) } else { half? };
+        let square = half.times(&half)?;
+        if exponent.is_multiple_of(2) { Some(square) } else { square.times(self) }
+    }
+}
+
+impl Field {
+    /// Returns the formula along the points `origin + t dir`, times a positive number; `None` if it is no polynomial of t of a
+    /// degree that a [`Polynomial`](crate::polynomial::Polynomial) may have.
+    pub fn exactly_along(&self, origin: &[Rational; 3], dir: &[Rational; 3]) -> Option<Whole> {
+        let place = |axis: usize| origin[axis].with_slope(&dir[axis]);
+        let Rational { mut numerators, .. } = run(self.program(), [place(0)?, place(1)?, place(2)?])?;
+        // What all coefficients have in common only makes them longer.
+        let zeros = numerators.iter().filter_map(|of| of.trailing_zeros()).min().unwrap_or(0);
+        numerators.iter_mut().for_each(|of| *of >>= zeros);
+        Some(Whole::new(numerators))
+    }
+}
+
+fn run(program: &Program, at: [Rational; 3]) -> Option<Rational> {
+    let mut registers = at.to_vec();
+    registers.resize(program.registers, Rational::from(0.0));
+    for Instruction { step, operands, result } in &program.instructions {
+        let [a, b] = operands.map(|operand| &registers[usize::from(operand)]);
+        let value = match step {
+            Step::Variable(_) => a.clone(),
+            Step::Number(number) => Rational::from(*number),
+            Step::Neg => a.clone().negated(),
+            Step::Add => a.plus(b)?,
+            Step::Sub => a.plus(&b.clone().negated())?,
+            Step::Mul => a.times(b)?,
+            Step::Div => a.over(b)?,
+            Step::Powi(exponent) if *exponent >= 0 => a.power(exponent.unsigned_abs())?,
+            Step::Powi(exponent) => Rational::from(1.0).over(&a.power(exponent.unsigned_abs())?)?,
+            Step::Scale(factor) => a.times(&Rational::from(*factor))?,
+            Step::Shift(by) => a.plus(&Rational::from(*by))?,
+            Step::Spline | Step::Call(_) => return None,
+        };
+        registers[usize::from(*result)] = value;
+    }
+    Some(registers.swap_remove(usize::from(program.result)))
+}

@@ -1,0 +1,104 @@
+//! The numbers that coefficients of polynomials are, in three precisions.
+
+use crate::double_double::DoubleDouble;
+use crate::interval::{Float, Interval};
+use f256::f256;
+use std::fmt::Debug;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A coefficient of a polynomial.
+pub trait Coefficient:
+    Copy
+    + Debug
+    + PartialOrd
+    + From<f64>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// A bound of the relative error of a product that is added to a sum. Each of the two operations has at most half of it.
+    const ROUNDING: f64;
+
+    /// The size from which products may overflow on the way.
+    const LARGEST: f64 = f64::MAX;
+
+    /// The endpoints of intervals around a coefficient.
+    type End: Float;
+
+    /// Returns the number, rounded to `f64`.
+    fn nearest(self) -> f64;
+
+    /// Encloses all numbers that differ from this one by no more than an error.
+    fn bounds(self, error: f64) -> Interval<Self::End>;
+
+    /// Returns a number in an interval, and a bound of its distance from any other one there; infinite where the interval is
+    /// not bounded.
+    fn about(bounds: Interval<Self::End>) -> (Self, f64);
+}
+
+impl Coefficient for f64 {
+    const ROUNDING: f64 = f64::EPSILON;
+
+    type End = f64;
+
+    #[inline(always)]
+    fn nearest(self) -> f64 {
+        self
+    }
+
+    fn bounds(self, error: f64) -> Interval {
+        Interval { low: (self - error).next_down(), high: (self + error).next_up() }
+    }
+
+    fn about(bounds: Interval) -> (Self, f64) {
+        (bounds.middle(), if bounds.is_bounded() { bounds.width() } else { f64::INFINITY })
+    }
+}
+
+impl Coefficient for DoubleDouble {
+    /// 2^-100: sums are rounded by 3 2^-106, and products by 7 2^-106 (Joldes et al. 2017).
+    const ROUNDING: f64 = f64::from_bits((1023 - 100) << 52);
+
+    const LARGEST: f64 = 1e290;
+
+    type End = f256;
+
+    #[inline(always)]
+    fn nearest(self) -> f64 {
+        self.high
+    }
+
+    fn bounds(self, error: f64) -> Interval<f256> {
+        (f256::from(self.high) + f256::from(self.low)).bounds(error)
+    }
+
+    fn about(bounds: Interval<f256>) -> (Self, f64) {
+        let (middle, error) = f256::about(bounds);
+        let high = middle.to_f64();
+        let number = Self { high, low: (middle - f256::from(high)).to_f64() };
+        (number, error + Self::ROUNDING * high.abs())
+    }
+}
+
+impl Coefficient for f256 {
+    /// 2^-236.
+    const ROUNDING: f64 = f64::from_bits((1023 - 236) << 52);
+
+    type End = f256;
+
+    fn nearest(self) -> f64 {
+        self.to_f64()
+    }
+
+    fn bounds(self, error: f64) -> Interval<f256> {
+        let error = f256::from(error);
+        Interval { low: (self - error).next_down(), high: (self + error).next_up() }
+    }
+
+    fn about(bounds: Interval<f256>) -> (Self, f64) {
+        let error = if bounds.is_bounded() { bounds.width().to_f64().next_up() } else { f64::INFINITY };
+        (bounds.middle(), if bounds.low == bounds.high { 0.0 } else { error })
+    }
+}

@@ -1,0 +1,125 @@
+//! Roots of a polynomial in their order, isolated as far as the precision of its coefficients tells.
+
+use super::bernstein::{Bernstein, Roots};
+use crate::polynomial::{Coefficient, Polynomial};
+
+/// A part of a polynomial's piece, by places from -1 to 1, that has a root or may have some.
+#[derive(Clone, Copy, Debug)]
+pub enum Part<C> {
+    /// There is exactly one root.
+    Root {
+        /// The ends of the part.
+        ends: [C; 2],
+        /// Whether the polynomial rises there.
+        rises: bool,
+    },
+    /// Rounding hides the roots.
+    Hidden([C; 2]),
+}
+
+/// Visits the parts that have a root or may have some, in their order, until one is taken. `None` also where nothing is known
+/// of the polynomial.
+pub fn visit<C: Coefficient, const N: usize, R>(
+    polynomial: &Polynomial<C, N>,
+    visit: impl FnMut(Part<C>) -> Option<R>,
+) -> Option<R> {
+    let form = Bernstein::of(polynomial)?;
+    let mut search = Search { visit, hidden: None };
+    let taken = search.piece(&form, [C::from(-1.0), C::from(1.0)], depth::<C>());
+    taken.or_else(|| search.flush())
+}
+
+/// Returns how often a piece is halved: somewhat more often than a polynomial with a double root can be, before rounding
+/// hides it.
+fn depth<C: Coefficient>() -> usize {
+    let bits = 1023 - (C::ROUNDING.to_bits() >> 52) as usize;
+    bits / 2 + 8
+}
+
+struct Search<V, C> {
+    visit: V,
+    /// A part that rounding hides, to which the next one may be added.
+    hidden: Option<[C; 2]>,
+}
+
+impl<C: Coefficient, R, V: FnMut(Part<C>) -> Option<R>> Search<V, C> {
+    fn piece<const N: usize>(&mut self, form: &Bernstein<C, N>, ends: [C; 2], depth: usize) -> Option<R> {
+        let [low, high] = ends;
+        match form.roots() {
+            Roots::None => self.flush(),
+            Roots::One { rises, .. } => self.flush().or_else(|| (self.visit)(Part::Root { ends, rises })),
+            Roots::Unknown | Roots::Monotone { .. } if depth > 0 => {
+                let middle = C::from(0.5) * (low + high);
+                let [lower, upper] = form.halves();
+                let taken = self.piece(&lower, [low, middle], depth - 1);
+                taken.or_else(|| self.piece(&upper, [middle, high], depth - 1))
+            }
+            Roots::Unknown | Roots::Monotone { .. } | Roots::Hidden => {
+                let low = self.hidden.map_or(low, |[low, _]| low);
+                self.hidden = Some([low, high]);
+                None
+            }
+        }
+    }
+
+    /// Visits what is hidden.
+    fn flush(&mut self) -> Option<R> {
+        let ends = self.hidden.take()?;
+        (self.visit)(Part::Hidden(ends))
+    }
+}
+
+/// The largest number of steps of [`refined`]; a bracket that is only bisected has shrunk by 2^-240 then.
+const MAX_STEPS: usize = 240;
+
+/// Returns the only root between two places, by Newton's method in a bracket, and a bound of its error where the slope is
+/// about the same nearby.
+pub fn refined<C: Coefficient, const N: usize>(
+    polynomial: &Polynomial<C, N>,
+    [mut low, mut high]: [C; 2],
+    rises: bool,
+) -> C {
+    let (zero, half, hidden) = (C::from(0.0), C::from(0.5), polynomial.error_at());
+    let mut at = half * (low + high);
+    for _ in 0..MAX_STEPS {
+        let [value, slope] = polynomial.at(at);
+        if value.nearest().abs() <= hidden {
+            break;
+        }
+        if (value < zero) == rises {
+            low = at;
+        } else {
+            high = at;
+        }
+        let newton = at - value / slope;
+        // Written so that a NaN is outside.
+        let next = if newton > low && newton < high { newton } else { half * (low + high) };
+        if !(next > low && next < high) {
+            break;
+        }
+        at = next;
+    }
+    at
+}
+
+/// Returns places around the only root between two others, as near to it as rounding allows; the polynomial has certain signs
+/// there, or they are the ends.
+pub fn enclosed<C: Coefficient, const N: usize>(
+    polynomial: &Polynomial<C, N>,
+    [low, high]: [C; 2],
+    rises: bool,
+) -> [C; 2] {
+    let at = refined(polynomial, [low, high], rises);
+    let (hidden, slope) = (polynomial.error_at(), polynomial.at(at)[1].nearest().abs());
+    let mut reach = 4.0 * (hidden / slope + C::ROUNDING);
+    while reach < 1.0 {
+        let around = [at - C::from(reach), at + C::from(reach)];
+        let signs = around.map(|place| polynomial.at(place)[0].nearest() * if rises { 1.0 } else { -1.0 });
+        let inside = around[0] > low && around[1] < high;
+        if inside && signs[0] < -hidden && signs[1] > hidden {
+            return around;
+        }
+        reach *= 4.0;
+    }
+    [low, high]
+}
