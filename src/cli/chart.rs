@@ -17,6 +17,7 @@ use std::time::{Duration, Instant};
 use tabray_core::scene::choice::Choice;
 use tabray_core::scene::model::Model;
 use tabray_core::world::accuracy::Accuracy;
+use tabray_lang::reader::ReadOptions;
 use tabray_lang::registry::Registry;
 use tabray_tools::chart::{self, Chart};
 
@@ -159,11 +160,14 @@ pub fn all_accuracies<'s>(
     registry: &'s Registry,
     source: &'s Source,
 ) -> Result<impl Fn(Option<Accuracy>) -> io::Result<Model> + 's, Failure> {
+    // A change of the rules of light is no error of a method.
+    let rules = source.load(registry, None).map_err(Failure::Scene)?.model.camera.value.rules;
+    let by = move |accuracy| ReadOptions { above_all: accuracy, rules: Some(rules), ..ReadOptions::default() };
     for accuracy in Accuracy::all() {
-        source.load(registry, Some(accuracy)).map_err(Failure::Scene)?;
+        source.load_by(registry, by(Some(accuracy))).map_err(Failure::Scene)?;
     }
     Ok(move |accuracy| {
-        let loaded = source.load(registry, accuracy);
+        let loaded = source.load_by(registry, by(accuracy));
         loaded.map(|loaded| loaded.model).map_err(|report| io::Error::other(report.to_string()))
     })
 }

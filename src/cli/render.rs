@@ -277,9 +277,10 @@ fn one(
     stats.writing = whole.elapsed().saturating_sub(stats.rendering.get());
     args.stats.print(&stats, &model);
     let Some(source) = source else { return Ok(()) };
-    let exact = || match source.load_by(registry, chosen(Some(Accuracy::Exact))) {
-        Ok(loaded) => Ok(loaded.model),
-        Err(report) => Err(Failure::Scene(report)),
+    let exact = || {
+        let chosen =
+            ReadOptions { rules: Some(model.camera.value.rules), ..chosen(Some(Accuracy::Exact)) };
+        source.load_by(registry, chosen).map(|loaded| loaded.model).map_err(Failure::Scene)
     };
     stop.exit_on_interrupt()?;
     aov::write(&plan, exact, threads, format, beside)
@@ -324,6 +325,7 @@ fn share(
     let exact = || {
         let chosen = ReadOptions {
             above_all: Some(Accuracy::Exact),
+            rules: Some(model.camera.value.rules),
             memory: args.stop.memory_left(),
             ..ReadOptions::default()
         };

@@ -24,6 +24,7 @@ pub use crate::world::interface::{AnyInterface, Crossing, Interface};
 pub use crate::world::light::Light;
 pub use crate::world::material::{Look, Material, Rgb};
 pub use crate::world::pinhole::Pinhole;
+pub use crate::world::rules::Rules;
 pub use crate::world::sample::Sampler;
 pub use crate::world::shader::{Anchor, LookBounds, PointBounds, Shader, ShaderInputs, SurfacePoint};
 pub use crate::world::shape::Shape;

@@ -38,13 +38,17 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Makes the model again, with another accuracy if one is given.
+    /// Makes the model again, with another accuracy if one is given, and by the same rules of light.
     ///
     /// # Errors
     /// The faults of the scene with that accuracy.
     pub fn load(&self, registry: &Registry, accuracy: Option<Accuracy>) -> io::Result<Model> {
-        let chosen =
-            ReadOptions { above_all: accuracy.or(self.accuracy), sets: &self.sets, ..ReadOptions::default() };
+        let chosen = ReadOptions {
+            above_all: accuracy.or(self.accuracy),
+            rules: Some(self.model.camera.value.rules),
+            sets: &self.sets,
+            ..ReadOptions::default()
+        };
         let loaded = reader::read_by(registry, &self.name, &self.folder, self.text.as_bytes(), chosen);
         let faults = |report: Report| io::Error::new(io::ErrorKind::InvalidData, report.to_string());
         loaded.map(|loaded| loaded.model).map_err(faults)

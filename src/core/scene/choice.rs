@@ -6,6 +6,7 @@
 use crate::scene::kind::Kind;
 use crate::text;
 use crate::world::accuracy::Accuracy;
+use crate::world::rules::Rules;
 use std::panic::Location;
 
 /// A type whose values are the alternatives that an attribute can choose from.
@@ -112,6 +113,23 @@ impl Choice for Accuracy {
     fn option(&self) -> ChoiceName {
         const PLACE: &Location<'static> = Location::caller();
         let (name, meaning) = self.named();
+        ChoiceName { name, number: None, meaning, place: PLACE }
+    }
+}
+
+impl Choice for Rules {
+    const WHAT: &'static str = "rules";
+
+    fn all() -> Vec<Self> {
+        vec![Self::Notes, Self::Free]
+    }
+
+    fn option(&self) -> ChoiceName {
+        const PLACE: &Location<'static> = Location::caller();
+        let (name, meaning) = match self {
+            Self::Notes => ("notes", "the course notes': light is divided by the length of its path, up to 20 units"),
+            Self::Free => ("free", "linear light, which does not depend on the scale of a scene"),
+        };
         ChoiceName { name, number: None, meaning, place: PLACE }
     }
 }

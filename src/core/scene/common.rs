@@ -4,6 +4,7 @@ use crate::scene::pparm::{Pparm, Table};
 use crate::world::accuracy::Accuracy;
 use crate::world::body::Paint;
 use crate::world::material::Material;
+use crate::world::rules::Rules;
 use crate::world::sample::Sampler;
 use std::sync::Arc;
 
@@ -43,5 +44,9 @@ pub(super) static SAMPLES: Pparm<i64> =
 pub(super) static ACCURACY: Pparm<Accuracy> =
     Pparm::or("accuracy", "how exactly hits are computed", Accuracy::Exact).not_dumped();
 
+/// The rules of light; without, those of the type of camera.
+pub(super) static RULES: Pparm<Option<Rules>> =
+    Pparm::or("rules", "the rules of light; by default those of the type of camera", None).not_dumped();
+
 /// The attributes that every camera has before and after its own.
-pub(super) const FILM: [Table; 2] = [&[&PIXELDIM], &[&SAMPLES, &ACCURACY]];
+pub(super) const FILM: [Table; 2] = [&[&PIXELDIM], &[&SAMPLES, &ACCURACY, &RULES]];

@@ -2,7 +2,7 @@
 
 use crate::scene::attribute::Attribute;
 use crate::scene::common::{
-    ACCURACY, FILM, MATERIAL, MATERIAL_OF_ALL, OBJECT, OF_OBJECTS, PIXELDIM, SAMPLES, SHADER,
+    ACCURACY, FILM, MATERIAL, MATERIAL_OF_ALL, OBJECT, OF_OBJECTS, PIXELDIM, RULES, SAMPLES, SHADER,
 };
 use crate::scene::counts::OneOf;
 use crate::scene::kind::Kind;
@@ -14,6 +14,7 @@ use crate::world::background::AnyBackground;
 use crate::world::body::{AnyLight, Body, Paint};
 use crate::world::film::{AnyCamera, Film};
 use crate::world::material::Material;
+use crate::world::rules::Rules;
 use crate::world::texture::Texture;
 use std::collections::BTreeMap;
 use std::ops::Deref;
@@ -75,7 +76,7 @@ pub enum Construct {
 
 impl Entity {
     /// Describes a camera type. The attributes of every camera are added to its table: `pixeldim` before its own, and
-    /// `samples` and `accuracy` after them.
+    /// those from `samples` on after them.
     #[track_caller]
     pub const fn camera(
         name: &'static str,
@@ -321,19 +322,29 @@ impl Args {
         self.setting.camera.accuracy
     }
 
-    /// Returns the z, in world units, beyond which the scene's camera cuts off planes, if it does. `None` for an object
-    /// that others are made of: its coordinates are not the world's, and what is seen of it ends elsewhere.
+    /// Returns the z, in world units, beyond which planes are cut off by the scene's camera and its rules of light, if
+    /// they are. `None` for an object that others are made of: its coordinates are not the world's, and what is seen of it
+    /// ends elsewhere.
     pub fn planes_end_at(&self) -> Option<f64> {
-        if self.is_pattern { None } else { self.setting.camera.camera.planes_end_at() }
+        if self.is_pattern { None } else { self.setting.camera.planes_end_at() }
     }
 
-    /// Returns the film of a camera with this entity's attributes.
-    pub fn film(&self, camera: AnyCamera) -> Film {
+    /// Returns the film of a camera with this entity's attributes, and with an accuracy that overrides its own. Where
+    /// that is the notes' method, and where the scene chooses it and no rules of light, the rules are the notes', too.
+    pub fn film(&self, camera: AnyCamera, above_all: Option<Accuracy>) -> Film {
+        // The notes' command line has a default accuracy of its own.
+        let own = || self.get_given(&ACCURACY).unwrap_or(self.accuracy());
+        let accuracy = above_all.unwrap_or_else(own);
+        let rules = match self.get(&RULES) {
+            Some(rules) if above_all != Some(Accuracy::Classic) => rules,
+            None if accuracy != Accuracy::Classic => camera.rules(),
+            _ => Rules::Notes,
+        };
         Film {
             // The attributes' rules ensure that these casts are lossless.
             samples: self.get(&SAMPLES) as u32,
-            // The notes' command line has a default accuracy of its own.
-            accuracy: self.get_given(&ACCURACY).unwrap_or(self.accuracy()),
+            accuracy,
+            rules,
             ..Film::new(camera, self.get(&PIXELDIM).map(|side| side as usize))
         }
     }

@@ -4,6 +4,7 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::image_point::ImagePoint;
 use crate::geometry::ray::Ray;
 use crate::geometry::sight::{Line, Sight};
+use crate::world::rules::Rules;
 use glam::{DVec2, DVec3};
 use std::fmt;
 use tabray_exact::scalar::Scalar;
@@ -69,7 +70,13 @@ pub trait Camera: fmt::Debug + Send + Sync + 'static {
         None
     }
 
-    /// Returns the z, in world units, beyond which planes are cut off; `None` where there is no such rule.
+    /// Returns the rules of light of a scene that does not choose any.
+    fn rules(&self) -> Rules {
+        Rules::Notes
+    }
+
+    /// Returns the z, in world units, beyond which planes are cut off by the notes' rules; `None` where there is no such
+    /// rule.
     fn planes_end_at(&self) -> Option<f64> {
         None
     }

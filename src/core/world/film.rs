@@ -8,6 +8,7 @@ use crate::world::accuracy::Accuracy;
 use crate::world::camera::{Origins, Projected};
 use crate::world::packets::camera::{PacketCamera, Places};
 use crate::world::pinhole::Pinhole;
+use crate::world::rules::Rules;
 use crate::world::sample::{self, Sample, Sampler};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
@@ -39,6 +40,8 @@ pub struct Film {
     pub exposure: f64,
     /// The accuracy with which hits are found.
     pub accuracy: Accuracy,
+    /// The rules of light.
+    pub rules: Rules,
 }
 
 /// The film of the notes' camera, without pixels.
@@ -72,7 +75,13 @@ impl Film {
             scramble: 0,
             exposure: 0.0,
             accuracy: Accuracy::default(),
+            rules: Rules::default(),
         }
+    }
+
+    /// Returns the z, in world units, beyond which planes are cut off, if they are.
+    pub fn planes_end_at(&self) -> Option<f64> {
+        self.camera.planes_end_at().filter(|_| self.rules == Rules::Notes)
     }
 
     /// Returns the factor by which the exposure multiplies all colours.

@@ -34,5 +34,6 @@ pub use hittable::{Bracketed, Certified, Hittable, Searched};
 pub use interface::{AnyInterface, Crossing, Interface};
 pub use light::Light;
 pub use material::{Material, Rgb};
+pub use rules::Rules;
 pub use shader::{Anchor, PointBounds, Shader, ShaderInputs, SurfacePoint};
 pub use shape::Shape;

@@ -1,10 +1,21 @@
-//! The rules of light of the notes, in any numbers: those of images, and those that enclose what images should show.
+//! The rules of light, in any numbers: those of images, and those that enclose what images should show.
 //!
 //! A ray that hits a point returns `attenuation * (ambient + light of each lamp)`, and what it sees through the point and
 //! in it. Numbers are one channel each, or colours where no more than sums and products are asked of them.
 
 use std::ops::{Add, Mul};
 use tabray_exact::scalar::{Scalar, per_axis};
+
+/// The rules of light of a scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Rules {
+    /// The course notes': all light is divided by the length of its path, the viewer's part included, and paths end at
+    /// [`MAX_DIST`].
+    #[default]
+    Notes,
+    /// Light that does not depend on the lengths of a scene.
+    Free,
+}
 
 /// The path length from the viewer, in world units, beyond which no reflected or transmitted ray is followed.
 pub const MAX_DIST: f64 = 20.0;

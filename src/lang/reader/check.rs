@@ -29,6 +29,7 @@ use tabray_core::world::background::AnyBackground;
 use tabray_core::world::body::{AnyLight, NamedBody, Paint};
 use tabray_core::world::film::Film;
 use tabray_core::world::material::Material;
+use tabray_core::world::rules::Rules;
 use tabray_core::world::texture::Texture;
 
 /// The entities of a scene: parsed while they are checked, or all of them parsed before.
@@ -72,6 +73,8 @@ const TEXTURE_MEMORY: u64 = 1 << 30;
 pub struct ReadOptions<'s> {
     /// The accuracy that overrides the scene's own.
     pub above_all: Option<Accuracy>,
+    /// The rules of light that override the scene's own, and those of the accuracy.
+    pub rules: Option<Rules>,
     /// The accuracy where the scene chooses none.
     pub by_default: Accuracy,
     /// Whether there is no warning of entities that share a name and are all used.
@@ -105,6 +108,8 @@ pub(super) struct Check<'r, 't> {
     pub(super) setting: Arc<Setting>,
     /// The accuracy that overrides the scene's own.
     accuracy: Option<Accuracy>,
+    /// The rules of light that override the scene's own.
+    rules: Option<Rules>,
     /// Whether there is no warning of entities that share a name and are all used.
     pub(super) may_share_names: bool,
     /// Whether there is no warning of colours that may be meant to be from 0 to 255.
@@ -151,6 +156,7 @@ impl<'r, 't> Check<'r, 't> {
             first_background: None,
             setting: Arc::new(setting),
             accuracy: accuracy.above_all,
+            rules: accuracy.rules,
             may_share_names: accuracy.may_share_names,
             may_be_bright: accuracy.may_be_bright,
             store: Store::default(),
@@ -299,8 +305,8 @@ impl Check<'_, '_> {
         match args.entity.construct {
             Construct::Camera(construct) => {
                 if let Some(camera) = self.made(parsed, args, construct) {
-                    let mut camera = args.film(camera);
-                    camera.accuracy = self.accuracy.unwrap_or(camera.accuracy);
+                    let mut camera = args.film(camera, self.accuracy);
+                    camera.rules = self.rules.unwrap_or(camera.rules);
                     Arc::make_mut(&mut self.setting).camera = camera.clone();
                     self.camera = Some((order, camera));
                 }
