@@ -46,6 +46,6 @@ impl Background for Environment {
     }
 
     fn brightest(&self) -> Rgb {
-        Rgb::splat(self.brightness)
+        Rgb::splat(self.brightness * self.texture.brightest())
     }
 }

@@ -109,9 +109,10 @@ impl Shader for Image {
         Some(LookBounds { ambient: times(look.ambient), diffuse: times(look.diffuse), ..look })
     }
 
-    /// The material's colours are the bounds, since texels lie between 0 and 1.
+    /// The material's colours are the bounds, times the brightest texel's.
     fn brightest(&self, material: &Material) -> Option<Look> {
-        let Material { ambient, diffuse, specular, .. } = *material;
-        (diffuse.min_element() >= 0.0).then_some(Look { ambient, diffuse, specular })
+        let (Material { ambient, diffuse, specular, .. }, most) = (material, self.texture.brightest());
+        let look = Look { ambient: most * *ambient, diffuse: most * *diffuse, specular: *specular };
+        (diffuse.min_element() >= 0.0).then_some(look)
     }
 }

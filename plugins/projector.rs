@@ -104,9 +104,9 @@ impl<A: AccuracyTag> Light for Projector<A> {
         before && behind && slack.is_finite()
     }
 
-    /// The emissivity is the bound, since no texel is above 1.
+    /// The emissivity is the bound, times the brightest texel's.
     fn brightest(&self) -> Option<Rgb> {
-        self.light.uniform()
+        self.light.uniform().map(|emissivity| self.picture.texture.brightest() * emissivity)
     }
 
     fn size(&self) -> f64 {

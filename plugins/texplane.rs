@@ -32,7 +32,7 @@ inventory::submit! {
 /// An image on a rectangle.
 pub struct Picture {
     rectangle: Rectangle,
-    texture: Arc<Texture>,
+    pub texture: Arc<Texture>,
     /// The width and height of a texel in world units where the image is tiled; `None` where it is stretched to fit.
     texel: Option<DVec2>,
     /// The numbers of the scene that these follow from: the normal and `xdir`, of any length, and the image plane's size
@@ -75,7 +75,7 @@ impl Picture {
         Ok(Self { rectangle, texture: args.get(&TEXNAME), texel, inputs })
     }
 
-    /// Returns the texel at a point of the rectangle, each channel from 0 to 1.
+    /// Returns the texel at a point of the rectangle.
     #[inline]
     pub fn colour(&self, at: DVec3) -> Rgb {
         let [column, row] = self.texel(at);
@@ -141,9 +141,10 @@ impl Shader for Textured {
         Some(LookBounds { ambient: times(look.ambient), diffuse: times(look.diffuse), ..look })
     }
 
-    /// The material's colours are the bounds, since texels lie between 0 and 1.
+    /// The material's colours are the bounds, times the brightest texel's.
     fn brightest(&self, material: &Material) -> Option<Look> {
-        let Material { ambient, diffuse, specular, .. } = *material;
-        (diffuse.min_element() >= 0.0).then_some(Look { ambient, diffuse, specular })
+        let (Material { ambient, diffuse, specular, .. }, most) = (material, self.0.texture.brightest());
+        let look = Look { ambient: most * *ambient, diffuse: most * *diffuse, specular: *specular };
+        (diffuse.min_element() >= 0.0).then_some(look)
     }
 }

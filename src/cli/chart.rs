@@ -162,7 +162,8 @@ pub fn all_accuracies<'s>(
 ) -> Result<impl Fn(Option<Accuracy>) -> io::Result<Model> + 's, Failure> {
     // A change of the rules of light is no error of a method.
     let rules = source.load(registry, None).map_err(Failure::Scene)?.model.camera.value.rules;
-    let by = move |accuracy| ReadOptions { above_all: accuracy, rules: Some(rules), ..ReadOptions::default() };
+    let by =
+        move |accuracy| ReadOptions { above_all: accuracy, rules: Some(rules), ..ReadOptions::default() };
     for accuracy in Accuracy::all() {
         source.load_by(registry, by(Some(accuracy))).map_err(Failure::Scene)?;
     }

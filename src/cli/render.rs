@@ -213,9 +213,9 @@ fn one(
     let mut stats = Stats { reading: start.elapsed() - building, building, ..Stats::default() };
     let camera = &mut model.camera.value;
     args.samples.apply(camera)?;
-    camera.exposure = args.exposure;
+    camera.exposure += args.exposure;
     let part = args.size.apply(camera)?;
-    let made = provenance::texts(&source, &args.set, &model.camera.value, &part);
+    let made = provenance::texts(&source, &args.set, (&model.camera.value, args.exposure), &part);
     let differences = Differences::of(registry, &source, &model);
     args.refuse_sources(&path, scene, &model)?;
     if let Some(number) = args.part.part {
@@ -278,8 +278,7 @@ fn one(
     args.stats.print(&stats, &model);
     let Some(source) = source else { return Ok(()) };
     let exact = || {
-        let chosen =
-            ReadOptions { rules: Some(model.camera.value.rules), ..chosen(Some(Accuracy::Exact)) };
+        let chosen = ReadOptions { rules: Some(model.camera.value.rules), ..chosen(Some(Accuracy::Exact)) };
         source.load_by(registry, chosen).map(|loaded| loaded.model).map_err(Failure::Scene)
     };
     stop.exit_on_interrupt()?;

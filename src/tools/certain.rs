@@ -2,7 +2,6 @@
 
 use crate::bench::clock;
 use tabray_core::parallel;
-use tabray_core::render::bytes::shown;
 use tabray_core::render::flaws::Flaws;
 use tabray_core::render::observer::{Count, DynObserver, TraceObserver};
 use tabray_core::render::plan::Plan;
@@ -75,11 +74,13 @@ pub fn truth(renderer: &Renderer, model: &mut Model) -> Vec<Sampled> {
             *square += colour * colour;
         }
     }
-    let images = f64::from(IMAGES);
+    let (images, display) = (f64::from(IMAGES), plan.camera.display());
     let sampled = |(sum, square): (&Rgb, &Rgb)| {
         let mean = *sum / images;
         let variance = (*square / images - mean * mean).max(Rgb::ZERO) / (images - 1.0);
-        Sampled { colour: shown(mean), error: variance.map(f64::sqrt) }
+        let (error, colour) = (variance.map(f64::sqrt), display.shown(mean));
+        let [low, high] = display.shown_within([mean - error, mean + error]);
+        Sampled { colour, error: (high - colour).max(colour - low) }
     };
     sums.iter().zip(&squares).map(sampled).collect()
 }
@@ -107,8 +108,9 @@ pub fn measure(renderer: &Renderer, model: &mut Model, limit: f64, truth: &[Samp
     model.camera.value.certain = false;
     let (_, _, without) = render(renderer, model);
     let (mut worst, mut contradicted, mut open) = (0.0_f64, 0, Vec::new());
+    let display = model.camera.value.display();
     for ((colour, bound), truth) in certain.iter().zip(&bounds).zip(truth) {
-        let off = (shown(*colour) - truth.colour).abs();
+        let off = (display.shown(*colour) - truth.colour).abs();
         if bound.is_certified {
             worst = worst.max(off.max_element());
         } else {

@@ -74,8 +74,8 @@ impl Identity {
         let is_whole = (columns.len(), rows.len()) == (width, height);
         let textures = model.textures.iter().map(|texture| {
             let [width, height] = texture.value.size();
-            let texels = texture.value.load().map_or(&[][..], |picture| picture.as_raw());
-            (texture.args.name().to_owned(), format!("{} ({width} x {height})", hash(texels)))
+            let texels = texture.value.load().map(|texels| texels.raw()).unwrap_or_default();
+            (texture.args.name().to_owned(), format!("{} ({width} x {height})", hash(&texels)))
         });
         Ok(Self {
             accuracy: camera.accuracy.option().name.to_owned(),

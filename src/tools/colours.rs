@@ -6,12 +6,14 @@ use f256::f256;
 use std::cell::Cell;
 use std::ops::ControlFlow;
 use tabray_core::geometry::sight::Sight;
-use tabray_core::render::bytes::{level, to_byte};
+use tabray_core::render::bytes::level;
 use tabray_core::render::enclosed::{Colour, Endpoint, LightPoints, Limits, Scene, SceneBounds, Tracer};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::plan::depth::FAINT;
 use tabray_core::render::renderer::Renderer;
 use tabray_core::render::trace;
+use tabray_core::world::display::Display;
+use tabray_core::world::material::Rgb;
 use tabray_exact::interval::{Float, Fraction, Interval};
 use tabray_exact::scalar::{Scalar, per_axis};
 
@@ -105,7 +107,7 @@ impl<'p, 'm> Prover<'p, 'm> {
 
     /// Returns the verdict on a pixel as the tracer renders it: `x` counts from the left, `y` from the bottom.
     pub fn traced(&self, x: usize, y: usize) -> Pixel {
-        self.pixel(x, y, trace::pixel(self.plan, x, y).to_array().map(to_byte))
+        self.pixel(x, y, self.plan.camera.display().bytes(trace::pixel(self.plan, x, y)))
     }
 
     /// Returns the verdict on a pixel with these bytes: `x` counts from the left, `y` from the bottom.
@@ -135,7 +137,12 @@ impl<'p, 'm> Prover<'p, 'm> {
         };
         // Rays may be left out that add less than this to a pixel.
         let missing = if self.plan.depth.is_some() { FAINT } else { 0.0 };
-        let channels = per_axis(|channel| verdict(colour[channel], bytes[channel], missing));
+        let display = self.plan.camera.display();
+        let possible = match display.truncates() {
+            Some(_) => colour.map(|channel| truncated(channel, missing)),
+            None => rounded(&display, &colour, missing),
+        };
+        let channels = per_axis(|channel| verdict(possible[channel], bytes[channel]));
         let is_final = is_spent || !channels.contains(&Verdict::Open);
         Attempt { pixel: Pixel { channels }, is_enclosed: !is_open, is_final, meets_uncertified }
     }
@@ -192,12 +199,37 @@ impl<'p, 'm> Prover<'p, 'm> {
     }
 }
 
-/// Returns the verdict on the byte of a channel. `missing` is the most that the image may lack.
-fn verdict<F: Float>(channel: Interval<F>, byte: u8, missing: f64) -> Verdict {
+/// The bytes that a channel may be: the least of an image that lacks light, and the least and the greatest of one that
+/// does not.
+type Possible = [u8; 3];
+
+/// Returns the bytes of a channel by the notes' rules. `missing` is the most that the image may lack.
+fn truncated<F: Float>(channel: Interval<F>, missing: f64) -> Possible {
     let level = level(channel);
-    let to_byte = |level: F| level.floor().to_f64() as u8;
-    let (low, high) = (to_byte(level.low), to_byte(level.high));
-    let least = to_byte((level - Interval::constant(255.0 * missing)).low);
+    let least = (level - Interval::constant(255.0 * missing)).low;
+    [least, level.low, level.high].map(|level| level.floor().to_f64() as u8)
+}
+
+/// Returns the bytes of a colour by the free rules. `missing` is the most that the image may lack.
+fn rounded<F: Float>(display: &Display, colour: &Colour<Interval<F>>, missing: f64) -> [Possible; 3] {
+    // More than the rounding of a level to `f64`, and of its code.
+    const OFF: f64 = 1e-9;
+    let end = |of: fn(&Interval<F>) -> F| Rgb::from_array(per_axis(|channel| of(&colour[channel]).to_f64()));
+    let (low, high) = (end(|channel| channel.low), end(|channel| channel.high));
+    let [least, _] = display.shown_within([low - missing, high]);
+    let [low, high] = display.shown_within([low, high]);
+    let byte = |level: f64| level.round() as u8;
+    per_axis(|channel| {
+        [
+            byte(255.0 * least[channel] - OFF),
+            byte(255.0 * low[channel] - OFF),
+            byte(255.0 * high[channel] + OFF),
+        ]
+    })
+}
+
+/// Returns the verdict on the byte of a channel.
+fn verdict([least, low, high]: Possible, byte: u8) -> Verdict {
     if low == high && byte == low {
         Verdict::Proven
     } else if (least..=high).contains(&byte) {

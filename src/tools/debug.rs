@@ -4,7 +4,6 @@ use std::fmt;
 use std::io::{self, Write};
 use tabray_core::geometry::ray::{Ray, RayRange};
 use tabray_core::named;
-use tabray_core::render::bytes::to_byte;
 use tabray_core::render::observer::{Event, RayPurpose, TraceObserver};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::trace;
@@ -55,7 +54,7 @@ pub fn pixel(plan: &Plan, x: usize, y: usize, lines: &[LogLine], out: &mut impl 
     printer.outcome?;
     if lines.contains(&LogLine::Irgb) {
         // Printed as the file gets it, so a channel of 127.6 is printed as 127.
-        let [r, g, b] = colour.to_array().map(to_byte);
+        let [r, g, b] = plan.camera.display().bytes(colour);
         write!(out, " IRGB:({r:>5}, {g:>5}, {b:>5})")?;
     }
     if lines.contains(&LogLine::Offset) {

@@ -72,7 +72,7 @@ fn placed(camera: &mut Args, pose: &CameraPose) -> Option<Film> {
         (*datum, *is_given) = (new, true);
     }
     let Construct::Camera(construct) = camera.entity.construct else { return None };
-    Some(camera.film(construct(camera).ok()?, None))
+    Some(camera.film(construct(camera).ok()?, (None, None)))
 }
 
 /// A camera and the point around which it moves, its pivot.

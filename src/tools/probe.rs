@@ -3,12 +3,12 @@
 use glam::DVec3;
 use std::io::{self, Write};
 use tabray_core::geometry::ray::{MISS, Ray, RayRange};
-use tabray_core::render::bytes::to_byte;
 use tabray_core::render::limits::{MAX_DIST, MAX_RAYS};
 use tabray_core::render::observer::{DropReason, Event, Hit, LightOutcome, RayPurpose, TraceObserver};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::trace::{self};
 use tabray_core::scene::model::Model;
+use tabray_core::world::display::Display;
 use tabray_core::world::material::Rgb;
 
 /// The greatest depth of a ray that is still indented farther: between parallel mirrors the indentation would otherwise
@@ -39,19 +39,23 @@ pub fn pixel(plan: &Plan, x: usize, y: usize, out: &mut impl Write) -> io::Resul
     let colour = trace::observe_colour(plan, &camera.sight(x as f64, y as f64), None, &mut probe);
     probe.outcome?;
     writeln!(out)?;
-    conclude(colour, out)?;
+    conclude(colour, &camera.display(), out)?;
     if camera.samples > 1 {
         writeln!(out, "\nall {} samples together:\n", camera.samples)?;
-        conclude(trace::pixel(plan, x, y), out)?;
+        conclude(trace::pixel(plan, x, y), &camera.display(), out)?;
     }
     Ok(())
 }
 
 /// Writes how a colour becomes bytes of the image.
-fn conclude(colour: Rgb, out: &mut impl Write) -> io::Result<()> {
-    let [r, g, b] = colour.to_array().map(to_byte);
-    writeln!(out, "before clamping  {}", triple(colour))?;
-    writeln!(out, "after clamping   {}", triple(colour.clamp(DVec3::ZERO, DVec3::ONE)))?;
+fn conclude(light: Rgb, display: &Display, out: &mut impl Write) -> io::Result<()> {
+    let [r, g, b] = display.bytes(light);
+    let [before, after] = match display.truncates() {
+        Some(_) => ["before clamping ", "after clamping  "],
+        None => ["light           ", "as it is shown  "],
+    };
+    writeln!(out, "{before} {}", triple(display.full_range(light)))?;
+    writeln!(out, "{after} {}", triple(display.shown(light)))?;
     writeln!(out, "bytes            ({r}, {g}, {b})")
 }
 

@@ -4,7 +4,6 @@ use crate::bench::clock;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use tabray_core::parallel;
-use tabray_core::render::bytes::shown;
 use tabray_core::render::observer::RayKind;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::ray_stats::RayStats;
@@ -13,6 +12,7 @@ use tabray_core::render::tiles::{self, TILE, TOGETHER};
 use tabray_core::render::trace::{Scratch, Tracer};
 use tabray_core::scene::model::Model;
 use tabray_core::simd::cpu::Cpu;
+use tabray_core::world::display::Display;
 use tabray_core::world::film::Adaptive;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::{SCRAMBLE, Sampler};
@@ -83,7 +83,7 @@ pub fn measure(model: &mut Model, all: &[Samples], truth: &[Rgb], rounds: usize)
             let seconds = (clock::now() - start).as_secs_f64();
             let measured = measured.get_or_insert_with(|| {
                 let rays = rays.rays(RayKind::Primary) as f64 / colours.len() as f64;
-                compare(&colours, truth, rays)
+                compare(&plan.camera.display(), &colours, truth, rays)
             });
             measured.seconds = measured.seconds.min(seconds);
         }
@@ -91,10 +91,10 @@ pub fn measure(model: &mut Model, all: &[Samples], truth: &[Rgb], rounds: usize)
     measured.into_iter().flatten().collect()
 }
 
-fn compare(colours: &[Rgb], truth: &[Rgb], rays: f64) -> Measured {
+fn compare(display: &Display, colours: &[Rgb], truth: &[Rgb], rays: f64) -> Measured {
     let (mut errors, mut squares) = (Vec::new(), 0.0);
     for (colour, truth) in colours.iter().zip(truth) {
-        let off = 255.0 * (shown(*colour) - shown(*truth)).abs();
+        let off = 255.0 * (display.shown(*colour) - display.shown(*truth)).abs();
         squares += off.length_squared();
         errors.push(off.max_element());
     }

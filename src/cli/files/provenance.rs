@@ -14,11 +14,18 @@ use tabray_core::text;
 use tabray_core::text::Named;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_core::world::film::{Adaptive, Film};
+use tabray_core::world::rules::Rules;
 
 /// Returns the texts of an image, each with its keyword: the version of the program, the hash of the scene's text, and
 /// the options with which the program makes the same image of the scene. Threads, the level of CPU instructions and
-/// the compression are none of them, as the image does not depend on these.
-pub fn texts(source: &Source, set: &set::Args, camera: &Film, part: &Part) -> Vec<(&'static str, String)> {
+/// the compression are none of them, as the image does not depend on these. With the camera goes the exposure that is added
+/// to its own, in stops.
+pub fn texts(
+    source: &Source,
+    set: &set::Args,
+    camera: (&Film, f64),
+    part: &Part,
+) -> Vec<(&'static str, String)> {
     vec![
         ("Software", concat!("tabray ", env!("CARGO_PKG_VERSION")).to_owned()),
         ("tabray scene", source.hash()),
@@ -59,7 +66,7 @@ fn is_whole(path: &Path, texts: &[(&str, String)]) -> io::Result<bool> {
     Ok(true)
 }
 
-fn options(camera: &Film, part: &Part) -> String {
+fn options((camera, exposure): (&Film, f64), part: &Part) -> String {
     let [width, height] = camera.pixels;
     let mut words = format!("--size {width}x{height}");
     if part.size() != camera.pixels {
@@ -80,10 +87,14 @@ fn options(camera: &Film, part: &Part) -> String {
     if camera.samples > 1 || camera.adaptive.is_some() {
         words += &format!(" --sampler {}", camera.sampler.name());
     }
-    if camera.exposure != 0.0 {
-        words += &format!(" --exposure {}", text::shortest(camera.exposure));
+    if exposure != 0.0 {
+        words += &format!(" --exposure {}", text::shortest(exposure));
     }
-    let accuracy = camera.accuracy.option().name;
-    let option = if camera.accuracy == Accuracy::Classic { "method" } else { "accuracy" };
-    words + &format!(" --{option} {accuracy}")
+    match (camera.accuracy, camera.rules) {
+        // The scene itself chooses the notes' method and not their rules of light.
+        (Accuracy::Classic, Rules::Free) => {}
+        (Accuracy::Classic, Rules::Notes) => words += " --method classic",
+        (accuracy, _) => words += &format!(" --accuracy {}", accuracy.option().name),
+    }
+    words
 }

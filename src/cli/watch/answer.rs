@@ -40,6 +40,7 @@ const PAGE: &str = concat!(
     include_str!("page/state.js"),
     include_str!("page/scenes.js"),
     include_str!("page/events.js"),
+    include_str!("page/display.js"),
     include_str!("page/image.js"),
     include_str!("page/zoom.js"),
     include_str!("page/camera.js"),

@@ -8,12 +8,15 @@ use serde::Serialize;
 use std::time::Duration;
 use tabray_core::render::bytes::to_byte;
 use tabray_core::render::progressive::Area;
+use tabray_core::scene::choice::Choice;
 use tabray_core::text::json;
+use tabray_core::world::film::Film;
 use tabray_core::world::material::Rgb;
 
 /// Announces a valid scene, whose image follows in parts.
 pub fn scene(frame: &Frame) -> Bytes {
     let data = Scene {
+        display: Display::of(&frame.model.camera.value),
         name: &frame.name,
         size: frame.model.camera.value.pixels,
         text: &frame.text,
@@ -26,6 +29,8 @@ pub fn scene(frame: &Frame) -> Bytes {
 /// A scene, as the page receives it.
 #[derive(Serialize)]
 struct Scene<'s> {
+    /// How its light is shown.
+    display: Display,
     /// The name of the scene in messages.
     name: &'s str,
     /// The width and the height of the image in pixels.
@@ -36,6 +41,27 @@ struct Scene<'s> {
     version: u64,
     /// The warnings, as people read them; empty where there are none.
     warnings: &'s str,
+}
+
+/// How light is shown, by the names that scenes have for it.
+#[derive(Serialize)]
+struct Display {
+    rules: &'static str,
+    /// In stops.
+    exposure: f64,
+    tone: &'static str,
+    transfer: &'static str,
+}
+
+impl Display {
+    fn of(camera: &Film) -> Self {
+        Self {
+            rules: camera.rules.option().name,
+            exposure: camera.exposure,
+            tone: camera.tone.option().name,
+            transfer: camera.transfer.option().name,
+        }
+    }
 }
 
 /// Sends a part of a scene's image: the area, 1 if it is final and 0 if not, and its colours, red, green and blue of each block.

@@ -3,13 +3,15 @@
 use crate::geometry::sight::Sight;
 use crate::named;
 use crate::output::full_range::FullRange;
-use crate::render::bytes::{shown, to_byte};
+use crate::render::bytes::to_byte;
 use crate::render::observer::{Event, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::render::trace::{self, PixelBound};
+use crate::world::display::{Display, Tone, Transfer};
 use crate::world::film::Film;
 use crate::world::material::Rgb;
+use crate::world::rules::Rules;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::io;
@@ -108,7 +110,9 @@ impl Aov {
             Self::Depth => Ok(depth(&each(renderer, plan, done, |x, y| depth_at(plan, x, y))?)),
             Self::Normal => Ok(normal(&each(renderer, plan, done, |x, y| normal_at(plan, x, y))?)),
             Self::Object => Ok(object(&each(renderer, plan, done, |x, y| object_at(plan, x, y))?)),
-            Self::Colour => Ok(colour(&each(renderer, plan, done, |x, y| trace::pixel(plan, x, y))?)),
+            Self::Colour => {
+                Ok(colour(&each(renderer, plan, done, |x, y| trace::pixel(plan, x, y))?, &setting.display()))
+            }
             Self::Cost => Ok(cost(&each(renderer, plan, done, |x, y| cost_at(plan, x, y))?, setting.size)),
             Self::Samples => {
                 Ok(samples(&each(renderer, plan, done, |x, y| trace::samples(plan, x, y))?, &setting))
@@ -139,6 +143,8 @@ pub struct Setting {
     /// The limit on the error of a pixel, where 1 is white, as its bits: a number written in decimals may come back as
     /// another.
     limit: Option<u64>,
+    /// How light is shown: the exposure is given as its bits.
+    display: (Rules, u64, Tone, Transfer),
     /// Whether errors are proven.
     pub(super) certain: bool,
 }
@@ -150,8 +156,14 @@ impl Setting {
             size: camera.pixels,
             most: camera.adaptive.map_or(camera.samples, |adaptive| adaptive.most),
             limit: camera.adaptive.and_then(|adaptive| adaptive.error).map(f64::to_bits),
+            display: (camera.rules, camera.exposure.to_bits(), camera.tone, camera.transfer),
             certain: camera.certain,
         }
+    }
+
+    pub(super) fn display(&self) -> Display {
+        let (rules, exposure, tone, transfer) = self.display;
+        Display::new(rules, f64::from_bits(exposure), tone, transfer)
     }
 
     fn limit(&self) -> Option<f64> {
@@ -250,10 +262,11 @@ pub(super) fn normal(normals: &[Option<DVec3>]) -> Layer {
     }
 }
 
-pub(super) fn colour(colours: &[Rgb]) -> Layer {
+pub(super) fn colour(colours: &[Rgb], display: &Display) -> Layer {
+    let exact = |colour: &Rgb| display.full_range(*colour).as_vec3().to_array();
     Layer {
-        bytes: shown_all(colours.iter().copied()),
-        exact: Some(colours.iter().flat_map(|colour| colour.as_vec3().to_array()).collect()),
+        bytes: colours.iter().flat_map(|colour| display.bytes(*colour)).collect(),
+        exact: Some(colours.iter().flat_map(exact).collect()),
         most: None,
         worst: None,
     }
@@ -343,7 +356,7 @@ pub(super) struct PixelError {
 
 impl PixelError {
     pub fn of(plan: &Plan, truth: &Plan, x: usize, y: usize) -> Self {
-        let colours = [plan, truth].map(|plan| shown(trace::pixel(plan, x, y)));
+        let colours = [plan, truth].map(|plan| plan.camera.display().shown(trace::pixel(plan, x, y)));
         let [found, right] = [plan, truth].map(|plan| trace::first_hit(plan, &middle(plan, x, y)));
         let [found, right] = [found, right].map(|hit| hit.map(|hit| (hit.index, hit.distance)));
         let is_other = found.map(|(index, _)| index) != right.map(|(index, _)| index);

@@ -52,7 +52,9 @@ impl Aov {
             Self::Object => {
                 aov::object(&all(values, |[index, ..]| (!index.is_nan()).then_some(*index as usize)))
             }
-            Self::Colour => aov::colour(&all(values, |colour| DVec3::from_array(*colour))),
+            Self::Colour => {
+                aov::colour(&all(values, |colour| DVec3::from_array(*colour)), &setting.display())
+            }
             Self::Cost => aov::cost(&all(values, |[rays, ..]| *rays as u64), setting.size),
             Self::Samples => {
                 let of = |[count, error, _]: &Values| (*count as u32, (!error.is_nan()).then_some(*error));

@@ -9,7 +9,8 @@ use crate::world::material::Rgb;
 use std::cell::Cell;
 use tabray_exact::affine::Affine;
 
-/// Bounds the colours of a model's primary rays, where light with a size counts by its mean.
+/// Bounds the colours of a model's primary rays, where light with a size counts by its mean. They are multiplied by the
+/// most that an image shows of a little light, so that white is 1 or more.
 pub struct Brightness<'m> {
     model: &'m Model,
     depth: Depth,
@@ -37,7 +38,8 @@ impl<'m> Brightness<'m> {
         });
         let background = self.model.background.as_ref();
         let background = background.map_or(0.0, |background| background.value.brightest().max_element());
-        camera.gain() * hits.fold(background, |most, hit| if hit <= most { most } else { hit })
+        let most = hits.fold(background, |most, hit| if hit <= most { most } else { hit });
+        camera.display().steepest() * most
     }
 
     /// Bounds the colours of all primary rays through a square of the image, given by its middle and half its width in
@@ -52,9 +54,10 @@ impl<'m> Brightness<'m> {
         };
         let colour = Tracer::new(&scene, LIMITS, LightPoints::All).primary(&lines);
         let ranges = colour.unwrap_or([Affine::WHOLE; 3]).map(|channel| channel.range());
+        let steepest = camera.display().steepest();
         let end = |of: fn(&tabray_exact::interval::Interval) -> f64, unknown: f64| {
             let ends = [0, 1, 2].map(|channel| of(&ranges[channel]));
-            Rgb::from_array(ends.map(|end| if end.is_nan() { unknown } else { camera.gain() * end }))
+            Rgb::from_array(ends.map(|end| if end.is_nan() { unknown } else { steepest * end }))
         };
         [end(|range| range.low, f64::NEG_INFINITY), end(|range| range.high, f64::INFINITY)]
     }

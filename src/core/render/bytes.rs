@@ -2,8 +2,7 @@
 
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::View;
-use crate::world::material::Rgb;
-use glam::DVec3;
+use crate::world::display::Display;
 use tabray_exact::scalar::Scalar;
 
 /// Returns the level of a channel, of which a byte shows the whole part.
@@ -18,13 +17,19 @@ pub fn to_byte(channel: f64) -> u8 {
     level(channel) as u8
 }
 
-/// Converts colours to bytes.
-pub(crate) fn to_bytes(cpu: Cpu, colours: View, pixels: &mut [[u8; 3]]) {
+/// Converts colours to the bytes that show them.
+pub(crate) fn to_bytes(cpu: Cpu, display: &Display, colours: View, pixels: &mut [[u8; 3]]) {
+    let Some(gain) = display.truncates() else {
+        for (index, pixel) in pixels.iter_mut().enumerate() {
+            *pixel = display.bytes(colours.get(index));
+        }
+        return;
+    };
     const CHUNK: usize = 64;
     let mut packed = [0; CHUNK];
     for (pixels, first) in pixels.chunks_mut(CHUNK).zip((0..).step_by(CHUNK)) {
         let packed = &mut packed[..pixels.len()];
-        pack(cpu, colours.part(first..first + pixels.len()), packed);
+        pack(cpu, gain, colours.part(first..first + pixels.len()), packed);
         for (pixel, packed) in pixels.iter_mut().zip(packed) {
             let [red, green, blue, ..] = packed.to_le_bytes();
             *pixel = [red, green, blue];
@@ -49,37 +54,41 @@ fn quantized(channel: f64) -> u64 {
 
 kernels! {
     /// Packs the bytes of each colour into the lowest bits of a number, red lowest.
-    fn pack(colours: View, packed: &mut [u64]) {
+    fn pack(gain: f64, colours: View, packed: &mut [u64]) {
         let count = packed.len();
         let View { x, y, z } = colours;
         let (x, y, z) = (&x[..count], &y[..count], &z[..count]);
         for lane in 0..count {
-            packed[lane] = quantized(x[lane]) | quantized(y[lane]) << 8 | quantized(z[lane]) << 16;
+            let [red, green, blue] = [x[lane], y[lane], z[lane]].map(|channel| quantized(gain * channel));
+            packed[lane] = red | green << 8 | blue << 16;
         }
     }
-}
-
-/// Clamps a colour to what an image can show: each channel from 0 to 1, a NaN as 0.
-#[inline]
-pub fn shown(colour: Rgb) -> Rgb {
-    DVec3::from_array(colour.to_array().map(|channel| if channel > 0.0 { channel.min(1.0) } else { 0.0 }))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::display::{Tone, Transfer};
+    use crate::world::rules::Rules;
+    use glam::DVec3;
 
     #[test]
     fn many_channels_have_the_bytes_of_single_ones() {
+        let notes = |stops: f64| Display::new(Rules::Notes, stops, Tone::Clip, Transfer::Linear);
         let extremes = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.0, -1e-300, 1e-300, 1.0, 1e300];
         let levels = (0..=256).map(|level| f64::from(level) / 255.0);
         let near = levels.flat_map(|level| [level.next_down(), level, level.next_up()]);
         let channel: Vec<f64> = extremes.into_iter().chain(near).collect();
         for cpu in Cpu::all() {
-            let mut pixels = vec![[1; 3]; channel.len()];
-            to_bytes(cpu, View { x: &channel, y: &channel, z: &channel }, &mut pixels);
-            let single: Vec<_> = channel.iter().map(|channel| [to_byte(*channel); 3]).collect();
-            assert_eq!(pixels, single);
+            for display in
+                [notes(0.0), notes(0.7), Display::new(Rules::Free, 0.7, Tone::Neutral, Transfer::Srgb)]
+            {
+                let mut pixels = vec![[1; 3]; channel.len()];
+                to_bytes(cpu, &display, View { x: &channel, y: &channel, z: &channel }, &mut pixels);
+                let single: Vec<_> =
+                    channel.iter().map(|channel| display.bytes(DVec3::splat(*channel))).collect();
+                assert_eq!(pixels, single);
+            }
         }
     }
 }

@@ -12,10 +12,10 @@
 
 use crate::geometry::image_point::ImagePoint;
 use crate::geometry::sight::Line;
-use crate::render::bytes::shown;
 use crate::render::enclosed::{LightPoints, Limits, Scene, SceneBounds, Tracer};
 use crate::render::plan::depth::Depth;
 use crate::scene::model::Model;
+use crate::world::display::Display;
 use crate::world::film::Film;
 use crate::world::material::Rgb;
 use std::cell::Cell;
@@ -52,26 +52,17 @@ pub struct Proof {
 }
 
 impl Proof {
-    /// Returns the colour in the middle of what is possible, before exposure. `gain` is the factor of all colours.
-    pub fn middle(&self, gain: f64) -> Rgb {
-        let channel = |low: f64, high: f64| {
-            let (below, above) = (low < 0.0, gain * high > 1.0);
-            match (gain * low >= 1.0, high <= 0.0) {
-                // It is shown as white or as black, whatever it is.
-                (true, _) if high.is_infinite() => low,
-                (_, true) if low.is_infinite() => high,
-                (false, false) if below || above => 0.5 * (low.max(0.0) + high.min(1.0 / gain)),
-                _ => 0.5 * (low + high),
-            }
-        };
-        self.by_channel(channel)
+    /// Returns the colour in the middle of what is possible, before exposure.
+    pub fn middle(&self, display: &Display) -> Rgb {
+        display.middle([self.low, self.high])
     }
 
     /// Bounds the difference of a colour within the bounds from the true one, as they are shown: the largest of the
     /// channels, where 1 is white.
-    pub fn error(&self, colour: Rgb, gain: f64) -> f64 {
-        let [low, colour, high] = [self.low, colour, self.high].map(|colour| shown(gain * colour));
-        (high - colour).max(colour - low).max_element() + ROUNDING
+    pub fn error(&self, colour: Rgb, display: &Display) -> f64 {
+        let [low, high] = display.shown_within([self.low, self.high]);
+        let shown = display.shown(colour);
+        (high - shown).max(shown - low).max_element() + ROUNDING
     }
 
     /// Returns the possible colour that is the nearest to one.
@@ -80,17 +71,16 @@ impl Proof {
     }
 
     /// Tells whether the colour in the middle is within an error, where 1 is white, as it is shown.
-    pub fn is_within(&self, error: f64, gain: f64) -> bool {
-        self.half_width(gain) <= error
+    pub fn is_within(&self, error: f64, display: &Display) -> bool {
+        self.half_width(display) <= error
     }
 
-    /// Returns half the distance of the bounds as they are shown, the largest of the channels, where 1 is white.
-    pub fn half_width(&self, gain: f64) -> f64 {
-        0.5 * (shown(gain * self.high) - shown(gain * self.low)).max_element() + ROUNDING
-    }
-
-    fn by_channel(&self, of: impl Fn(f64, f64) -> f64) -> Rgb {
-        Rgb::from_array([0, 1, 2].map(|channel| of(self.low[channel], self.high[channel])))
+    /// Bounds the error of the colour in the middle, as it is shown: the largest of the channels, where 1 is white.
+    pub fn half_width(&self, display: &Display) -> f64 {
+        if display.truncates().is_none() {
+            return self.error(self.middle(display), display);
+        }
+        0.5 * (display.shown(self.high) - display.shown(self.low)).max_element() + ROUNDING
     }
 }
 
@@ -143,7 +133,7 @@ impl Prover {
     ) -> Proof {
         let Self { bounds, lights } = self;
         let scene = Scene { model, lights, depth, bounds, meets_uncertified: Cell::new(false) };
-        let gain = camera.gain();
+        let display = &camera.display();
         let footprint = |middle: [f64; 2], cuts: u32| {
             let lines = lines(camera, middle, power_of_two(-(cuts as i32) - 1));
             let mut tracer = Tracer::new(&scene, LIMITS, LightPoints::All);
@@ -154,8 +144,8 @@ impl Prover {
         let mut count = 1;
         loop {
             let proof = proof(&all, count);
-            let half = proof.half_width(gain);
-            if proof.is_within(error, gain) || count + 4 > MAX_FOOTPRINTS {
+            let half = proof.half_width(display);
+            if proof.is_within(error, display) || count + 4 > MAX_FOOTPRINTS {
                 return proof;
             }
             // What edges leave open is in inverse proportion to the number of footprints.

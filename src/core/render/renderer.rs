@@ -122,6 +122,7 @@ impl Renderer {
         let (width, height) = (columns.len(), tracer.height());
         let (top, below) = (height - 1 - rows.start, height - rows.end);
         let (mut pixels, mut bytes) = (Vec::new(), [[0; 3]; TILE * TILE]);
+        let display = tracer.display();
         let wide = |index: usize| {
             let left = columns.start + TILE * index;
             left..columns.end.min(left + TILE)
@@ -137,7 +138,7 @@ impl Renderer {
             let (colours, mut from) = (tracer.pixels(&pixels), 0);
             for index in indices {
                 let count = wide(*index).len() * rows.len();
-                to_bytes(self.cpu, colours.part(from..from + count), &mut bytes[..count]);
+                to_bytes(self.cpu, &display, colours.part(from..from + count), &mut bytes[..count]);
                 from += count;
                 let mut rest = &bytes[..];
                 let mut strip = locked(strip);
@@ -152,7 +153,7 @@ impl Renderer {
         }
     }
 
-    /// Renders a part of the image with its colours as they are computed: red, green and blue of each pixel, in rows from
+    /// Renders a part of the image with its colours before they are clamped and rounded: red, green and blue of each pixel, in rows from
     /// the top, each from the left. Returns `None` if the overseer stops it. Observers are passed to `watched` as in
     /// [`bands`](Self::bands).
     pub fn colours<W: TraceObserver + Default>(
@@ -162,7 +163,7 @@ impl Renderer {
         overseer: RenderCallbacks,
         watched: &(dyn Fn(W) + Sync),
     ) -> Option<Vec<f32>> {
-        let (width, end) = (columns.len(), plan.camera.pixels[1]);
+        let (width, end, display) = (columns.len(), plan.camera.pixels[1], plan.camera.display());
         let mut all = vec![0.0; 3 * width * rows.len()];
         let strip = |index: usize, strip: &mut [f32]| {
             let mut observer = W::default();
@@ -180,7 +181,8 @@ impl Renderer {
                 let colours = tracer.pixels(&pixels);
                 for (index, [x, y]) in pixels.iter().enumerate() {
                     let at = 3 * ((end - 1 - y - top) * width + x - columns.start);
-                    strip[at..at + 3].copy_from_slice(&colours.get(index).as_vec3().to_array());
+                    strip[at..at + 3]
+                        .copy_from_slice(&display.full_range(colours.get(index)).as_vec3().to_array());
                 }
             }
             watched(observer);

@@ -6,6 +6,7 @@
 use crate::scene::kind::Kind;
 use crate::text;
 use crate::world::accuracy::Accuracy;
+use crate::world::display::{Tone, Transfer};
 use crate::world::rules::Rules;
 use std::panic::Location;
 
@@ -103,6 +104,12 @@ pub fn contradictions<T: Choice>() -> Vec<String> {
     faults
 }
 
+/// Returns an alternative that only its name chooses.
+const fn named((name, meaning): (&'static str, &'static str)) -> ChoiceName {
+    const PLACE: &Location<'static> = Location::caller();
+    ChoiceName { name, number: None, meaning, place: PLACE }
+}
+
 impl Choice for Accuracy {
     const WHAT: &'static str = "accuracy";
 
@@ -111,25 +118,53 @@ impl Choice for Accuracy {
     }
 
     fn option(&self) -> ChoiceName {
-        const PLACE: &Location<'static> = Location::caller();
-        let (name, meaning) = self.named();
-        ChoiceName { name, number: None, meaning, place: PLACE }
+        named(self.named())
     }
 }
 
 impl Choice for Rules {
-    const WHAT: &'static str = "rules";
+    const WHAT: &'static str = "set of rules";
 
     fn all() -> Vec<Self> {
         vec![Self::Notes, Self::Free]
     }
 
     fn option(&self) -> ChoiceName {
-        const PLACE: &Location<'static> = Location::caller();
-        let (name, meaning) = match self {
-            Self::Notes => ("notes", "the course notes': light is divided by the length of its path, up to 20 units"),
-            Self::Free => ("free", "linear light, which does not depend on the scale of a scene"),
-        };
-        ChoiceName { name, number: None, meaning, place: PLACE }
+        named(match self {
+            Self::Notes => {
+                ("notes", "the course notes': light is divided by the length of its path, up to 20 units")
+            }
+            Self::Free => ("free", "linear light that does not depend on the scale of the scene"),
+        })
+    }
+}
+
+impl Choice for Tone {
+    const WHAT: &'static str = "tone mapper";
+
+    fn all() -> Vec<Self> {
+        vec![Self::Clip, Self::Neutral]
+    }
+
+    fn option(&self) -> ChoiceName {
+        named(match self {
+            Self::Clip => ("clip", "all of it is white"),
+            Self::Neutral => ("neutral", "compressed, by the Khronos PBR neutral tone mapper"),
+        })
+    }
+}
+
+impl Choice for Transfer {
+    const WHAT: &'static str = "transfer function";
+
+    fn all() -> Vec<Self> {
+        vec![Self::Srgb, Self::Linear]
+    }
+
+    fn option(&self) -> ChoiceName {
+        named(match self {
+            Self::Srgb => ("srgb", "the curve of sRGB, which screens expect"),
+            Self::Linear => ("linear", "in proportion to the light"),
+        })
     }
 }

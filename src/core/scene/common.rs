@@ -3,6 +3,7 @@
 use crate::scene::pparm::{Pparm, Table};
 use crate::world::accuracy::Accuracy;
 use crate::world::body::Paint;
+use crate::world::display::{Tone, Transfer};
 use crate::world::material::Material;
 use crate::world::rules::Rules;
 use crate::world::sample::Sampler;
@@ -48,5 +49,19 @@ pub(super) static ACCURACY: Pparm<Accuracy> =
 pub(super) static RULES: Pparm<Option<Rules>> =
     Pparm::or("rules", "the rules of light; by default those of the type of camera", None).not_dumped();
 
+/// How light becomes bytes by the free rules; the notes' have no choice.
+pub(super) static EXPOSURE: Pparm<f64> =
+    Pparm::or("exposure", "how often the light is doubled, by the free rules", 0.0)
+        .unit("stops")
+        .between(-32.0, 32.0)
+        .not_dumped();
+
+pub(super) static TONE: Pparm<Tone> =
+    Pparm::or("tone", "how light above white is shown, by the free rules", Tone::Clip).not_dumped();
+
+pub(super) static TRANSFER: Pparm<Transfer> =
+    Pparm::or("transfer", "how light is encoded in bytes, by the free rules", Transfer::Srgb).not_dumped();
+
 /// The attributes that every camera has before and after its own.
-pub(super) const FILM: [Table; 2] = [&[&PIXELDIM], &[&SAMPLES, &ACCURACY, &RULES]];
+pub(super) const FILM: [Table; 2] =
+    [&[&PIXELDIM], &[&SAMPLES, &ACCURACY, &RULES, &EXPOSURE, &TONE, &TRANSFER]];

@@ -2,7 +2,8 @@
 
 use crate::scene::attribute::Attribute;
 use crate::scene::common::{
-    ACCURACY, FILM, MATERIAL, MATERIAL_OF_ALL, OBJECT, OF_OBJECTS, PIXELDIM, RULES, SAMPLES, SHADER,
+    ACCURACY, EXPOSURE, FILM, MATERIAL, MATERIAL_OF_ALL, OBJECT, OF_OBJECTS, PIXELDIM, RULES, SAMPLES,
+    SHADER, TONE, TRANSFER,
 };
 use crate::scene::counts::OneOf;
 use crate::scene::kind::Kind;
@@ -329,24 +330,38 @@ impl Args {
         if self.is_pattern { None } else { self.setting.camera.planes_end_at() }
     }
 
-    /// Returns the film of a camera with this entity's attributes, and with an accuracy that overrides its own. Where
-    /// that is the notes' method, and where the scene chooses it and no rules of light, the rules are the notes', too.
-    pub fn film(&self, camera: AnyCamera, above_all: Option<Accuracy>) -> Film {
+    /// Returns the film of a camera with this entity's attributes, and with an accuracy and rules of light that override
+    /// its own. With the notes' method the rules are the notes', too, unless the scene itself chooses both otherwise.
+    pub fn film(&self, camera: AnyCamera, (accuracy, rules): (Option<Accuracy>, Option<Rules>)) -> Film {
+        let is_classic = accuracy == Some(Accuracy::Classic);
         // The notes' command line has a default accuracy of its own.
         let own = || self.get_given(&ACCURACY).unwrap_or(self.accuracy());
-        let accuracy = above_all.unwrap_or_else(own);
-        let rules = match self.get(&RULES) {
-            Some(rules) if above_all != Some(Accuracy::Classic) => rules,
+        let accuracy = accuracy.unwrap_or_else(own);
+        let rules = rules.unwrap_or_else(|| match self.get(&RULES) {
+            Some(rules) if !is_classic => rules,
             None if accuracy != Accuracy::Classic => camera.rules(),
             _ => Rules::Notes,
+        });
+        let (exposure, tone, transfer) = match rules {
+            Rules::Notes => Default::default(),
+            Rules::Free => (self.get(&EXPOSURE), self.get(&TONE), self.get(&TRANSFER)),
         };
         Film {
             // The attributes' rules ensure that these casts are lossless.
             samples: self.get(&SAMPLES) as u32,
             accuracy,
             rules,
+            exposure,
+            tone,
+            transfer,
             ..Film::new(camera, self.get(&PIXELDIM).map(|side| side as usize))
         }
+    }
+
+    /// Returns the names of a camera's attributes that the scene gives and only the free rules use.
+    pub fn given_of_free_rules(&self) -> impl Iterator<Item = &'static str> {
+        let names = [EXPOSURE.name(), TONE.name(), TRANSFER.name()];
+        names.into_iter().filter(|name| self.given().any(|(attribute, _)| attribute.name() == *name))
     }
 
     /// Returns the material of an object.

@@ -6,6 +6,7 @@ use crate::geometry::sight::Sight;
 use crate::simd::cpu::{Cpu, kernels};
 use crate::world::accuracy::Accuracy;
 use crate::world::camera::{Origins, Projected};
+use crate::world::display::{Display, Tone, Transfer};
 use crate::world::packets::camera::{PacketCamera, Places};
 use crate::world::pinhole::Pinhole;
 use crate::world::rules::Rules;
@@ -36,8 +37,12 @@ pub struct Film {
     /// A number that scrambles the samplers' sequences together with the pixel: 0 in a render, and another one for the
     /// same image with independent samples.
     pub scramble: u32,
-    /// The exposure in stops: colours are multiplied by 2 to this power.
+    /// The exposure in stops: what is shown is multiplied by 2 to this power.
     pub exposure: f64,
+    /// How light above white is shown, by the free rules.
+    pub tone: Tone,
+    /// How light is encoded, by the free rules.
+    pub transfer: Transfer,
     /// The accuracy with which hits are found.
     pub accuracy: Accuracy,
     /// The rules of light.
@@ -74,6 +79,8 @@ impl Film {
             sampler: Sampler::default(),
             scramble: 0,
             exposure: 0.0,
+            tone: Tone::default(),
+            transfer: Transfer::default(),
             accuracy: Accuracy::default(),
             rules: Rules::default(),
         }
@@ -84,9 +91,9 @@ impl Film {
         self.camera.planes_end_at().filter(|_| self.rules == Rules::Notes)
     }
 
-    /// Returns the factor by which the exposure multiplies all colours.
-    pub(crate) fn gain(&self) -> f64 {
-        libm::exp2(self.exposure)
+    /// Returns how light is shown in the image.
+    pub fn display(&self) -> Display {
+        Display::new(self.rules, self.exposure, self.tone, self.transfer)
     }
 
     /// Returns the seed of a pixel's sequence of samples. The pixel may lie outside of the image.

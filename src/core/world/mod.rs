@@ -8,6 +8,7 @@ pub mod body;
 pub mod camera;
 pub mod certify;
 pub mod coincidence;
+pub mod display;
 pub mod film;
 pub mod hittable;
 pub mod interaction;
@@ -22,6 +23,7 @@ pub mod sample;
 pub mod shader;
 pub mod shape;
 pub mod solid;
+pub mod texels;
 pub mod texture;
 
 pub use accuracy::{Accuracy, AccuracyTag, Bounded, Classic, Draft, Exact, Strict};

@@ -3,11 +3,12 @@
 //! A ray that hits a point returns `attenuation * (ambient + light of each lamp)`, and what it sees through the point and
 //! in it. Numbers are one channel each, or colours where no more than sums and products are asked of them.
 
+use serde::{Deserialize, Serialize};
 use std::ops::{Add, Mul};
 use tabray_exact::scalar::{Scalar, per_axis};
 
 /// The rules of light of a scene.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Rules {
     /// The course notes': all light is divided by the length of its path, the viewer's part included, and paths end at
     /// [`MAX_DIST`].

@@ -2,12 +2,15 @@
 
 use crate::files::{self, ImageBytes};
 use crate::text;
+use crate::world::display::Display;
+use crate::world::film::Film;
 use crate::world::material::Rgb;
+use crate::world::texels::Texels;
 use bytesize::ByteSize;
 use image::metadata::Orientation;
 use image::{
     ColorType, DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, Rgb as Texel,
-    RgbImage,
+    Rgb32FImage, RgbImage,
 };
 use std::fs;
 use std::io::{self, BufReader, Read, Seek};
@@ -26,13 +29,15 @@ const MOST_TEXELS: usize = 8;
 #[derive(Debug, Default)]
 pub struct Texture {
     path: PathBuf,
+    /// How the image that is rendered shows light; unless that is known, by the notes' rules.
+    display: OnceLock<Display>,
     picture: OnceLock<Result<Picture, String>>,
 }
 
 /// An image that was read.
 #[derive(Debug)]
 struct Picture {
-    image: RgbImage,
+    texels: Texels,
     remarks: Vec<&'static str>,
 }
 
@@ -57,7 +62,7 @@ impl PartialEq for Texture {
 impl Texture {
     /// Makes a texture of an image file. Nothing is read yet.
     pub fn new(path: PathBuf) -> Self {
-        Self { path, picture: OnceLock::new() }
+        Self { path, ..Self::default() }
     }
 
     /// Returns the path of the image file.
@@ -65,21 +70,26 @@ impl Texture {
         &self.path
     }
 
-    /// Returns the image, and reads its file at the first call.
+    /// Lets bytes stand for the light that an image shows with them. That must be known before the file is read.
+    pub fn decode_by(&self, display: Display) {
+        let _ = self.display.set(display);
+    }
+
+    /// Returns the texels, and reads their file at the first call.
     ///
     /// # Errors
     /// The reason why it cannot be read.
-    pub fn load(&self) -> Result<&RgbImage, &str> {
+    pub fn load(&self) -> Result<&Texels, &str> {
         self.load_within(u64::MAX)
     }
 
-    /// Returns the image, and reads its file at the first call, unless that takes more than `bytes` bytes of memory.
+    /// Returns the texels, and reads their file at the first call, unless that takes more than `bytes` bytes of memory.
     ///
     /// # Errors
     /// The reason why it cannot be read.
-    pub fn load_within(&self, bytes: u64) -> Result<&RgbImage, &str> {
+    pub fn load_within(&self, bytes: u64) -> Result<&Texels, &str> {
         let picture = self.picture.get_or_init(|| self.read(bytes));
-        picture.as_ref().map(|picture| &picture.image).map_err(String::as_str)
+        picture.as_ref().map(|picture| &picture.texels).map_err(String::as_str)
     }
 
     fn read(&self, most: u64) -> Result<Picture, String> {
@@ -109,13 +119,17 @@ impl Texture {
         let (colours, orientation) =
             (decoder.color_type(), decoder.orientation().unwrap_or(Orientation::NoTransforms));
         let pixels = u64::from(width) * u64::from(height);
-        // As it is decoded, as bytes of red, green and blue, and turned.
+        let display = self.display.get_or_init(|| Film::default().display());
+        let is_light =
+            matches!(colours, ColorType::Rgb32F | ColorType::Rgba32F) && display.truncates().is_none();
+        let each = if is_light { 4 } else { 1 };
+        // As it is decoded, as red, green and blue, and turned.
         let copies = match colours {
             ColorType::Rgb8 => 0,
-            colours if colours.has_alpha() => 4 + 3,
-            _ => 3,
+            colours if colours.has_alpha() => each * (4 + 3),
+            _ => each * 3,
         };
-        let turned = if orientation == Orientation::NoTransforms { 0 } else { 3 };
+        let turned = if orientation == Orientation::NoTransforms { 0 } else { each * 3 };
         // What decoders take beside, which have no limits of their own.
         let aside = match format {
             ImageFormat::Jpeg => length + 6 * pixels,
@@ -127,13 +141,21 @@ impl Texture {
         }
         let picture = DynamicImage::from_decoder(decoder).map_err(cannot)?;
         let mut remarks = Vec::new();
-        if is_bright(&picture) {
+        if is_bright(&picture) && !is_light {
             remarks.push("has colours above 1, which are cut to 1");
         }
-        let image = if colours.has_alpha() { over_white(picture, &mut remarks) } else { picture.into_rgb8() };
-        let mut image = DynamicImage::ImageRgb8(image);
+        let mut image = match (is_light, colours.has_alpha()) {
+            (true, true) => DynamicImage::ImageRgb32F(light_over_white(picture, &mut remarks)),
+            (true, false) => picture,
+            (false, true) => DynamicImage::ImageRgb8(over_white(picture, &mut remarks)),
+            (false, false) => DynamicImage::ImageRgb8(picture.into_rgb8()),
+        };
         image.apply_orientation(orientation);
-        Ok(Picture { image: image.into_rgb8(), remarks })
+        let texels = match is_light {
+            true => Texels::of_light(image.into_rgb32f()),
+            false => Texels::of_bytes(image.into_rgb8(), display),
+        };
+        Ok(Picture { texels, remarks })
     }
 
     /// Returns what is not shown as the image has it, phrased to follow the texture's name.
@@ -144,7 +166,7 @@ impl Texture {
     /// Returns the memory that the image takes, in bytes; 0 if it has not been read.
     pub fn bytes(&self) -> u64 {
         let picture = self.picture.get().and_then(|picture| picture.as_ref().ok());
-        picture.map_or(0, |picture| picture.image.as_raw().len() as u64)
+        picture.map_or(0, |picture| picture.texels.memory())
     }
 
     /// Tells whether no file exists at the path.
@@ -154,25 +176,29 @@ impl Texture {
 
     /// Returns the width and height in texels; 0 and 0 where the image cannot be read.
     pub fn size(&self) -> [u32; 2] {
-        self.load().map_or([0, 0], |image| image.dimensions().into())
+        self.load().map_or([0, 0], Texels::size)
     }
 
-    /// Returns a texel by its column from the left and its row from the bottom, each channel from 0 to below 1. Beyond
-    /// an edge, the texel at the edge is returned; a texture whose image cannot be read is white.
+    /// Returns the light of a texel by its column from the left and its row from the bottom, each channel from 0 to
+    /// [`brightest`](Self::brightest). Beyond an edge, it is that of the texel at the edge; a texture whose image cannot be
+    /// read is white.
     pub fn texel(&self, column: u32, row: u32) -> Rgb {
-        let Ok(image) = self.load() else { return Rgb::ONE };
-        let (width, height) = image.dimensions();
-        let pixel = image.get_pixel(column.min(width - 1), height - 1 - row.min(height - 1));
-        Rgb::from_array(pixel.0.map(f64::from)) / 256.0
+        self.load().map_or(Rgb::ONE, |texels| texels.light(column, row))
     }
 
-    /// Encloses the texels of at least one column and row. If they are many, the channels may be anything from 0 to 1.
+    /// Bounds the light of a channel of any texel: 1, unless the file has colours above 1 and the rules of light show them.
+    pub fn brightest(&self) -> f64 {
+        self.load().map_or(1.0, Texels::brightest)
+    }
+
+    /// Encloses the texels of at least one column and row. If they are many, the channels may be anything that
+    /// a texel may be.
     pub fn enclose<F: Float>(
         &self,
         columns: impl Iterator<Item = u32> + Clone,
         rows: impl Iterator<Item = u32> + Clone,
     ) -> [Interval<F>; 3] {
-        let any = Interval::constant(0.0).hull(Interval::constant(1.0));
+        let any = Interval::constant(0.0).hull(Interval::constant(self.brightest()));
         if columns.clone().nth(MOST_TEXELS).is_some() || rows.clone().nth(MOST_TEXELS).is_some() {
             return [any; 3];
         }
@@ -204,11 +230,14 @@ fn is_bright(picture: &DynamicImage) -> bool {
     }
 }
 
+const SEES_THROUGH: &str =
+    "has transparent texels, which do not show what is behind an object but its own colour";
+
 /// Lays an image over white, so that an object shows its own colours where a texel is transparent.
 fn over_white(picture: DynamicImage, remarks: &mut Vec<&'static str>) -> RgbImage {
     let picture = picture.into_rgba8();
     if picture.pixels().any(|texel| texel.0[3] < u8::MAX) {
-        remarks.push("has transparent texels, which do not show what is behind an object but its own colour");
+        remarks.push(SEES_THROUGH);
     }
     let over = |[red, green, blue, alpha]: [u8; 4]| {
         let alpha = u16::from(alpha);
@@ -218,9 +247,23 @@ fn over_white(picture: DynamicImage, remarks: &mut Vec<&'static str>) -> RgbImag
     RgbImage::from_fn(picture.width(), picture.height(), |x, y| Texel(over(picture.get_pixel(x, y).0)))
 }
 
+/// Lays light over white as [`over_white`] does.
+fn light_over_white(picture: DynamicImage, remarks: &mut Vec<&'static str>) -> Rgb32FImage {
+    let picture = picture.into_rgba32f();
+    if picture.pixels().any(|texel| texel.0[3] < 1.0) {
+        remarks.push(SEES_THROUGH);
+    }
+    let over = |[red, green, blue, alpha]: [f32; 4]| {
+        [red, green, blue].map(|channel| channel * alpha + (1.0 - alpha))
+    };
+    Rgb32FImage::from_fn(picture.width(), picture.height(), |x, y| Texel(over(picture.get_pixel(x, y).0)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::display::{Tone, Transfer};
+    use crate::world::rules::Rules;
     use image::{ImageEncoder, RgbaImage};
     use tempfile::TempDir;
 
@@ -238,6 +281,12 @@ mod tests {
         bytes.into_inner()
     }
 
+    /// Returns the bytes of a texel by its column and its row from the top.
+    fn bytes_at(texture: &Texture, [x, y]: [u32; 2]) -> [u8; 3] {
+        let row = texture.size()[1] - 1 - y;
+        texture.texel(x, row).to_array().map(|channel| (256.0 * channel) as u8)
+    }
+
     #[test]
     fn images_of_all_formats_are_read_whatever_their_names() {
         let folder = TempDir::new().expect("a folder");
@@ -245,13 +294,13 @@ mod tests {
             [ImageFormat::Png, ImageFormat::Pnm, ImageFormat::Bmp, ImageFormat::Tiff, ImageFormat::WebP]
         {
             let texture = texture(&folder, "a.jpg", &written(format));
-            assert_eq!(texture.load().map(|image| image.get_pixel(2, 1).0), Ok([100, 90, 200]), "{format:?}");
+            assert_eq!(bytes_at(&texture, [2, 1]), [100, 90, 200], "{format:?}");
             assert!(texture.remarks().is_empty());
         }
         let near =
             |texel: [u8; 3]| texel.iter().zip([100, 90, 200]).all(|(one, other)| one.abs_diff(other) < 25);
         let texture = texture(&folder, "a.png", &written(ImageFormat::Jpeg));
-        assert!(texture.load().is_ok_and(|image| near(image.get_pixel(2, 1).0)));
+        assert!(near(bytes_at(&texture, [2, 1])));
     }
 
     #[test]
@@ -273,8 +322,7 @@ mod tests {
         let mut bytes = io::Cursor::new(Vec::new());
         image.write_to(&mut bytes, ImageFormat::Png).expect("an image");
         let texture = texture(&folder, "a.png", &bytes.into_inner());
-        let image = texture.load().expect("an image");
-        assert_eq!([image.get_pixel(0, 0).0, image.get_pixel(1, 0).0], [[255; 3], [244, 224, 204]]);
+        assert_eq!([0, 1].map(|x| bytes_at(&texture, [x, 0])), [[255; 3], [244, 224, 204]]);
         assert_eq!(texture.remarks().len(), 1);
     }
 
@@ -290,8 +338,34 @@ mod tests {
         encoder.write_image(image.as_raw(), 32, 16, image::ExtendedColorType::Rgb8).expect("an image");
         let texture = texture(&folder, "a.jpg", &bytes);
         assert_eq!(texture.size(), [16, 32]);
-        let image = texture.load().expect("an image");
-        assert!(image.get_pixel(8, 2).0[0] < 9 && image.get_pixel(8, 30).0[0] > 246);
+        assert!(bytes_at(&texture, [8, 2])[0] < 9 && bytes_at(&texture, [8, 30])[0] > 246);
+    }
+
+    #[test]
+    fn bytes_stand_for_the_light_that_an_image_shows_with_them() {
+        let folder = TempDir::new().expect("a folder");
+        for transfer in [Transfer::Srgb, Transfer::Linear] {
+            let display = Display::new(Rules::Free, 0.0, Tone::Clip, transfer);
+            let texture = texture(&folder, "a.png", &written(ImageFormat::Png));
+            texture.decode_by(display);
+            assert_eq!(display.bytes(texture.texel(2, 0)), [100, 90, 200]);
+            assert_eq!(texture.brightest(), 1.0);
+        }
+    }
+
+    #[test]
+    fn light_above_white_is_kept_by_the_free_rules_alone() {
+        let folder = TempDir::new().expect("a folder");
+        let image = Rgb32FImage::from_pixel(1, 1, Texel([7.5, 0.25, -1.0]));
+        let mut bytes = io::Cursor::new(Vec::new());
+        DynamicImage::ImageRgb32F(image).write_to(&mut bytes, ImageFormat::OpenExr).expect("an image");
+        let texture = || texture(&folder, "a.exr", bytes.get_ref());
+        let (notes, free) = (texture(), texture());
+        free.decode_by(Display::new(Rules::Free, 3.0, Tone::Neutral, Transfer::Srgb));
+        assert_eq!((free.texel(0, 0), free.brightest()), (Rgb::new(7.5, 0.25, 0.0), 7.5));
+        assert!(free.remarks().is_empty());
+        assert_eq!(bytes_at(&notes, [0, 0]), [255, 64, 0]);
+        assert_eq!(notes.remarks().len(), 1);
     }
 
     #[test]
@@ -303,7 +377,7 @@ mod tests {
             (b"\0\0\0\x18ftypheic\0\0\0\0", "it is a HEIC, an AVIF or a film: save it as PNG"),
             (b"one two three", text::NO_IMAGE),
         ] {
-            assert_eq!(texture(&folder, "a.png", bytes).load(), Err(said));
+            assert_eq!(texture(&folder, "a.png", bytes).load().err(), Some(said));
         }
     }
 }

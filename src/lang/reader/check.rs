@@ -106,10 +106,8 @@ pub(super) struct Check<'r, 't> {
     /// The place of the first background's name.
     first_background: Option<Place>,
     pub(super) setting: Arc<Setting>,
-    /// The accuracy that overrides the scene's own.
-    accuracy: Option<Accuracy>,
-    /// The rules of light that override the scene's own.
-    rules: Option<Rules>,
+    /// The accuracy and the rules of light that override the scene's own.
+    above_all: (Option<Accuracy>, Option<Rules>),
     /// Whether there is no warning of entities that share a name and are all used.
     pub(super) may_share_names: bool,
     /// Whether there is no warning of colours that may be meant to be from 0 to 255.
@@ -155,8 +153,7 @@ impl<'r, 't> Check<'r, 't> {
             first_camera: None,
             first_background: None,
             setting: Arc::new(setting),
-            accuracy: accuracy.above_all,
-            rules: accuracy.rules,
+            above_all: (accuracy.above_all, accuracy.rules),
             may_share_names: accuracy.may_share_names,
             may_be_bright: accuracy.may_be_bright,
             store: Store::default(),
@@ -305,8 +302,8 @@ impl Check<'_, '_> {
         match args.entity.construct {
             Construct::Camera(construct) => {
                 if let Some(camera) = self.made(parsed, args, construct) {
-                    let mut camera = args.film(camera, self.accuracy);
-                    camera.rules = self.rules.unwrap_or(camera.rules);
+                    let camera = args.film(camera, self.above_all);
+                    self.warn_of_unused(parsed, args, &camera);
                     Arc::make_mut(&mut self.setting).camera = camera.clone();
                     self.camera = Some((order, camera));
                 }
@@ -352,6 +349,18 @@ impl Check<'_, '_> {
         match &mut self.levels {
             Some(first) => first.count_similar(place),
             None => self.levels = Some(Fault { place, ..fault }),
+        }
+    }
+
+    /// Warns of attributes of a camera that its rules of light do not use.
+    fn warn_of_unused(&mut self, parsed: &Parsed<'_>, args: &Args, camera: &Film) {
+        let unused = (camera.rules == Rules::Notes).then(|| args.given_of_free_rules()).into_iter().flatten();
+        for attribute in unused {
+            let place = place_of(args.entity, parsed, Some(attribute));
+            let message = format!("`{attribute}` has no effect by the notes' rules of light");
+            let help = "they truncate 255 times the light to a byte; with `rules free`, light is shown by `exposure`, \
+                        `tone` and `transfer`";
+            self.report.add(Fault::warning(place, message).help(help));
         }
     }
 

@@ -31,6 +31,7 @@ impl Check<'_, '_> {
             if !used.contains(&args.name) {
                 continue;
             }
+            texture.decode_by(self.setting.camera.display());
             let read = texture.load_within(self.texture_memory);
             self.texture_memory -= texture.bytes().min(self.texture_memory);
             for remark in texture.remarks() {

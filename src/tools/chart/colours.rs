@@ -1,7 +1,7 @@
 //! Differences of colours: in their values, and as the eye sees them.
 
 use glam::DVec3;
-use tabray_core::render::bytes::{shown, to_byte};
+use tabray_core::world::display::{Display, Transfer};
 use tabray_core::world::material::Rgb;
 
 /// The difference of colours from the true ones.
@@ -18,18 +18,19 @@ pub struct Difference {
     pub changed: usize,
 }
 
-/// Compares colours with the true ones, pair by pair.
-pub fn difference(colours: &[Rgb], right: &[Rgb]) -> Difference {
+/// Compares colours, as an image shows them, with the true ones, pair by pair.
+pub fn difference(display: &Display, colours: &[Rgb], right: &[Rgb]) -> Difference {
     let (mut squares, mut worst, mut changed) = (0.0, 0.0_f64, 0);
     let mut visible = Vec::new();
     for (colour, right) in colours.iter().zip(right) {
-        let (colour, right) = (shown(*colour), shown(*right));
+        let is_changed = display.bytes(*colour) != display.bytes(*right);
+        let (colour, right) = (display.shown(*colour), display.shown(*right));
         let apart = (colour - right).abs();
         squares += apart.length_squared();
         worst = worst.max(apart.max_element());
         if apart != DVec3::ZERO {
             visible.push(100.0 * (oklab(colour) - oklab(right)).length());
-            changed += usize::from(colour.to_array().map(to_byte) != right.to_array().map(to_byte));
+            changed += usize::from(is_changed);
         }
     }
     visible.sort_unstable_by(|one, other| other.total_cmp(one));
@@ -45,10 +46,7 @@ pub fn difference(colours: &[Rgb], right: &[Rgb]) -> Difference {
 /// Converts a colour of an image, which is shown as sRGB, to Oklab (B. Ottosson, "A perceptual color space for image
 /// processing", 2020): lightness from 0 to 1, and two axes of colour.
 fn oklab(colour: Rgb) -> DVec3 {
-    let light = |channel: f64| {
-        if channel <= 0.040_45 { channel / 12.92 } else { libm::pow((channel + 0.055) / 1.055, 2.4) }
-    };
-    let light = DVec3::from_array(colour.to_array().map(light));
+    let light = colour.map(|channel| Transfer::Srgb.decode(channel));
     let cone = |weights: DVec3| libm::cbrt(light.dot(weights));
     let cones = DVec3::new(
         cone(DVec3::new(0.412_221_470_8, 0.536_332_536_3, 0.051_445_992_9)),
@@ -65,6 +63,7 @@ fn oklab(colour: Rgb) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use tabray_core::world::film::Film;
 
     #[test]
     fn white_is_light_and_has_no_colour() {
@@ -76,10 +75,14 @@ mod tests {
 
     #[test]
     fn differences_are_of_what_is_shown() {
+        let notes = Film::default().display();
         let far = [DVec3::splat(7.0), DVec3::new(f64::NAN, -1.0, 0.0)];
         let right = [DVec3::ONE, DVec3::ZERO];
-        assert_eq!(difference(&far, &right), Difference { rmse: 0.0, worst: 0.0, visible: 0.0, changed: 0 });
-        let one = difference(&[DVec3::ONE, DVec3::ZERO], &[DVec3::ZERO, DVec3::ZERO]);
+        assert_eq!(
+            difference(&notes, &far, &right),
+            Difference { rmse: 0.0, worst: 0.0, visible: 0.0, changed: 0 }
+        );
+        let one = difference(&notes, &[DVec3::ONE, DVec3::ZERO], &[DVec3::ZERO, DVec3::ZERO]);
         assert!((one.rmse - 0.5_f64.sqrt()).abs() < 1e-15 && (one.visible - 100.0).abs() < 1e-4, "{one:?}");
         assert_eq!((one.worst, one.changed), (1.0, 1));
     }

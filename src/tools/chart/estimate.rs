@@ -82,7 +82,7 @@ pub fn estimates(
     let is_whole = (width * height) as f64 * f64::from(of_pixel(STAGES[0], study.kept.len())) <= MIN_RAYS;
     let seen = if is_whole { STAGES[0].1 } else { confirm::FEWEST };
     let mut small = match goal {
-        Goal::None => SmallThings::none(),
+        Goal::None => SmallThings::none(truth.camera.display()),
         _ => SmallThings::find(&truth, &study.threads, goal.error(), seen),
     };
     small.measure(&truth, &study.threads, goal.error(), progress)?;

@@ -4,7 +4,6 @@ use super::cost::Timing;
 use super::pictures::ADAPTIVE;
 use std::ops::Range;
 use tabray_core::parallel;
-use tabray_core::render::bytes::shown;
 use tabray_core::render::observer::{Count, DynObserver, TraceObserver};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::renderer::Renderer;
@@ -94,7 +93,7 @@ pub(super) fn colours(threads: &Renderer, plan: &Plan, pixels: &[[usize; 2]]) ->
             let mut samples = Samples::default();
             let mut observer = DynObserver::<false>(&mut samples);
             let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut observer);
-            let colour = shown(tracer.pixels(&[*pixel]).get(0));
+            let colour = plan.camera.display().shown(tracer.pixels(&[*pixel]).get(0));
             (colour, samples.0)
         };
         pixels[range].iter().map(one).collect()

@@ -15,7 +15,6 @@ use std::hint::black_box;
 use std::ops::{ControlFlow, Range};
 use tabray_core::geometry::ray_packet::PACKET_SIZE;
 use tabray_core::parallel;
-use tabray_core::render::bytes::shown;
 use tabray_core::render::flaws::Flaws;
 use tabray_core::render::observer::{Event, TraceObserver};
 use tabray_core::render::plan::Plan;
@@ -97,8 +96,8 @@ pub fn methods(study: &Study, progress: &mut dyn Progress) -> ControlFlow<(), Pa
         colours.push(each(&study.threads, &pixels, |x, y| trace::pixel(plan, x, y)));
         progress.done(METHOD_TESTS / 10)?;
     }
-    let right = &colours[study.strict];
-    let differences: Vec<_> = colours.iter().map(|colours| difference(colours, right)).collect();
+    let (right, display) = (&colours[study.strict], plans[study.strict].camera.display());
+    let differences: Vec<_> = colours.iter().map(|colours| difference(&display, colours, right)).collect();
     let work = |choice: usize| render(&plans[choice], &timed);
     let times = study.thread.run(|| clock::rounds(plans.len(), count(&timed), work, progress));
     let points =
@@ -138,8 +137,8 @@ pub fn bounces(study: &Study, progress: &mut dyn Progress) -> ControlFlow<(), Op
         colours.push(each(&study.threads, &pixels, |x, y| trace::pixel(plan, x, y)));
         progress.done(METHOD_TESTS / 10)?;
     }
-    let right = &colours[plans.len() - 1];
-    let differences: Vec<_> = colours.iter().map(|colours| difference(colours, right)).collect();
+    let (right, display) = (&colours[plans.len() - 1], model.camera.value.display());
+    let differences: Vec<_> = colours.iter().map(|colours| difference(&display, colours, right)).collect();
     if differences.iter().all(|off| off.rmse == 0.0) {
         return ControlFlow::Continue(None);
     }
@@ -185,7 +184,7 @@ pub fn samples(
         (plan.camera.samples, plan.camera.sampler) = (*samples, *sampler);
         plan.set_adaptive(*adaptive);
         let colours = each(threads, &pixels, |x, y| colour(&plan, [x, y], seen));
-        differences.push(difference(&colours, &right));
+        differences.push(difference(&plan.camera.display(), &colours, &right));
         progress.done(TRUE_TESTS / 40 / choices.len())?;
     }
     let timed = timed(own.pixels, tests);
@@ -293,12 +292,13 @@ fn render(plan: &Plan, tiles: &[Pixels]) {
 pub(super) fn shown_colours(threads: &Renderer, plan: &Plan, pixels: &[[usize; 2]]) -> Vec<Rgb> {
     let at_once = (4 * PACKET_SIZE / plan.camera.samples as usize).max(1);
     let packets: Vec<_> = pixels.chunks(at_once).collect();
+    let display = plan.camera.display();
     let part = |range: Range<usize>| {
         let (mut scratch, mut nobody, mut shades) = (Scratch::default(), Flaws::default(), Vec::new());
         for pixels in &packets[range] {
             let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody);
             let colours = tracer.pixels(pixels);
-            shades.extend((0..pixels.len()).map(|pixel| shown(colours.get(pixel))));
+            shades.extend((0..pixels.len()).map(|pixel| display.shown(colours.get(pixel))));
         }
         shades
     };

@@ -13,12 +13,12 @@ use std::ops::Range;
 use tabray_core::geometry::aabb::Aabb;
 use tabray_core::parallel;
 use tabray_core::render::brightness::Brightness;
-use tabray_core::render::bytes::shown;
 use tabray_core::render::flaws::Flaws;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::renderer::Renderer;
 use tabray_core::render::trace::{Scratch, Tracer};
 use tabray_core::simd::cpu::Cpu;
+use tabray_core::world::display::Display;
 use tabray_core::world::film::Film;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::{Sample, Sampler};
@@ -87,6 +87,7 @@ struct SmallPixel {
 /// The pixels of an image that may show something bright and small.
 pub(super) struct SmallThings {
     pixels: Vec<SmallPixel>,
+    display: Display,
     is_measured: bool,
 }
 
@@ -108,9 +109,9 @@ impl Missed {
 }
 
 impl SmallThings {
-    /// Returns none.
-    pub fn none() -> Self {
-        Self { pixels: Vec::new(), is_measured: true }
+    /// Returns none, of images that are shown so.
+    pub fn none(display: Display) -> Self {
+        Self { pixels: Vec::new(), display, is_measured: true }
     }
 
     /// Finds the pixels of a plan's image, in which things matter that together change the image by more than an error.
@@ -119,7 +120,7 @@ impl SmallThings {
         let camera = &plan.camera;
         let [width, height] = camera.pixels;
         let bounds = Brightness::new(plan.model);
-        let mut found = Self::none();
+        let mut found = Self::none(camera.display());
         // Something matters in so many white pixels, or in one pixel that is as bright as the root of that. Samples are sure
         // to see what is so bright that it takes a certain part of these.
         let matters = (width * height) as f64 * error * error;
@@ -185,7 +186,7 @@ impl SmallThings {
                 return Err(io::ErrorKind::Interrupted.into());
             }
             let limit = (WANTED * error).powi(2) * all as f64;
-            let open: Vec<_> = self.pixels.iter().map(SmallPixel::open).collect();
+            let open = self.of_each(SmallPixel::open);
             if open.iter().sum::<f64>() <= limit {
                 break;
             }
@@ -223,9 +224,13 @@ impl SmallThings {
         }
     }
 
+    fn of_each<T>(&self, of: fn(&SmallPixel, &Display) -> T) -> Vec<T> {
+        self.pixels.iter().map(|pixel| of(pixel, &self.display)).collect()
+    }
+
     /// Returns the right colours, as the two images have them.
     pub fn right(&self) -> Vec<Right> {
-        self.pixels.iter().map(SmallPixel::shown).collect()
+        self.of_each(SmallPixel::shown)
     }
 
     /// Returns what may be missed: everything, where nothing is measured.
@@ -233,8 +238,8 @@ impl SmallThings {
         if !self.is_measured {
             return Missed { pixels: vec![EXPECTED.sqrt().recip(); self.pixels.len()], largest: 0.0 };
         }
-        let pixels: Vec<_> = self.pixels.iter().map(SmallPixel::missed).collect();
-        let largest = self.pixels.iter().map(SmallPixel::largest).fold(0.0, f64::max);
+        let pixels = self.of_each(SmallPixel::missed);
+        let largest = self.of_each(SmallPixel::largest).into_iter().fold(0.0, f64::max);
         Missed { pixels, largest }
     }
 }
@@ -258,7 +263,7 @@ fn unbounded(plan: &Plan) -> f64 {
     let distance = |bounds: Option<Aabb>| bounds.map_or(0.0, |bounds| viewer.distance(&bounds));
     let nearest = shown.map(|(object, _)| distance(object.shape.bounds())).fold(f64::INFINITY, f64::min);
     let own = depth.objects.iter().map(|bounds| bounds.own).fold(0.0, f64::max);
-    let most = libm::exp2(plan.camera.exposure) * own / nearest;
+    let most = plan.camera.display().steepest() * own / nearest;
     if nearest > 0.0 { most } else { f64::INFINITY }
 }
 
@@ -360,38 +365,38 @@ impl SmallPixel {
     }
 
     /// Returns the colours that the two images show.
-    fn shown(&self) -> Right {
+    fn shown(&self, display: &Display) -> Right {
         [0, 1].map(|image| {
             let (rest, count) = self.rest[image];
             let of_rest = if count > 0 { (1.0 - self.area()) * rest / f64::from(count) } else { Rgb::ZERO };
             let cells = self.cells.iter().zip(&self.sums[image]);
             let of_cells: Rgb = cells.map(|(cell, sum)| cell.area() * *sum / f64::from(self.count)).sum();
-            shown(of_rest + of_cells)
+            display.shown(of_rest + of_cells)
         })
     }
 
     /// Returns how much brighter the pixel may get.
-    fn room(&self) -> f64 {
-        let [one, other] = self.shown();
+    fn room(&self, display: &Display) -> f64 {
+        let [one, other] = self.shown(display);
         (1.0 - one.min(other)).max_element()
     }
 
     /// Bounds what is missed, in the mean: the light of things of the best size to be missed, in all cells.
-    fn missed(&self) -> f64 {
+    fn missed(&self, display: &Display) -> f64 {
         let samples = 2.0 * f64::from(self.count);
-        self.cells.iter().map(|cell| cell.area() * cell.most / samples).sum::<f64>().min(self.room())
+        self.cells.iter().map(|cell| cell.area() * cell.most / samples).sum::<f64>().min(self.room(display))
     }
 
     /// Bounds what is missed, with a confidence of 99 %, of a thing in one cell.
-    fn largest(&self) -> f64 {
+    fn largest(&self, display: &Display) -> f64 {
         let samples = 2.0 * f64::from(self.count);
         let of_cells = self.cells.iter().map(|cell| SURE * cell.area() * cell.most / samples);
-        of_cells.fold(0.0, f64::max).min(self.room())
+        of_cells.fold(0.0, f64::max).min(self.room(display))
     }
 
     /// Returns the square of what is open: of what may be missed, and of the noise of what is seen.
-    fn open(&self) -> f64 {
-        let [one, other] = self.shown();
-        self.missed().max(self.largest()).powi(2) + 0.25 * (one - other).length_squared() / 3.0
+    fn open(&self, display: &Display) -> f64 {
+        let [one, other] = self.shown(display);
+        self.missed(display).max(self.largest(display)).powi(2) + 0.25 * (one - other).length_squared() / 3.0
     }
 }

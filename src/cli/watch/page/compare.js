@@ -38,13 +38,13 @@ const showBefore = () => {
 
 /// Tells how two images differ, in levels from 0 to 255, in the words of `tabray diff`.
 const difference = (old, now) => {
-  const byte = (value) => value >= 1 ? 255 : value > 0 ? Math.trunc(255 * value) : 0
   const count = (number, noun) => `${number} ${noun}${number === 1 ? '' : 's'}`
   let differing = 0, largest = 0, squares = 0
   for (let pixel = 0; pixel < now.length; pixel += 3) {
     let most = 0
-    for (let at = pixel; at < pixel + 3; at++) {
-      const apart = Math.abs(byte(old[at]) - byte(now[at]))
+    const [one, other] = [bytesOf(old, pixel), bytesOf(now, pixel)]
+    for (let channel = 0; channel < 3; channel++) {
+      const apart = Math.abs(one[channel] - other[channel])
       most = Math.max(most, apart)
       squares += apart * apart
     }

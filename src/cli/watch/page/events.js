@@ -20,6 +20,7 @@ const follow = () => {
   on('scene', (data) => {
     const scene = JSON.parse(data)
     version = scene.version
+    display = scene.display
     root.dataset.version = version
     ready = 0
     title(scene.name)

@@ -36,15 +36,14 @@ const timeLeft = () => {
   return `, ${Math.ceil(took * (1 - part) / part)} s left`
 }
 
-/// Puts an area on the canvas, with the exposure: a channel of 1 is white, and what is between is cut.
+/// Puts an area on the canvas, with the exposure.
 const expose = (left, top, wide, high, from = colours, onto = paper) => {
   if (!wide || !high) return
-  const image = new ImageData(wide, high), factor = 255 * 2 ** stops
+  const image = new ImageData(wide, high)
   for (let y = 0, to = 0; y < high; y++) {
-    for (let at = 3 * ((top + y) * width + left), end = at + 3 * wide; at < end; at++) {
-      const value = factor * from[at]
-      image.data[to++] = value >= 255 ? 255 : value > 0 ? Math.trunc(value) : 0
-      if (to % 4 === 3) image.data[to++] = 255
+    for (let at = 3 * ((top + y) * width + left), end = at + 3 * wide; at < end; at += 3) {
+      for (const byte of bytesOf(from, at, stops)) image.data[to++] = byte
+      image.data[to++] = 255
     }
   }
   onto.putImageData(image, left, top)

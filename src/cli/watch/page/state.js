@@ -3,7 +3,7 @@ const $ = (selector) => document.querySelector(selector)
 const root = document.documentElement, stage = $('#stage'), sheet = $('#sheet'), canvas = $('canvas')
 const paper = canvas.getContext('2d')
 
-// The picture: its colours, linear and not clamped, and how many of its pixels are final.
+// The picture: its colours, as they are traced, and how many of its pixels are final.
 let version = 0, width = 0, height = 0, colours = new Float32Array(0), ready = 0
 // When the first pixels became final.
 let began = 0

@@ -93,7 +93,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
         active.clear();
         active.extend(0..pixels.len() as u32);
-        let (gain, doubt) = (camera.gain(), if adaptive.error.is_some() { DOUBT } else { 1.0 });
+        let (display, doubt) = (camera.display(), if adaptive.error.is_some() { DOUBT } else { 1.0 });
         while !active.is_empty() {
             // What a pixel's rays met matters only as long as all of them have met the same, or for small objects.
             for has_several_paths in [false, true] {
@@ -107,7 +107,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 let goes_on = goal < adaptive.most
                     && estimate.missing != f64::INFINITY
                     && (is_short(estimate, pixel, goal)
-                        || estimate.error(gain, doubt) > most_error(adaptive, goal));
+                        || estimate.error(&display, doubt) > most_error(adaptive, goal));
                 if goes_on {
                     estimate.set_goal(next_goal(estimate, pixel, 2 * goal));
                 }

@@ -22,7 +22,7 @@ pub(super) fn proof(plan: &Plan, x: usize, y: usize) -> Option<Proof> {
 
 /// Tells whether a pixel takes no samples.
 pub(super) fn is_certified(plan: &Plan, proof: &Proof) -> bool {
-    proof.is_within(limit(plan.camera.adaptive), plan.camera.gain())
+    proof.is_within(limit(plan.camera.adaptive), &plan.camera.display())
 }
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
@@ -36,14 +36,14 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         primary: &mut PrimaryScratch,
     ) {
         let (plan, camera) = (self.plan, &self.plan.camera);
-        let (limit, gain) = (limit(Some(adaptive)), camera.gain());
+        let (limit, display) = (limit(Some(adaptive)), &camera.display());
         let prove =
             |pixel: &[usize; 2]| prover.pixel((plan.model, plan.depth.as_ref()), camera, *pixel, limit);
         let proofs: Vec<Proof> = pixels.iter().map(prove).collect();
-        let is_open = |index: &usize| !proofs[*index].is_within(limit, gain);
+        let is_open = |index: &usize| !proofs[*index].is_within(limit, display);
         let open: Vec<usize> = (0..pixels.len()).filter(is_open).collect();
         let sampled: Vec<[usize; 2]> = open.iter().map(|index| pixels[*index]).collect();
-        let mut seen: Vec<Rgb> = proofs.iter().map(|proof| proof.middle(gain)).collect();
+        let mut seen: Vec<Rgb> = proofs.iter().map(|proof| proof.middle(display)).collect();
         primary.adaptive.estimates.clear();
         if !open.is_empty() {
             self.adaptive_pixels(&sampled, adaptive, primary);
@@ -56,7 +56,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let mut colours = primary.colours.resized(pixels.len());
         for (index, (proof, colour)) in proofs.iter().zip(seen).enumerate() {
             colours.set(index, colour);
-            let (error, is_certified) = (proof.error(colour, gain), proof.is_within(limit, gain));
+            let (error, is_certified) = (proof.error(colour, display), proof.is_within(limit, display));
             self.observer.count(Count::Bounded { error, is_certified, footprints: proof.footprints });
         }
     }

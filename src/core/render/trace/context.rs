@@ -11,6 +11,7 @@ use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
 use crate::world::accuracy::Accuracy;
 use crate::world::coincidence;
+use crate::world::display::Display;
 use crate::world::hittable::Hittable;
 
 /// The number of reflections and transmissions after which packets are narrow: with wide packets, facing mirrors would
@@ -44,6 +45,11 @@ impl<'m, 'w, W: TraceObserver> Tracer<'m, 'w, W> {
     /// Returns the height of the image in pixels.
     pub(crate) fn height(&self) -> usize {
         self.plan.camera.pixels[1]
+    }
+
+    /// Returns how the image shows light.
+    pub(crate) fn display(&self) -> Display {
+        self.plan.camera.display()
     }
 
     /// Tells whether the scene is traced by the notes' own methods.

@@ -1,7 +1,7 @@
 //! The estimate of a pixel's colour after some of its samples.
 
-use crate::render::bytes::shown;
 use crate::simd::soa::View;
+use crate::world::display::Display;
 use crate::world::material::Rgb;
 use glam::DVec3;
 use std::array;
@@ -36,8 +36,8 @@ pub(super) struct AdaptiveScratch {
 
 impl AdaptiveScratch {
     /// Returns the number of samples of the first pixel, and the estimated error of its colour.
-    pub fn first(&self, gain: f64) -> (u32, f64) {
-        self.estimates.first().map_or((0, 0.0), |estimate| (estimate.count, estimate.error(gain, 1.0)))
+    pub fn first(&self, display: &Display) -> (u32, f64) {
+        self.estimates.first().map_or((0, 0.0), |estimate| (estimate.count, estimate.error(display, 1.0)))
     }
 }
 
@@ -194,12 +194,12 @@ impl Estimate {
     }
 
     /// Estimates the error of the colour as it is shown, the largest of its channels, where 1 is white: the standard
-    /// error of the mean, as the means of its blocks have it, and what the contrast around leaves open. `gain` is the factor
-    /// of all colours, and `doubt` that of the standard error.
+    /// error of the mean, as the means of its blocks have it, and what the contrast around leaves open. `doubt` is the factor of
+    /// the standard error.
     ///
     /// Sobol points are spread more evenly than independent ones, so that blocks differ more than their number says.
     #[inline]
-    pub fn error(&self, gain: f64, doubt: f64) -> f64 {
+    pub fn error(&self, display: &Display, doubt: f64) -> f64 {
         let blocks = (self.count as usize).min(BLOCKS);
         let (mean, long) = (self.colour(), f64::from(self.count) / blocks as f64);
         let squares: DVec3 = self.blocks[..blocks]
@@ -216,14 +216,17 @@ impl Estimate {
         let unseen = if self.summary.has_several_paths { UNSEEN } else { UNSEEN_WITHIN };
         let error =
             doubt * spread + (self.summary.high - self.summary.low) * (unseen / f64::from(self.count));
-        let (mean, error) = (gain * mean, gain * error);
-        if mean.max_element() + FAR * error.max_element() <= 1.0 && (mean - FAR * error).min_element() >= 0.0
-        {
-            return error.max_element();
+        if let Some(gain) = display.truncates() {
+            let (mean, error) = (gain * mean, gain * error);
+            let is_below = mean.max_element() + FAR * error.max_element() <= 1.0;
+            if is_below && (mean - FAR * error).min_element() >= 0.0 {
+                return error.max_element();
+            }
         }
+        let shown = display.shown(mean);
         let off = |times: f64| {
-            let (up, down) = (shown(mean + times * error), shown(mean - times * error));
-            (up - shown(mean)).max(shown(mean) - down).max_element() / times
+            let [down, up] = display.shown_within([mean - times * error, mean + times * error]);
+            (up - shown).max(shown - down).max_element() / times
         };
         off(1.0).max(off(FAR))
     }

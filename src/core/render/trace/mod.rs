@@ -85,7 +85,7 @@ pub fn observe_pixel(plan: &Plan, x: usize, y: usize, observer: &mut impl TraceO
     if let Some(proof) = &proof
         && certain::is_certified(plan, proof)
     {
-        return plan.camera.gain() * proof.middle(plan.camera.gain());
+        return proof.middle(&plan.camera.display());
     }
     let (camera, count) = (&plan.camera, samples(plan, x, y).0);
     let (mut sum, mut budget) = (Rgb::ZERO, None);
@@ -98,8 +98,7 @@ pub fn observe_pixel(plan: &Plan, x: usize, y: usize, observer: &mut impl TraceO
         }
     }
     let colour = sum / f64::from(count);
-    let colour = proof.map_or(colour, |proof| proof.nearest(colour));
-    if camera.exposure == 0.0 { colour } else { camera.gain() * colour }
+    proof.map_or(colour, |proof| proof.nearest(colour))
 }
 
 /// Proven bounds of a pixel's colour.
@@ -115,10 +114,10 @@ pub struct PixelBound {
 
 /// Returns the proven bounds of a pixel's colour, if the render asks for them.
 pub fn bounded(plan: &Plan, x: usize, y: usize) -> Option<PixelBound> {
-    let (proof, gain) = (certain::proof(plan, x, y)?, plan.camera.gain());
+    let (proof, display) = (certain::proof(plan, x, y)?, &plan.camera.display());
     let is_certified = certain::is_certified(plan, &proof);
-    let colour = if is_certified { proof.middle(gain) } else { pixel(plan, x, y) / gain };
-    Some(PixelBound { error: proof.error(colour, gain), is_certified, footprints: proof.footprints })
+    let colour = if is_certified { proof.middle(display) } else { pixel(plan, x, y) };
+    Some(PixelBound { error: proof.error(colour, display), is_certified, footprints: proof.footprints })
 }
 
 /// Returns the number of samples that a pixel takes, and where pixels differ in that, the estimated error of its colour,
@@ -130,7 +129,7 @@ pub fn samples(plan: &Plan, x: usize, y: usize) -> (u32, Option<f64>) {
     let (mut scratch, mut nobody) = (Scratch::default(), Flaws::default());
     Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody).pixels(&[[x, y]]);
     let (count, error) =
-        scratch.primary.map_or((0, 0.0), |primary| primary.adaptive.first(plan.camera.gain()));
+        scratch.primary.map_or((0, 0.0), |primary| primary.adaptive.first(&plan.camera.display()));
     (count, Some(error))
 }
 
@@ -220,10 +219,6 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         if !self.scratch.undecided.pixels.is_empty() {
             self.report_undecided();
         }
-        if camera.exposure != 0.0 {
-            let mut colours = primary.colours.resized(pixels.len());
-            (0..pixels.len()).for_each(|pixel| colours.set(pixel, camera.gain() * colours.get(pixel)));
-        }
         self.scratch.primary.insert(primary).colours.view(pixels.len())
     }
 
@@ -232,7 +227,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let mut primary = self.scratch.primary.take().unwrap_or_default();
         let PrimaryScratch { group, seen, .. } = &mut *primary;
         self.scratch.places.iter_mut().for_each(|places| places.resize(PACKET_SIZE, 0.0));
-        let (mut all, gain) = (Vec::with_capacity(places.len()), self.plan.camera.gain());
+        let mut all = Vec::with_capacity(places.len());
         for part in places.chunks(PACKET_SIZE) {
             let Scratch { places: [x, y], samples, .. } = &mut *self.scratch;
             samples.clear();
@@ -242,7 +237,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             }
             self.look(group, part.len());
             self.colours(group, seen);
-            all.extend((0..part.len()).map(|lane| gain * seen.get(lane)));
+            all.extend((0..part.len()).map(|lane| seen.get(lane)));
         }
         self.scratch.primary = Some(primary);
         all

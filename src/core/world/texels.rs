@@ -1,0 +1,80 @@
+//! The texels of an image, and the light that each of them stands for.
+
+use crate::world::display::Display;
+use crate::world::material::Rgb;
+use image::{Rgb32FImage, RgbImage};
+use std::borrow::Cow;
+
+/// The texels of an image.
+#[derive(Debug)]
+pub struct Texels {
+    pixels: Pixels,
+    /// The light of each byte.
+    light: [f64; 256],
+}
+
+#[derive(Debug)]
+enum Pixels {
+    Bytes(RgbImage),
+    /// Light in full range.
+    Floats(Rgb32FImage),
+}
+
+impl Texels {
+    /// Makes texels of bytes. Their light is that which an image would show with the same bytes.
+    pub(super) fn of_bytes(image: RgbImage, display: &Display) -> Self {
+        Self { pixels: Pixels::Bytes(image), light: std::array::from_fn(|byte| display.light_of(byte as u8)) }
+    }
+
+    /// Makes texels of light. What is no number, or below 0, is 0.
+    pub(super) fn of_light(mut image: Rgb32FImage) -> Self {
+        image
+            .iter_mut()
+            .for_each(|channel| *channel = if *channel > 0.0 { channel.min(f32::MAX) } else { 0.0 });
+        Self { pixels: Pixels::Floats(image), light: [0.0; 256] }
+    }
+
+    /// Returns the width and height; neither is 0.
+    pub fn size(&self) -> [u32; 2] {
+        match &self.pixels {
+            Pixels::Bytes(image) => image.dimensions().into(),
+            Pixels::Floats(image) => image.dimensions().into(),
+        }
+    }
+
+    /// Returns the light of a texel by its column from the left and its row from the bottom. Beyond an edge, it is that of
+    /// the texel at the edge.
+    #[inline]
+    pub fn light(&self, column: u32, row: u32) -> Rgb {
+        let [width, height] = self.size();
+        let (column, row) = (column.min(width - 1), height - 1 - row.min(height - 1));
+        Rgb::from_array(match &self.pixels {
+            Pixels::Bytes(image) => image.get_pixel(column, row).0.map(|byte| self.light[usize::from(byte)]),
+            Pixels::Floats(image) => image.get_pixel(column, row).0.map(f64::from),
+        })
+    }
+
+    /// Bounds the light of a channel of any texel.
+    pub fn brightest(&self) -> f64 {
+        match &self.pixels {
+            Pixels::Bytes(_) => 1.0,
+            Pixels::Floats(image) => image.iter().fold(0.0, |most, channel| channel.max(most)).into(),
+        }
+    }
+
+    /// Returns the numbers of all texels as bytes.
+    pub fn raw(&self) -> Cow<'_, [u8]> {
+        match &self.pixels {
+            Pixels::Bytes(image) => Cow::Borrowed(image.as_raw()),
+            Pixels::Floats(image) => image.iter().flat_map(|channel| channel.to_le_bytes()).collect(),
+        }
+    }
+
+    /// Returns the memory that they take, in bytes.
+    pub(super) fn memory(&self) -> u64 {
+        match &self.pixels {
+            Pixels::Bytes(image) => image.as_raw().len() as u64,
+            Pixels::Floats(image) => 4 * image.as_raw().len() as u64,
+        }
+    }
+}
