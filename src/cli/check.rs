@@ -5,7 +5,9 @@ use crate::options::set;
 use crate::process::failure::{Failure, report, status};
 use crate::process::messages;
 use std::path::PathBuf;
+use tabray_lang::reader;
 use tabray_lang::registry::Registry;
+use tabray_tools::diagnosis;
 
 /// Check scenes for errors
 ///
@@ -29,7 +31,12 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let mut worst = 0;
     for scene in &args.scenes {
         match input::load(registry, scene, &args.set, None) {
-            Ok(_) => messages::note(&format!("{}: no errors", scene.display())),
+            Ok(model) => {
+                if !reader::is_black(&model) {
+                    messages::remark(diagnosis::tried(&model));
+                }
+                messages::note(&format!("{}: no errors", scene.display()));
+            }
             // The scene may be sound: the machine is at fault.
             Err(failure @ Failure::Failed(_)) => return Err(failure),
             Err(failure) => {

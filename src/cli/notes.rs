@@ -43,5 +43,5 @@ pub fn run(registry: &Registry) -> Result<(), Failure> {
         stop: &Stop::default(),
         stats: None,
     };
-    job.run(output, None)
+    job.run(output, None).map(|_| ())
 }

@@ -24,8 +24,9 @@ use tabray_core::output::full_range::FullRange;
 use tabray_core::output::picture::Format;
 use tabray_core::scene::model::Model;
 use tabray_core::world::accuracy::Accuracy;
-use tabray_lang::reader::{Loaded, ReadOptions};
+use tabray_lang::reader::{self, Loaded, ReadOptions};
 use tabray_lang::registry::Registry;
+use tabray_tools::diagnosis;
 use tabray_tools::part::PixelFormat;
 use tabray_tools::threads::renderer_with;
 
@@ -232,6 +233,7 @@ fn one(
         messages::note(&format!("{} exists already", path.display()));
         return Ok(());
     }
+    args.size.refuse_other_size(&path, &part)?;
     let output = Output::open(&path)?;
     let beside = aov::open(&model, &args.aov, &args.main(&path), &output)?;
     // The text of a large scene takes as much memory as its model.
@@ -262,7 +264,7 @@ fn one(
             stop,
             stats: args.stats.wants_any().then_some(&stats),
         };
-        job.run(output, begun)?;
+        let levels = job.run(output, begun)?;
         if path != Path::new("-") {
             let [width, height] = part.size();
             let seconds = start.elapsed().as_secs_f64();
@@ -272,6 +274,9 @@ fn one(
                 path.display()
             ));
             differences.print();
+            if !reader::is_black(&model) {
+                messages::remark(diagnosis::remark(&plan, [&part.columns, &part.rows], &levels));
+            }
         }
     }
     stats.writing = whole.elapsed().saturating_sub(stats.rendering.get());

@@ -8,6 +8,7 @@ pub mod checkpoint;
 pub mod colours;
 pub mod contract;
 pub mod debug;
+pub mod diagnosis;
 pub mod navigation;
 pub mod part;
 pub mod probe;

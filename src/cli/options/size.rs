@@ -1,7 +1,11 @@
 //! `--size`, `--quick` and `--crop`: the size of the image, and the part of it that is rendered.
 
 use crate::process::failure::Failure;
+use image::ImageReader;
+use std::ffi::OsString;
 use std::ops::Range;
+use std::path::Path;
+use tabray_core::text;
 use tabray_core::world::film::Film;
 
 /// The maximum width and the maximum height in pixels, as for `pixeldim`.
@@ -22,6 +26,9 @@ pub struct Args {
     /// first column, from 0 at the left, and Y its first row, from 0 at the bottom
     #[arg(long, value_name = "X,Y,W,H", conflicts_with = "aov", value_parser = crop, allow_hyphen_values = true)]
     crop: Option<[i64; 4]>,
+    /// Replace an image of another size, which `--quick`, `--size` and `--crop` do not
+    #[arg(long)]
+    force: bool,
 }
 
 /// A size, as the user asked for it.
@@ -76,6 +83,38 @@ impl Args {
             Some(crop) => part(camera, crop),
             None => Ok(Part::whole(camera)),
         }
+    }
+
+    /// Refuses to let a preview, an image of a size asked for or a part replace an image of another size, such as the one
+    /// that took an hour.
+    pub fn refuse_other_size(&self, path: &Path, part: &Part) -> Result<(), Failure> {
+        let is_asked_for = self.quick || self.size.is_some() || self.crop.is_some();
+        if self.force || !is_asked_for || !path.is_file() {
+            return Ok(());
+        }
+        let reader = ImageReader::open(path).and_then(ImageReader::with_guessed_format).ok();
+        let Some((width, height)) = reader.and_then(|reader| reader.into_dimensions().ok()) else {
+            return Ok(());
+        };
+        let [new_width, new_height] = part.size();
+        if [width as usize, height as usize] == [new_width, new_height] {
+            return Ok(());
+        }
+        let mut beside = OsString::from(if self.quick { "quick" } else { "other" });
+        if let Some(extension) = path.extension() {
+            beside.push(".");
+            beside.push(extension);
+        }
+        Err(Failure::Usage(
+            format!(
+                "`{}` is an image of {width} x {height} pixels, and this one would have {new_width} x {new_height}",
+                path.display()
+            ),
+            Some(format!(
+                "write it beside that one with `-o {}`, or replace that one with `--force`",
+                text::quoted(path.with_extension(beside).as_os_str())
+            )),
+        ))
     }
 }
 

@@ -5,6 +5,7 @@ use anstream::AutoStream;
 use std::io::{self, Write};
 use std::sync::OnceLock;
 use tabray_lang::reader::{Message, Report};
+use tabray_tools::diagnosis::Remark;
 
 /// The form of messages.
 #[derive(Clone, Copy, Default, PartialEq, clap::ValueEnum)]
@@ -73,6 +74,13 @@ pub fn error(message: &str, help: Option<&str>) {
 pub fn warning(message: &str, help: Option<&str>) {
     if told() != Told::Errors {
         titled("warning", Level::WARNING, message, help);
+    }
+}
+
+/// Prints what is to be said of an image, if anything.
+pub fn remark(remark: Option<Remark>) {
+    if let Some(Remark { message, help }) = remark.filter(|_| !is_quiet()) {
+        warning(&message, Some(&help));
     }
 }
 

@@ -27,6 +27,7 @@ use tabray_core::render::tiles::{BAND, Band, Tiles};
 use tabray_core::scene::model::Model;
 use tabray_core::text::{count, short};
 use tabray_core::world::certify::Doubt;
+use tabray_tools::diagnosis::Levels;
 
 /// The maximum number of blank pixels that are written in place of missing ones. If more are missing, the file ends at
 /// the first row of which nothing is rendered.
@@ -55,7 +56,8 @@ pub struct Job<'a> {
 impl Job<'_> {
     /// Renders what a checkpoint does not have, and writes the image to its path. If the render is stopped, the program
     /// ends with what is done, because threads may still be at work.
-    pub fn run(&self, output: Output, begun: Option<ResumedImage>) -> Result<(), Failure> {
+    /// Returns the levels of the image.
+    pub fn run(&self, output: Output, begun: Option<ResumedImage>) -> Result<Levels, Failure> {
         let progress = Progress::new(self.part.rows.len());
         let (flaws, proofs) = (Mutex::new(Flaws::default()), Mutex::new(Proofs::default()));
         let flawed = |part: Flaws| flaws.lock().unwrap_or_else(PoisonError::into_inner).add(&part);
@@ -92,10 +94,11 @@ impl Job<'_> {
         mut begun: Option<ResumedImage>,
         progress: &Progress,
         fill: impl Fn(&mut Band),
-    ) -> Result<(), Failure> {
+    ) -> Result<Levels, Failure> {
         let Part { columns, rows } = self.part;
         let mut tiles = Tiles::none(self.part.size());
         let (mut broken, mut told, mut is_cut) = (None, false, false);
+        let mut levels = Levels::default();
         let mut out = BufWriter::with_capacity(1 << 16, output);
         let mut writing = None;
         let bands = Band::split(columns, rows, self.at_once).flat_map(|band| {
@@ -122,7 +125,9 @@ impl Job<'_> {
                 self.report_once(&mut told, progress);
             }
             writing = Some(Instant::now());
-            band.bytes(PIECE).into_iter().map(Ok).collect()
+            let bytes = band.bytes(PIECE);
+            bytes.iter().for_each(|bytes| levels.add(bytes));
+            bytes.into_iter().map(Ok).collect()
         });
         // Pieces that are compressed together are in memory together.
         let renderer = (self.at_once == BAND).then_some(self.renderer);
@@ -130,12 +135,13 @@ impl Job<'_> {
         match (broken, written) {
             (Some(failure), _) => Err(failure),
             (None, Err(error)) if is_cut && error.kind() == io::ErrorKind::Other => {
-                self.leave(out, &tiles, tiles.rows_begun())
+                Err(self.leave(out, &tiles, tiles.rows_begun()))
             }
-            (None, Ok(())) if !tiles.is_whole() => self.leave(out, &tiles, rows.len()),
+            (None, Ok(())) if !tiles.is_whole() => Err(self.leave(out, &tiles, rows.len())),
             (None, written) => {
                 finished(self.path, written, out)?;
-                begun.map_or(Ok(()), ResumedImage::remove)
+                begun.map_or(Ok(()), ResumedImage::remove)?;
+                Ok(levels)
             }
         }
     }
@@ -157,9 +163,13 @@ impl Job<'_> {
         Ok(band)
     }
 
-    /// Writes an unfinished image to its path, and reports it. `out` contains `rows` rows of it, black where nothing is
+    /// Writes an unfinished image to its path, and reports it: the render was stopped, unless that fails. `out` contains `rows` rows of it, black where nothing is
     /// rendered.
-    fn leave(&self, out: BufWriter<Output>, tiles: &Tiles, rows: usize) -> Result<(), Failure> {
+    fn leave(&self, out: BufWriter<Output>, tiles: &Tiles, rows: usize) -> Failure {
+        self.left(out, tiles, rows).err().unwrap_or(Failure::Stopped)
+    }
+
+    fn left(&self, out: BufWriter<Output>, tiles: &Tiles, rows: usize) -> Result<(), Failure> {
         let output =
             out.into_inner().map_err(|error| Failure::cannot_write(self.path, &error.into_error()))?;
         let [width, height] = self.part.size();
@@ -189,7 +199,7 @@ impl Job<'_> {
                 )
             }
         });
-        Err(Failure::Stopped)
+        Ok(())
     }
 }
 

@@ -12,6 +12,7 @@ use tabray_core::scene::choice::Choice;
 use tabray_core::text::json;
 use tabray_core::world::film::Film;
 use tabray_core::world::material::Rgb;
+use tabray_tools::diagnosis::Remark;
 
 /// Announces a valid scene, whose image follows in parts.
 pub fn scene(frame: &Frame) -> Bytes {
@@ -91,6 +92,21 @@ struct ImageDone {
     seconds: f64,
     /// The version of the scene.
     version: u64,
+}
+
+/// Says why a complete image is black, burnt or empty.
+pub fn remark(frame: &Frame, Remark { message, help }: &Remark) -> Bytes {
+    let words = format!("warning: {message}\nhelp: {help}");
+    event("remark", &ImageRemark { version: frame.version, words: &words })
+}
+
+/// Something about an image that is likely not to be meant.
+#[derive(Serialize)]
+struct ImageRemark<'w> {
+    /// The version of the scene.
+    version: u64,
+    /// What is so, and what cures it.
+    words: &'w str,
 }
 
 /// Announces an error in the current scene.

@@ -9,18 +9,18 @@ use crate::files::input;
 use crate::process::crash;
 use crate::process::failure::{Failure, report};
 use std::fs;
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::{self, Sender};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Instant, SystemTime};
 use tabray_core::render::plan::Plan;
-use tabray_core::render::progressive;
+use tabray_core::render::progressive::{self, Area};
 use tabray_core::scene::model::Model;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::reader::{self, Loaded, ReadOptions};
+use tabray_tools::diagnosis::{self, Levels};
 use tabray_tools::threads::renderer_with;
 
 /// The maximum number of pixels of an image on a page: all of it is in memory, here and in the browser.
@@ -34,14 +34,30 @@ fn painter(session: Arc<Session>) -> Result<Sender<Arc<Frame>>, Failure> {
         let feed = &session.feed;
         for frame in frames {
             let start = Instant::now();
-            let part = |area, colours: Vec<_>| feed.add(&frame, events::part(&frame, &area, &colours));
+            let (model, levels) = (&frame.model, Mutex::new(Levels::default()));
+            let display = model.camera.value.display();
+            let part = |area: Area, colours: Vec<_>| {
+                if area.is_final {
+                    let bytes: Vec<u8> = colours.iter().flat_map(|colour| display.bytes(*colour)).collect();
+                    levels.lock().unwrap_or_else(PoisonError::into_inner).add(&bytes);
+                }
+                feed.add(&frame, events::part(&frame, &area, &colours));
+            };
             let painted = crash::catch(|| {
-                progressive::render(&renderer, &mut Plan::for_picture(&frame.model), part, || frame.check())
+                let mut plan = Plan::for_picture(model);
+                if progressive::render(&renderer, &mut plan, part, || frame.check()).is_break() {
+                    return;
+                }
+                feed.add(&frame, events::done(&frame, start.elapsed()));
+                let levels = *levels.lock().unwrap_or_else(PoisonError::into_inner);
+                let [width, height] = plan.camera.pixels;
+                let remark = diagnosis::remark(&plan, [&(0..width), &(0..height)], &levels);
+                if let Some(remark) = remark.filter(|_| !reader::is_black(model)) {
+                    feed.add(&frame, events::remark(&frame, &remark));
+                }
             });
-            match painted {
-                Ok(ControlFlow::Continue(())) => feed.add(&frame, events::done(&frame, start.elapsed())),
-                Ok(ControlFlow::Break(())) => {}
-                Err(failure) => crashed(feed, &frame.name, &frame.text, &failure),
+            if let Err(failure) = painted {
+                crashed(feed, &frame.name, &frame.text, &failure);
             }
         }
     });

@@ -122,6 +122,11 @@ pub fn read_by(
     })
 }
 
+/// Tells whether nothing in a scene can be seen, of which the warnings of reading it tell.
+pub fn is_black(model: &Model) -> bool {
+    unseen::warning(model).is_some()
+}
+
 /// Checks that the program has entity types.
 fn has_types(registry: &Registry, name: &str) -> Result<(), Report> {
     if !registry.is_empty() {

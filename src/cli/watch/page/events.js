@@ -13,6 +13,9 @@ const ask = (path, form) => {
   return answer.then((answer) => answer.ok ? answer[form]() : null).catch(() => null)
 }
 
+// The warnings about the scene.
+let warnings = ''
+
 const follow = () => {
   const events = new EventSource(`events${token}`)
   const on = (name, act) => events.addEventListener(name, (event) => act(event.data))
@@ -27,7 +30,8 @@ const follow = () => {
     resize(scene.size)
     textIsThePicture = true
     write(scene.text)
-    report(scene.warnings, true)
+    warnings = scene.warnings
+    report(warnings, true)
     state('rendering', 'rendering')
     compareNext()
     renewTab()
@@ -45,6 +49,10 @@ const follow = () => {
     compare()
     if (root.dataset.state === 'rendering') state('done', `${width} × ${height}, ${seconds.toFixed(2)} s`)
     requestAnimationFrame(() => { root.dataset.shown = version; root.dataset.shownAt = Date.now() })
+  })
+  on('remark', (data) => {
+    const { version: of, words } = JSON.parse(data)
+    if (of === version) report([warnings, words].filter(Boolean).join('\n'), true)
   })
   on('fault', (data) => {
     const fault = JSON.parse(data)

@@ -1,0 +1,411 @@
+//! Why an image is black, burnt or empty, in numbers, and what cures it.
+
+use glam::DVec3;
+use std::ops::Range;
+use tabray_core::geometry::aabb::Aabb;
+use tabray_core::render::flaws::Flaws;
+use tabray_core::render::observer::{Event, LightOutcome, RayPurpose, TraceObserver};
+use tabray_core::render::plan::Plan;
+use tabray_core::render::trace::{self, Scratch, Tracer};
+use tabray_core::scene::attribute::Pose;
+use tabray_core::scene::model::Model;
+use tabray_core::simd::cpu::Cpu;
+use tabray_core::text::{self, short};
+use tabray_core::world::camera::Projected;
+use tabray_core::world::display::Display;
+use tabray_core::world::film::Film;
+use tabray_core::world::material::Rgb;
+use tabray_core::world::rules::Rules;
+
+/// The maximum number of columns and rows of pixels that are looked at.
+const GRID: [usize; 2] = [40, 30];
+
+/// The maximum number of tests of objects that looking takes: it tests each object for each ray.
+const MOST_TESTS: usize = 1 << 23;
+
+/// The level from which on an image is not black.
+const DARK: u8 = 8;
+
+/// The level that a cure aims at.
+const GOOD: f64 = 128.0;
+
+/// The share of pixels beyond which an image is burnt, and the light from which on a pixel is.
+const BURNT: f64 = 0.25;
+const TOO_BRIGHT: f64 = 1.02;
+
+/// The maximum number of lights that are named.
+const NAMED: usize = 3;
+
+/// The number of reflections and transmissions of the rays with which an image is tried.
+const BOUNCES: usize = 4;
+
+/// Something about an image that is likely not to be meant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Remark {
+    /// What is so, and why.
+    pub message: String,
+    /// What cures it.
+    pub help: String,
+}
+
+/// The brightness of an image, as its bytes have it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Levels {
+    brightest: u8,
+    white: usize,
+    pixels: usize,
+}
+
+impl Levels {
+    /// Adds pixels: red, green and blue of each.
+    pub fn add(&mut self, bytes: &[u8]) {
+        self.brightest = bytes.iter().copied().fold(self.brightest, u8::max);
+        self.white += bytes.chunks_exact(3).filter(|pixel| *pixel == [u8::MAX; 3]).count();
+        self.pixels += bytes.len() / 3;
+    }
+
+    fn is_burnt(&self) -> bool {
+        self.white as f64 > BURNT * self.pixels as f64
+    }
+}
+
+/// Returns what is to be said of a part of an image with these levels: at most one thing. Columns count from the left and
+/// rows from the top.
+pub fn remark(plan: &Plan, part: [&Range<usize>; 2], levels: &Levels) -> Option<Remark> {
+    if levels.pixels == 0 || plan.model.objects.is_empty() {
+        return None;
+    }
+    let places = places(&plan.camera, part);
+    empty(plan, &places).or_else(|| {
+        let is_black = levels.brightest < DARK;
+        if !is_black && !levels.is_burnt() {
+            return None;
+        }
+        // The plan of a picture leaves out lights.
+        let plan = Plan::new(plan.model);
+        let survey = Survey::of(&plan, &places);
+        if is_black { Some(black(&plan, &survey, levels.brightest)) } else { burnt(&plan, &survey, levels) }
+    })
+}
+
+/// Returns what is to be said of a model's image, of which a few pixels are tried.
+pub fn tried(model: &Model) -> Option<Remark> {
+    let [width, height] = model.camera.value.pixels;
+    let part = [&(0..width), &(0..height)];
+    let mut plan = Plan::new(model);
+    plan.set_adaptive(None);
+    plan.camera.samples = 1;
+    let places = places(&plan.camera, part);
+    let levels = |plan: &Plan| {
+        let (mut scratch, mut nobody, mut levels) = (Scratch::default(), Flaws::default(), Levels::default());
+        let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody);
+        let (colours, display) = (tracer.pixels(&places), plan.camera.display());
+        (0..places.len()).for_each(|index| levels.add(&display.bytes(colours.get(index))));
+        levels
+    };
+    plan.bounces = BOUNCES;
+    let mut found = levels(&plan);
+    plan.bounces = usize::MAX;
+    if found.brightest < DARK && plan.depth.is_some() {
+        found = levels(&plan);
+    }
+    remark(&plan, part, &found)
+}
+
+/// Returns pixels of a part of an image that are spread over all of it, by column and row from the bottom.
+fn places(camera: &Film, [columns, rows]: [&Range<usize>; 2]) -> Vec<[usize; 2]> {
+    let spread = |range: &Range<usize>, most: usize| -> Vec<usize> {
+        let count = range.len().min(most);
+        (0..count).map(|index| range.start + index * (range.len() - 1) / (count - 1).max(1)).collect()
+    };
+    let columns = spread(columns, GRID[0]);
+    let rows = spread(rows, GRID[1]).into_iter().map(|row| camera.pixels[1] - 1 - row);
+    rows.flat_map(|row| columns.iter().map(move |column| [*column, row])).collect()
+}
+
+/// Says that no object is in view, if none is.
+fn empty(plan: &Plan, places: &[[usize; 2]]) -> Option<Remark> {
+    let (model, camera) = (plan.model, &plan.camera);
+    let is_hit = |[x, y]: &[usize; 2]| trace::first_hit(plan, &camera.sight(*x as f64, *y as f64)).is_some();
+    // From the middle on, where objects usually are.
+    let middle = places.len() / 2;
+    if places[middle..].iter().chain(&places[..middle]).any(is_hit) {
+        return None;
+    }
+    let bounds: Vec<Aabb> = model.objects.iter().filter_map(|object| object.shape.bounds()).collect();
+    let is_shown = |bounds: &Aabb| {
+        let point = bounds.middle();
+        let Projected::At(at) = camera.project(point) else { return false };
+        (0..2).all(|side| (-0.5..camera.pixels[side] as f64 - 0.5).contains(&at[side]))
+    };
+    if bounds.iter().any(is_shown) {
+        return None;
+    }
+    let viewer = camera.origins().middle;
+    let all = bounds.iter().copied().reduce(|one, other| one.and(&other));
+    let help = match all {
+        None => format!("the viewer at {} looks past them", place(viewer)),
+        Some(Aabb { low, high }) => {
+            let target = model.camera.args.args();
+            let target = target.values().find(|(attribute, _)| attribute.pose() == Some(Pose::Target));
+            let cure = match target {
+                Some((attribute, _)) => {
+                    format!(": `{} {}` looks at their middle", attribute.name(), place(0.5 * (low + high)))
+                }
+                None => String::new(),
+            };
+            format!("the viewer is at {}, and the objects lie between {} and {}{cure}", place(viewer), place(low), place(high))
+        }
+    };
+    Some(Remark { message: "no object is in view".to_owned(), help })
+}
+
+fn place(at: DVec3) -> String {
+    at.to_array().map(rounded).join(" ")
+}
+
+/// What a light does at the places that are looked at.
+#[derive(Clone, Debug)]
+struct Lamp {
+    /// The least distance of a place on which it shines, in world units.
+    near: f64,
+    /// The most light that it adds in any channel, as the viewer sees it.
+    most: f64,
+    /// The same without any division by lengths.
+    free: f64,
+    shines: usize,
+    blocked: usize,
+    behind: usize,
+}
+
+/// What is seen at some places of an image, without mirrors and glass.
+struct Survey<'p> {
+    plan: &'p Plan<'p>,
+    places: usize,
+    /// The number of places that show an object.
+    hits: usize,
+    /// The least distance of an object.
+    near: f64,
+    /// The most light that objects show by `ambient`.
+    ambient: f64,
+    /// The most light of each channel of a place.
+    seen: Vec<f64>,
+    lamps: Vec<Lamp>,
+    /// Whether the current ray comes from the viewer.
+    is_primary: bool,
+    /// Whether a shadow ray is on its way.
+    in_shadow: bool,
+    current: Hit,
+}
+
+/// What is known of the hit of a ray from the viewer.
+#[derive(Default)]
+struct Hit {
+    point: DVec3,
+    distance: f64,
+    ambient: f64,
+    /// Of each light that shines on it: its index, what it adds before a division by the length of the path, and its
+    /// distance.
+    lit: Vec<(usize, f64, f64)>,
+}
+
+impl<'p> Survey<'p> {
+    fn of(plan: &'p Plan<'p>, places: &[[usize; 2]]) -> Self {
+        let lamp = Lamp { near: f64::INFINITY, most: 0.0, free: 0.0, shines: 0, blocked: 0, behind: 0 };
+        let mut survey = Self {
+            plan,
+            places: 0,
+            hits: 0,
+            near: f64::INFINITY,
+            ambient: 0.0,
+            seen: Vec::new(),
+            lamps: vec![lamp; plan.model.lights.len()],
+            is_primary: true,
+            in_shadow: false,
+            current: Hit::default(),
+        };
+        let tests = plan.model.objects.len() * (1 + plan.model.lights.len());
+        let step = (places.len() * tests).div_ceil(MOST_TESTS).max(1);
+        for [x, y] in places.iter().step_by(step) {
+            let sight = plan.camera.sight(*x as f64, *y as f64);
+            let colour = trace::observe_colour(plan, &sight, None, &mut survey);
+            survey.places += 1;
+            survey.seen.push(colour.max_element());
+        }
+        survey
+    }
+
+    /// Returns the lights, the brightest first, by their indices.
+    fn brightest(&self) -> Vec<usize> {
+        let mut all: Vec<_> = (0..self.lamps.len()).collect();
+        all.sort_by(|one, other| self.lamps[*other].most.total_cmp(&self.lamps[*one].most));
+        all
+    }
+
+    fn name(&self, light: usize) -> String {
+        format!("`{}`", self.plan.model.lights[light].args.name())
+    }
+}
+
+impl TraceObserver for Survey<'_> {
+    const SEES: bool = true;
+
+    fn see(&mut self, event: Event) {
+        match event {
+            Event::Begin(RayPurpose::Shadow { .. }) => self.in_shadow = true,
+            Event::Begin(purpose) => self.is_primary = purpose == RayPurpose::Primary,
+            Event::Light(..) if !self.is_primary => self.in_shadow = false,
+            _ if !self.is_primary => {}
+            Event::FirstHit(Some(hit)) if !self.in_shadow => {
+                self.current = Hit { point: hit.point, distance: hit.distance, ..Hit::default() };
+            }
+            Event::Surface { ambient, .. } => self.current.ambient = ambient.max_element(),
+            Event::Light(light, outcome) => {
+                self.in_shadow = false;
+                let lamp = &mut self.lamps[light];
+                match outcome {
+                    LightOutcome::Behind => lamp.behind += 1,
+                    LightOutcome::Aside => {}
+                    LightOutcome::Blocked(_) => lamp.blocked += 1,
+                    LightOutcome::Shines { colour, .. } => {
+                        let location = self.plan.model.lights[light].value.location();
+                        let distance = location.distance(self.current.point);
+                        (lamp.shines, lamp.near) = (lamp.shines + 1, lamp.near.min(distance));
+                        self.current.lit.push((light, colour.max_element(), distance));
+                    }
+                }
+            }
+            Event::Shaded { .. } => {
+                let Hit { distance, ambient, lit, .. } = std::mem::take(&mut self.current);
+                let is_notes = self.plan.camera.rules == Rules::Notes;
+                let path = if is_notes { distance } else { 1.0 };
+                self.hits += 1;
+                self.near = self.near.min(distance);
+                self.ambient = self.ambient.max(ambient / path);
+                for (light, colour, away) in lit {
+                    let lamp = &mut self.lamps[light];
+                    lamp.most = lamp.most.max(colour / path);
+                    lamp.free = lamp.free.max(if is_notes { colour * away } else { colour });
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Says why an image is black.
+fn black(plan: &Plan, survey: &Survey, brightest: u8) -> Remark {
+    let (camera, display) = (&plan.camera, plan.camera.display());
+    let by_notes = camera.rules == Rules::Notes;
+    let rules = if by_notes { "by the notes' rules " } else { "" };
+    let level = |light: f64| short(255.0 * display.shown(Rgb::splat(light)).x);
+    let mut reasons = Vec::new();
+    let lamps = survey.brightest();
+    for light in lamps.iter().take(NAMED) {
+        let (lamp, name) = (&survey.lamps[*light], survey.name(*light));
+        reasons.push(if lamp.shines == 0 {
+            let aside = survey.hits - (lamp.blocked + lamp.behind).min(survey.hits);
+            let why = [(lamp.blocked, "in shadow"), (lamp.behind, "turned away"), (aside, "beside its beam")];
+            let why = why.iter().filter(|(places, _)| *places > 0);
+            let why: Vec<_> = why.map(|(places, why)| format!("{places} {why}")).collect();
+            format!("{name} lights none of {} that were looked at ({})", text::count(survey.hits, "place"), why.join(", "))
+        } else {
+            format!("{name} is {} away, and {rules}adds at most {} levels", units(lamp.near), level(lamp.most))
+        });
+    }
+    let more = lamps.len().saturating_sub(NAMED);
+    if more > 0 {
+        reasons.push(format!("{} more add less", text::count(more, "light")));
+    }
+    if survey.ambient > 0.0 {
+        let distance = if by_notes { format!(", seen from {}", units(survey.near)) } else { String::new() };
+        reasons.push(format!("`ambient` adds at most {} levels{distance}", level(survey.ambient)));
+    }
+    let message = match brightest {
+        0 => "the image is black",
+        _ => &format!("the image is almost black, up to level {brightest} of 255"),
+    };
+    let message = if reasons.is_empty() {
+        format!("{message}: there is no light, and no `ambient` that is seen")
+    } else {
+        format!("{message}: {}", reasons.join("; "))
+    };
+    Remark { message, help: brighter(survey, &lamps) }
+}
+
+/// Returns what makes an image brighter.
+fn brighter(survey: &Survey, lamps: &[usize]) -> String {
+    let (plan, display) = (survey.plan, survey.plan.camera.display());
+    let mut cures = Vec::new();
+    let lamp = lamps.first().map(|light| (*light, &survey.lamps[*light]));
+    let lamp = lamp.filter(|(_, lamp)| lamp.most > 0.0);
+    let good = light_of_level(&display, GOOD);
+    let is_notes = plan.camera.rules == Rules::Notes;
+    let free = survey.lamps.iter().map(|lamp| lamp.free).fold(survey.near * survey.ambient, f64::max);
+    if is_notes && 255.0 * free >= f64::from(DARK) {
+        cures.push("`rules free`, by which light does not depend on lengths".to_owned());
+    }
+    if let Some((light, lamp)) = lamp
+        && let Some(sent) = plan.model.lights[light].value.brightest()
+    {
+        let emissivity = sent.max_element() * good / lamp.most;
+        cures.push(format!("an emissivity of {} of {}", rounded(emissivity), survey.name(light)));
+    }
+    let seen = survey.seen.iter().copied().fold(0.0, f64::max);
+    if !is_notes && seen > 0.0 {
+        let stops = libm::log2(good / seen) + plan.camera.exposure;
+        cures.push(format!("`exposure {}`", rounded(stops)));
+    }
+    if cures.is_empty() {
+        return "`tabray probe` tells of a pixel what its rays meet, and which lights reach it".to_owned();
+    }
+    cures.join(", or ")
+}
+
+/// Says why an image is burnt, unless little of it is brighter than white.
+fn burnt(plan: &Plan, survey: &Survey, levels: &Levels) -> Option<Remark> {
+    let display = plan.camera.display();
+    let mut seen: Vec<_> = survey.seen.iter().map(|light| light * display.gain()).collect();
+    seen.sort_by(f64::total_cmp);
+    let burnt = seen.iter().filter(|light| **light > TOO_BRIGHT).count();
+    if burnt as f64 <= BURNT * seen.len() as f64 || survey.hits == 0 {
+        return None;
+    }
+    let share = 100.0 * levels.white as f64 / levels.pixels as f64;
+    let times = |light: f64| format!("{} times white", short(display.gain() * light));
+    let lamps = survey.brightest().into_iter().take(NAMED).filter(|light| survey.lamps[*light].most > 0.0);
+    let mut reasons: Vec<_> =
+        lamps.map(|light| format!("{} adds up to {}", survey.name(light), times(survey.lamps[light].most))).collect();
+    if display.gain() * survey.ambient > TOO_BRIGHT {
+        reasons.push(format!("`ambient` adds up to {}", times(survey.ambient)));
+    }
+    let reasons = if reasons.is_empty() { String::new() } else { format!(": {}", reasons.join("; ")) };
+    let message = format!("{share:.0} % of the image is burnt to white{reasons}");
+    // What a tenth of the places exceeds becomes white.
+    let bright = seen[seen.len() * 9 / 10];
+    let stops = plan.camera.exposure - (2.0 * libm::log2(bright)).ceil() / 2.0;
+    let help = match plan.camera.rules {
+        Rules::Notes => format!("divide the emissivities by {}, or render with `--exposure {}`", rounded(bright), rounded(stops)),
+        Rules::Free => format!("`exposure {}` shows it; `tone neutral` keeps what is brighter; if the lamps are meant for the notes' rules of light, give the camera `rules notes`", rounded(stops)),
+    };
+    Some(Remark { message, help })
+}
+
+/// Returns the grey light of a level.
+fn light_of_level(display: &Display, level: f64) -> f64 {
+    display.light_of(level as u8) / display.gain()
+}
+
+/// Writes a number to two significant digits, as a scene has it.
+fn rounded(number: f64) -> String {
+    if number == 0.0 || !number.is_finite() {
+        return short(number);
+    }
+    let digits = 1 - libm::log10(number.abs()).floor() as i32;
+    let scale = libm::pow(10.0, f64::from(digits));
+    text::shortest((number * scale).round() / scale)
+}
+
+fn units(length: f64) -> String {
+    format!("{} units", short(length))
+}
