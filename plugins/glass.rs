@@ -64,4 +64,8 @@ impl Interface for Glass {
             onward: Some((ratio * dir + (ratio * cosine - onward) * normal).normalize()),
         }
     }
+
+    fn absorbs(&self) -> bool {
+        false
+    }
 }

@@ -3,13 +3,14 @@
 use glam::DVec3;
 use std::io::{self, Write};
 use tabray_core::geometry::ray::{MISS, Ray, RayRange};
-use tabray_core::render::limits::{MAX_DIST, MAX_RAYS};
+use tabray_core::render::limits::{MAX_DIST, MAX_RAYS, MAX_TREE};
 use tabray_core::render::observer::{DropReason, Event, Hit, LightOutcome, RayPurpose, TraceObserver};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::trace::{self};
 use tabray_core::scene::model::Model;
 use tabray_core::world::display::Display;
 use tabray_core::world::material::Rgb;
+use tabray_core::world::rules::Rules;
 
 /// The greatest depth of a ray that is still indented farther: between parallel mirrors the indentation would otherwise
 /// fill the line.
@@ -29,6 +30,8 @@ pub fn pixel(plan: &Plan, x: usize, y: usize, out: &mut impl Write) -> io::Resul
     }
     let mut probe = Probe {
         model: plan.model,
+        is_free: camera.rules == Rules::Free,
+        followed: 0,
         out,
         outcome: Ok(()),
         depth: 0,
@@ -61,6 +64,10 @@ fn conclude(light: Rgb, display: &Display, out: &mut impl Write) -> io::Result<(
 
 struct Probe<'p, W> {
     model: &'p Model,
+    /// Whether the rules are the free ones: then rays are not nested, but follow each other by weight.
+    is_free: bool,
+    /// The number of rays before the current one.
+    followed: usize,
     out: &'p mut W,
     outcome: io::Result<()>,
     /// The number of rays that led to the current one.
@@ -86,7 +93,7 @@ impl<W: Write> TraceObserver for Probe<'_, W> {
         match event {
             Event::Begin(purpose) => self.begin(purpose),
             Event::Search(ray) => self.search = Some(Search { ray: *ray, tests: Vec::new() }),
-            Event::Dropped(reason) => self.line("dropped", &dropped(reason)),
+            Event::Dropped(reason) => self.line("dropped", &self.dropped(reason)),
             Event::Tested(index, distance) => {
                 if let Some(search) = &mut self.search {
                     search.tests.push((index, distance));
@@ -108,6 +115,7 @@ impl<W: Write> TraceObserver for Probe<'_, W> {
                 let held = std::mem::take(&mut self.held);
                 self.write(&held);
             }
+            Event::Shaded { colour, .. } if self.is_free => self.line("surface", &triple(colour)),
             Event::Shaded { travelled, colour, .. } => {
                 let text = format!("{}, the sum / {} travelled", triple(colour), number(travelled));
                 self.line("surface", &text);
@@ -125,6 +133,14 @@ impl<W: Write> Probe<'_, W> {
     fn begin(&mut self, purpose: RayPurpose) {
         match purpose {
             RayPurpose::Primary => self.heading("primary ray"),
+            RayPurpose::Transmitted { tint: weight, .. } | RayPurpose::Reflected { specular: weight }
+                if self.is_free =>
+            {
+                let is_transmitted = matches!(purpose, RayPurpose::Transmitted { .. });
+                let kind = if is_transmitted { "transmitted" } else { "reflected" };
+                self.followed += 1;
+                self.heading(&format!("{kind} ray {}, of weight {}", self.followed, triple(weight)));
+            }
             RayPurpose::Transmitted { tint, kept } => self.heading(&format!(
                 "transmitted ray {}, times {}, with {} of the surface",
                 self.depth,
@@ -210,6 +226,21 @@ impl<W: Write> Probe<'_, W> {
         (format!("{distance:.6}"), verdict)
     }
 
+    fn dropped(&self, reason: DropReason) -> String {
+        match (reason, self.is_free) {
+            (DropReason::TooFar, _) => format!("light that has travelled more than {MAX_DIST} is black"),
+            (DropReason::TooFaint, false) => "it can add less than 1/1024 of a level to the pixel".to_owned(),
+            (DropReason::TooFaint, true) => {
+                "the rays that are left can change the pixel by less than 1/16 of a level, and count with their mean"
+                    .to_owned()
+            }
+            (DropReason::TooMany, is_free) => {
+                let most = if is_free { MAX_TREE as usize } else { MAX_RAYS };
+                format!("the ray budget of {most} is used up, and no more rays are followed")
+            }
+        }
+    }
+
     fn outcome_of(&self, outcome: LightOutcome) -> String {
         match outcome {
             LightOutcome::Behind => "is behind the surface".to_owned(),
@@ -237,16 +268,6 @@ impl<W: Write> Probe<'_, W> {
     fn write(&mut self, text: &str) {
         if self.outcome.is_ok() {
             self.outcome = self.out.write_all(text.as_bytes());
-        }
-    }
-}
-
-fn dropped(reason: DropReason) -> String {
-    match reason {
-        DropReason::TooFar => format!("light that has travelled more than {MAX_DIST} is black"),
-        DropReason::TooFaint => "it can add less than 1/1024 of a level to the pixel".to_owned(),
-        DropReason::TooMany => {
-            format!("the ray budget of {MAX_RAYS} is used up, and no more rays are followed")
         }
     }
 }

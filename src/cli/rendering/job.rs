@@ -19,7 +19,7 @@ use std::time::Instant;
 use tabray_core::output::packing::PIECE;
 use tabray_core::output::picture::Format;
 use tabray_core::render::flaws::{BudgetCuts, Flaws, Undecided};
-use tabray_core::render::limits::MAX_RAYS;
+use tabray_core::render::limits::{MAX_RAYS, MAX_TREE};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::ray_stats::{Proofs, RayStats};
 use tabray_core::render::renderer::{RenderCallbacks, Renderer};
@@ -27,6 +27,7 @@ use tabray_core::render::tiles::{BAND, Band, Tiles};
 use tabray_core::scene::model::Model;
 use tabray_core::text::{count, short};
 use tabray_core::world::certify::Doubt;
+use tabray_core::world::rules::Rules;
 use tabray_tools::diagnosis::Levels;
 
 /// The maximum number of blank pixels that are written in place of missing ones. If more are missing, the file ends at
@@ -230,7 +231,7 @@ pub fn report_proofs(proofs: Proofs, plan: &Plan) {
 /// Warns of pixels with primary rays that used up their ray budget or could not be decided, if there are any.
 pub fn warn_of(Flaws { cuts, undecided }: &Flaws, model: &Model) {
     if cuts.pixels > 0 {
-        warn_of_cuts(cuts);
+        warn_of_cuts(cuts, model.camera.value.rules);
     }
     if undecided.pixels() > 0 {
         warn_of_undecided(undecided, model);
@@ -258,18 +259,19 @@ fn warn_of_undecided(undecided: &Undecided, model: &Model) {
     );
 }
 
-fn warn_of_cuts(cuts: &BudgetCuts) {
+fn warn_of_cuts(cuts: &BudgetCuts, rules: Rules) {
     let levels = 255.0 * cuts.most;
-    let most = if levels.is_finite() {
-        format!("off by at most {} of 255 levels", short(levels))
-    } else {
-        "off by an unknown amount: nothing bounds the light beyond".to_owned()
+    let most = match (levels.is_finite(), rules) {
+        (true, Rules::Notes) => format!("off by at most {} of 255 levels", short(levels)),
+        (true, Rules::Free) => format!("with bounds of up to {} of 255 levels", short(levels)),
+        (false, _) => "off by an unknown amount: nothing bounds the light beyond".to_owned(),
+    };
+    let budget = match rules {
+        Rules::Notes => format!("the work of {MAX_RAYS} simple rays for each primary ray"),
+        Rules::Free => format!("the work of {MAX_TREE} simple rays for each pixel, shared by its samples"),
     };
     messages::warning(
-        &format!(
-            "{} cut off at the ray budget (the work of {MAX_RAYS} simple rays for each primary ray), {most}",
-            count(cuts.pixels as usize, "pixel")
-        ),
+        &format!("{} cut off at the ray budget ({budget}), {most}", count(cuts.pixels as usize, "pixel")),
         Some(
             "mirrors or glass spawn too many rays, or rays that are too costly: a lower `specular` or `transparency` \
             ends them sooner",

@@ -6,6 +6,7 @@ use crate::render::plan::depth::{Depth, clearance};
 use crate::scene::model::Model;
 use crate::world::film::Film;
 use crate::world::material::Rgb;
+use crate::world::rules::Rules;
 use std::cell::Cell;
 use tabray_exact::affine::Affine;
 
@@ -27,12 +28,12 @@ impl<'m> Brightness<'m> {
 
     /// Bounds any channel of any primary ray, where 1 is white; infinite where there is no bound.
     pub fn most(&self, camera: &Film) -> f64 {
-        let viewer = camera.origins();
+        let (viewer, rules) = (camera.origins(), camera.rules);
         let hits = self.model.objects.iter().zip(&self.depth.objects).map(|(object, bounds)| {
             let distance = clearance(object, viewer.middle) - viewer.radius;
             match bounds.hit {
                 0.0 => 0.0,
-                hit if distance > 0.0 => hit / distance,
+                hit if distance > 0.0 || rules == Rules::Free => rules.over_path(hit, distance),
                 _ => f64::INFINITY,
             }
         });

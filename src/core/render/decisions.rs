@@ -3,7 +3,7 @@
 use crate::render::culling;
 use crate::render::features::{FEATURE_SAMPLES, Features};
 use crate::render::footprint::{MAX_CUTS, MAX_FOOTPRINTS};
-use crate::render::limits::{MAX_DIST, MAX_RAYS};
+use crate::render::limits::{MAX_DIST, MAX_RAYS, MAX_TREE};
 use crate::render::plan::depth::Depth;
 use crate::render::plan::needs::{self, Needs};
 use crate::render::plan::{Plan, TREE};
@@ -13,6 +13,7 @@ use crate::text::{count, list, short};
 use crate::world::accuracy::Accuracy;
 use crate::world::film::{Adaptive, Film};
 use crate::world::material::{Material, Rgb};
+use crate::world::rules::Rules;
 use crate::world::sample::Sampler;
 use crate::world::texture::Texture;
 use std::collections::HashMap;
@@ -49,6 +50,9 @@ pub fn of(plan: &Plan) -> Vec<Decision> {
         decision("accuracy", model.camera.value.accuracy.to_string()),
         decision("lights", lights(plan)),
     ];
+    if model.camera.value.rules == Rules::Free {
+        all.insert(2, decision("rules", "free: no light is divided by the length of its path".to_owned()));
+    }
     if !plan.needs.lights.is_empty() {
         all.push(decision("shadows", shadows(plan)));
     }
@@ -184,6 +188,9 @@ fn named((_, object): (usize, &Object)) -> &str {
 }
 
 fn depth(model: &Model, depth: &Depth) -> String {
+    if model.camera.value.rules == Rules::Free {
+        return free_depth(model, depth);
+    }
     let ends =
         format!("after a path of {MAX_DIST} units, and at a ray budget of {MAX_RAYS} for one primary ray");
     let bound = || {
@@ -197,17 +204,30 @@ fn depth(model: &Model, depth: &Depth) -> String {
             format!("a branch ends where it can add less than 1/1024 of a level, as {}; {ends}", bound())
         }
         (_, false) => {
-            let bright = model
-                .objects
-                .iter()
-                .zip(&depth.objects)
-                .find(|(_, continuation)| !continuation.own.is_finite());
-            let reason = match bright {
-                Some((object, _)) => format!("`{}` may have any brightness", object.args.name()),
-                None => "mirrors and glass pass on as much light as they receive".to_owned(),
-            };
-            format!("branches end {ends}: {reason}, and nothing bounds what they add")
+            format!("branches end {ends}: {}, and nothing bounds what they add", no_bound(model, depth))
         }
+    }
+}
+
+/// Describes how rays end by the free rules.
+fn free_depth(model: &Model, depth: &Depth) -> String {
+    let order = format!("the heaviest rays are followed first, at a ray budget of {MAX_TREE} for one pixel");
+    if !depth.most.is_finite() {
+        return format!("{order}: {}, and nothing bounds what they add", no_bound(model, depth));
+    }
+    let most = short(depth.most);
+    format!(
+        "rays end where all that are left can change a pixel by less than 1/16 of a level, as nothing is brighter than {most}; \
+         {order}"
+    )
+}
+
+/// Returns why nothing bounds what rays add.
+fn no_bound(model: &Model, depth: &Depth) -> String {
+    let mut all = model.objects.iter().zip(&depth.objects);
+    match all.find(|(_, continuation)| !continuation.own.is_finite()) {
+        Some((object, _)) => format!("`{}` may have any brightness", object.args.name()),
+        None => "mirrors and glass pass on as much light as they receive".to_owned(),
     }
 }
 

@@ -7,7 +7,7 @@ use crate::scene::kind::Kind;
 use crate::text;
 use crate::world::accuracy::Accuracy;
 use crate::world::display::{Tone, Transfer};
-use crate::world::rules::Rules;
+use crate::world::rules::{Falloff, Rules};
 use std::panic::Location;
 
 /// A type whose values are the alternatives that an attribute can choose from.
@@ -165,6 +165,22 @@ impl Choice for Transfer {
         named(match self {
             Self::Srgb => ("srgb", "the curve of sRGB, which screens expect"),
             Self::Linear => ("linear", "in proportion to the light"),
+        })
+    }
+}
+
+impl Choice for Falloff {
+    const WHAT: &'static str = "falloff";
+
+    fn all() -> Vec<Self> {
+        vec![Self::None, Self::Distance, Self::Square]
+    }
+
+    fn option(&self) -> ChoiceName {
+        named(match self {
+            Self::None => ("none", "as bright at any distance"),
+            Self::Distance => ("distance", "divided by the distance"),
+            Self::Square => ("square", "divided by the square of the distance, as that of a real lamp"),
         })
     }
 }

@@ -5,7 +5,7 @@ use crate::world::accuracy::Accuracy;
 use crate::world::body::Paint;
 use crate::world::display::{Tone, Transfer};
 use crate::world::material::Material;
-use crate::world::rules::Rules;
+use crate::world::rules::{Falloff, Rules};
 use crate::world::sample::Sampler;
 use std::sync::Arc;
 
@@ -65,3 +65,16 @@ pub(super) static TRANSFER: Pparm<Transfer> =
 /// The attributes that every camera has before and after its own.
 pub(super) const FILM: [Table; 2] =
     [&[&PIXELDIM], &[&SAMPLES, &ACCURACY, &RULES, &EXPOSURE, &TONE, &TRANSFER]];
+
+/// How the light of a lamp weakens, and the distance at which it is as bright as its emissivity.
+pub(super) static FALLOFF: Pparm<Falloff> =
+    Pparm::or("falloff", "by the free rules, how the light weakens with the distance", Falloff::None).not_dumped();
+
+pub(super) static AT: Pparm<f64> =
+    Pparm::or("at", "the distance at which a light with a `falloff` is as bright as its emissivity", 1.0)
+        .unit("world units")
+        .must("above 0", |at| *at > 0.0)
+        .not_dumped();
+
+/// The attributes that every light has after its own.
+pub(super) const LIGHT: Table = &[&FALLOFF, &AT];

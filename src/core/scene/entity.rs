@@ -2,8 +2,8 @@
 
 use crate::scene::attribute::Attribute;
 use crate::scene::common::{
-    ACCURACY, EXPOSURE, FILM, MATERIAL, MATERIAL_OF_ALL, OBJECT, OF_OBJECTS, PIXELDIM, RULES, SAMPLES,
-    SHADER, TONE, TRANSFER,
+    ACCURACY, AT, EXPOSURE, FALLOFF, FILM, LIGHT, MATERIAL, MATERIAL_OF_ALL, OBJECT, OF_OBJECTS, PIXELDIM,
+    RULES, SAMPLES, SHADER, TONE, TRANSFER,
 };
 use crate::scene::counts::OneOf;
 use crate::scene::kind::Kind;
@@ -14,8 +14,9 @@ use crate::world::accuracy::Accuracy;
 use crate::world::background::AnyBackground;
 use crate::world::body::{AnyLight, Body, Paint};
 use crate::world::film::{AnyCamera, Film};
+use crate::world::lamp::Lamp;
 use crate::world::material::Material;
-use crate::world::rules::Rules;
+use crate::world::rules::{Fading, Rules};
 use crate::world::texture::Texture;
 use std::collections::BTreeMap;
 use std::ops::Deref;
@@ -155,7 +156,7 @@ impl Entity {
         Self { common: [OF_OBJECTS, &[]], ..Self::new(name, meaning, tables, Construct::Object(construct)) }
     }
 
-    /// Describes a light type.
+    /// Describes a light type. The attributes `falloff` and `at` are added to its table.
     #[track_caller]
     pub const fn light(
         name: &'static str,
@@ -187,6 +188,7 @@ impl Entity {
         let common: [Table; 2] = match construct {
             Construct::Camera(_) => FILM,
             Construct::Object(_) => [OBJECT, &[]],
+            Construct::Light(_) => [&[], LIGHT],
             _ => [&[], &[]],
         };
         let (aliases, numbers, place): (&[&str], _, _) = (&[], [None; 2], Location::caller());
@@ -356,6 +358,11 @@ impl Args {
             transfer,
             ..Film::new(camera, self.get(&PIXELDIM).map(|side| side as usize))
         }
+    }
+
+    /// Returns the lamp of a light with this entity's attributes.
+    pub fn lamp(&self, light: AnyLight) -> Lamp {
+        Lamp { light, fading: Fading { falloff: self.get(&FALLOFF), at: self.get(&AT) } }
     }
 
     /// Returns the names of a camera's attributes that the scene gives and only the free rules use.

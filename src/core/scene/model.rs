@@ -6,8 +6,9 @@ use crate::scene::store::Record;
 use crate::scene::value::Type;
 use crate::world::any_shape::AnyShape;
 use crate::world::background::AnyBackground;
-use crate::world::body::{AnyLight, AnyShader, NamedBody, Paint};
+use crate::world::body::{AnyShader, NamedBody, Paint};
 use crate::world::film::Film;
+use crate::world::lamp::Lamp;
 use crate::world::material::{Material, Rgb};
 use crate::world::shader::SurfacePoint;
 use crate::world::texture::Texture;
@@ -31,7 +32,7 @@ pub struct Model {
     /// The objects that other entities refer to, in the order of the scene: they are seen only where these put them.
     pub patterns: Vec<Item<NamedBody>>,
     /// The lights, in the order of the scene.
-    pub lights: Vec<Item<AnyLight>>,
+    pub lights: Vec<Item<Lamp>>,
     /// The colour of rays that hit nothing; black without a background.
     pub background: Option<Item<AnyBackground>>,
     /// The files that the scene names: those that it includes, and those of its entities.

@@ -15,6 +15,12 @@ pub trait Interface: Send + Sync {
     /// Returns how a ray continues that hits the surface on a side. `dir` is its unit direction, and `normal` the unit
     /// normal that faces it: `dir.dot(normal)` is at most 0.
     fn cross(&self, dir: DVec3, normal: DVec3, side: Side) -> Crossing;
+
+    /// Tells whether any light may be neither reflected nor transmitted: [`Crossing::onward`] is `None` although less than
+    /// all is reflected. `true` is always correct.
+    fn absorbs(&self) -> bool {
+        true
+    }
 }
 
 /// How a ray continues at an interface.

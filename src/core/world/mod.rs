@@ -13,6 +13,7 @@ pub mod film;
 pub mod hittable;
 pub mod interaction;
 pub mod interface;
+pub mod lamp;
 pub mod light;
 pub mod light_samples;
 pub mod material;

@@ -1,7 +1,9 @@
 //! The rules of light, in any numbers: those of images, and those that enclose what images should show.
 //!
-//! A ray that hits a point returns `attenuation * (ambient + light of each lamp)`, and what it sees through the point and
-//! in it. Numbers are one channel each, or colours where no more than sums and products are asked of them.
+//! A ray that hits a point returns the point's own light, ambient and that of each lamp, and what it sees through the point
+//! and in it. By the notes' rules the own light is divided by the length of the path, and that of a lamp once more by the
+//! lamp's distance; by the free rules neither is, and a lamp weakens only as its falloff says. Numbers are one channel each,
+//! or colours where no more than sums and products are asked of them.
 
 use serde::{Deserialize, Serialize};
 use std::ops::{Add, Mul};
@@ -18,26 +20,89 @@ pub enum Rules {
     Free,
 }
 
+impl Rules {
+    /// Returns a surface's own light as a ray returns it, or a bound on that, from the length of the path.
+    #[inline(always)]
+    pub fn after<N: Scalar>(self, travelled: N, light: N) -> N {
+        match self {
+            Self::Notes => light * attenuation(travelled),
+            Self::Free => light,
+        }
+    }
+
+    /// Returns a bound on light that is known as a bound on the light times the length of its path by the notes' rules,
+    /// and on the light itself by the free ones.
+    #[inline]
+    pub fn over_path(self, most: f64, travelled: f64) -> f64 {
+        match self {
+            Self::Notes => most / travelled,
+            Self::Free => most,
+        }
+    }
+
+    /// Returns the factor of the light that a lamp sends to a point, from the cosine of the angle at which it arrives and
+    /// the reciprocal of the lamp's distance.
+    #[inline(always)]
+    pub fn received<N: Scalar>(self, cosine: N, inverse_distance: N) -> N {
+        match self {
+            Self::Notes => cosine * inverse_distance,
+            Self::Free => cosine,
+        }
+    }
+}
+
+/// How the light of a lamp weakens with the distance, by the free rules.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Falloff {
+    /// Not at all.
+    #[default]
+    None,
+    /// In proportion to the reciprocal of the distance.
+    Distance,
+    /// In proportion to the reciprocal of its square, as that of a real lamp.
+    Square,
+}
+
+/// A lamp's falloff, and the distance, in world units, at which it sends its emissivity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fading {
+    /// How the light weakens.
+    pub falloff: Falloff,
+    /// The distance, in world units, at which it has neither gained nor lost; above 0.
+    pub at: f64,
+}
+
+impl Fading {
+    /// The fraction of [`at`](Self::at) below which no distance counts, so that light is bounded.
+    const NEAREST: f64 = 0.01;
+
+    /// No falloff.
+    pub const NONE: Self = Self { falloff: Falloff::None, at: 1.0 };
+
+    /// Returns the factor of the light at a distance, in world units.
+    pub fn factor<N: Scalar>(self, distance: N) -> N {
+        let part = || N::constant(self.at) / distance.max(N::constant(Self::NEAREST * self.at));
+        match self.falloff {
+            Falloff::None => N::constant(1.0),
+            Falloff::Distance => part(),
+            Falloff::Square => part() * part(),
+        }
+    }
+}
+
 /// The path length from the viewer, in world units, beyond which no reflected or transmitted ray is followed.
 pub const MAX_DIST: f64 = 20.0;
 
-/// Returns how much of the longest path is left: a ray is followed unless it is below 0.
+/// Returns how much of the longest path of the notes' rules is left: a ray is followed unless it is below 0.
 #[inline(always)]
 pub fn path_left<N: Scalar>(travelled: N) -> N {
     N::constant(MAX_DIST) - travelled
 }
 
-/// Returns the factor of the light of a surface, from the length of the path to it.
+/// Returns the factor of the light of a surface by the notes' rules, from the length of the path to it.
 #[inline(always)]
 pub fn attenuation<N: Scalar>(travelled: N) -> N {
     N::constant(1.0) / travelled
-}
-
-/// Returns the factor of the light that a lamp sends to a point, from the cosine of the angle at which it arrives and the
-/// reciprocal of the lamp's distance.
-#[inline(always)]
-pub fn received<N: Scalar>(cosine: N, inverse_distance: N) -> N {
-    cosine * inverse_distance
 }
 
 /// Returns the light of a transparent surface, from its own, the fraction of it that is kept, the light from behind, and the

@@ -26,8 +26,9 @@ use tabray_core::scene::store::Store;
 use tabray_core::scene::value::Datum;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_core::world::background::AnyBackground;
-use tabray_core::world::body::{AnyLight, NamedBody, Paint};
+use tabray_core::world::body::{NamedBody, Paint};
 use tabray_core::world::film::Film;
+use tabray_core::world::lamp::Lamp;
 use tabray_core::world::material::Material;
 use tabray_core::world::rules::Rules;
 use tabray_core::world::texture::Texture;
@@ -127,7 +128,7 @@ pub(super) struct Check<'r, 't> {
     pub(super) objects: Vec<Object>,
     /// The objects that other entities refer to.
     pub(super) patterns: Vec<Item<NamedBody>>,
-    pub(super) lights: Vec<Item<AnyLight>>,
+    pub(super) lights: Vec<Item<Lamp>>,
     /// The warning of colours from 0 to 255, if there is one.
     pub(super) levels: Option<Fault>,
     pub(super) background: Option<(usize, AnyBackground)>,

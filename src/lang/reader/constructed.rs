@@ -8,7 +8,8 @@ use tabray_core::scene::procedural;
 use tabray_core::scene::store::Store;
 use tabray_core::scene::value::Datum;
 use tabray_core::world::any_shape::AnyShape;
-use tabray_core::world::body::{AnyLight, AnyShader, Body};
+use tabray_core::world::body::{AnyShader, Body};
+use tabray_core::world::lamp::Lamp;
 
 /// The result of the constructor of an object or a light.
 pub enum Constructed {
@@ -16,7 +17,7 @@ pub enum Constructed {
     Plain(AnyShape, AnyShader),
     /// An object with warnings, further objects or a material of its own.
     Body(Box<Body>),
-    Light(AnyLight),
+    Light(Lamp),
     /// An object that reads files: it is constructed later, one at a time.
     Deferred,
 }
@@ -38,7 +39,7 @@ pub fn constructed(
         let construct: &dyn Fn(&Args) -> Result<Constructed, Refusal> = match entity.construct {
             Construct::Object(_) if reads_files => &|_| Ok(Constructed::Deferred),
             Construct::Object(construct) => &move |args| procedural::body(args, construct).map(of),
-            Construct::Light(construct) => &move |args| construct(args).map(Constructed::Light),
+            Construct::Light(construct) => &move |args| Ok(Constructed::Light(args.lamp(construct(args)?))),
             _ => continue,
         };
         let args = store.args_in(order, &mut memory);

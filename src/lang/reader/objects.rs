@@ -14,6 +14,8 @@ use tabray_core::scene::store::{Record, Store};
 use tabray_core::scene::value::Datum;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_core::world::body::{Body, Warning};
+use tabray_core::world::lamp::Lamp;
+use tabray_core::world::rules::{Falloff, Rules};
 
 impl Check<'_, '_> {
     /// Constructs the objects and the lights. Those that read files, and those that others refer to, are constructed one
@@ -74,7 +76,12 @@ impl Check<'_, '_> {
                         let body = self.body(record.args(), source);
                         self.objects.extend(body.into_iter().flat_map(|body| objects(record.clone(), body)));
                     }
-                    Ok(Constructed::Light(light)) => self.lights.push(Item { args: record, value: light }),
+                    Ok(Constructed::Light(lamp)) => {
+                        if let Some(warning) = self.unused_falloff(&lamp) {
+                            self.warn(&record.args(), &[warning], source);
+                        }
+                        self.lights.push(Item { args: record, value: lamp });
+                    }
                     Err(refusal) => self.refused(&record.args(), refusal, source),
                 }
             }
@@ -102,7 +109,18 @@ impl Check<'_, '_> {
         Some(body)
     }
 
-    /// Reports warnings about an object.
+    /// Returns a warning if a lamp has a falloff that changes nothing.
+    fn unused_falloff(&self, lamp: &Lamp) -> Option<Warning> {
+        let is_used = lamp.fading.falloff == Falloff::None || self.setting.camera.rules == Rules::Free;
+        (!is_used).then(|| Warning {
+            attribute: "falloff",
+            message: "has a `falloff`, which the notes' rules of light do not know".to_owned(),
+            help: "by the notes' rules, its light is divided by the distance; `rules free` in the camera changes that"
+                .to_owned(),
+        })
+    }
+
+    /// Reports warnings about an object or a light.
     fn warn(&mut self, args: &Args, warnings: &[Warning], source: &Source<'_, '_>) {
         for Warning { attribute, message, help } in warnings {
             let parsed = source.entity(self.registry, args.order, &self.places.get(args.order));

@@ -14,6 +14,7 @@ use tabray_core::world::background::Background;
 use tabray_core::world::body::Paint;
 use tabray_core::world::interface::Crossing;
 use tabray_core::world::light_samples::{LightSamples, ShadingPoints};
+use tabray_core::world::rules::Rules;
 use tabray_core::world::material::{Look, Material, Rgb};
 use tabray_core::world::packets::light::PacketLight;
 use tabray_core::world::packets::shader::{PacketShader, SurfacePoints};
@@ -185,15 +186,15 @@ pub fn light(light: &dyn PacketLight, draw: &mut Draw) -> Result<(), Fault> {
         let (points, normals) = (points.view(LANES), normals.view(LANES));
         for cpu in Cpu::all() {
             let (mut dir, mut emissivity) = (Vectors::<LANES>::ZERO, Vectors::<LANES>::ZERO);
-            let (mut cos_over_distance, mut t_max, mut shines) = ([0.0; LANES], [0.0; LANES], [2; LANES]);
+            let (mut strengths, mut t_max, mut shines) = ([0.0; LANES], [0.0; LANES], [2; LANES]);
             let facing = LightSamples {
                 toward: dir.view_mut(LANES),
                 emissivity: emissivity.view_mut(LANES),
-                cos_over_distance: &mut cos_over_distance,
+                strengths: &mut strengths,
                 t_max: &mut t_max,
                 shines: &mut shines,
             };
-            light.sample(cpu, &ShadingPoints { points, normals, lights: None, slack: 0.0 }, facing);
+            light.sample(cpu, &ShadingPoints { points, normals, lights: None, rules: Rules::Notes, slack: 0.0 }, facing);
             let many = light.uniform().unwrap_or(emissivity.get(LANES - 1));
             let does_shine = one.is_some() && toward != location;
             if !same_bits(many, one.unwrap_or(Rgb::ZERO)) || shines[LANES - 1] != u64::from(does_shine) {

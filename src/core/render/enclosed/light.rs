@@ -6,7 +6,7 @@ use super::scene::{Colour, Path, Scene};
 use super::surface::{Surface, is_black};
 use crate::geometry::sight::Line;
 use crate::world::packets::light::PacketLight;
-use crate::world::rules;
+use crate::world::rules::{Falloff, Rules};
 use crate::world::sample::Sample;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{cross, dot, per_axis};
@@ -34,13 +34,13 @@ pub(super) fn shine<N: Number>(
     dir: [N; 3],
 ) -> Option<Colour<N>> {
     let (zero, black) = (N::of(0.0), [N::constant(0.0); 3]);
-    let light = &*scene.model.lights[index].value;
+    let (light, rules) = (&scene.model.lights[index].value, scene.model.camera.value.rules);
     let shininess = scene.model.objects[surface.place.object].material.shininess;
     let has_glint = shininess != 0.0 && !is_black(&surface.specular);
     if is_black(&surface.diffuse) && !has_glint {
         return Some(black);
     }
-    let toward = toward(light, (index, seen), surface.at)?;
+    let toward = toward(&**light, (index, seen), surface.at)?;
     let distance = dot(toward, toward).sqrt();
     let cosine = dot(toward, surface.normal) / distance;
     // Light from behind the surface may face the shading normals only.
@@ -48,12 +48,16 @@ pub(super) fn shine<N: Number>(
     if above.high <= zero {
         return Some(black);
     }
-    let sent = N::End::sent(light, ranges(surface.at))?;
-    let sent = per_axis(|channel| N::enclosing(sent[channel]));
+    let sent = N::End::sent(&**light, ranges(surface.at))?;
+    let mut sent = per_axis(|channel| N::enclosing(sent[channel]));
     if is_black(&sent) {
         return Some(black);
     }
-    let received = rules::received(cosine, N::constant(1.0) / distance);
+    if rules == Rules::Free && light.fading.falloff != Falloff::None {
+        let factor = light.fading.factor(distance);
+        sent = per_axis(|channel| sent[channel] * factor);
+    }
+    let received = rules.received(cosine, N::constant(1.0) / distance);
     let mut scattered = per_axis(|channel| surface.diffuse[channel] * received);
     if has_glint {
         let half = per_axis(|axis| toward[axis] / distance - dir[axis]);

@@ -5,7 +5,7 @@ use super::number::{Hit, Number};
 use super::scene::{Colour, Path, Place, Scene};
 use super::surface::{Surface, is_black, tint};
 use crate::geometry::sight::Line;
-use crate::world::rules;
+use crate::world::rules::{self, Rules};
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{dot, per_axis};
 
@@ -62,6 +62,10 @@ impl<'s> Tracer<'s> {
         self.is_open
     }
 
+    fn rules(&self) -> Rules {
+        self.scene.model.camera.value.rules
+    }
+
     /// Encloses the colours that primary rays return; `None` where they are open.
     pub fn primary<N: Number>(&mut self, line: &Line<N>) -> Option<Colour<N>> {
         let length = dot(line.dir, line.dir).sqrt();
@@ -71,7 +75,10 @@ impl<'s> Tracer<'s> {
 
     fn colour<N: Number>(&mut self, ray: &Ray<N>) -> Option<Colour<N>> {
         let black = [N::constant(0.0); 3];
-        let left = rules::path_left(ray.travelled).range();
+        let left = match self.rules() {
+            Rules::Notes => rules::path_left(ray.travelled).range(),
+            Rules::Free => N::constant(0.0).range(),
+        };
         if left.high < N::of(0.0) {
             return Some(black);
         }
@@ -149,8 +156,8 @@ impl<'s> Tracer<'s> {
             let added = light::shine(self.scene, (*index, self.lights), surface, toward)?;
             colour = per_axis(|channel| colour[channel] + added[channel]);
         }
-        let attenuation = rules::attenuation(travelled);
-        colour = per_axis(|channel| colour[channel] * attenuation);
+        let rules = self.rules();
+        colour = per_axis(|channel| rules.after(travelled, colour[channel]));
         let transparency = self.scene.model.objects[surface.place.object].material.transparency;
         if transparency != 0.0 {
             let tint = tint(transparency, surface.diffuse)?;
@@ -202,10 +209,13 @@ impl<'s> Tracer<'s> {
         self.over_path(ray, Interval::point(hit.low()).coarse().low, most)
     }
 
-    /// Bounds the magnitude of light, given a bound on it times its path length, where rays hit nothing before t.
+    /// Bounds the magnitude of light, given a bound on it as [`Rules::over_path`] takes it, where rays hit nothing before t.
     fn over_path<N: Number>(&self, ray: &Ray<N>, t: f64, most: f64) -> f64 {
         if most == 0.0 {
             return self.behind();
+        }
+        if self.rules() == Rules::Free {
+            return most.max(self.behind());
         }
         let path = Interval::point(t) * ray.length.coarse() + ray.travelled.coarse();
         let bound = (Interval::point(most) / Interval { low: path.low.max(0.0), high: path.high }).high;

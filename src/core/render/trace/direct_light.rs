@@ -13,6 +13,7 @@ use crate::scene::model::Object;
 use crate::world::light_samples::{LightSamples, ShadingPoints};
 use crate::world::material::Rgb;
 use crate::world::packets::light::PacketLight;
+use crate::world::rules::{Falloff, Rules};
 use crate::world::sample;
 
 /// The number of points on the rim of a light, or of a lens, that probes go through.
@@ -67,14 +68,14 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         colours: &mut VectorList,
     ) {
         let (cpu, count) = (self.cpu, group.padded());
-        let light = &*self.model.lights[index].value;
+        let (light, rules) = (&self.model.lights[index].value, self.plan.camera.rules);
         let material = &self.model.objects[surface.index].material;
         let LightScratch {
             diffuse,
             lights,
             draws,
             toward,
-            cos_over_distance,
+            strengths,
             t_max,
             emissivity,
             shines,
@@ -86,7 +87,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let source = if is_point {
             Aabb { low: light.location(), high: light.location() }
         } else {
-            self.sample_light(light, index, group, surface, (lights, draws));
+            self.sample_light(&**light, index, group, surface, (lights, draws));
             aabb::around(cpu, lights.view(count))
         };
         let lights = (!is_point).then(|| lights.view(count));
@@ -95,12 +96,12 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let samples = LightSamples {
             toward: toward.resized(count),
             emissivity: emissivity.resized(count),
-            cos_over_distance: resized(cos_over_distance, count),
+            strengths: resized(strengths, count),
             t_max,
             shines,
         };
-        let mut faced =
-            light.sample(cpu, &ShadingPoints { points, normals, lights, slack: self.slack() }, samples);
+        let shading = ShadingPoints { points, normals, lights, rules, slack: self.slack() };
+        let mut faced = light.sample(cpu, &shading, samples);
         if surface.is_bent {
             faced.any_shines = surface.hide_from_behind(toward.view(count), shines, t_max);
         }
@@ -115,6 +116,17 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
         let paths = LightPaths { from: *around, to: source, toward };
         let (mut sent, mut tint) = (light.uniform(), Rgb::ONE);
+        let fades = rules == Rules::Free && light.fading.falloff != Falloff::None;
+        if fades {
+            if let Some(sent) = sent.take() {
+                emissivity.fill(count, sent);
+            }
+            for lane in 0..count {
+                let from = lights.map_or(light.location(), |lights| lights.get(lane));
+                let factor = light.fading.factor((from - points.get(lane)).length());
+                emissivity.set(lane, factor * emissivity.get(lane));
+            }
+        }
         if W::SEES || self.plan.has_glass {
             if let Some(sent) = sent.take() {
                 emissivity.fill(count, sent);
@@ -135,7 +147,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             toward: toward.view(count),
             seen: group.dir.view(count),
             normals,
-            cos_over_distance: &cos_over_distance[..count],
+            strengths: &strengths[..count],
             shines,
             blocked,
             emissivity: sent.map_or(Colours::Each(emissivity.view(count)), Colours::Uniform),
@@ -150,7 +162,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         light::shine(cpu, &lit, material.shininess, colours.resized(count));
         if self.scratch.trails.is_on {
             let is_shiny = material.shininess != 0.0;
-            let has_tints = light.uniform().is_some();
+            let has_tints = light.uniform().is_some() && !fades;
             self.scratch.trails.see_light(&group.camera[..group.len], index, &lit, [is_shiny, has_tints]);
         }
         if W::SEES {

@@ -27,9 +27,8 @@ pub(super) struct LitPoints<'l> {
     /// The directions of the rays that hit the points.
     pub seen: View<'l>,
     pub normals: View<'l>,
-    /// The cosines of the angles between the normals and `toward`, divided by the distances to the light in world
-    /// units.
-    pub cos_over_distance: &'l [f64],
+    /// The factors of the light, from the angles at which it arrives and by the notes' rules the distances.
+    pub strengths: &'l [f64],
     /// 0 where the light does not shine.
     pub shines: &'l [u64],
     /// 1 where the light is blocked.
@@ -214,11 +213,11 @@ fn shine_all(
 ) {
     let count = lit.shines.len();
     let (toward, seen, normals) = (lit.toward.first(count), lit.seen.first(count), lit.normals.first(count));
-    let (cos_over_distance, shines, blocked) =
-        (&lit.cos_over_distance[..count], &lit.shines[..count], &lit.blocked[..count]);
+    let (strengths, shines, blocked) =
+        (&lit.strengths[..count], &lit.shines[..count], &lit.blocked[..count]);
     for lane in 0..count {
         let light = sent(lane);
-        let mut colour = diffuse(lane) * light * cos_over_distance[lane];
+        let mut colour = diffuse(lane) * light * strengths[lane];
         if let Some(highlight) = &highlight {
             let half = (toward.get(lane) - seen.get(lane)).normalize();
             let cosine = half.dot(normals.get(lane));

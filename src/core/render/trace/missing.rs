@@ -59,6 +59,15 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
     }
 
+    /// Notes that the bounds of a primary ray's colour are this many levels apart, as the image shows it.
+    pub(super) fn miss_levels(&mut self, camera: usize, levels: f64) {
+        if !self.scratch.any_missing {
+            self.scratch.missing.fill(0.0);
+        }
+        self.scratch.missing[camera] += levels / 255.0;
+        self.scratch.any_missing = true;
+    }
+
     /// Adds an amount of light at the end of a ray, weighted by its path, to what its primary ray lacks.
     fn miss(&mut self, group: &RayGroup, lane: usize, light: f64) {
         if !self.scratch.any_missing {

@@ -13,6 +13,7 @@ mod closest_hit;
 mod context;
 mod direct_light;
 mod estimate;
+mod grow;
 mod hit_record;
 mod light;
 mod missing;
@@ -27,6 +28,7 @@ mod shade;
 mod shadow_rays;
 mod surface;
 mod trail;
+mod tree;
 mod transmittance;
 mod undecided;
 
@@ -43,6 +45,7 @@ use crate::simd::cpu::Cpu;
 use crate::simd::soa::View;
 use crate::world::film;
 use crate::world::material::Rgb;
+use crate::world::rules::Rules;
 use crate::world::sample::{self, Sample};
 use arrays::VectorList;
 use direct_light::RIM_POINTS;
@@ -327,6 +330,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         if W::SEES {
             self.observer.see(Event::Begin(RayPurpose::Primary));
         }
-        self.trace(group, colours);
+        match self.plan.camera.rules {
+            Rules::Notes => self.trace(group, colours),
+            Rules::Free => self.grow(group, colours),
+        }
     }
 }

@@ -3,6 +3,7 @@
 use super::arrays::{VectorList, gather, resized};
 use super::light::{self, PathWeight};
 use super::surface::{Errors, SecondaryRays, Surface};
+use super::tree::OpenRay;
 use crate::geometry::ray::Side;
 use crate::geometry::ray_packet::{PACKET_SIZE, RayPacket};
 use crate::geometry::sight::Sight;
@@ -47,6 +48,8 @@ pub(super) struct RayGroup {
     /// The lane of the primary ray that each ray descends from; empty where no ray continues and pixels have one
     /// sample.
     pub camera: Vec<u8>,
+    /// By the free rules, the number of each ray in its round; empty by the notes' rules.
+    pub places: Vec<u32>,
     /// The index of the object that the rays leave.
     pub origin_object: Option<usize>,
     /// Whether all rays start at one point: the primary rays of most cameras do.
@@ -184,6 +187,7 @@ impl RayGroup {
         gather(&mut self.ray_budget, &from.ray_budget, lanes, count);
         self.path_weight = from.path_weight;
         gather(&mut self.camera, &from.camera, lanes, count);
+        gather(&mut self.places, &from.places, lanes, count);
         self.origin_object = from.origin_object;
         self.is_from_one = from.is_from_one;
         self.errors = from.errors;
@@ -218,6 +222,33 @@ impl RayGroup {
         gather(&mut self.sides, rays.sides, lanes, count);
         self.errors = rays.errors;
         self.gather_cosines(rays.cosines, lanes);
+    }
+
+    /// Becomes open rays that leave the same object, with these ray budgets.
+    pub fn open<'r>(
+        &mut self,
+        rays: impl ExactSizeIterator<Item = &'r OpenRay>,
+        budgets: impl Iterator<Item = u32>,
+    ) {
+        self.len = rays.len();
+        self.forget_sights();
+        let count = self.padded();
+        (self.path_weight, self.is_from_one) = (None, false);
+        let (mut origin, mut dir) = (self.origin.resized(count), self.dir.resized(count));
+        let (travelled, cosines) = (resized(&mut self.travelled, count), resized(&mut self.cosines, count));
+        self.sides.resize(count.max(self.sides.len()), Side::Outside);
+        let (camera, budget) = (resized(&mut self.camera, count), resized(&mut self.ray_budget, count));
+        for (lane, (ray, left)) in rays.zip(budgets).enumerate() {
+            // The last ray fills the rest of the arrays.
+            let end = if lane + 1 == self.len { count } else { lane + 1 };
+            for lane in lane..end {
+                origin.set(lane, ray.origin);
+                dir.set(lane, ray.dir);
+                (travelled[lane], cosines[lane]) = (ray.travelled, ray.cosine);
+                (camera[lane], budget[lane], self.sides[lane]) = (ray.camera, left, ray.side);
+            }
+            self.origin_object = Some(ray.object as usize);
+        }
     }
 
     /// Gathers the cosines of some lanes, where errors are computed at all.

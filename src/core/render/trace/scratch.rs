@@ -2,6 +2,7 @@
 
 use super::arrays::VectorList;
 use super::estimate::AdaptiveScratch;
+use super::grow::TreeScratch;
 use super::hit_record::HitRecord;
 use super::ray_group::{HitGroups, RayGroup};
 use super::surface::Surface;
@@ -28,6 +29,8 @@ pub struct Scratch {
     pub(super) are_probes: bool,
     /// What the current primary rays meet on their paths.
     pub(super) trails: PathHashes,
+    /// The trees that grow by the free rules, unless they are being looked at.
+    pub(super) trees: Option<Box<TreeScratch>>,
     /// The unused scratch space of packets, one for each level of recursion, the outermost one last.
     #[expect(clippy::vec_box, reason = "they come and go, and are large")]
     pub(super) levels: Vec<Box<HitScratch>>,
@@ -122,9 +125,8 @@ pub(super) struct LightScratch {
     pub draws: LightDraws,
     /// The unit vectors toward the light.
     pub toward: VectorList,
-    /// The cosines of the angles between `toward` and the normals, divided by the distances to the light in world
-    /// units.
-    pub cos_over_distance: Vec<f64>,
+    /// The factors of the light, from the angles at which it arrives and by the notes' rules the distances.
+    pub strengths: Vec<f64>,
     /// The distances at which the shadow rays end, in world units; 0 where none is needed.
     pub t_max: Vec<f64>,
     /// The colours that the light sends.

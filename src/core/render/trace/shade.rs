@@ -17,7 +17,7 @@ use crate::world::interaction::SurfaceInteraction;
 use crate::world::interface::Interface;
 use crate::world::material::Rgb;
 use crate::world::packets::shader::SurfacePoints;
-use crate::world::rules;
+use crate::world::rules::{self, Rules};
 use glam::DVec3;
 use std::mem::swap;
 
@@ -112,11 +112,17 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             self.observer.see(Event::Surface { normal: surface.normals.get(0), ambient: colours.get(0) });
         }
         self.illuminate(group, surface, colours);
-        light::fade(cpu, &surface.travelled[..count], colours.resized(count));
+        let is_free = self.plan.camera.rules == Rules::Free;
+        if !is_free {
+            light::fade(cpu, &surface.travelled[..count], colours.resized(count));
+        }
         if W::SEES {
             let (point, travelled) = (surface.points.get(0), surface.travelled[0]);
             let hit = Hit { index, object, distance: distances[0], point };
             self.observer.see(Event::Shaded { hit: &hit, travelled, colour: colours.get(0) });
+        }
+        if is_free {
+            return self.branch(group, shading, colours);
         }
         if let Some(interface) = &material.interface {
             return self.add_split(&**interface, group, shading, colours);

@@ -6,7 +6,7 @@ use crate::geometry::ray::Side;
 use crate::scene::model::Object;
 use crate::simd::soa::View;
 use crate::world::coincidence;
-use crate::world::material::Look;
+use crate::world::material::{Look, Rgb};
 use crate::world::packets::shader::SurfacePoints;
 use crate::world::shader::SurfacePoint;
 use glam::DVec3;
@@ -115,6 +115,11 @@ impl Surface {
     /// Returns a bound on the error of a point, in world units.
     pub fn error(&self, lane: usize) -> f64 {
         self.errors.of(&self.travelled, &self.cosines, lane)
+    }
+
+    /// Returns the specular reflectivity at a point.
+    pub fn mirror(&self, lane: usize) -> Rgb {
+        self.look.map_or_else(|| self.specular.get(lane), |look| look.specular)
     }
 
     /// Returns the specular reflectivities at the points.

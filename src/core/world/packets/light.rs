@@ -7,7 +7,7 @@ use crate::world::certify::Precise;
 use crate::world::light::Light;
 use crate::world::light_samples::{AnyLit, LightSamples, ShadingPoints};
 use crate::world::material::Rgb;
-use crate::world::rules;
+use crate::world::rules::Rules;
 use f256::f256;
 use glam::DVec3;
 use tabray_exact::interval::{Fraction, Interval};
@@ -32,8 +32,8 @@ impl<T: Light, F: Precise> EncloseLight<F> for T {
 
 impl<T: Light> PacketLight for T {
     fn sample(&self, cpu: Cpu, points: &ShadingPoints, samples: LightSamples) -> AnyLit {
-        let LightSamples { toward, emissivity, cos_over_distance, t_max, shines } = samples;
-        sample(cpu, self, points, cos_over_distance, t_max, shines, toward, emissivity)
+        let LightSamples { toward, emissivity, strengths, t_max, shines } = samples;
+        sample(cpu, self, points, strengths, t_max, shines, toward, emissivity)
     }
 }
 
@@ -42,29 +42,37 @@ kernels! {
     fn sample[T: Light](
         light: &T,
         shading: &ShadingPoints,
-        cos_over_distance: &mut [f64],
+        strengths: &mut [f64],
         t_max: &mut [f64],
         shines: &mut [u64],
     ) => toward, emissivity -> AnyLit {
         let (count, middle) = (shading.points.len(), light.location());
-        let out = (cos_over_distance, t_max, shines, toward.first(count), emissivity.first(count));
-        match shading.lights {
-            None => sample_each(light, shading, |_| middle, out),
-            Some(lights) => {
+        let out = (strengths, t_max, shines, toward.first(count), emissivity.first(count));
+        let free = |cosine, inverse| Rules::Free.received(cosine, inverse);
+        let notes = |cosine, inverse| Rules::Notes.received(cosine, inverse);
+        match (shading.rules, shading.lights) {
+            (Rules::Notes, None) => sample_each(light, shading, |_| middle, notes, out),
+            (Rules::Notes, Some(lights)) => {
                 let lights = lights.first(count);
-                sample_each(light, shading, |lane| lights.get(lane), out)
+                sample_each(light, shading, |lane| lights.get(lane), notes, out)
+            }
+            (Rules::Free, lights) => {
+                let place = |lane| lights.map_or(middle, |lights| lights.get(lane));
+                sample_each(light, shading, place, free, out)
             }
         }
     }
 }
 
-/// Samples a light from many points. `place` returns the point of the light that a lane sees.
+/// Samples a light from many points. `place` returns the point of the light that a lane sees, and `received` the factor of
+/// the light from the cosine of its angle and the reciprocal of its distance.
 #[inline(always)]
 fn sample_each<T: Light>(
     light: &T,
     shading: &ShadingPoints,
     place: impl Fn(usize) -> DVec3,
-    (cos_over_distance, t_max, shines, mut toward, mut emissivity): (
+    received: impl Fn(f64, f64) -> f64,
+    (strengths, t_max, shines, mut toward, mut emissivity): (
         &mut [f64],
         &mut [f64],
         &mut [u64],
@@ -74,8 +82,8 @@ fn sample_each<T: Light>(
 ) -> AnyLit {
     let (count, slack, is_uniform) = (shading.points.len(), shading.slack, light.uniform().is_some());
     let (points, normals) = (shading.points.first(count), shading.normals.first(count));
-    let (cos_over_distance, t_max, shines) =
-        (&mut cos_over_distance[..count], &mut t_max[..count], &mut shines[..count]);
+    let (strengths, t_max, shines) =
+        (&mut strengths[..count], &mut t_max[..count], &mut shines[..count]);
     let (mut any_faces, mut any_shines) = (0, 0);
     for lane in 0..count {
         let point = points.get(lane);
@@ -93,7 +101,7 @@ fn sample_each<T: Light>(
         if !is_uniform {
             emissivity.set(lane, sent.unwrap_or(Rgb::ZERO));
         }
-        cos_over_distance[lane] = rules::received(cosine, inverse);
+        strengths[lane] = received(cosine, inverse);
         t_max[lane] = if does_shine != 0 { ray_end } else { 0.0 };
         shines[lane] = does_shine;
         any_faces |= faces;

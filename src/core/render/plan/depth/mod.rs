@@ -49,16 +49,22 @@
 //! a branch's weight falls by more than its share does, so each branch ends; and the cuts in a ray's colour add up to
 //! less than [`FAINT`].
 //!
+//! By the free rules, no light is divided by `d`: the bounds are on light itself, `S` counts a lamp as its falloff does, and
+//! the background's own light is its brightest channel. Branches are not cut there one by one, with allowances that are
+//! fixed beforehand: the tracer ends the tree of a pixel as a whole, by [`LightRange`]s from the same inequalities.
+//!
 //! Where glass and mirrors pass on nearly all that they receive, that takes very many rays. From the `MANY`th ray on,
 //! a branch is also cut where `weight * beyond / d < FAINT` by itself.
 
 mod branch;
+mod range;
 mod sides;
 mod solve;
 mod surface;
 
 pub use branch::{Branch, ContinuationBounds, FAINT};
 pub(crate) use branch::{MANY, STEPS, step};
+pub use range::LightRange;
 pub(crate) use surface::clearance;
 
 use crate::parallel;
@@ -66,8 +72,9 @@ use crate::render::limits::MAX_DIST;
 use crate::scene::model::{Model, Object};
 use crate::world::accuracy::Accuracy;
 use crate::world::material::{Look, Rgb};
+use crate::world::rules::Rules;
 use solve::Scene;
-use surface::Surface;
+use surface::{Part, Surface};
 
 /// Bounds on what the branches of a scene with mirrors or glass can return.
 pub struct Depth {
@@ -75,6 +82,8 @@ pub struct Depth {
     pub most: f64,
     /// The bounds for each object, by the object's index.
     pub objects: Vec<ContinuationBounds>,
+    /// By the free rules, the bounds of what rays that leave each object return, on each side of it, the outside first.
+    pub ranges: Vec<[LightRange; 2]>,
 }
 
 impl Depth {
@@ -89,10 +98,15 @@ impl Depth {
 
     /// Computes the bounds of any scene.
     pub(crate) fn of(model: &Model) -> Self {
-        let surfaces = Surface::all(model, &looks(model), None);
+        let looks = looks(model);
+        let surfaces = Surface::all(model, &looks, Part::default());
         let cuts = model.camera.value.accuracy != Accuracy::Classic;
         let (most, objects) = Scene::new(model, surfaces, background(model)).bounds(cuts);
-        Self { most, objects }
+        let ranges = match model.camera.value.rules {
+            Rules::Notes => Vec::new(),
+            Rules::Free => range::ranges(model, &looks),
+        };
+        Self { most, objects, ranges }
     }
 
     /// Returns a bound on what rays that leave the object of this index return, times the path length; for `None`, of
@@ -109,28 +123,37 @@ impl Depth {
                 (branch.faint, branch.faint_alone) = (f64::INFINITY, f64::INFINITY);
             }
         }
+        for range in self.ranges.as_flattened_mut() {
+            range.high = Rgb::INFINITY;
+        }
         self
     }
 }
 
-/// Bounds what rays that leave an object return which hit nothing, times the path length.
+/// Bounds what rays that leave an object return which hit nothing; by the notes' rules, times the path length.
 fn background(model: &Model) -> f64 {
     let brightest = model.background.as_ref().map(|background| background.value.brightest());
-    brightest.map_or(0.0, |brightest| brightest.max_element() * MAX_DIST)
+    let longest = match model.camera.value.rules {
+        Rules::Notes => MAX_DIST,
+        Rules::Free => 1.0,
+    };
+    brightest.map_or(0.0, |brightest| brightest.max_element() * longest)
 }
 
 /// Bounds what a primary ray that hits an object returns in any channel, times the path length; infinite where there is
 /// no bound.
 pub(crate) fn most(model: &Model) -> f64 {
-    Scene::new(model, Surface::all(model, &looks(model), None), background(model)).bounds(false).0
+    Scene::new(model, Surface::all(model, &looks(model), Part::default()), background(model)).bounds(false).0
 }
 
 /// Bounds what each light of a model adds to a primary ray in any channel, times the path length; infinite where there
 /// is no bound.
 pub(crate) fn most_of_lights(model: &Model) -> Vec<f64> {
     let looks = looks(model);
-    let most =
-        |light: usize| Scene::new(model, Surface::all(model, &looks, Some(light)), 0.0).bounds(false).0;
+    let most = |light: usize| {
+        let of = Part { light: Some(light), channel: None };
+        Scene::new(model, Surface::all(model, &looks, of), 0.0).bounds(false).0
+    };
     parallel::map(model.lights.len(), most)
 }
 

@@ -8,6 +8,7 @@ use crate::geometry::ray::Side;
 use crate::render::culling;
 use crate::render::limits::MAX_DIST;
 use crate::scene::model::{Model, Object};
+use crate::world::rules::Rules;
 use glam::DVec3;
 
 /// The number of iterations after which the search for bounds is given up.
@@ -37,8 +38,13 @@ impl Scene {
         let (shiny, matt): (Vec<_>, Vec<_>) =
             (0..surfaces.len()).partition(|index| surfaces[*index].goes_on());
         let is_few = shiny.len() <= PAIRS;
+        let farthest = match model.camera.value.rules {
+            Rules::Notes => MAX_DIST,
+            // The coordinates of the scene's points bound what matters of the length of a path.
+            Rules::Free => model.camera.value.reach(),
+        };
         let lies = |of: usize, object: usize| {
-            if is_few { lies(&objects[of], &objects[object]) } else { [true; 2] }
+            if is_few { lies(&objects[of], &objects[object], farthest) } else { [true; 2] }
         };
         let matt_light = |of: usize| {
             let sent = matt
@@ -90,6 +96,14 @@ impl Scene {
             objects[*index] = ContinuationBounds { hit: hits[*index], ..continuation };
         }
         (hits.into_iter().fold(0.0, above), objects)
+    }
+
+    /// Bounds what rays that leave each surface from which rays continue return, on each side; infinite where there is no
+    /// bound.
+    pub fn beyond(&self) -> impl Iterator<Item = (usize, Sides<f64>)> {
+        let beyond = self.solve(&self.matt_light, |surface| surface.own);
+        let beyond = beyond.unwrap_or_else(|| vec![[f64::INFINITY; 2]; self.shiny.len()]);
+        self.shiny.iter().map(|(index, _)| *index).zip(beyond)
     }
 
     /// Bounds what rays that leave each shiny surface return, given the surfaces' own light, and in `matt_light` that
@@ -186,8 +200,9 @@ fn can_hit_itself(object: &Object, side: Side) -> bool {
     object.shape.can_hit_itself(side)
 }
 
-/// Tells on which sides of the plane that contains an object, if there is one, another object may be hit.
-fn lies(of: &Object, object: &Object) -> Sides<bool> {
+/// Tells on which sides of the plane that contains an object, if there is one, another object may be hit. `farthest` is the
+/// length of a path whose rounding is allowed for.
+fn lies(of: &Object, object: &Object, farthest: f64) -> Sides<bool> {
     let Some([point, normal]) = of.shape.plane() else { return [true; 2] };
     let size = |at: DVec3| at.abs().max_element();
     let (middle, reach) = match (culling::bounds(object), object.shape.plane()) {
@@ -198,8 +213,8 @@ fn lies(of: &Object, object: &Object) -> Sides<bool> {
         _ => return [true; 2],
     };
     let distance = normal.dot(middle - point);
-    // The margin is tens of thousands of ulps of the coordinates and of the path length.
+    // The margin is tens of thousands of ulps of the coordinates and of the farthest path length.
     let reach =
-        normal.abs().dot(reach) + 10.0 * SLACK * (size(middle) + size(reach) + size(point) + MAX_DIST);
+        normal.abs().dot(reach) + 10.0 * SLACK * (size(middle) + size(reach) + size(point) + farthest);
     [distance > -reach, distance < reach]
 }

@@ -6,6 +6,7 @@ use crate::geometry::aabb;
 use crate::render::culling;
 use crate::scene::model::{Model, Object};
 use crate::world::material::{Look, Rgb};
+use crate::world::rules::Rules;
 use crate::world::shader::SurfacePoint;
 use glam::DVec3;
 
@@ -13,7 +14,23 @@ use glam::DVec3;
 /// relative error of 2^-53 each, and of sums over as many lights; 2^16 such errors are less than 8e-12.
 const ROUNDING: f64 = 1.0 + 1e-11;
 
-/// What an object's surface does with light: the largest magnitudes of any channel at any point.
+/// The light that is bounded.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Part {
+    /// The light of which surfaces scatter their own; `None` for all of them, and the ambient colours.
+    pub light: Option<usize>,
+    /// The channel; `None` for the largest.
+    pub channel: Option<usize>,
+}
+
+impl Part {
+    /// Returns the magnitude of a colour.
+    fn largest(self, colour: Rgb) -> f64 {
+        self.channel.map_or(colour.abs().max_element(), |channel| colour[channel].abs())
+    }
+}
+
+/// What an object's surface does with light: the largest magnitudes of any channel, or of one, at any point.
 #[derive(Clone, Copy)]
 pub(super) struct Surface {
     /// The surface's own light, times the path length.
@@ -24,29 +41,39 @@ pub(super) struct Surface {
     mirrored: f64,
     /// Whether light is divided between the two, by an interface.
     is_split: bool,
+    /// A factor of what an interface passes on: 1, or [`HELD`] where that alone bounds its light by the free rules.
+    held: f64,
 }
 
+/// By the free rules, the fraction of light that an interface of a surface with light of its own is taken to pass on: no
+/// more than 8 such surfaces in a row pass on nearly all. Metal reflects all light that grazes it, and glass all that it
+/// totally reflects, so that nothing else bounds the sum of their highlights.
+const HELD: f64 = 7.0 / 8.0;
+
 impl Surface {
-    /// Bounds the surfaces of a scene, given each object's brightest look, if it has one. With `only`, their own light is
-    /// what they scatter of this light.
-    pub fn all(model: &Model, looks: &[Option<Look>], only: Option<usize>) -> Vec<Self> {
-        let objects = || model.objects.iter().zip(looks);
-        let tints: Vec<_> = objects().map(|(object, look)| tint(object, look.as_ref())).collect();
+    /// Bounds the surfaces of a scene, given each object's brightest look, if it has one.
+    pub fn all(model: &Model, looks: &[Option<Look>], of: Part) -> Vec<Self> {
+        let (objects, rules) = (|| model.objects.iter().zip(looks), model.camera.value.rules);
+        let tints: Vec<_> = objects().map(|(object, look)| tint(object, look.as_ref(), of)).collect();
         // Otherwise many panes may let through more light than is sent.
         let any_light_comes = tints.iter().all(|tint| *tint <= 1.0);
         objects()
             .zip(&tints)
             .map(|((object, look), tint)| {
-                let own = look.map_or(f64::INFINITY, |look| own(model, object, &look, only, any_light_comes));
+                let own = look.map_or(f64::INFINITY, |look| own(model, object, &look, of, any_light_comes));
+                let own = gain(1.0 - object.material.transparency, own) * ROUNDING;
+                let (is_split, is_free) = (object.material.interface.is_some(), rules == Rules::Free);
                 Self {
-                    own: gain(1.0 - object.material.transparency, own) * ROUNDING,
-                    through: tint * ROUNDING,
-                    mirrored: if object.material.interface.is_some() {
+                    own,
+                    // Glass that passes on all light would have no bound otherwise.
+                    through: if is_free && is_split { *tint } else { tint * ROUNDING },
+                    held: if is_free && is_split && own != 0.0 { HELD } else { 1.0 },
+                    mirrored: if is_split {
                         1.0
                     } else {
-                        look.map_or(f64::INFINITY, |look| largest(look.specular)) * ROUNDING
+                        look.map_or(f64::INFINITY, |look| of.largest(look.specular)) * ROUNDING
                     },
-                    is_split: object.material.interface.is_some(),
+                    is_split,
                 }
             })
             .collect()
@@ -62,7 +89,7 @@ impl Surface {
     pub fn met(&self, own: f64, [outside, inside]: [f64; 2]) -> [f64; 2] {
         let continuation = |through: f64, mirrored: f64| {
             let (through, mirrored) = (gain(self.through, through), gain(self.mirrored, mirrored));
-            if self.is_split { above(through, mirrored) } else { through + mirrored }
+            if self.is_split { self.held * above(through, mirrored) } else { through + mirrored }
         };
         [own + continuation(inside, outside), own + continuation(outside, inside)]
     }
@@ -81,7 +108,7 @@ impl Surface {
         whole: f64,
         cuts: bool,
     ) -> ContinuationBounds {
-        let Self { own, through, mirrored, is_split } = *self;
+        let Self { own, through, mirrored, is_split, .. } = *self;
         let part = if through == 0.0 || mirrored == 0.0 { 1.0 } else { 0.5 };
         // The larger ratio of the two sides, since rays may leave on either. A side from which nothing is hit returns
         // nothing.
@@ -109,17 +136,12 @@ impl Surface {
     }
 }
 
-/// Returns the largest magnitude of a channel.
-fn largest(colour: Rgb) -> f64 {
-    colour.abs().max_element()
-}
-
 /// Bounds the factor by which an object multiplies light that passes through it.
-fn tint(object: &Object, look: Option<&Look>) -> f64 {
+fn tint(object: &Object, look: Option<&Look>, of: Part) -> f64 {
     let transparency = object.material.transparency;
     match (object.shader.uniform(&object.material), look) {
         _ if transparency == 0.0 => 0.0,
-        (Some(_), _) => largest(object.tint(&SurfacePoint::at(DVec3::ZERO))),
+        (Some(_), _) => of.largest(object.tint(&SurfacePoint::at(DVec3::ZERO))),
         // The diffuse colour is not negative anywhere, and the tint is scaled so that its largest channel is the
         // transparency.
         (None, Some(_)) => transparency,
@@ -127,12 +149,12 @@ fn tint(object: &Object, look: Option<&Look>) -> f64 {
     }
 }
 
-/// Bounds the light of an object's own surface, times the path length to the surface.
-fn own(model: &Model, object: &Object, look: &Look, only: Option<usize>, any_light_comes: bool) -> f64 {
+/// Bounds the light of an object's own surface; by the notes' rules, times the path length to the surface.
+fn own(model: &Model, object: &Object, look: &Look, of: Part, any_light_comes: bool) -> f64 {
     let highlight = if object.material.shininess == 0.0 { Rgb::ZERO } else { look.specular.abs() };
     let diffuse = look.diffuse.abs();
-    let mut own = if only.is_some() { Rgb::ZERO } else { look.ambient.abs() };
-    let lights = only.map_or(&model.lights[..], |only| std::slice::from_ref(&model.lights[only]));
+    let mut own = if of.light.is_some() { Rgb::ZERO } else { look.ambient.abs() };
+    let lights = of.light.map_or(&model.lights[..], |only| std::slice::from_ref(&model.lights[only]));
     for light in lights {
         if highlight == Rgb::ZERO && diffuse == Rgb::ZERO {
             break;
@@ -140,14 +162,20 @@ fn own(model: &Model, object: &Object, look: &Look, only: Option<usize>, any_lig
         let Some(sent) = light.value.brightest().filter(|_| any_light_comes) else { return f64::INFINITY };
         // A light with a size is sampled on a disc perpendicular to the direction of its centre, so no sample is nearer
         // than the centre.
-        let scattered = match clearance(object, light.value.location()) {
-            _ if diffuse == Rgb::ZERO => Rgb::ZERO,
-            0.0 => return f64::INFINITY,
-            clearance => diffuse / clearance,
+        let clearance = || clearance(object, light.value.location());
+        own += match model.camera.value.rules {
+            Rules::Free => sent.abs() * light.value.fading.factor(clearance()) * (diffuse + highlight),
+            Rules::Notes => {
+                let scattered = match clearance() {
+                    _ if diffuse == Rgb::ZERO => Rgb::ZERO,
+                    0.0 => return f64::INFINITY,
+                    clearance => diffuse / clearance,
+                };
+                sent.abs() * (scattered + highlight)
+            }
         };
-        own += sent.abs() * (scattered + highlight);
     }
-    largest(own)
+    of.largest(own)
 }
 
 /// Returns a lower bound on the distance from a point to an object, in world units.

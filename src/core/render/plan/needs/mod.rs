@@ -27,7 +27,7 @@ use crate::parallel;
 use crate::render::plan::depth::{self, Depth};
 use crate::scene::model::{Model, Object};
 use crate::world::accuracy::Accuracy;
-use crate::world::body::AnyLight;
+use crate::world::lamp::Lamp;
 use crate::world::material::{Look, Rgb};
 use hull::Hull;
 use view::{View, VisibleRegion};
@@ -237,7 +237,7 @@ impl Scene<'_> {
     /// Returns why a light adds nothing to where an object is seen; `None` where it may.
     fn darkness(
         &self,
-        light: &AnyLight,
+        light: &Lamp,
         object: &Object,
         seen: &VisibleRegion,
         view: Option<&View>,
@@ -267,7 +267,7 @@ impl Scene<'_> {
     }
 
     /// Tells whether all light that an object reflects of a light is black.
-    fn is_black(&self, light: &AnyLight, object: &Object) -> bool {
+    fn is_black(&self, light: &Lamp, object: &Object) -> bool {
         let look: Option<Look> = object.shader.brightest(&object.material);
         let (Some(sent), Some(look)) = (light.brightest(), look) else { return false };
         let shines = if object.material.shininess == 0.0 { Rgb::ZERO } else { look.specular };
@@ -285,5 +285,6 @@ pub(crate) fn most_levels(model: &Model) -> Vec<f64> {
     // No path is shorter than the distance of the nearest object.
     let clearance = |object| (depth::clearance(object, viewer.middle) - viewer.radius).max(0.0);
     let near = model.objects.iter().map(clearance).fold(f64::INFINITY, f64::min);
-    depth::most_of_lights(model).into_iter().map(|most| 255.0 * most / near).collect()
+    let rules = model.camera.value.rules;
+    depth::most_of_lights(model).into_iter().map(|most| 255.0 * rules.over_path(most, near)).collect()
 }

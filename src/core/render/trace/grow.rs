@@ -1,0 +1,259 @@
+//! How the [trees](super::tree) of a packet of primary rays grow, round by round.
+
+use super::arrays::VectorList;
+use super::context::Tracer;
+use super::ray_group::RayGroup;
+use super::refract;
+use super::scratch::ShadingScratch;
+use super::tree::{self, End, OpenRay, Tree};
+use crate::geometry::ray::Side;
+use crate::geometry::ray_packet::PACKET_SIZE;
+use crate::render::limits::MAX_RAYS;
+use crate::render::observer::{Count, Event, RayKind, RayPurpose, TraceObserver};
+use crate::render::plan::depth::Depth;
+use crate::world::interface::Crossing;
+use crate::world::material::Rgb;
+use crate::world::rules;
+use glam::DVec3;
+use std::mem::take;
+
+/// The number of trees that grow together, so that their open rays take little memory.
+const TOGETHER: usize = 64;
+
+/// What was found at the hit of a ray.
+#[derive(Clone, Copy, Default)]
+struct Outcome {
+    /// The light of the point itself, times the weight of the path.
+    light: Rgb,
+    /// The number of rays that it took.
+    cost: u32,
+    /// The rays that continue.
+    onward: [Option<OpenRay>; 2],
+}
+
+/// The scratch space of trees.
+#[derive(Default)]
+pub(super) struct TreeScratch {
+    trees: Vec<Tree>,
+    /// The rays of the current round, and what was found at their hits.
+    round: Vec<OpenRay>,
+    outcomes: Vec<Outcome>,
+    /// The numbers of the rays in the round, by the objects that they leave.
+    order: Vec<u32>,
+    group: RayGroup,
+    seen: VectorList,
+}
+
+impl TreeScratch {
+    fn begin_round(&mut self) {
+        self.outcomes.clear();
+        self.outcomes.resize(self.round.len(), Outcome::default());
+    }
+
+    /// Fills a packet with rays of the round that leave the same object. Each may cost what its tree may still.
+    fn gather(&mut self, places: &[u32], first: usize, group: &mut RayGroup) {
+        let Self { trees, round, outcomes, .. } = self;
+        for place in places {
+            let tree = &trees[usize::from(round[*place as usize].camera) - first];
+            outcomes[*place as usize].cost = MAX_RAYS as u32 - tree.cost.min(MAX_RAYS as u32 / 2);
+        }
+        let rays = places.iter().map(|place| &round[*place as usize]);
+        group.open(rays, places.iter().map(|place| outcomes[*place as usize].cost));
+        group.places.clear();
+        group.places.extend_from_slice(places);
+    }
+
+    /// Notes what a packet of the round's rays has found.
+    fn note(&mut self, group: &RayGroup, seen: &VectorList) {
+        for (lane, place) in group.places[..group.len].iter().enumerate() {
+            let (ray, outcome) = (&self.round[*place as usize], &mut self.outcomes[*place as usize]);
+            outcome.light = ray.weight * seen.get(lane);
+            outcome.cost -= group.ray_budget[lane];
+        }
+    }
+
+    /// Adds what the round has found to its trees, in the order of its rays.
+    fn add(&mut self, first: usize, depth: &Depth, faint: f64) {
+        for (ray, outcome) in self.round.iter().zip(&self.outcomes) {
+            let tree = &mut self.trees[usize::from(ray.camera) - first];
+            tree.found += outcome.light;
+            tree.cost += outcome.cost;
+            outcome.onward.iter().flatten().for_each(|ray| tree.push(*ray, depth, faint));
+        }
+    }
+}
+
+impl<W: TraceObserver> Tracer<'_, '_, W> {
+    /// Computes the colours that primary rays return by the free rules.
+    pub(super) fn grow(&mut self, group: &mut RayGroup, colours: &mut VectorList) {
+        let Some(depth) = &self.plan.depth else { return self.trace(group, colours) };
+        let (len, camera) = (group.len, &self.plan.camera);
+        let mut scratch = self.scratch.trees.take().unwrap_or_default();
+        // A budget that differs from the usual one was set for this ray.
+        let most = |own: &u32| if *own == MAX_RAYS as u32 { tree::most_rays(camera) } else { *own };
+        let budgets: Vec<u32> = group.ray_budget[..len].iter().map(most).collect();
+        group.ray_budget.fill(MAX_RAYS as u32);
+        group.places.clear();
+        group.places.extend(0..len as u32);
+        scratch.round.clear();
+        scratch.round.extend((0..len).map(OpenRay::primary));
+        scratch.begin_round();
+        scratch.outcomes.iter_mut().for_each(|outcome| outcome.cost = MAX_RAYS as u32);
+        self.scratch.trees = Some(scratch);
+        self.trace(group, colours);
+        let mut scratch = self.scratch.trees.take().unwrap_or_default();
+        scratch.note(group, colours);
+        let (first, faint) = (take(&mut scratch.outcomes), tree::faint(camera));
+        for start in (0..len).step_by(TOGETHER) {
+            let block = start..len.min(start + TOGETHER);
+            scratch.trees.resize_with(scratch.trees.len().max(block.len()), Tree::default);
+            for (tree, lane) in scratch.trees.iter_mut().zip(block.clone()) {
+                tree.begin(budgets[lane]);
+            }
+            scratch.round.clear();
+            scratch.round.extend(block.clone().map(OpenRay::primary));
+            scratch.outcomes.clear();
+            scratch.outcomes.extend_from_slice(&first[block.clone()]);
+            while !scratch.round.is_empty() {
+                scratch.add(start, depth, faint);
+                let TreeScratch { trees, round, .. } = &mut *scratch;
+                round.clear();
+                trees[..block.len()].iter_mut().for_each(|tree| tree.next(camera, depth, round));
+                scratch = self.follow(scratch, start);
+            }
+            for (tree, lane) in scratch.trees.iter().zip(block) {
+                let End { colour, apart } = tree.end(camera);
+                colours.set(lane, colour);
+                if W::SEES && let Some(reason) = tree.drops() {
+                    self.observer.see(Event::Dropped(reason));
+                }
+                if apart > 0.0 {
+                    self.miss_levels(lane, apart);
+                }
+            }
+        }
+        self.scratch.trees = Some(scratch);
+    }
+
+    /// Follows the rays of a round. `first` is the lane of the first tree.
+    fn follow(&mut self, mut scratch: Box<TreeScratch>, first: usize) -> Box<TreeScratch> {
+        scratch.begin_round();
+        let (mut group, mut seen) = (take(&mut scratch.group), take(&mut scratch.seen));
+        let mut order = take(&mut scratch.order);
+        order.clear();
+        order.extend(0..scratch.round.len() as u32);
+        let object = |scratch: &TreeScratch, place: u32| scratch.round[place as usize].object;
+        order.sort_by_key(|place| object(&scratch, *place));
+        // An observer sees one ray after the other.
+        let together = if W::SEES { 1 } else { PACKET_SIZE };
+        self.depth += 1;
+        let mut rest = &order[..];
+        while let Some(place) = rest.first() {
+            let its = object(&scratch, *place);
+            let count = rest.iter().take(together).take_while(|place| object(&scratch, **place) == its).count();
+            let (places, others) = rest.split_at(count);
+            rest = others;
+            scratch.gather(places, first, &mut group);
+            let count = group.padded();
+            let shape = &self.model.objects[its as usize].shape;
+            group.errors = self.errors(&**shape, &group.travelled[..count], &group.cosines[..count]);
+            self.begin_open(&scratch.round, places);
+            self.scratch.trees = Some(scratch);
+            self.trace(&mut group, &mut seen);
+            scratch = self.scratch.trees.take().unwrap_or_default();
+            scratch.note(&group, &seen);
+        }
+        self.depth -= 1;
+        (scratch.group, scratch.seen, scratch.order) = (group, seen, order);
+        scratch
+    }
+
+    /// Reports rays that are followed together.
+    fn begin_open(&mut self, round: &[OpenRay], places: &[u32]) {
+        let of_kind = |kind: RayKind| {
+            places.iter().filter(|place| round[**place as usize].kind == kind).count()
+        };
+        for kind in [RayKind::Reflected, RayKind::Transmitted] {
+            self.observer.count(Count::Rays(kind, of_kind(kind)));
+        }
+        if W::SEES {
+            let OpenRay { kind, weight, .. } = round[places[0] as usize];
+            self.observer.see(Event::Begin(match kind {
+                RayKind::Transmitted => RayPurpose::Transmitted { tint: weight, kept: 1.0 },
+                _ => RayPurpose::Reflected { specular: weight },
+            }));
+        }
+    }
+
+    /// Opens the rays that continue from where the rays of a packet have hit an object, and leaves in `colours` what the
+    /// points return by themselves.
+    pub(super) fn branch(
+        &mut self,
+        group: &RayGroup,
+        shading: &mut ShadingScratch,
+        colours: &mut VectorList,
+    ) {
+        let ShadingScratch { surface, dir, .. } = shading;
+        let object = &self.model.objects[surface.index];
+        let transparency = object.material.transparency;
+        if transparency == 0.0 && !surface.is_mirror && object.material.interface.is_none() {
+            return;
+        }
+        let Some(mut scratch) = self.scratch.trees.take() else { return };
+        let (count, kept) = (group.padded(), 1.0 - transparency);
+        let crossings = object.material.interface.as_deref();
+        let crossings =
+            crossings.map(|interface| refract::crossings(interface, group.dir.view(count), surface));
+        let mut mirrored = dir.resized(count);
+        for lane in 0..count {
+            let (seen, normal) = (group.dir.get(lane), surface.normals.get(lane));
+            mirrored.set(lane, rules::mirrored(seen.to_array(), normal.to_array()).into());
+        }
+        if surface.is_bent {
+            surface.keep_before(group.dir.view(count), dir);
+        }
+        for lane in 0..group.len {
+            let side = surface.sides[lane];
+            let tint = || {
+                let point = object.surface_point(surface.points.get(lane), side);
+                object.tint(&point)
+            };
+            let (through, onward, reflected) = match &crossings {
+                Some(crossings) => {
+                    let Crossing { reflected, onward } = crossings[lane];
+                    (onward.map_or(Rgb::ZERO, |_| tint() * (Rgb::ONE - reflected)), onward, reflected)
+                }
+                None => {
+                    let through = if transparency == 0.0 { Rgb::ZERO } else { tint() };
+                    (through, Some(group.dir.get(lane)), surface.mirror(lane))
+                }
+            };
+            colours.set(lane, kept * colours.get(lane));
+            let place = group.places[lane] as usize;
+            let before = scratch.round[place];
+            if before.depth as usize >= self.plan.bounces {
+                continue;
+            }
+            let open = |weight: Rgb, dir: DVec3, side: Side, kind: RayKind| {
+                let weight = before.weight * weight;
+                (weight != Rgb::ZERO).then_some(OpenRay {
+                    weight,
+                    origin: surface.points.get(lane),
+                    dir,
+                    travelled: surface.travelled[lane],
+                    cosine: surface.cosines[lane],
+                    object: surface.index as u32,
+                    side,
+                    kind,
+                    depth: before.depth + 1,
+                    ..before
+                })
+            };
+            scratch.outcomes[place].onward = [
+                onward.and_then(|dir| open(through, dir, side.opposite(), RayKind::Transmitted)),
+                open(reflected, dir.get(lane), side, RayKind::Reflected),
+            ];
+        }
+        self.scratch.trees = Some(scratch);
+    }
+}

@@ -1,0 +1,252 @@
+//! The trees of rays by the free rules: each is followed heaviest branch first, until what is left of it cannot be seen.
+//!
+//! A pixel's colour is the sum of what the points that its rays meet send by themselves, each times the weight of its path.
+//! The rays that are yet to be followed are *open*. What they can still add is bounded from below and from above, by their
+//! weights and by what there is to see ([`LightRange`]), and so is the colour. A tree ends when these bounds are less than
+//! [`ENDED`] of a level apart, as the image shows them, or when it has cost as many rays as it may; the middle of the bounds
+//! stands for what is left. If a tree that cost too much is open by more than a level, what was found is shown and the
+//! pixel is counted.
+//!
+//! The trees of a packet of primary rays grow together, in rounds, so that rays are still traced in packets: in each round,
+//! every tree gives its heaviest open ray, and those at least half as heavy. The rules of a tree look at the tree alone,
+//! and what a round has found is added in the order in which its rays were given, so that no colour depends on the packet.
+//!
+//! The notes' rules have other ends, which the [depth](crate::render::plan::depth) describes: there each branch has an
+//! allowance of its own, fixed by its path, and is followed as soon as it is met, so that the course's pictures stay as they
+//! are.
+
+use crate::geometry::ray::Side;
+use crate::render::limits::{LEAST_TREE, MAX_TREE};
+use crate::render::observer::{DropReason, RayKind};
+use crate::render::plan::depth::{Depth, LightRange};
+use crate::world::film::Film;
+use crate::world::material::Rgb;
+use glam::DVec3;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+use std::mem::take;
+
+/// The distance of the bounds of a colour, in levels of a byte, below which its tree ends.
+const ENDED: f64 = 1.0 / 16.0;
+
+/// The distance of the bounds of a colour, in levels, up to which their middle stands for it where the tree costs too much.
+const SHOWN: f64 = 1.0;
+
+/// The least slope of what is shown of light below white: the curve of sRGB has 0.44 there, a linear one more.
+const FLATTEST: f64 = 0.4;
+
+/// The part of the heaviest open ray's weight down to which others are followed in the same round.
+const TOGETHER: f64 = 0.5;
+
+/// A ray that is yet to be followed.
+#[derive(Clone, Copy)]
+pub(super) struct OpenRay {
+    /// How far what it can still add is unknown: the largest of the channels.
+    pub width: f64,
+    /// The factor of its light.
+    pub weight: Rgb,
+    pub origin: DVec3,
+    pub dir: DVec3,
+    /// The path length from the viewer to the origin, in world units.
+    pub travelled: f64,
+    /// The cosine of the angle at which its predecessor hit the origin.
+    pub cosine: f64,
+    /// The index of the object that it leaves.
+    pub object: u32,
+    /// The side of it that it leaves.
+    pub side: Side,
+    pub kind: RayKind,
+    /// The lane of its primary ray.
+    pub camera: u8,
+    /// The number of rays before it on its path.
+    pub depth: u32,
+}
+
+impl OpenRay {
+    /// Returns what it can add.
+    fn range(&self, depth: &Depth) -> LightRange {
+        let side = usize::from(self.side == Side::Inside);
+        let LightRange { low, high } = depth.ranges[self.object as usize][side];
+        let [one, other] = [low, high].map(|light| times(self.weight, light));
+        LightRange { low: one.min(other), high: one.max(other) }
+    }
+}
+
+impl OpenRay {
+    /// A ray from the viewer, which stands for those of the first round: only its lane matters.
+    pub fn primary(camera: usize) -> Self {
+        Self {
+            width: f64::INFINITY,
+            weight: Rgb::ONE,
+            origin: DVec3::ZERO,
+            dir: DVec3::NEG_Z,
+            travelled: 0.0,
+            cosine: 0.0,
+            object: 0,
+            side: Side::Outside,
+            kind: RayKind::Primary,
+            camera: camera as u8,
+            depth: 0,
+        }
+    }
+}
+
+/// Multiplies a weight by an amount of light, which may be infinite.
+fn times(weight: Rgb, light: Rgb) -> Rgb {
+    let gain = |channel: usize| if weight[channel] == 0.0 { 0.0 } else { weight[channel] * light[channel] };
+    Rgb::new(gain(0), gain(1), gain(2))
+}
+
+/// Orders by what is unknown, and where nothing bounds that, by weight.
+impl Ord for OpenRay {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let weight = |ray: &Self| ray.weight.abs().max_element();
+        self.width.total_cmp(&other.width).then(weight(self).total_cmp(&weight(other)))
+    }
+}
+
+impl PartialOrd for OpenRay {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for OpenRay {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for OpenRay {}
+
+/// The tree of one primary ray.
+#[derive(Default)]
+pub(super) struct Tree {
+    /// The sum of what was found.
+    pub found: Rgb,
+    open: BinaryHeap<OpenRay>,
+    /// What the open rays that are bounded can add, and the rays that are too faint to be kept.
+    left: LightRange,
+    /// The number of open rays that nothing bounds.
+    unbounded: u32,
+    /// The number of rays that it has cost, and the most that it may.
+    pub cost: u32,
+    budget: u32,
+}
+
+/// How a tree has ended.
+pub(super) struct End {
+    pub colour: Rgb,
+    /// 0 for a known colour; else how far its bounds are apart, in levels, infinite where there are none.
+    pub apart: f64,
+}
+
+/// Returns the number of rays that the tree of one sample may cost.
+pub(super) fn most_rays(camera: &Film) -> u32 {
+    (MAX_TREE / camera.samples).max(LEAST_TREE)
+}
+
+/// Returns what a ray can add at most if it need not be kept: so little that all rays of a tree together make no difference.
+pub(super) fn faint(camera: &Film) -> f64 {
+    ENDED / (16.0 * f64::from(MAX_TREE) * 255.0 * camera.display.steepest())
+}
+
+/// Returns how far colours are apart, in levels of a byte, as an image shows them: the largest of the channels. Where samples
+/// are averaged, light above white counts, too: by the least slope of what is shown below it.
+fn levels_apart(camera: &Film, [low, high]: [Rgb; 2]) -> f64 {
+    let [least, most] = camera.display.shown_within([low, high]);
+    let is_averaged = camera.samples > 1 || camera.adaptive.is_some();
+    let above_white = if is_averaged { FLATTEST * camera.display.gain() * (high - low) } else { Rgb::ZERO };
+    255.0 * (most - least).max(above_white).max_element()
+}
+
+/// Tells whether colours are less than [`ENDED`] apart.
+fn is_within(camera: &Film, [low, high]: [Rgb; 2]) -> bool {
+    let gain = camera.display.gain();
+    // What is shown takes long to compute, and cannot be near enough unless light is, or is burnt.
+    let may_be = |channel: usize| {
+        let apart = 255.0 * FLATTEST * gain * (high[channel] - low[channel]);
+        apart < ENDED || gain * low[channel] >= 1.0
+    };
+    (0..3).all(may_be) && levels_apart(camera, [low, high]) < ENDED
+}
+
+impl Tree {
+    /// Starts with nothing found.
+    pub fn begin(&mut self, budget: u32) {
+        self.open.clear();
+        *self = Self { budget, open: take(&mut self.open), ..Self::default() };
+    }
+
+    /// Adds an open ray. Those that can add no more than `faint` are not followed.
+    pub fn push(&mut self, mut ray: OpenRay, depth: &Depth, faint: f64) {
+        let LightRange { low, high } = ray.range(depth);
+        ray.width = (high - low).max_element();
+        if !ray.width.is_finite() {
+            ray.width = f64::INFINITY;
+            self.unbounded += 1;
+        } else {
+            self.left.low += low;
+            self.left.high += high;
+            if ray.width <= faint {
+                return;
+            }
+        }
+        self.open.push(ray);
+    }
+
+    /// Takes the rays that are followed next, unless the tree has ended.
+    pub fn next(&mut self, camera: &Film, depth: &Depth, round: &mut Vec<OpenRay>) {
+        if self.cost >= self.budget || self.bounds().is_some_and(|bounds| is_within(camera, bounds)) {
+            return;
+        }
+        let Some(heaviest) = self.open.peek().map(|ray| ray.width) else { return };
+        // Where nothing bounds rays, all are as heavy.
+        let most = if heaviest == f64::INFINITY { 1 } else { usize::MAX };
+        let first = round.len();
+        while round.len() - first < most
+            && let Some(ray) = self.pop(TOGETHER * heaviest, depth)
+        {
+            round.push(ray);
+        }
+    }
+
+    /// Tells how the tree has ended.
+    pub fn end(&self, camera: &Film) -> End {
+        let open = |apart: f64| End { colour: self.found, apart };
+        let Some([low, high]) = self.bounds() else { return open(f64::INFINITY) };
+        match levels_apart(camera, [low, high]) {
+            apart if apart <= SHOWN => End { colour: camera.display.middle([low, high]), apart: 0.0 },
+            apart => open(apart),
+        }
+    }
+
+    /// Returns why open rays are left, if there are any.
+    pub fn drops(&self) -> Option<DropReason> {
+        let is_over = self.cost >= self.budget;
+        (!self.open.is_empty()).then_some(if is_over { DropReason::TooMany } else { DropReason::TooFaint })
+    }
+
+    /// Takes the heaviest open ray, if it is at least this heavy.
+    fn pop(&mut self, least: f64, depth: &Depth) -> Option<OpenRay> {
+        if self.open.peek()?.width < least {
+            return None;
+        }
+        let ray = self.open.pop()?;
+        if ray.width == f64::INFINITY {
+            self.unbounded -= 1;
+        } else {
+            let LightRange { low, high } = ray.range(depth);
+            self.left.low -= low;
+            self.left.high -= high;
+        }
+        Some(ray)
+    }
+
+    /// Returns the bounds of the colour, if there are any.
+    fn bounds(&self) -> Option<[Rgb; 2]> {
+        let LightRange { low, high } = self.left;
+        // Sums and differences may have crossed by rounding.
+        (self.unbounded == 0).then(|| [self.found + low, self.found + high.max(low)])
+    }
+}

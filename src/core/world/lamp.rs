@@ -1,0 +1,23 @@
+//! Lamps: the lights of a scene, each with what all lights have beside their own attributes.
+
+use crate::world::body::AnyLight;
+use crate::world::packets::light::PacketLight;
+use crate::world::rules::Fading;
+use std::ops::Deref;
+
+/// A light of a scene.
+pub struct Lamp {
+    /// The light itself.
+    pub light: AnyLight,
+    /// How its light weakens with the distance, by the free rules.
+    pub fading: Fading,
+}
+
+/// Gives direct access to the light.
+impl Deref for Lamp {
+    type Target = dyn PacketLight;
+
+    fn deref(&self) -> &Self::Target {
+        &*self.light
+    }
+}
