@@ -135,12 +135,12 @@ impl<'p, 'm> Prover<'p, 'm> {
             let pixel = Pixel::default();
             return Attempt { pixel, is_enclosed: false, is_final: is_spent, meets_uncertified };
         };
-        // Rays may be left out that add less than this to a pixel.
-        let missing = if self.plan.depth.is_some() { FAINT } else { 0.0 };
-        let display = self.plan.camera.display();
+        let (display, leaves_out) = (self.plan.camera.display(), self.plan.depth.is_some());
+        // Rays may be left out that add less than this to a pixel, and by the free rules change it by fewer levels.
+        let (missing, off) = if leaves_out { (FAINT, MOST_OFF) } else { (0.0, 0.0) };
         let possible = match display.truncates() {
             Some(_) => colour.map(|channel| truncated(channel, missing)),
-            None => rounded(&display, &colour, missing),
+            None => rounded(&display, &colour, off),
         };
         let channels = per_axis(|channel| verdict(possible[channel], bytes[channel]));
         let is_final = is_spent || !channels.contains(&Verdict::Open);
@@ -199,40 +199,44 @@ impl<'p, 'm> Prover<'p, 'm> {
     }
 }
 
-/// The bytes that a channel may be: the least of an image that lacks light, and the least and the greatest of one that
-/// does not.
-type Possible = [u8; 3];
+/// The bytes that a channel may be: the least of an image that leaves out rays, the least and the greatest of one that does
+/// not, and the greatest of one that leaves out rays.
+type Possible = [u8; 4];
+
+/// The most levels by which an image of the free rules is off where rays are left out: the middle of bounds up to a level
+/// apart is shown.
+const MOST_OFF: f64 = 0.5;
 
 /// Returns the bytes of a channel by the notes' rules. `missing` is the most that the image may lack.
 fn truncated<F: Float>(channel: Interval<F>, missing: f64) -> Possible {
     let level = level(channel);
     let least = (level - Interval::constant(255.0 * missing)).low;
-    [least, level.low, level.high].map(|level| level.floor().to_f64() as u8)
+    [least, level.low, level.high, level.high].map(|level| level.floor().to_f64() as u8)
 }
 
-/// Returns the bytes of a colour by the free rules. `missing` is the most that the image may lack.
-fn rounded<F: Float>(display: &Display, colour: &Colour<Interval<F>>, missing: f64) -> [Possible; 3] {
+/// Returns the bytes of a colour by the free rules. `off` is the number of levels that the image may be off.
+fn rounded<F: Float>(display: &Display, colour: &Colour<Interval<F>>, off: f64) -> [Possible; 3] {
     // More than the rounding of a level to `f64`, and of its code.
     const OFF: f64 = 1e-9;
     let end = |of: fn(&Interval<F>) -> F| Rgb::from_array(per_axis(|channel| of(&colour[channel]).to_f64()));
     let (low, high) = (end(|channel| channel.low), end(|channel| channel.high));
-    let [least, _] = display.shown_within([low - missing, high]);
     let [low, high] = display.shown_within([low, high]);
     let byte = |level: f64| level.round() as u8;
     per_axis(|channel| {
         [
-            byte(255.0 * least[channel] - OFF),
+            byte(255.0 * low[channel] - off - OFF),
             byte(255.0 * low[channel] - OFF),
             byte(255.0 * high[channel] + OFF),
+            byte(255.0 * high[channel] + off + OFF),
         ]
     })
 }
 
 /// Returns the verdict on the byte of a channel.
-fn verdict([least, low, high]: Possible, byte: u8) -> Verdict {
+fn verdict([least, low, high, most]: Possible, byte: u8) -> Verdict {
     if low == high && byte == low {
         Verdict::Proven
-    } else if (least..=high).contains(&byte) {
+    } else if (least..=most).contains(&byte) {
         Verdict::Open
     } else {
         Verdict::Contradicted

@@ -5,7 +5,7 @@ use super::context::Tracer;
 use super::ray_group::RayGroup;
 use super::refract;
 use super::scratch::ShadingScratch;
-use super::tree::{self, End, OpenRay, Tree};
+use super::tree::{End, Ends, OpenRay, Tree};
 use crate::geometry::ray::Side;
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::render::limits::MAX_RAYS;
@@ -19,6 +19,9 @@ use std::mem::take;
 
 /// The number of trees that grow together, so that their open rays take little memory.
 const TOGETHER: usize = 64;
+
+/// The least weight of rays whose hits tell the samples of a pixel apart, by what they meet.
+const HEAVY: f64 = 1.0 / 16.0;
 
 /// What was found at the hit of a ray.
 #[derive(Clone, Copy, Default)]
@@ -73,12 +76,12 @@ impl TreeScratch {
     }
 
     /// Adds what the round has found to its trees, in the order of its rays.
-    fn add(&mut self, first: usize, depth: &Depth, faint: f64) {
+    fn add(&mut self, first: usize, depth: &Depth, ends: &Ends) {
         for (ray, outcome) in self.round.iter().zip(&self.outcomes) {
             let tree = &mut self.trees[usize::from(ray.camera) - first];
             tree.found += outcome.light;
             tree.cost += outcome.cost;
-            outcome.onward.iter().flatten().for_each(|ray| tree.push(*ray, depth, faint));
+            outcome.onward.iter().flatten().for_each(|ray| tree.push(*ray, depth, ends));
         }
     }
 }
@@ -87,10 +90,10 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Computes the colours that primary rays return by the free rules.
     pub(super) fn grow(&mut self, group: &mut RayGroup, colours: &mut VectorList) {
         let Some(depth) = &self.plan.depth else { return self.trace(group, colours) };
-        let (len, camera) = (group.len, &self.plan.camera);
+        let (len, ends) = (group.len, Ends::of(&self.plan.camera));
         let mut scratch = self.scratch.trees.take().unwrap_or_default();
         // A budget that differs from the usual one was set for this ray.
-        let most = |own: &u32| if *own == MAX_RAYS as u32 { tree::most_rays(camera) } else { *own };
+        let most = |own: &u32| if *own == MAX_RAYS as u32 { ends.budget } else { *own };
         let budgets: Vec<u32> = group.ray_budget[..len].iter().map(most).collect();
         group.ray_budget.fill(MAX_RAYS as u32);
         group.places.clear();
@@ -100,10 +103,11 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         scratch.begin_round();
         scratch.outcomes.iter_mut().for_each(|outcome| outcome.cost = MAX_RAYS as u32);
         self.scratch.trees = Some(scratch);
+        self.scratch.trails.is_mixed = true;
         self.trace(group, colours);
         let mut scratch = self.scratch.trees.take().unwrap_or_default();
         scratch.note(group, colours);
-        let (first, faint) = (take(&mut scratch.outcomes), tree::faint(camera));
+        let first = take(&mut scratch.outcomes);
         for start in (0..len).step_by(TOGETHER) {
             let block = start..len.min(start + TOGETHER);
             scratch.trees.resize_with(scratch.trees.len().max(block.len()), Tree::default);
@@ -115,16 +119,18 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             scratch.outcomes.clear();
             scratch.outcomes.extend_from_slice(&first[block.clone()]);
             while !scratch.round.is_empty() {
-                scratch.add(start, depth, faint);
+                scratch.add(start, depth, &ends);
                 let TreeScratch { trees, round, .. } = &mut *scratch;
                 round.clear();
-                trees[..block.len()].iter_mut().for_each(|tree| tree.next(camera, depth, round));
+                trees[..block.len()].iter_mut().for_each(|tree| tree.next(&ends, depth, round));
                 scratch = self.follow(scratch, start);
             }
             for (tree, lane) in scratch.trees.iter().zip(block) {
-                let End { colour, apart } = tree.end(camera);
+                let End { colour, apart } = tree.end(&ends);
                 colours.set(lane, colour);
-                if W::SEES && let Some(reason) = tree.drops() {
+                if W::SEES
+                    && let Some(reason) = tree.drops()
+                {
                     self.observer.see(Event::Dropped(reason));
                 }
                 if apart > 0.0 {
@@ -142,20 +148,26 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let mut order = take(&mut scratch.order);
         order.clear();
         order.extend(0..scratch.round.len() as u32);
-        let object = |scratch: &TreeScratch, place: u32| scratch.round[place as usize].object;
-        order.sort_by_key(|place| object(&scratch, *place));
+        // What light rays meet is not recorded, as another sample may have ended before them.
+        let records = self.scratch.trails.is_on;
+        let kind = |place: u32| {
+            let OpenRay { object, weight, .. } = scratch.round[place as usize];
+            (object, records && weight.abs().max_element() >= HEAVY)
+        };
+        order.sort_by_key(|place| kind(*place));
+        let kinds: Vec<_> = order.iter().map(|place| kind(*place)).collect();
         // An observer sees one ray after the other.
         let together = if W::SEES { 1 } else { PACKET_SIZE };
         self.depth += 1;
-        let mut rest = &order[..];
-        while let Some(place) = rest.first() {
-            let its = object(&scratch, *place);
-            let count = rest.iter().take(together).take_while(|place| object(&scratch, **place) == its).count();
-            let (places, others) = rest.split_at(count);
-            rest = others;
+        let mut start = 0;
+        while let Some((object, is_heavy)) = kinds.get(start).copied() {
+            let same = kinds[start..].iter().take(together).take_while(|other| **other == (object, is_heavy));
+            let places = &order[start..start + same.count()];
+            start += places.len();
+            self.scratch.trails.is_on = is_heavy;
             scratch.gather(places, first, &mut group);
             let count = group.padded();
-            let shape = &self.model.objects[its as usize].shape;
+            let shape = &self.model.objects[object as usize].shape;
             group.errors = self.errors(&**shape, &group.travelled[..count], &group.cosines[..count]);
             self.begin_open(&scratch.round, places);
             self.scratch.trees = Some(scratch);
@@ -164,15 +176,15 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             scratch.note(&group, &seen);
         }
         self.depth -= 1;
+        self.scratch.trails.is_on = records;
         (scratch.group, scratch.seen, scratch.order) = (group, seen, order);
         scratch
     }
 
     /// Reports rays that are followed together.
     fn begin_open(&mut self, round: &[OpenRay], places: &[u32]) {
-        let of_kind = |kind: RayKind| {
-            places.iter().filter(|place| round[**place as usize].kind == kind).count()
-        };
+        let of_kind =
+            |kind: RayKind| places.iter().filter(|place| round[**place as usize].kind == kind).count();
         for kind in [RayKind::Reflected, RayKind::Transmitted] {
             self.observer.count(Count::Rays(kind, of_kind(kind)));
         }

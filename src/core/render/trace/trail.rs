@@ -7,11 +7,13 @@ use crate::world::packets::shader::{PacketShader, SurfacePoints};
 use std::mem::take;
 
 /// For each current primary ray, a hash of the objects, tiles and lights on its path: through mirrors and glass, in
-/// the order in which they are met. It does not depend on the other rays of the packet.
+/// the order in which they are met, or by the free rules in any. It does not depend on the other rays of the packet.
 #[derive(Default)]
 pub(super) struct PathHashes {
     /// Whether anything is recorded.
     pub is_on: bool,
+    /// Whether the rays of one path are met in no order.
+    pub is_mixed: bool,
     /// The hashes.
     pub marks: Vec<u64>,
     /// The distances of the first hits in world units, infinite for rays that hit nothing.
@@ -90,6 +92,11 @@ impl PathHashes {
     #[inline]
     fn add(&mut self, lane: u8, what: u64) {
         let mark = &mut self.marks[usize::from(lane)];
+        if self.is_mixed {
+            let what = what.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            *mark = mark.wrapping_add((what ^ what >> 29).wrapping_mul(0xbf58_476d_1ce4_e5b9));
+            return;
+        }
         *mark = (mark.rotate_left(23) ^ what).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     }
 }

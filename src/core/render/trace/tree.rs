@@ -19,6 +19,7 @@ use crate::geometry::ray::Side;
 use crate::render::limits::{LEAST_TREE, MAX_TREE};
 use crate::render::observer::{DropReason, RayKind};
 use crate::render::plan::depth::{Depth, LightRange};
+use crate::world::display::Display;
 use crate::world::film::Film;
 use crate::world::material::Rgb;
 use glam::DVec3;
@@ -141,34 +142,47 @@ pub(super) struct End {
     pub apart: f64,
 }
 
-/// Returns the number of rays that the tree of one sample may cost.
-pub(super) fn most_rays(camera: &Film) -> u32 {
-    (MAX_TREE / camera.samples).max(LEAST_TREE)
+/// What decides where the trees of a camera's rays end.
+pub(super) struct Ends {
+    display: Display,
+    /// Whether a pixel is the mean of several samples.
+    is_averaged: bool,
+    /// The number of rays that the tree of one sample may cost.
+    pub budget: u32,
+    /// What a ray can add at most if it need not be kept: so little that all rays of a tree together make no difference.
+    faint: f64,
 }
 
-/// Returns what a ray can add at most if it need not be kept: so little that all rays of a tree together make no difference.
-pub(super) fn faint(camera: &Film) -> f64 {
-    ENDED / (16.0 * f64::from(MAX_TREE) * 255.0 * camera.display.steepest())
-}
+impl Ends {
+    pub fn of(camera: &Film) -> Self {
+        let display = camera.display();
+        Self {
+            is_averaged: camera.samples > 1 || camera.adaptive.is_some(),
+            budget: (MAX_TREE / camera.samples).max(LEAST_TREE),
+            faint: ENDED / (16.0 * f64::from(MAX_TREE) * 255.0 * display.steepest()),
+            display,
+        }
+    }
 
-/// Returns how far colours are apart, in levels of a byte, as an image shows them: the largest of the channels. Where samples
-/// are averaged, light above white counts, too: by the least slope of what is shown below it.
-fn levels_apart(camera: &Film, [low, high]: [Rgb; 2]) -> f64 {
-    let [least, most] = camera.display.shown_within([low, high]);
-    let is_averaged = camera.samples > 1 || camera.adaptive.is_some();
-    let above_white = if is_averaged { FLATTEST * camera.display.gain() * (high - low) } else { Rgb::ZERO };
-    255.0 * (most - least).max(above_white).max_element()
-}
+    /// Returns how far colours are apart, in levels of a byte, as an image shows them: the largest of the channels. Where
+    /// samples are averaged, light above white counts, too: by the least slope of what is shown below it.
+    fn levels_apart(&self, [low, high]: [Rgb; 2]) -> f64 {
+        let [least, most] = self.display.shown_within([low, high]);
+        let above_white =
+            if self.is_averaged { FLATTEST * self.display.gain() * (high - low) } else { Rgb::ZERO };
+        255.0 * (most - least).max(above_white).max_element()
+    }
 
-/// Tells whether colours are less than [`ENDED`] apart.
-fn is_within(camera: &Film, [low, high]: [Rgb; 2]) -> bool {
-    let gain = camera.display.gain();
-    // What is shown takes long to compute, and cannot be near enough unless light is, or is burnt.
-    let may_be = |channel: usize| {
-        let apart = 255.0 * FLATTEST * gain * (high[channel] - low[channel]);
-        apart < ENDED || gain * low[channel] >= 1.0
-    };
-    (0..3).all(may_be) && levels_apart(camera, [low, high]) < ENDED
+    /// Tells whether colours are less than [`ENDED`] apart.
+    fn are_met(&self, [low, high]: [Rgb; 2]) -> bool {
+        let gain = self.display.gain();
+        // What is shown takes long to compute, and cannot be near enough unless light is, or is burnt.
+        let may_be = |channel: usize| {
+            let apart = 255.0 * FLATTEST * gain * (high[channel] - low[channel]);
+            apart < ENDED || gain * low[channel] >= 1.0
+        };
+        (0..3).all(may_be) && self.levels_apart([low, high]) < ENDED
+    }
 }
 
 impl Tree {
@@ -178,8 +192,8 @@ impl Tree {
         *self = Self { budget, open: take(&mut self.open), ..Self::default() };
     }
 
-    /// Adds an open ray. Those that can add no more than `faint` are not followed.
-    pub fn push(&mut self, mut ray: OpenRay, depth: &Depth, faint: f64) {
+    /// Adds an open ray. One that is too faint is not followed.
+    pub fn push(&mut self, mut ray: OpenRay, depth: &Depth, ends: &Ends) {
         let LightRange { low, high } = ray.range(depth);
         ray.width = (high - low).max_element();
         if !ray.width.is_finite() {
@@ -188,7 +202,7 @@ impl Tree {
         } else {
             self.left.low += low;
             self.left.high += high;
-            if ray.width <= faint {
+            if ray.width <= ends.faint {
                 return;
             }
         }
@@ -196,8 +210,8 @@ impl Tree {
     }
 
     /// Takes the rays that are followed next, unless the tree has ended.
-    pub fn next(&mut self, camera: &Film, depth: &Depth, round: &mut Vec<OpenRay>) {
-        if self.cost >= self.budget || self.bounds().is_some_and(|bounds| is_within(camera, bounds)) {
+    pub fn next(&mut self, ends: &Ends, depth: &Depth, round: &mut Vec<OpenRay>) {
+        if self.cost >= self.budget || self.bounds().is_some_and(|bounds| ends.are_met(bounds)) {
             return;
         }
         let Some(heaviest) = self.open.peek().map(|ray| ray.width) else { return };
@@ -212,11 +226,11 @@ impl Tree {
     }
 
     /// Tells how the tree has ended.
-    pub fn end(&self, camera: &Film) -> End {
+    pub fn end(&self, ends: &Ends) -> End {
         let open = |apart: f64| End { colour: self.found, apart };
         let Some([low, high]) = self.bounds() else { return open(f64::INFINITY) };
-        match levels_apart(camera, [low, high]) {
-            apart if apart <= SHOWN => End { colour: camera.display.middle([low, high]), apart: 0.0 },
+        match ends.levels_apart([low, high]) {
+            apart if apart <= SHOWN => End { colour: ends.display.middle([low, high]), apart: 0.0 },
             apart => open(apart),
         }
     }
