@@ -11,7 +11,7 @@ use crate::options::stop::{self, Stop};
 use crate::options::{cpu, frames, keep, method, samples, set, size};
 use crate::process::failure::Failure;
 use crate::process::{messages, progress};
-use crate::rendering::job::Job;
+use crate::rendering::job::{self, Job};
 use crate::rendering::resume::ResumedImage;
 use crate::rendering::stats::{self, Stats};
 use crate::rendering::{aov, debug, full_range, part, resume};
@@ -264,7 +264,7 @@ fn one(
             stop,
             stats: args.stats.wants_any().then_some(&stats),
         };
-        let levels = job.run(output, begun)?;
+        let (levels, far) = job.run(output, begun)?;
         if path != Path::new("-") {
             let [width, height] = part.size();
             let seconds = start.elapsed().as_secs_f64();
@@ -274,6 +274,7 @@ fn one(
                 path.display()
             ));
             differences.print();
+            job::tell_of_far(far);
             if !reader::is_black(&model) {
                 messages::remark(diagnosis::remark(&plan, [&part.columns, &part.rows], &levels));
             }

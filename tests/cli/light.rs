@@ -98,9 +98,10 @@ fn black_burnt_and_empty_images_say_why() {
     let folder = folder();
     let black = format!("{FAR} rules notes }} {PART}");
     let burnt = format!("{FAR} rules free }} {}", PART.replace("emissivity 1 1 1", "emissivity 30 30 30"));
-    let empty = format!("{} rules free }} sky day {{ }} {PART}", FAR.replace("target 0 0 0", "target 0 0 900"));
+    let empty =
+        format!("{} rules free }} sky day {{ }} {PART}", FAR.replace("target 0 0 0", "target 0 0 900"));
     for (scene, says, cure) in [
-        (&black, "by the notes' rules adds at most", "`rules free`"),
+        (&black, "by the notes' rules adds up to", "`rules free`"),
         (&burnt, "of the image is burnt to white: `key` adds up to", "`rules notes`"),
         (&empty, "no object is in view", "`target 0 0 0` looks at their middle"),
     ] {

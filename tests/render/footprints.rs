@@ -4,7 +4,14 @@ use crate::common::model;
 use tabray::render::footprint::{Proof, Prover};
 use tabray::render::plan::depth::Depth;
 use tabray::scene::model::Model;
+use tabray::world::display::{Display, Tone, Transfer};
 use tabray::world::material::Rgb;
+use tabray::world::rules::Rules;
+
+/// Images by the notes' rules, with an exposure in stops.
+fn display(stops: f64) -> Display {
+    Display::new(Rules::Notes, stops, Tone::Clip, Transfer::Linear)
+}
 
 fn proof(model: &Model, pixel: [usize; 2], error: f64) -> Proof {
     let depth = Depth::new(model);
@@ -38,7 +45,7 @@ fn a_plane_half_in_shadow_has_the_mean_of_both_halves() {
     ));
     let [lit, dark] = [9.0 / 2.0 / 16.0, 1.0 / 2.0 / 16.0];
     let [left, middle, right] = [3999, 4000, 4001].map(|x| proof(&model, [x, 3000], 1.0 / 255.0));
-    assert!([left, middle, right].iter().all(|proof| proof.is_within(1.0 / 255.0, 1.0)));
+    assert!([left, middle, right].iter().all(|proof| proof.is_within(1.0 / 255.0, &display(0.0))));
     holds(&left, lit);
     holds(&middle, 0.5 * (lit + dark));
     holds(&right, dark);
@@ -79,7 +86,7 @@ fn a_background_is_bounded_by_itself_and_beside_an_edge() {
     let sky = scene("sky s { horizon 0 0 0 zenith 1 1 1 up 1.7320508075688772 0 -1 }");
     let aside = proof(&sky, [3999, 3000], 1.0 / 255.0);
     holds(&aside, 0.5 - 0.000125 * 0.866);
-    assert!(aside.is_within(1.0 / 255.0, 1.0), "{aside:?}");
+    assert!(aside.is_within(1.0 / 255.0, &display(0.0)), "{aside:?}");
 }
 
 #[test]
@@ -103,10 +110,11 @@ fn what_cannot_see_refracting_glass_is_certified_as_without_it() {
         let with = scene(&format!("{glass} sphere bowl {{ material g center 7 1.2 -3 radius 1 }}"));
         for (x, y) in (0..8).flat_map(|x| (0..12).map(move |y| (x, y))) {
             let [with, without] = [&with, &without].map(|model| proof(model, [x, y], 2.0 / 255.0));
-            let [is_certain, was_certain] = [&with, &without].map(|proof| proof.is_within(2.0 / 255.0, 1.0));
+            let [is_certain, was_certain] =
+                [&with, &without].map(|proof| proof.is_within(2.0 / 255.0, &display(0.0)));
             assert!(is_certain || !was_certain, "{glass} {x} {y}: {with:?}, {without:?}");
         }
-        assert!(!proof(&with, [12, 4], 2.0 / 255.0).is_within(2.0 / 255.0, 1.0), "{glass}");
+        assert!(!proof(&with, [12, 4], 2.0 / 255.0).is_within(2.0 / 255.0, &display(0.0)), "{glass}");
     }
 }
 
@@ -120,7 +128,7 @@ fn a_sphere_is_known_from_one_footprint() {
     ));
     let proof = proof(&model, MIDDLE, 1e-3 / 255.0);
     assert_eq!(proof.footprints, 1);
-    assert!(proof.is_within(1e-3 / 255.0, 1.0), "{proof:?}");
+    assert!(proof.is_within(1e-3 / 255.0, &display(0.0)), "{proof:?}");
     holds(&proof, 9.0 / 2.0 / 14.0);
 }
 
@@ -140,11 +148,16 @@ fn a_light_with_a_size_is_its_mean_where_all_of_it_is_seen() {
 fn the_middle_of_the_bounds_is_shown_within_half_their_width() {
     let proof = |low: f64, high: f64| Proof { low: Rgb::splat(low), high: Rgb::splat(high), footprints: 1 };
     for (low, high) in [(0.2, 0.4), (0.9, 3.0), (-1.0, 0.1), (1.5, 4.0), (2.0, f64::INFINITY), (-3.0, -1.0)] {
-        for gain in [0.5, 1.0, 4.0] {
-            let proof = proof(low, high);
-            let error = proof.error(proof.middle(gain), gain);
-            assert!((error - proof.half_width(gain)).abs() < 1e-12, "{proof:?} {gain}");
+        for stops in [-1.0, 0.0, 2.0] {
+            let free = Display::new(Rules::Free, stops, Tone::Clip, Transfer::Srgb);
+            for display in [display(stops), free] {
+                let proof = proof(low, high);
+                let error = proof.error(proof.middle(&display), &display);
+                let half = 0.5 * (display.shown(proof.high) - display.shown(proof.low)).max_element();
+                assert!((error - half).abs() < 1e-12, "{proof:?} {display:?}");
+                assert!((error - proof.half_width(&display)).abs() < 1e-12, "{proof:?} {display:?}");
+            }
         }
     }
-    assert!(!proof(-1.0, f64::INFINITY).is_within(0.4, 1.0));
+    assert!(!proof(-1.0, f64::INFINITY).is_within(0.4, &display(0.0)));
 }

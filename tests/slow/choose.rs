@@ -11,7 +11,6 @@ use rayon::prelude::*;
 use std::env;
 use std::fs;
 use std::process::Command;
-use tabray::render::bytes::shown;
 use tabray::render::trace::{Scratch, Tracer};
 use tabray::render::{Flaws, Plan, Renderer};
 use tabray::scene::Model;
@@ -71,7 +70,7 @@ fn colours(renderer: &Renderer, plan: &Plan, pixels: &[[usize; 2]]) -> Vec<Rgb> 
         let (mut scratch, mut nobody) = (Scratch::default(), Flaws::default());
         let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody);
         let seen = tracer.pixels(pixels);
-        (0..pixels.len()).map(|pixel| shown(seen.get(pixel))).collect::<Vec<_>>()
+        (0..pixels.len()).map(|pixel| plan.camera.display().shown(seen.get(pixel))).collect::<Vec<_>>()
     };
     renderer.run(|| pixels.par_chunks(SIZE[0]).map(part).collect::<Vec<_>>()).concat()
 }

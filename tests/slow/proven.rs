@@ -65,9 +65,9 @@ fn pixels() -> impl Iterator<Item = [usize; 2]> {
 fn certified(model: &Model) -> usize {
     let (prover, depth) = (footprint::Prover::new(model), Depth::new(model));
     let camera = &model.camera.value;
-    let gain = libm::exp2(camera.exposure);
+    let display = camera.display();
     let proof = |pixel| prover.pixel((model, depth.as_ref()), camera, pixel, ERROR);
-    pixels().filter(|pixel| proof(*pixel).is_within(ERROR, gain)).count()
+    pixels().filter(|pixel| proof(*pixel).is_within(ERROR, &display)).count()
 }
 
 /// Counts the bytes of each verdict.

@@ -38,7 +38,9 @@ pub fn render(
     let mut pixels = None;
     stats.timed(|| pixels = renderer.colours(plan, [&part.columns, &part.rows], overseer, &add));
     progress.end();
-    job::warn_of(&stats.tally.flaws(), plan.model);
+    let flaws = stats.tally.flaws();
+    job::warn_of(&flaws, plan.model);
+    job::tell_of_far(flaws.far);
     job::report_proofs(stats.tally.proofs(), plan);
     let Some(pixels) = pixels else {
         stop.report();

@@ -18,8 +18,8 @@ use std::thread;
 use std::time::Instant;
 use tabray_core::output::packing::PIECE;
 use tabray_core::output::picture::Format;
-use tabray_core::render::flaws::{BudgetCuts, Flaws, Undecided};
-use tabray_core::render::limits::{MAX_RAYS, MAX_TREE};
+use tabray_core::render::flaws::{BudgetCuts, FarPaths, Flaws, Undecided};
+use tabray_core::render::limits::{MAX_DIST, MAX_RAYS, MAX_TREE};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::ray_stats::{Proofs, RayStats};
 use tabray_core::render::renderer::{RenderCallbacks, Renderer};
@@ -57,8 +57,8 @@ pub struct Job<'a> {
 impl Job<'_> {
     /// Renders what a checkpoint does not have, and writes the image to its path. If the render is stopped, the program
     /// ends with what is done, because threads may still be at work.
-    /// Returns the levels of the image.
-    pub fn run(&self, output: Output, begun: Option<ResumedImage>) -> Result<Levels, Failure> {
+    /// Returns the levels of the image, and the rays whose paths were too long by the notes' rules.
+    pub fn run(&self, output: Output, begun: Option<ResumedImage>) -> Result<(Levels, FarPaths), Failure> {
         let progress = Progress::new(self.part.rows.len());
         let (flaws, proofs) = (Mutex::new(Flaws::default()), Mutex::new(Proofs::default()));
         let flawed = |part: Flaws| flaws.lock().unwrap_or_else(PoisonError::into_inner).add(&part);
@@ -80,11 +80,12 @@ impl Job<'_> {
             };
             let outcome = self.write(output, begun, &progress, fill);
             progress.end();
-            warn_of(&take(&mut flaws.lock().unwrap_or_else(PoisonError::into_inner)), plan.model);
+            let flaws = take(&mut *flaws.lock().unwrap_or_else(PoisonError::into_inner));
+            warn_of(&flaws, plan.model);
             report_proofs(take(&mut proofs.lock().unwrap_or_else(PoisonError::into_inner)), plan);
             match outcome {
                 Err(failure) if self.stop.is_due() => failure::end(&failure),
-                outcome => outcome,
+                outcome => outcome.map(|levels| (levels, flaws.far)),
             }
         })
     }
@@ -229,12 +230,22 @@ pub fn report_proofs(proofs: Proofs, plan: &Plan) {
 }
 
 /// Warns of pixels with primary rays that used up their ray budget or could not be decided, if there are any.
-pub fn warn_of(Flaws { cuts, undecided }: &Flaws, model: &Model) {
+pub fn warn_of(Flaws { cuts, undecided, .. }: &Flaws, model: &Model) {
     if cuts.pixels > 0 {
         warn_of_cuts(cuts, model.camera.value.rules);
     }
     if undecided.pixels() > 0 {
         warn_of_undecided(undecided, model);
+    }
+}
+
+/// Says how many rays lack light because paths end by the notes' rules, if there are any.
+pub fn tell_of_far(FarPaths { rays, of }: FarPaths) {
+    if rays > 0 {
+        messages::note(&format!(
+            "light in mirrors and glass ends after {MAX_DIST} units by the notes' rules, and is black beyond: in {rays} of {of} \
+             rays from the viewer"
+        ));
     }
 }
 

@@ -1,7 +1,7 @@
-//! The pixels of an image that are not as they should be: those cut off at the ray budget, and those whose first hit could
-//! not be decided.
+//! The pixels of an image that are not as they should be: those cut off at the ray budget, those whose first hit could not
+//! be decided, and those that lack light from beyond the longest path.
 
-use crate::render::observer::{Count, TraceObserver};
+use crate::render::observer::{Count, RayKind, TraceObserver};
 use crate::world::certify::Doubt;
 use std::collections::BTreeMap;
 
@@ -12,6 +12,8 @@ pub struct Flaws {
     pub cuts: BudgetCuts,
     /// The pixels whose first hit could not be decided.
     pub undecided: Undecided,
+    /// The rays from the viewer whose light is not all there, because paths end by the notes' rules.
+    pub far: FarPaths,
 }
 
 /// The pixels that have used up their ray budget.
@@ -23,6 +25,15 @@ pub struct BudgetCuts {
     pub most: f64,
 }
 
+/// The rays from the viewer whose paths are too long by the notes' rules.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FarPaths {
+    /// The number of rays of which a path in mirrors or through glass is too long.
+    pub rays: u64,
+    /// The number of all rays from the viewer.
+    pub of: u64,
+}
+
 /// The numbers of pixels with a camera ray whose first hit could not be decided, by the index of the object that it may hit,
 /// and by the reason. Where a pixel has several, the first counts.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -32,6 +43,7 @@ impl Flaws {
     /// Adds the flaws of another part of the image.
     pub fn add(&mut self, other: &Self) {
         self.cuts.add(other.cuts);
+        self.far = FarPaths { rays: self.far.rays + other.far.rays, of: self.far.of + other.far.of };
         for (of, pixels) in &other.undecided.0 {
             *self.undecided.0.entry(*of).or_default() += pixels;
         }
@@ -57,6 +69,8 @@ impl TraceObserver for Flaws {
 
     fn count(&mut self, count: Count) {
         match count {
+            Count::Rays(RayKind::Primary, count) => self.far.of += count as u64,
+            Count::Far(count) => self.far.rays += count as u64,
             Count::Cut(most) => self.cuts.add(BudgetCuts { pixels: 1, most }),
             Count::Undecided(object, doubt) => *self.undecided.0.entry((object, doubt)).or_default() += 1,
             _ => {}

@@ -20,7 +20,7 @@ pub mod tiles;
 pub mod trace;
 
 pub use bytes::to_byte;
-pub use flaws::{BudgetCuts, Flaws, Undecided};
+pub use flaws::{BudgetCuts, FarPaths, Flaws, Undecided};
 pub use observer::{Count, DropReason, Event, Hit, LightOutcome, RayKind, RayPurpose, TraceObserver};
 pub use plan::Plan;
 pub use ray_stats::{RayStats, TestCounts};

@@ -83,6 +83,7 @@ impl TraceObserver for RayStats {
     const SEES: bool = false;
 
     fn count(&mut self, count: Count) {
+        self.flaws.count(count);
         match count {
             Count::Rays(kind, rays) => self.rays[kind as usize] += rays as u64,
             Count::Tested(object, rays) => self.of(object).tested += rays as u64,
@@ -95,7 +96,7 @@ impl TraceObserver for RayStats {
                 let footprints = footprints.into();
                 self.proofs.add(Proofs { certified: 1 - pixels, open: pixels, most, sum, footprints });
             }
-            Count::Cut(_) | Count::Undecided(..) => self.flaws.count(count),
+            Count::Cut(_) | Count::Undecided(..) | Count::Far(_) => {}
         }
     }
 }

@@ -359,8 +359,8 @@ impl Check<'_, '_> {
         for attribute in unused {
             let place = place_of(args.entity, parsed, Some(attribute));
             let message = format!("`{attribute}` has no effect by the notes' rules of light");
-            let help = "they truncate 255 times the light to a byte; with `rules free`, light is shown by `exposure`, \
-                        `tone` and `transfer`";
+            let help = "they cut 255 times the light to a byte; by the free rules, light is shown by `exposure`, `tone` \
+                        and `transfer`";
             self.report.add(Fault::warning(place, message).help(help));
         }
     }

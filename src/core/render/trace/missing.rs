@@ -1,4 +1,4 @@
-//! Bounds on the light that is missing where a pixel's ray budget is used up.
+//! Bounds on the light that is missing where a pixel's ray budget is used up, and what is missing beyond the longest path.
 
 use super::arrays::resized;
 use super::context::Tracer;
@@ -6,8 +6,12 @@ use super::hit_record::HitRecord;
 use super::light;
 use super::ray_group::RayGroup;
 use super::surface::Surface;
+use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::render::limits::{KEPT_DEPTH, KEPT_PART};
-use crate::render::observer::TraceObserver;
+use crate::render::observer::{Count, RayKind, TraceObserver};
+use crate::render::plan::depth::Branch;
+use crate::world::material::Rgb;
+use crate::world::rules;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Starts primary rays with these ray budgets, which lack nothing yet.
@@ -66,6 +70,41 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
         self.scratch.missing[camera] += levels / 255.0;
         self.scratch.any_missing = true;
+    }
+
+    /// Notes the primary rays of paths that end at a surface because they are too long by the notes' rules, and not because
+    /// they could add too little.
+    pub(super) fn end_far(
+        &mut self,
+        group: &RayGroup,
+        surface: &Surface,
+        goes: &[u64],
+        kind: RayKind,
+        branch: &Branch,
+    ) {
+        let travelled = &surface.travelled[..group.padded()];
+        let is_far = |lane: &usize| goes[*lane] == 0 && rules::path_left(travelled[*lane]) < 0.0;
+        if self.depth >= self.plan.bounces || !(0..group.len).any(|lane| is_far(&lane)) {
+            return;
+        }
+        let mut ends = vec![1; group.padded()];
+        group.leave_out(self.cpu, branch, travelled, &mut ends);
+        let mirrors = |lane: usize| surface.look.is_some() || surface.specular.get(lane) != Rgb::ZERO;
+        let matters = |lane: &usize| ends[*lane] != 0 && (kind == RayKind::Transmitted || mirrors(*lane));
+        for lane in (0..group.len).filter(is_far).filter(matters) {
+            let far = &mut self.scratch.far;
+            far.resize(PACKET_SIZE, false);
+            far[usize::from(group.camera[lane])] = true;
+        }
+    }
+
+    /// Counts the primary rays of which a path was too long.
+    pub(super) fn count_far(&mut self) {
+        if !self.scratch.far.is_empty() {
+            let count = self.scratch.far.iter().filter(|is_far| **is_far).count();
+            self.observer.count(Count::Far(count));
+            self.scratch.far.clear();
+        }
     }
 
     /// Adds an amount of light at the end of a ray, weighted by its path, to what its primary ray lacks.

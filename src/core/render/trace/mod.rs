@@ -28,8 +28,8 @@ mod shade;
 mod shadow_rays;
 mod surface;
 mod trail;
-mod tree;
 mod transmittance;
+mod tree;
 mod undecided;
 
 pub use context::Tracer;
@@ -331,7 +331,10 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             self.observer.see(Event::Begin(RayPurpose::Primary));
         }
         match self.plan.camera.rules {
-            Rules::Notes => self.trace(group, colours),
+            Rules::Notes => {
+                self.trace(group, colours);
+                self.count_far();
+            }
             Rules::Free => self.grow(group, colours),
         }
     }

@@ -54,6 +54,8 @@ pub struct Scratch {
     pub(super) kept: Vec<u32>,
     /// Whether any primary ray may lack light.
     pub(super) any_missing: bool,
+    /// Whether a path of each primary ray was too long by the notes' rules; empty while none was.
+    pub(super) far: Vec<bool>,
     /// The primary rays whose first hit could not be decided.
     pub(super) undecided: UndecidedScratch,
 }

@@ -312,6 +312,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     ) {
         let ShadingScratch { surface, dir, goes, lanes, secondary, seen, behind, .. } = shading;
         let lanes = compact(&goes[..group.len], lanes);
+        if lanes.len() < group.len {
+            self.end_far(group, surface, goes, kind, &branch);
+        }
         if W::SEES && lanes.is_empty() {
             let is_far = rules::path_left(surface.travelled[0]) < 0.0;
             self.observer.see(Event::Dropped(if is_far { DropReason::TooFar } else { DropReason::TooFaint }));

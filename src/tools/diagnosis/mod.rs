@@ -1,10 +1,12 @@
 //! Why an image is black, burnt or empty, in numbers, and what cures it.
 
+mod survey;
+
 use glam::DVec3;
 use std::ops::Range;
+use survey::Survey;
 use tabray_core::geometry::aabb::Aabb;
 use tabray_core::render::flaws::Flaws;
-use tabray_core::render::observer::{Event, LightOutcome, RayPurpose, TraceObserver};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::trace::{self, Scratch, Tracer};
 use tabray_core::scene::attribute::Pose;
@@ -15,13 +17,10 @@ use tabray_core::world::camera::Projected;
 use tabray_core::world::display::Display;
 use tabray_core::world::film::Film;
 use tabray_core::world::material::Rgb;
-use tabray_core::world::rules::Rules;
+use tabray_core::world::rules::{Falloff, Rules};
 
 /// The maximum number of columns and rows of pixels that are looked at.
 const GRID: [usize; 2] = [40, 30];
-
-/// The maximum number of tests of objects that looking takes: it tests each object for each ray.
-const MOST_TESTS: usize = 1 << 23;
 
 /// The level from which on an image is not black.
 const DARK: u8 = 8;
@@ -154,7 +153,12 @@ fn empty(plan: &Plan, places: &[[usize; 2]]) -> Option<Remark> {
                 }
                 None => String::new(),
             };
-            format!("the viewer is at {}, and the objects lie between {} and {}{cure}", place(viewer), place(low), place(high))
+            format!(
+                "the viewer is at {}, and the objects lie between {} and {}{cure}",
+                place(viewer),
+                place(low),
+                place(high)
+            )
         }
     };
     Some(Remark { message: "no object is in view".to_owned(), help })
@@ -162,135 +166,6 @@ fn empty(plan: &Plan, places: &[[usize; 2]]) -> Option<Remark> {
 
 fn place(at: DVec3) -> String {
     at.to_array().map(rounded).join(" ")
-}
-
-/// What a light does at the places that are looked at.
-#[derive(Clone, Debug)]
-struct Lamp {
-    /// The least distance of a place on which it shines, in world units.
-    near: f64,
-    /// The most light that it adds in any channel, as the viewer sees it.
-    most: f64,
-    /// The same without any division by lengths.
-    free: f64,
-    shines: usize,
-    blocked: usize,
-    behind: usize,
-}
-
-/// What is seen at some places of an image, without mirrors and glass.
-struct Survey<'p> {
-    plan: &'p Plan<'p>,
-    places: usize,
-    /// The number of places that show an object.
-    hits: usize,
-    /// The least distance of an object.
-    near: f64,
-    /// The most light that objects show by `ambient`.
-    ambient: f64,
-    /// The most light of each channel of a place.
-    seen: Vec<f64>,
-    lamps: Vec<Lamp>,
-    /// Whether the current ray comes from the viewer.
-    is_primary: bool,
-    /// Whether a shadow ray is on its way.
-    in_shadow: bool,
-    current: Hit,
-}
-
-/// What is known of the hit of a ray from the viewer.
-#[derive(Default)]
-struct Hit {
-    point: DVec3,
-    distance: f64,
-    ambient: f64,
-    /// Of each light that shines on it: its index, what it adds before a division by the length of the path, and its
-    /// distance.
-    lit: Vec<(usize, f64, f64)>,
-}
-
-impl<'p> Survey<'p> {
-    fn of(plan: &'p Plan<'p>, places: &[[usize; 2]]) -> Self {
-        let lamp = Lamp { near: f64::INFINITY, most: 0.0, free: 0.0, shines: 0, blocked: 0, behind: 0 };
-        let mut survey = Self {
-            plan,
-            places: 0,
-            hits: 0,
-            near: f64::INFINITY,
-            ambient: 0.0,
-            seen: Vec::new(),
-            lamps: vec![lamp; plan.model.lights.len()],
-            is_primary: true,
-            in_shadow: false,
-            current: Hit::default(),
-        };
-        let tests = plan.model.objects.len() * (1 + plan.model.lights.len());
-        let step = (places.len() * tests).div_ceil(MOST_TESTS).max(1);
-        for [x, y] in places.iter().step_by(step) {
-            let sight = plan.camera.sight(*x as f64, *y as f64);
-            let colour = trace::observe_colour(plan, &sight, None, &mut survey);
-            survey.places += 1;
-            survey.seen.push(colour.max_element());
-        }
-        survey
-    }
-
-    /// Returns the lights, the brightest first, by their indices.
-    fn brightest(&self) -> Vec<usize> {
-        let mut all: Vec<_> = (0..self.lamps.len()).collect();
-        all.sort_by(|one, other| self.lamps[*other].most.total_cmp(&self.lamps[*one].most));
-        all
-    }
-
-    fn name(&self, light: usize) -> String {
-        format!("`{}`", self.plan.model.lights[light].args.name())
-    }
-}
-
-impl TraceObserver for Survey<'_> {
-    const SEES: bool = true;
-
-    fn see(&mut self, event: Event) {
-        match event {
-            Event::Begin(RayPurpose::Shadow { .. }) => self.in_shadow = true,
-            Event::Begin(purpose) => self.is_primary = purpose == RayPurpose::Primary,
-            Event::Light(..) if !self.is_primary => self.in_shadow = false,
-            _ if !self.is_primary => {}
-            Event::FirstHit(Some(hit)) if !self.in_shadow => {
-                self.current = Hit { point: hit.point, distance: hit.distance, ..Hit::default() };
-            }
-            Event::Surface { ambient, .. } => self.current.ambient = ambient.max_element(),
-            Event::Light(light, outcome) => {
-                self.in_shadow = false;
-                let lamp = &mut self.lamps[light];
-                match outcome {
-                    LightOutcome::Behind => lamp.behind += 1,
-                    LightOutcome::Aside => {}
-                    LightOutcome::Blocked(_) => lamp.blocked += 1,
-                    LightOutcome::Shines { colour, .. } => {
-                        let location = self.plan.model.lights[light].value.location();
-                        let distance = location.distance(self.current.point);
-                        (lamp.shines, lamp.near) = (lamp.shines + 1, lamp.near.min(distance));
-                        self.current.lit.push((light, colour.max_element(), distance));
-                    }
-                }
-            }
-            Event::Shaded { .. } => {
-                let Hit { distance, ambient, lit, .. } = std::mem::take(&mut self.current);
-                let is_notes = self.plan.camera.rules == Rules::Notes;
-                let path = if is_notes { distance } else { 1.0 };
-                self.hits += 1;
-                self.near = self.near.min(distance);
-                self.ambient = self.ambient.max(ambient / path);
-                for (light, colour, away) in lit {
-                    let lamp = &mut self.lamps[light];
-                    lamp.most = lamp.most.max(colour / path);
-                    lamp.free = lamp.free.max(if is_notes { colour * away } else { colour });
-                }
-            }
-            _ => {}
-        }
-    }
 }
 
 /// Says why an image is black.
@@ -308,9 +183,13 @@ fn black(plan: &Plan, survey: &Survey, brightest: u8) -> Remark {
             let why = [(lamp.blocked, "in shadow"), (lamp.behind, "turned away"), (aside, "beside its beam")];
             let why = why.iter().filter(|(places, _)| *places > 0);
             let why: Vec<_> = why.map(|(places, why)| format!("{places} {why}")).collect();
-            format!("{name} lights none of {} that were looked at ({})", text::count(survey.hits, "place"), why.join(", "))
+            format!(
+                "{name} lights none of {} that were looked at ({})",
+                text::count(survey.hits, "place"),
+                why.join(", ")
+            )
         } else {
-            format!("{name} is {} away, and {rules}adds at most {} levels", units(lamp.near), level(lamp.most))
+            format!("{name} is {} away, and {rules}adds up to {} levels", units(lamp.near), level(lamp.most))
         });
     }
     let more = lamps.len().saturating_sub(NAMED);
@@ -319,7 +198,7 @@ fn black(plan: &Plan, survey: &Survey, brightest: u8) -> Remark {
     }
     if survey.ambient > 0.0 {
         let distance = if by_notes { format!(", seen from {}", units(survey.near)) } else { String::new() };
-        reasons.push(format!("`ambient` adds at most {} levels{distance}", level(survey.ambient)));
+        reasons.push(format!("`ambient` adds up to {} levels{distance}", level(survey.ambient)));
     }
     let message = match brightest {
         0 => "the image is black",
@@ -348,8 +227,12 @@ fn brighter(survey: &Survey, lamps: &[usize]) -> String {
     if let Some((light, lamp)) = lamp
         && let Some(sent) = plan.model.lights[light].value.brightest()
     {
-        let emissivity = sent.max_element() * good / lamp.most;
-        cures.push(format!("an emissivity of {} of {}", rounded(emissivity), survey.name(light)));
+        let (name, fading) = (survey.name(light), plan.model.lights[light].value.fading);
+        if !is_notes && fading.falloff != Falloff::None {
+            cures.push(format!("{name} with `at {}`", rounded(lamp.near)));
+        }
+        cures
+            .push(format!("{name} with an emissivity of {}", rounded(sent.max_element() * good / lamp.most)));
     }
     let seen = survey.seen.iter().copied().fold(0.0, f64::max);
     if !is_notes && seen > 0.0 {
@@ -374,8 +257,9 @@ fn burnt(plan: &Plan, survey: &Survey, levels: &Levels) -> Option<Remark> {
     let share = 100.0 * levels.white as f64 / levels.pixels as f64;
     let times = |light: f64| format!("{} times white", short(display.gain() * light));
     let lamps = survey.brightest().into_iter().take(NAMED).filter(|light| survey.lamps[*light].most > 0.0);
-    let mut reasons: Vec<_> =
-        lamps.map(|light| format!("{} adds up to {}", survey.name(light), times(survey.lamps[light].most))).collect();
+    let mut reasons: Vec<_> = lamps
+        .map(|light| format!("{} adds up to {}", survey.name(light), times(survey.lamps[light].most)))
+        .collect();
     if display.gain() * survey.ambient > TOO_BRIGHT {
         reasons.push(format!("`ambient` adds up to {}", times(survey.ambient)));
     }
@@ -385,8 +269,24 @@ fn burnt(plan: &Plan, survey: &Survey, levels: &Levels) -> Option<Remark> {
     let bright = seen[seen.len() * 9 / 10];
     let stops = plan.camera.exposure - (2.0 * libm::log2(bright)).ceil() / 2.0;
     let help = match plan.camera.rules {
-        Rules::Notes => format!("divide the emissivities by {}, or render with `--exposure {}`", rounded(bright), rounded(stops)),
-        Rules::Free => format!("`exposure {}` shows it; `tone neutral` keeps what is brighter; if the lamps are meant for the notes' rules of light, give the camera `rules notes`", rounded(stops)),
+        Rules::Notes => format!(
+            "divide the emissivities by {}, or render with `--exposure {}`",
+            rounded(bright),
+            rounded(stops)
+        ),
+        Rules::Free => {
+            let camera = plan.model.camera.args.args();
+            let meant = match camera.given().any(|(attribute, _)| attribute.name() == "rules") {
+                true => "",
+                false => {
+                    "; if the lamps are meant for the notes' rules of light, give the camera `rules notes`"
+                }
+            };
+            format!(
+                "`exposure {}` shows it, and `tone neutral` keeps what is brighter{meant}",
+                rounded(stops)
+            )
+        }
     };
     Some(Remark { message, help })
 }
