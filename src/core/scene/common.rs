@@ -46,8 +46,12 @@ pub(super) static ACCURACY: Pparm<Accuracy> =
     Pparm::or("accuracy", "how exactly hits are computed", Accuracy::Exact).not_dumped();
 
 /// The rules of light; without, those of the type of camera.
-pub(super) static RULES: Pparm<Option<Rules>> =
-    Pparm::or("rules", "the rules of light; by default those of the type of camera", None).not_dumped();
+pub(super) static RULES: Pparm<Option<Rules>> = Pparm::or(
+    "rules",
+    "the rules of light; by default `notes` for `camera`, and `free` for the others",
+    None,
+)
+.not_dumped();
 
 /// How light becomes bytes by the free rules; the notes' have no choice.
 pub(super) static EXPOSURE: Pparm<f64> =
@@ -68,7 +72,8 @@ pub(super) const FILM: [Table; 2] =
 
 /// How the light of a lamp weakens, and the distance at which it is as bright as its emissivity.
 pub(super) static FALLOFF: Pparm<Falloff> =
-    Pparm::or("falloff", "by the free rules, how the light weakens with the distance", Falloff::None).not_dumped();
+    Pparm::or("falloff", "by the free rules, how the light weakens with the distance", Falloff::None)
+        .not_dumped();
 
 pub(super) static AT: Pparm<f64> =
     Pparm::or("at", "the distance at which a light with a `falloff` is as bright as its emissivity", 1.0)

@@ -72,7 +72,7 @@ pub trait Camera: fmt::Debug + Send + Sync + 'static {
 
     /// Returns the rules of light of a scene that does not choose any.
     fn rules(&self) -> Rules {
-        Rules::Notes
+        Rules::Free
     }
 
     /// Returns the z, in world units, beyond which planes are cut off by the notes' rules; `None` where there is no such

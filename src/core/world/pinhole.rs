@@ -4,6 +4,7 @@ use crate::geometry::image_point::ImagePoint;
 use crate::geometry::ray::Ray;
 use crate::geometry::sight::{self, Line, Sight};
 use crate::world::camera::{Camera, Origins, Projected};
+use crate::world::rules::Rules;
 use glam::{DVec2, DVec3};
 use tabray_exact::scalar::{Scalar, constants};
 
@@ -74,6 +75,10 @@ impl Camera for Pinhole {
         let (fraction, n) = (at.fraction(), N::constant);
         let part = |side: usize| fraction[side] * n(self.screen[side]) - n(self.viewpoint[side]);
         Some(Line { origin: constants(self.viewpoint), dir: [part(0), part(1), n(-self.viewpoint.z)] })
+    }
+
+    fn rules(&self) -> Rules {
+        Rules::Notes
     }
 
     fn screen(&self) -> Option<DVec2> {
