@@ -54,7 +54,7 @@ fn in_notes(file: &Path, scene: &Path) -> Result<String, Failure> {
     let target = DVec3::new(0.0, half.y, 0.0);
     let distance = distance(half);
     let at = |toward: DVec3, distance: f64| point(target + distance * toward.normalize());
-    let (scale, light) = (shortest(scale), Light { path: distance });
+    let scale = shortest(scale);
     let size = (high - low).to_array().map(mesh::six_digits).join(" x ");
     let words = [
         ("FILE", Syntax::Notes.values(&Datum::Word(relative(file, scene))).concat()),
@@ -66,35 +66,12 @@ fn in_notes(file: &Path, scene: &Path) -> Result<String, Failure> {
         ("UP", if is_upright { "y" } else { "z" }.to_owned()),
         ("TRANSLATION", point(translation)),
         ("LAMP_AT", at(LAMP, FAR)),
-        ("LAMP_OF", light.of_lamp(1.0)),
         ("FILL_AT", at(FILL, FAR)),
-        ("FILL_OF", light.of_lamp(0.3)),
-        ("METAL", light.of_surface([0.12, 0.13, 0.14])),
-        ("FLOOR", light.of_surface([0.12, 0.12, 0.12])),
     ];
     let template = include_str!("templates/mesh.ray");
     Ok(words
         .iter()
         .fold(template.to_owned(), |text, (word, value)| text.replace(&format!("@{word}@"), value)))
-}
-
-/// How light is written so that it looks alike at any distance. The notes divide it by the length of the path to the
-/// viewer, and that of a lamp by its distance.
-struct Light {
-    /// The length of the path from the viewer.
-    path: f64,
-}
-
-impl Light {
-    fn of_lamp(&self, strength: f64) -> String {
-        let [warm, cold] =
-            [1.0, 0.94].map(|part| shortest((10.0 * strength * part * FAR * self.path).round() / 10.0));
-        format!("{warm} {warm} {cold}")
-    }
-
-    fn of_surface(&self, colour: [f64; 3]) -> String {
-        colour.map(|part| shortest((100.0 * part * self.path).round() / 100.0)).join(" ")
-    }
 }
 
 /// Returns how far from the middle the viewer must be to see a box with these half sides.
