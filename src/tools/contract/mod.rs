@@ -17,6 +17,7 @@ pub use promise::Promise;
 use draw::{Draw, SceneFolder};
 use promise::Fault;
 use std::fmt;
+use tabray_core::parallel;
 use tabray_core::scene::choice::{Choice, ChoiceName};
 use tabray_core::scene::entity::Entity;
 use tabray_core::scene::kind::Kind;
@@ -78,8 +79,9 @@ pub fn assert_kept() {
 /// Returns the gravest breach of each entity type of a registry, and of each profile.
 pub fn breaches(registry: &Registry) -> Vec<Breach> {
     let scenes = SceneFolder::new();
-    let mut found: Vec<_> =
-        registry.iter().filter_map(|entity| of_entity(registry, entity, &scenes)).collect();
+    let entities: Vec<_> = registry.iter().collect();
+    let of_each = parallel::map(entities.len(), |index| of_entity(registry, entities[index], &scenes));
+    let mut found: Vec<_> = of_each.into_iter().flatten().collect();
     found.extend(inventory::iter::<Profile>().filter_map(of_profile));
     found.sort_by(|a, b| (&a.place, &a.plugin).cmp(&(&b.place, &b.plugin)));
     found
