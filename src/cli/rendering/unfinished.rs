@@ -5,9 +5,8 @@ use std::sync::Arc;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread::{Builder, Scope};
 use std::time::{Duration, Instant};
-use tabray_core::render::observer::TraceObserver;
 use tabray_core::render::plan::Plan;
-use tabray_core::render::renderer::{RenderCallbacks, Renderer};
+use tabray_core::render::renderer::{ImageObserver, RenderCallbacks, Renderer};
 use tabray_core::render::tiles::Band;
 
 /// The time between two questions whether rendering is to stop, while no tile is finished that would ask.
@@ -19,7 +18,7 @@ const GRACE: Duration = Duration::from_millis(100);
 /// Renders as [`Renderer::fill`] does, until the overseer has stopped it for a moment: then threads may be left that are at
 /// work on tiles, which the band does not get any more. The scope ends when they are done, so that whoever does not want to
 /// wait ends the program before.
-pub fn fill<'s, W: TraceObserver + Default>(
+pub fn fill<'s, W: ImageObserver>(
     scope: &'s Scope<'s, '_>,
     (renderer, plan): (&'s Renderer, &'s Plan),
     band: &mut Band,

@@ -5,6 +5,7 @@ use crate::render::bytes::to_bytes;
 use crate::render::flaws::Flaws;
 use crate::render::observer::TraceObserver;
 use crate::render::plan::Plan;
+use crate::render::ray_stats::RayStats;
 use crate::render::tiles::{self, BAND, Band, Strip, TILE, locked};
 use crate::render::trace::{Scratch, Tracer};
 use crate::simd::cpu::Cpu;
@@ -67,7 +68,7 @@ impl Renderer {
     ///
     /// Each strip of tiles has a new observer, which is then passed to `watched`, on any thread and in no particular
     /// order.
-    pub fn bands<'r, W: TraceObserver + Default>(
+    pub fn bands<'r, W: ImageObserver>(
         &'r self,
         plan: &'r Plan,
         columns: Range<usize>,
@@ -91,7 +92,17 @@ impl Renderer {
 
     /// Renders the tiles of a band that are not rendered yet, until the overseer stops it. Observers are passed to
     /// `watched` as in [`bands`](Self::bands).
-    pub fn fill<W: TraceObserver + Default>(
+    pub fn fill<W: ImageObserver>(
+        &self,
+        plan: &Plan,
+        band: &Band,
+        overseer: RenderCallbacks,
+        watched: &(dyn Fn(W) + Sync),
+    ) {
+        W::fill(self, plan, band, overseer, watched);
+    }
+
+    fn fill_watched<W: TraceObserver + Default>(
         &self,
         plan: &Plan,
         band: &Band,
@@ -156,7 +167,17 @@ impl Renderer {
     /// Renders a part of the image with its colours before they are clamped and rounded: red, green and blue of each pixel, in rows from
     /// the top, each from the left. Returns `None` if the overseer stops it. Observers are passed to `watched` as in
     /// [`bands`](Self::bands).
-    pub fn colours<W: TraceObserver + Default>(
+    pub fn colours<W: ImageObserver>(
+        &self,
+        plan: &Plan,
+        part: [&Range<usize>; 2],
+        overseer: RenderCallbacks,
+        watched: &(dyn Fn(W) + Sync),
+    ) -> Option<Vec<f32>> {
+        W::colours(self, plan, part, overseer, watched)
+    }
+
+    fn colours_watched<W: TraceObserver + Default>(
         &self,
         plan: &Plan,
         [columns, rows]: [&Range<usize>; 2],
@@ -223,3 +244,52 @@ impl Renderer {
         }
     }
 }
+
+/// An observer with which images are rendered. What traces rays for it is compiled in this crate, and not again in each that
+/// renders.
+pub trait ImageObserver: TraceObserver + Default {
+    /// Does what [`Renderer::fill`] does.
+    fn fill(
+        renderer: &Renderer,
+        plan: &Plan,
+        band: &Band,
+        overseer: RenderCallbacks,
+        watched: &(dyn Fn(Self) + Sync),
+    );
+    /// Does what [`Renderer::colours`] does.
+    fn colours(
+        renderer: &Renderer,
+        plan: &Plan,
+        part: [&Range<usize>; 2],
+        overseer: RenderCallbacks,
+        watched: &(dyn Fn(Self) + Sync),
+    ) -> Option<Vec<f32>>;
+}
+
+macro_rules! image_observers {
+    ($($Observer:ty),*) => {$(
+        impl ImageObserver for $Observer {
+            fn fill(
+                renderer: &Renderer,
+                plan: &Plan,
+                band: &Band,
+                overseer: RenderCallbacks,
+                watched: &(dyn Fn(Self) + Sync),
+            ) {
+                renderer.fill_watched(plan, band, overseer, watched);
+            }
+
+            fn colours(
+                renderer: &Renderer,
+                plan: &Plan,
+                part: [&Range<usize>; 2],
+                overseer: RenderCallbacks,
+                watched: &(dyn Fn(Self) + Sync),
+            ) -> Option<Vec<f32>> {
+                renderer.colours_watched(plan, part, overseer, watched)
+            }
+        }
+    )*};
+}
+
+image_observers!(Flaws, RayStats);
