@@ -234,10 +234,12 @@ impl<W: Write> Probe<'_, W> {
                 "the rays that are left can change the pixel by less than 1/16 of a level, and count with their mean"
                     .to_owned()
             }
-            (DropReason::TooMany, is_free) => {
-                let most = if is_free { MAX_TREE as usize } else { MAX_RAYS };
-                format!("the ray budget of {most} is used up, and no more rays are followed")
+            (DropReason::TooMany, false) => {
+                format!("the ray budget of {MAX_RAYS} is used up, and no more rays are followed")
             }
+            (DropReason::TooMany, true) => format!(
+                "the budget of {MAX_TREE} rays, or of the work of {MAX_RAYS} simple ones, is used up, and no more rays are followed"
+            ),
         }
     }
 

@@ -279,7 +279,11 @@ fn warn_of_cuts(cuts: &BudgetCuts, rules: Rules) {
     };
     let budget = match rules {
         Rules::Notes => format!("the work of {MAX_RAYS} simple rays for each primary ray"),
-        Rules::Free => format!("the work of {MAX_TREE} simple rays for each pixel, shared by its samples"),
+        Rules::Free => {
+            format!(
+                "{MAX_TREE} rays for each pixel, shared by its samples, and the work of {MAX_RAYS} simple ones"
+            )
+        }
     };
     messages::warning(
         &format!("{} cut off at the ray budget ({budget}), {most}", count(cuts.pixels as usize, "pixel")),

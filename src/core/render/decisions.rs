@@ -211,7 +211,9 @@ fn depth(model: &Model, depth: &Depth) -> String {
 
 /// Describes how rays end by the free rules.
 fn free_depth(model: &Model, depth: &Depth) -> String {
-    let order = format!("the heaviest rays are followed first, at a ray budget of {MAX_TREE} for one pixel");
+    let order = format!(
+        "the heaviest rays are followed first, at a budget for one pixel of {MAX_TREE} rays and the work of {MAX_RAYS} simple ones"
+    );
     if !depth.most.is_finite() {
         return format!("{order}: {}, and nothing bounds what they add", no_bound(model, depth));
     }

@@ -7,12 +7,13 @@ pub use crate::world::rules::MAX_DIST;
 /// long to find as those of many simple rays counts as many.
 pub const MAX_RAYS: usize = 20_000;
 
-/// The ray budget of a pixel by the free rules, which its samples share evenly. Two bounds of a pixel's colour meet after a
-/// tenth of it in most glass.
-pub const MAX_TREE: u32 = 2048;
+/// The number of rays that may be followed for a pixel by the free rules, shadow rays apart. In most glass, the bounds of a
+/// pixel's colour meet after a small part of them. A pixel's samples share them evenly, and also the work of [`MAX_RAYS`]
+/// simple rays.
+pub const MAX_TREE: u32 = 4096;
 
-/// The least ray budget of a sample by the free rules.
-pub(crate) const LEAST_TREE: u32 = 128;
+/// The part of both that a sample has at least, however many there are.
+pub const LEAST_PART: u32 = 8;
 
 /// The depth of the reflections that are traced even where the rays that were transmitted before them have used up the
 /// ray budget: that of primary rays, and that of the rays which these continue as.

@@ -14,10 +14,10 @@ use tabray_core::world::background::Background;
 use tabray_core::world::body::Paint;
 use tabray_core::world::interface::Crossing;
 use tabray_core::world::light_samples::{LightSamples, ShadingPoints};
-use tabray_core::world::rules::Rules;
 use tabray_core::world::material::{Look, Material, Rgb};
 use tabray_core::world::packets::light::PacketLight;
 use tabray_core::world::packets::shader::{PacketShader, SurfacePoints};
+use tabray_core::world::rules::Rules;
 use tabray_core::world::shader::{Anchor, SurfacePoint};
 use tabray_exact::interval::Interval;
 use tabray_lang::dump;
@@ -194,7 +194,11 @@ pub fn light(light: &dyn PacketLight, draw: &mut Draw) -> Result<(), Fault> {
                 t_max: &mut t_max,
                 shines: &mut shines,
             };
-            light.sample(cpu, &ShadingPoints { points, normals, lights: None, rules: Rules::Notes, slack: 0.0 }, facing);
+            light.sample(
+                cpu,
+                &ShadingPoints { points, normals, lights: None, rules: Rules::Notes, slack: 0.0 },
+                facing,
+            );
             let many = light.uniform().unwrap_or(emissivity.get(LANES - 1));
             let does_shine = one.is_some() && toward != location;
             if !same_bits(many, one.unwrap_or(Rgb::ZERO)) || shines[LANES - 1] != u64::from(does_shine) {

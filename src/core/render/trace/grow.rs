@@ -4,13 +4,13 @@ use super::arrays::VectorList;
 use super::context::Tracer;
 use super::ray_group::RayGroup;
 use super::refract;
+use super::round::TreeScratch;
 use super::scratch::ShadingScratch;
-use super::tree::{End, Ends, OpenRay, Tree};
+use super::tree::{Budget, End, Ends, OpenRay, Tree};
 use crate::geometry::ray::Side;
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::render::limits::MAX_RAYS;
 use crate::render::observer::{Count, Event, RayKind, RayPurpose, TraceObserver};
-use crate::render::plan::depth::Depth;
 use crate::world::interface::Crossing;
 use crate::world::material::Rgb;
 use crate::world::rules;
@@ -23,69 +23,6 @@ const TOGETHER: usize = 64;
 /// The least weight of rays whose hits tell the samples of a pixel apart, by what they meet.
 const HEAVY: f64 = 1.0 / 16.0;
 
-/// What was found at the hit of a ray.
-#[derive(Clone, Copy, Default)]
-struct Outcome {
-    /// The light of the point itself, times the weight of the path.
-    light: Rgb,
-    /// The number of rays that it took.
-    cost: u32,
-    /// The rays that continue.
-    onward: [Option<OpenRay>; 2],
-}
-
-/// The scratch space of trees.
-#[derive(Default)]
-pub(super) struct TreeScratch {
-    trees: Vec<Tree>,
-    /// The rays of the current round, and what was found at their hits.
-    round: Vec<OpenRay>,
-    outcomes: Vec<Outcome>,
-    /// The numbers of the rays in the round, by the objects that they leave.
-    order: Vec<u32>,
-    group: RayGroup,
-    seen: VectorList,
-}
-
-impl TreeScratch {
-    fn begin_round(&mut self) {
-        self.outcomes.clear();
-        self.outcomes.resize(self.round.len(), Outcome::default());
-    }
-
-    /// Fills a packet with rays of the round that leave the same object. Each may cost what its tree may still.
-    fn gather(&mut self, places: &[u32], first: usize, group: &mut RayGroup) {
-        let Self { trees, round, outcomes, .. } = self;
-        for place in places {
-            let tree = &trees[usize::from(round[*place as usize].camera) - first];
-            outcomes[*place as usize].cost = MAX_RAYS as u32 - tree.cost.min(MAX_RAYS as u32 / 2);
-        }
-        let rays = places.iter().map(|place| &round[*place as usize]);
-        group.open(rays, places.iter().map(|place| outcomes[*place as usize].cost));
-        group.places.clear();
-        group.places.extend_from_slice(places);
-    }
-
-    /// Notes what a packet of the round's rays has found.
-    fn note(&mut self, group: &RayGroup, seen: &VectorList) {
-        for (lane, place) in group.places[..group.len].iter().enumerate() {
-            let (ray, outcome) = (&self.round[*place as usize], &mut self.outcomes[*place as usize]);
-            outcome.light = ray.weight * seen.get(lane);
-            outcome.cost -= group.ray_budget[lane];
-        }
-    }
-
-    /// Adds what the round has found to its trees, in the order of its rays.
-    fn add(&mut self, first: usize, depth: &Depth, ends: &Ends) {
-        for (ray, outcome) in self.round.iter().zip(&self.outcomes) {
-            let tree = &mut self.trees[usize::from(ray.camera) - first];
-            tree.found += outcome.light;
-            tree.cost += outcome.cost;
-            outcome.onward.iter().flatten().for_each(|ray| tree.push(*ray, depth, ends));
-        }
-    }
-}
-
 impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Computes the colours that primary rays return by the free rules.
     pub(super) fn grow(&mut self, group: &mut RayGroup, colours: &mut VectorList) {
@@ -93,8 +30,11 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let (len, ends) = (group.len, Ends::of(&self.plan.camera));
         let mut scratch = self.scratch.trees.take().unwrap_or_default();
         // A budget that differs from the usual one was set for this ray.
-        let most = |own: &u32| if *own == MAX_RAYS as u32 { ends.budget } else { *own };
-        let budgets: Vec<u32> = group.ray_budget[..len].iter().map(most).collect();
+        let most = |own: &u32| match *own == MAX_RAYS as u32 {
+            true => ends.budget,
+            false => Budget { rays: *own, work: *own },
+        };
+        let budgets: Vec<Budget> = group.ray_budget[..len].iter().map(most).collect();
         group.ray_budget.fill(MAX_RAYS as u32);
         group.places.clear();
         group.places.extend(0..len as u32);

@@ -213,8 +213,7 @@ fn shine_all(
 ) {
     let count = lit.shines.len();
     let (toward, seen, normals) = (lit.toward.first(count), lit.seen.first(count), lit.normals.first(count));
-    let (strengths, shines, blocked) =
-        (&lit.strengths[..count], &lit.shines[..count], &lit.blocked[..count]);
+    let (strengths, shines, blocked) = (&lit.strengths[..count], &lit.shines[..count], &lit.blocked[..count]);
     for lane in 0..count {
         let light = sent(lane);
         let mut colour = diffuse(lane) * light * strengths[lane];

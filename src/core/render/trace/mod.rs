@@ -22,6 +22,7 @@ mod one_ray;
 mod order;
 mod ray_group;
 mod refract;
+mod round;
 mod sampled;
 mod scratch;
 mod shade;
@@ -314,9 +315,14 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         group.look(cpu, &plan.camera, plan.depth.as_ref(), places, lens, len);
     }
 
-    /// Reports a pixel that lacks light. `missing` bounds how much, in any channel.
+    /// Reports a pixel that lacks light. `missing` bounds how much, in any channel; by the free rules, it is how far the bounds
+    /// of the pixel are apart as it is shown.
     fn cut(&mut self, missing: f64) {
-        if missing > 0.0 {
+        let tolerable = match self.plan.camera.rules {
+            Rules::Notes => 0.0,
+            Rules::Free => tree::SHOWN / 255.0,
+        };
+        if missing > tolerable {
             self.observer.count(Count::Cut(missing));
         }
     }

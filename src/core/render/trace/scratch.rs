@@ -2,9 +2,9 @@
 
 use super::arrays::VectorList;
 use super::estimate::AdaptiveScratch;
-use super::grow::TreeScratch;
 use super::hit_record::HitRecord;
 use super::ray_group::{HitGroups, RayGroup};
+use super::round::TreeScratch;
 use super::surface::Surface;
 use super::trail::PathHashes;
 use crate::geometry::bvh::Stack;

@@ -111,8 +111,11 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         if W::SEES {
             self.observer.see(Event::Surface { normal: surface.normals.get(0), ambient: colours.get(0) });
         }
-        self.illuminate(group, surface, colours);
         let is_free = self.plan.camera.rules == Rules::Free;
+        // Where a surface keeps no light of its own, lamps make no difference.
+        if !is_free || material.transparency != 1.0 {
+            self.illuminate(group, surface, colours);
+        }
         if !is_free {
             light::fade(cpu, &surface.travelled[..count], colours.resized(count));
         }

@@ -5,7 +5,8 @@
 //! weights and by what there is to see ([`LightRange`]), and so is the colour. A tree ends when these bounds are less than
 //! [`ENDED`] of a level apart, as the image shows them, or when it has cost as many rays as it may; the middle of the bounds
 //! stands for what is left. If a tree that cost too much is open by more than a level, what was found is shown and the
-//! pixel is counted.
+//! pixel is counted; of a pixel with several samples, the mean of their middles is shown, and it is counted if its bounds are
+//! more than a level apart.
 //!
 //! The trees of a packet of primary rays grow together, in rounds, so that rays are still traced in packets: in each round,
 //! every tree gives its heaviest open ray, and those at least half as heavy. The rules of a tree look at the tree alone,
@@ -16,7 +17,7 @@
 //! are.
 
 use crate::geometry::ray::Side;
-use crate::render::limits::{LEAST_TREE, MAX_TREE};
+use crate::render::limits::{LEAST_PART, MAX_RAYS, MAX_TREE};
 use crate::render::observer::{DropReason, RayKind};
 use crate::render::plan::depth::{Depth, LightRange};
 use crate::world::display::Display;
@@ -31,7 +32,7 @@ use std::mem::take;
 const ENDED: f64 = 1.0 / 16.0;
 
 /// The distance of the bounds of a colour, in levels, up to which their middle stands for it where the tree costs too much.
-const SHOWN: f64 = 1.0;
+pub(super) const SHOWN: f64 = 1.0;
 
 /// The least slope of what is shown of light below white: the curve of sRGB has 0.44 there, a linear one more.
 const FLATTEST: f64 = 0.4;
@@ -130,9 +131,10 @@ pub(super) struct Tree {
     left: LightRange,
     /// The number of open rays that nothing bounds.
     unbounded: u32,
-    /// The number of rays that it has cost, and the most that it may.
-    pub cost: u32,
-    budget: u32,
+    /// The number of rays that were followed, and the work that they took.
+    rays: u32,
+    pub work: u32,
+    budget: Budget,
 }
 
 /// How a tree has ended.
@@ -142,23 +144,32 @@ pub(super) struct End {
     pub apart: f64,
 }
 
+/// What a tree may take.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Budget {
+    /// The number of rays that may be followed.
+    pub rays: u32,
+    /// The work, in simple rays, shadow rays included.
+    pub work: u32,
+}
+
 /// What decides where the trees of a camera's rays end.
 pub(super) struct Ends {
     display: Display,
     /// Whether a pixel is the mean of several samples.
     is_averaged: bool,
-    /// The number of rays that the tree of one sample may cost.
-    pub budget: u32,
+    /// What the tree of one sample may take.
+    pub budget: Budget,
     /// What a ray can add at most if it need not be kept: so little that all rays of a tree together make no difference.
     faint: f64,
 }
 
 impl Ends {
     pub fn of(camera: &Film) -> Self {
-        let display = camera.display();
+        let (display, parts) = (camera.display(), camera.samples.min(LEAST_PART));
         Self {
             is_averaged: camera.samples > 1 || camera.adaptive.is_some(),
-            budget: (MAX_TREE / camera.samples).max(LEAST_TREE),
+            budget: Budget { rays: MAX_TREE / parts, work: MAX_RAYS as u32 / parts },
             faint: ENDED / (16.0 * f64::from(MAX_TREE) * 255.0 * display.steepest()),
             display,
         }
@@ -187,7 +198,7 @@ impl Ends {
 
 impl Tree {
     /// Starts with nothing found.
-    pub fn begin(&mut self, budget: u32) {
+    pub fn begin(&mut self, budget: Budget) {
         self.open.clear();
         *self = Self { budget, open: take(&mut self.open), ..Self::default() };
     }
@@ -211,7 +222,7 @@ impl Tree {
 
     /// Takes the rays that are followed next, unless the tree has ended.
     pub fn next(&mut self, ends: &Ends, depth: &Depth, round: &mut Vec<OpenRay>) {
-        if self.cost >= self.budget || self.bounds().is_some_and(|bounds| ends.are_met(bounds)) {
+        if self.is_over() || self.bounds().is_some_and(|bounds| ends.are_met(bounds)) {
             return;
         }
         let Some(heaviest) = self.open.peek().map(|ray| ray.width) else { return };
@@ -223,21 +234,29 @@ impl Tree {
         {
             round.push(ray);
         }
+        self.rays += (round.len() - first) as u32;
+    }
+
+    /// Tells whether the budget is used up.
+    fn is_over(&self) -> bool {
+        self.rays >= self.budget.rays || self.work >= self.budget.work
     }
 
     /// Tells how the tree has ended.
     pub fn end(&self, ends: &Ends) -> End {
-        let open = |apart: f64| End { colour: self.found, apart };
-        let Some([low, high]) = self.bounds() else { return open(f64::INFINITY) };
-        match ends.levels_apart([low, high]) {
-            apart if apart <= SHOWN => End { colour: ends.display.middle([low, high]), apart: 0.0 },
-            apart => open(apart),
+        let Some(bounds) = self.bounds() else { return End { colour: self.found, apart: f64::INFINITY } };
+        let middle = ends.display.middle(bounds);
+        match ends.levels_apart(bounds) {
+            apart if apart <= SHOWN => End { colour: middle, apart: 0.0 },
+            // The other samples of the pixel may be known better.
+            apart if ends.is_averaged => End { colour: middle, apart },
+            apart => End { colour: self.found, apart },
         }
     }
 
     /// Returns why open rays are left, if there are any.
     pub fn drops(&self) -> Option<DropReason> {
-        let is_over = self.cost >= self.budget;
+        let is_over = self.is_over();
         (!self.open.is_empty()).then_some(if is_over { DropReason::TooMany } else { DropReason::TooFaint })
     }
 

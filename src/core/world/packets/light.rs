@@ -82,8 +82,7 @@ fn sample_each<T: Light>(
 ) -> AnyLit {
     let (count, slack, is_uniform) = (shading.points.len(), shading.slack, light.uniform().is_some());
     let (points, normals) = (shading.points.first(count), shading.normals.first(count));
-    let (strengths, t_max, shines) =
-        (&mut strengths[..count], &mut t_max[..count], &mut shines[..count]);
+    let (strengths, t_max, shines) = (&mut strengths[..count], &mut t_max[..count], &mut shines[..count]);
     let (mut any_faces, mut any_shines) = (0, 0);
     for lane in 0..count {
         let point = points.get(lane);

@@ -62,8 +62,7 @@ fn background(model: &Model) -> [Rgb; 2] {
 fn least(model: &Model, darkest: Rgb) -> Option<Rgb> {
     let everywhere = around(None);
     let is_positive = |sent: [Interval; 3]| sent.iter().all(|channel| channel.low >= 0.0);
-    let are_positive =
-        |lamp: &dyn EncloseLight<f64>| lamp.sent(everywhere).is_some_and(is_positive);
+    let are_positive = |lamp: &dyn EncloseLight<f64>| lamp.sent(everywhere).is_some_and(is_positive);
     if !model.lights.iter().all(|lamp| are_positive(&*lamp.value.light)) {
         return None;
     }
@@ -80,10 +79,11 @@ fn least(model: &Model, darkest: Rgb) -> Option<Rgb> {
             Some(_) => tint[channel].min(1.0),
             None => tint[channel] + specular[channel].low,
         };
-        let bound = |channel: usize| match (1.0 - passed(channel), (1.0 - transparency) * ambient[channel].low) {
-            (lost, _) if lost <= 0.0 => f64::INFINITY,
-            (lost, own) => own / lost,
-        };
+        let bound =
+            |channel: usize| match (1.0 - passed(channel), (1.0 - transparency) * ambient[channel].low) {
+                (lost, _) if lost <= 0.0 => f64::INFINITY,
+                (lost, own) => own / lost,
+            };
         Some(least.min(Rgb::from_array(per_axis(bound))))
     })
 }
@@ -97,8 +97,7 @@ fn look(object: &Object) -> Option<LookBounds<f64>> {
 
 /// Returns the intervals of a box, or of everywhere.
 fn around(bounds: Option<Aabb>) -> [Interval; 3] {
-    let Aabb { low, high } =
-        bounds.unwrap_or(Aabb { low: DVec3::splat(-FAR), high: DVec3::splat(FAR) });
+    let Aabb { low, high } = bounds.unwrap_or(Aabb { low: DVec3::splat(-FAR), high: DVec3::splat(FAR) });
     per_axis(|axis| Interval { low: low[axis], high: high[axis] })
 }
 

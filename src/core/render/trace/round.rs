@@ -1,0 +1,72 @@
+//! The rays of many [trees](super::tree) that are followed together, and what they find.
+
+use super::arrays::VectorList;
+use super::ray_group::RayGroup;
+use super::tree::{Ends, OpenRay, Tree};
+use crate::render::limits::MAX_RAYS;
+use crate::render::plan::depth::Depth;
+use crate::world::material::Rgb;
+
+/// What was found at the hit of a ray.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Outcome {
+    /// The light of the point itself, times the weight of the path.
+    pub light: Rgb,
+    /// The number of rays that it took.
+    pub cost: u32,
+    /// The rays that continue.
+    pub onward: [Option<OpenRay>; 2],
+}
+
+/// The scratch space of trees.
+#[derive(Default)]
+pub(super) struct TreeScratch {
+    pub trees: Vec<Tree>,
+    /// The rays of the current round, and what was found at their hits.
+    pub round: Vec<OpenRay>,
+    pub outcomes: Vec<Outcome>,
+    /// The numbers of the rays in the round, by the objects that they leave.
+    pub order: Vec<u32>,
+    pub group: RayGroup,
+    pub seen: VectorList,
+}
+
+impl TreeScratch {
+    /// Starts the round of these rays.
+    pub fn begin_round(&mut self) {
+        self.outcomes.clear();
+        self.outcomes.resize(self.round.len(), Outcome::default());
+    }
+
+    /// Fills a packet with rays of the round that leave the same object. Each may cost what its tree may still.
+    pub fn gather(&mut self, places: &[u32], first: usize, group: &mut RayGroup) {
+        let Self { trees, round, outcomes, .. } = self;
+        for place in places {
+            let tree = &trees[usize::from(round[*place as usize].camera) - first];
+            outcomes[*place as usize].cost = MAX_RAYS as u32 - tree.work.min(MAX_RAYS as u32 / 2);
+        }
+        let rays = places.iter().map(|place| &round[*place as usize]);
+        group.open(rays, places.iter().map(|place| outcomes[*place as usize].cost));
+        group.places.clear();
+        group.places.extend_from_slice(places);
+    }
+
+    /// Notes what a packet of the round's rays has found.
+    pub fn note(&mut self, group: &RayGroup, seen: &VectorList) {
+        for (lane, place) in group.places[..group.len].iter().enumerate() {
+            let (ray, outcome) = (&self.round[*place as usize], &mut self.outcomes[*place as usize]);
+            outcome.light = ray.weight * seen.get(lane);
+            outcome.cost -= group.ray_budget[lane];
+        }
+    }
+
+    /// Adds what the round has found to its trees, in the order of its rays.
+    pub fn add(&mut self, first: usize, depth: &Depth, ends: &Ends) {
+        for (ray, outcome) in self.round.iter().zip(&self.outcomes) {
+            let tree = &mut self.trees[usize::from(ray.camera) - first];
+            tree.found += outcome.light;
+            tree.work += outcome.cost;
+            outcome.onward.iter().flatten().for_each(|ray| tree.push(*ray, depth, ends));
+        }
+    }
+}
