@@ -1,6 +1,7 @@
 //! Helpers for several tests: the registry, scenes and decoded images.
 #![allow(dead_code, reason = "each test program uses a part of it")]
 
+pub mod glass;
 pub mod program;
 
 use image::RgbImage;

@@ -12,6 +12,7 @@ mod differences;
 mod footprints;
 mod glass;
 mod inside;
+mod laws;
 mod left_out;
 mod needs;
 mod packets;

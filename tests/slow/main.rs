@@ -22,4 +22,5 @@ mod proven;
 mod same;
 mod slurm;
 mod stop;
+mod trees;
 mod truth;
