@@ -97,7 +97,7 @@ const FAR: &str = "look_at eye { pixeldim 40 30  position 0 0 400  target 0 0 0 
 fn black_burnt_and_empty_images_say_why() {
     let folder = folder();
     let black = format!("{FAR} rules notes }} {PART}");
-    let burnt = format!("{FAR} rules free }} {}", PART.replace("emissivity 1 1 1", "emissivity 30 30 30"));
+    let burnt = format!("{FAR} }} {}", PART.replace("emissivity 1 1 1", "emissivity 30 30 30"));
     let empty =
         format!("{} rules free }} sky day {{ }} {PART}", FAR.replace("target 0 0 0", "target 0 0 900"));
     for (scene, says, cure) in [
