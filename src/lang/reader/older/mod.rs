@@ -193,7 +193,7 @@ impl<'a> Reader<'a, '_, '_> {
         let place = row.numbers(1)[0].place.clone();
         if let Some(fault) = faults::unread(number, place.clone()) {
             self.report.add(fault);
-            self.to_next_object();
+            self.skip_to_object();
             return true;
         }
         let second = || {
@@ -207,7 +207,7 @@ impl<'a> Reader<'a, '_, '_> {
             match self.lines_of(code, place) {
                 Some(Ok(found)) => self.entities.add(found, &mut self.unmapped, self.report),
                 Some(Err(())) => {}
-                None => self.to_next_object(),
+                None => self.skip_to_object(),
             }
         }
         true
@@ -287,7 +287,7 @@ impl<'a> Reader<'a, '_, '_> {
     }
 
     /// Skips lines up to the next object.
-    fn to_next_object(&mut self) {
+    fn skip_to_object(&mut self) {
         while self.at < self.lines.0.len() && !self.lines.begins_object(self.at) {
             self.at += 1;
         }
