@@ -1,15 +1,17 @@
 //! Surfaces that are polynomials of degree 6 to 40: first hits are those that exact arithmetic finds along the ray, by Sturm's
 //! theorem, which the program does not use.
 
-use crate::common::model;
+use crate::common::{model, registry};
 use dashu_int::ops::{Abs, Gcd, UnsignedAbs};
 use dashu_int::{IBig, UBig};
 use glam::DVec3;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 use std::collections::BTreeMap;
+use std::path::Path;
 use tabray::exact::interval::Float;
 use tabray::geometry::{MISS, Ray, RayRange, Sight};
+use tabray::scene;
 use tabray::world::AnyShape;
 use tabray::world::certify::{Enclosure, Precision};
 
@@ -223,12 +225,16 @@ struct Surface {
 }
 
 /// Returns the shape of a formula.
-fn shape(text: &str) -> tabray::scene::Model {
-    model(&format!(
+fn shape(text: &str) -> scene::Model {
+    model(&scene_of(text))
+}
+
+fn scene_of(text: &str) -> String {
+    format!(
         "camera eye {{ pixeldim 4 3 worlddim 8 6 viewpoint 4 3 5 }}
         implicit s {{ formula \"{text}\" box {0} {0} {0} {BOX} {BOX} {BOX} }}",
         -BOX
-    ))
+    )
 }
 
 /// What became of some rays.
@@ -373,4 +379,17 @@ fn sheets_that_are_close_are_told_apart() {
         judge(&surface, 40, &mut random, &mut tally);
     }
     assert!(tally.hits > 40 && tally.touches == 0, "{tally:?}");
+}
+
+#[test]
+fn factors_that_are_repeated_are_told() {
+    for (formula, message) in [
+        ("(x^2 + y^2 + z^2 - 1)^2*(x - 2y)", "a power of the factor `x^2 + y^2 + z^2 - 1`"),
+        ("x^2 + 2x*y + y^2 + 0*z", "touches 0 without a change of sign"),
+    ] {
+        let text = scene_of(formula);
+        let read = scene::read(registry(), "scene", Path::new(""), text.as_bytes(), None);
+        let warnings = read.unwrap_or_else(|report| panic!("{report}")).warnings.to_string();
+        assert!(warnings.contains(message), "{warnings}");
+    }
 }

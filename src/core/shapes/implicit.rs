@@ -25,7 +25,7 @@ use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::dual::Dual;
 use tabray_exact::formula::field::Field;
 use tabray_exact::interval::Interval;
-use tabray_exact::polynomial::{Coefficient, FEW, MOST, Polynomial};
+use tabray_exact::polynomial::{Coefficient, MOST, Polynomial};
 use tabray_exact::roots::stretch::Stretch;
 use tabray_exact::roots::taylor::{self, FirstRoot};
 use tabray_exact::roots::{Method, twice};
@@ -392,12 +392,8 @@ impl<T: Implicit> taylor::FunctionOnLine for FormulaOnRay<'_, T> {
         if self.is_lost(twice::STILL_HIDDEN) {
             return None;
         }
-        if let Some(degree) = self.shape.degree {
-            return if degree < FEW {
-                self.finely::<FEW>(piece, origin_side)
-            } else {
-                self.finely::<MOST>(piece, origin_side)
-            };
+        if self.shape.degree.is_some() {
+            return self.finely(piece, origin_side);
         }
         let hidden = self.at(Interval::constant(piece.middle())).width();
         let exact = self.shape.frame.exactly(self.ray, self.closest);

@@ -6,7 +6,7 @@ use crate::world::certify::exact_line;
 use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::dual::Dual;
 use tabray_exact::interval::Interval;
-use tabray_exact::polynomial::{Coefficient, Polynomial};
+use tabray_exact::polynomial::{Coefficient, FEW, MOST, Polynomial};
 use tabray_exact::roots::isolation::{self, Part};
 use tabray_exact::roots::range::Side;
 use tabray_exact::roots::taylor::FunctionOnLine;
@@ -20,7 +20,14 @@ const BEYOND: f64 = 4.0 * f64::EPSILON;
 
 impl<T: Implicit> FormulaOnRay<'_, T> {
     /// Returns the first root on a piece of the ray as it is given, or of its wanted side where it leaves the surface.
-    pub(super) fn finely<const N: usize>(&self, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
+    pub(super) fn finely(&self, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
+        match self.shape.degree {
+            Some(degree) if degree < FEW => self.finely_with::<FEW>(piece, origin_side),
+            _ => self.finely_with::<MOST>(piece, origin_side),
+        }
+    }
+
+    fn finely_with<const N: usize>(&self, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
         let counts = |rises: bool| origin_side.is_none_or(|side| rises == (side == Side::Inside));
         let Line { origin, dir } = self.shape.frame.exactly(self.ray, self.closest);
         let along = Polynomial::<DoubleDouble, N>::along(piece);
