@@ -59,8 +59,8 @@ kernels! {
         let View { x, y, z } = colours;
         let (x, y, z) = (&x[..count], &y[..count], &z[..count]);
         for lane in 0..count {
-            let [red, green, blue] = [x[lane], y[lane], z[lane]].map(|channel| quantized(gain * channel));
-            packed[lane] = red | green << 8 | blue << 16;
+            packed[lane] =
+                quantized(gain * x[lane]) | quantized(gain * y[lane]) << 8 | quantized(gain * z[lane]) << 16;
         }
     }
 }
