@@ -292,13 +292,7 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
     /// Returns the first root of a stretch in a range, after judging at most this number of pieces.
     fn first_root(&self, stretch: &Stretch, range: &RayRange, mut pieces: usize) -> FirstRoot {
         let shortest = shortest(&stretch.outer);
-        let found = taylor::first_root_within(self, stretch, self.closest, range, shortest, &mut pieces);
-        match found.root {
-            Some(root) if self.shape.degree.is_some() => {
-                FirstRoot { root: Some(self.polished(root)), ..found }
-            }
-            _ => found,
-        }
+        taylor::first_root_within(self, stretch, self.closest, range, shortest, &mut pieces)
     }
 
     /// Whether the ray is rounded by more than the size of the shape, where rounding is this fraction of that in `f64`.
@@ -309,8 +303,12 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
     fn first_hit(&self, range: &RayRange) -> FirstRoot {
         let stretch = self.stretch();
         let pieces = if self.is_lost(1.0) { FEW_PIECES } else { taylor::MAX_PIECES };
+        let polished = |found: FirstRoot| match self.shape.degree {
+            Some(_) => FirstRoot { root: found.root.map(|root| self.polished(root)), ..found },
+            None => found,
+        };
         if !T::IS_CUT {
-            return self.first_root(&stretch, range, pieces);
+            return polished(self.first_root(&stretch, range, pieces));
         }
         let (mut range, mut all_certain) = (*range, true);
         loop {
@@ -319,7 +317,7 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
             all_certain &= found.is_certain && is_certain;
             match found.root {
                 Some(root) if !is_kept => range.near = self.closest + root,
-                root => return FirstRoot { root, is_certain: all_certain },
+                root => return polished(FirstRoot { root, is_certain: all_certain }),
             }
         }
     }
