@@ -163,7 +163,8 @@ fn the_options_that_an_image_carries_make_it_again() {
         &["--set", "near.radius=1.5", "--set", "red.ambient=0 \"3 * 2\" 0", "--size", "80"],
         &["--max-error", "4"],
     ] {
-        let (status, _, err) = outcome(tabray(&folder).args(["render", "a.ray"]).args(options));
+        // Images of other sizes are replaced.
+        let (status, _, err) = outcome(tabray(&folder).args(["render", "a.ray", "--force"]).args(options));
         assert_eq!(status, 0, "{err}");
         let first = fs::read(&path).expect("the image");
         let carried = texts(&path).pop().expect("the options").1;

@@ -361,7 +361,7 @@ fn frames_have_values_that_change_and_names_by_their_numbers() {
 fn the_warnings_of_a_film_are_told_once_and_where_they_change() {
     let folder = folder();
     let text = "camera eye { pixeldim 4 3 worlddim 8 6 viewpoint 4 3 6 }\nmaterial m { ambient 1 1 1 }
-sphere s { material m center 4 3 -2 radius 1 }\n";
+sphere s { material m center 4 3 -2 radius 1.5 }\n";
     fs::write(folder.path().join("a.ray"), text).expect("a scene");
     // From the third frame on the ball is behind the viewer.
     let film = ["render", "a.ray", "-o", "film.png", "--frames", "1..5", "--sweep", "s.center=4 3 -2..18"];
@@ -480,7 +480,7 @@ texplane p { material m normal 0 0 1 point 0 0 -1 dimensions 3 3 texname t xdir 
     assert_eq!(resumes(&[]), names);
     // Images beside a frame are not known to be of it.
     assert!(resumes(&["--aov", "depth"]).is_empty());
-    assert!(resumes(&["--size", "20"]).is_empty());
+    assert!(resumes(&["--size", "20", "--force"]).is_empty());
     assert!(resumes(&[]).is_empty());
     assert!(read() == first, "the frames are as before");
     fs::write(place("picture"), b"P6 1 1 255\n\x10\x80\x40").expect("a picture");
