@@ -4,7 +4,7 @@ use crate::common::model;
 use glam::{DVec2, DVec3};
 use tabray::exact::double_double::DoubleDouble;
 use tabray::geometry::{ImagePoint, Ray};
-use tabray::render::{Plan, to_byte, trace};
+use tabray::render::{Plan, trace};
 use tabray::tools::threads::renderer_with;
 use tabray::world::Film;
 
@@ -168,7 +168,7 @@ fn samples_of_a_lens_are_the_same_in_packets_and_alone() {
     let mut blurred = 0;
     for (index, bytes) in renderer.picture(&plan).chunks(3).enumerate() {
         let (x, y) = (index % 9, 6 - index / 9);
-        let alone = |plan: &Plan| trace::pixel(plan, x, y).to_array().map(to_byte);
+        let alone = |plan: &Plan| plan.camera.display().bytes(trace::pixel(plan, x, y));
         assert_eq!(alone(&plan), bytes, "{x} {y}");
         blurred += usize::from(alone(&sharp) != bytes);
     }

@@ -232,7 +232,8 @@ fn shape(text: &str) -> scene::Model {
 fn scene_of(text: &str) -> String {
     format!(
         "camera eye {{ pixeldim 4 3 worlddim 8 6 viewpoint 4 3 5 }}
-        implicit s {{ formula \"{text}\" box {0} {0} {0} {BOX} {BOX} {BOX} }}",
+        material m {{ ambient 1 1 1 }}
+        implicit s {{ material m formula \"{text}\" box {0} {0} {0} {BOX} {BOX} {BOX} }}",
         -BOX
     )
 }

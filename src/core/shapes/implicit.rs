@@ -303,12 +303,8 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
     fn first_hit(&self, range: &RayRange) -> FirstRoot {
         let stretch = self.stretch();
         let pieces = if self.is_lost(1.0) { FEW_PIECES } else { taylor::MAX_PIECES };
-        let polished = |found: FirstRoot| match self.shape.degree {
-            Some(_) => FirstRoot { root: found.root.map(|root| self.polished(root)), ..found },
-            None => found,
-        };
         if !T::IS_CUT {
-            return polished(self.first_root(&stretch, range, pieces));
+            return self.first_root(&stretch, range, pieces);
         }
         let (mut range, mut all_certain) = (*range, true);
         loop {
@@ -317,7 +313,7 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
             all_certain &= found.is_certain && is_certain;
             match found.root {
                 Some(root) if !is_kept => range.near = self.closest + root,
-                root => return polished(FirstRoot { root, is_certain: all_certain }),
+                root => return FirstRoot { root, is_certain: all_certain },
             }
         }
     }
@@ -371,6 +367,10 @@ impl<T: Implicit> taylor::FunctionOnLine for FormulaOnRay<'_, T> {
 
     fn polynomial<const N: usize>(&self, piece: Interval) -> Polynomial<f64, N> {
         self.shape.formula.along(self.on_line(Polynomial::along(piece)))
+    }
+
+    fn polished(&self, root: f64) -> f64 {
+        self.with_all_digits(root)
     }
 
     fn pieces(&self, ends: (f64, f64), mut visit: &mut dyn FnMut(f64, f64) -> Option<f64>) -> Option<f64> {

@@ -38,7 +38,7 @@ impl Rational {
 
     /// Takes a fraction, if it is exact.
     pub fn of(fraction: Fraction) -> Option<Self> {
-        let [above, below] = fraction.exactly()?;
+        let [above, below] = fraction.exactly()?.map(Dyadic::from);
         Some(Self::new(above.digits, above.exponent - below.exponent, below.digits))
     }
 

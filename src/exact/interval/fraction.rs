@@ -6,7 +6,6 @@
 
 use super::float::Float;
 use crate::double_double::power_of_two;
-use crate::roots::whole::Dyadic;
 use f256::f256;
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -66,10 +65,10 @@ impl Fraction {
         if self.is_whole() { (value, value) } else { (value.next_down(), value.next_up()) }
     }
 
-    /// Returns the numerator and the positive denominator, each a whole number times a power of two, if the fraction is exact.
-    pub(crate) fn exactly(self) -> Option<[Dyadic; 2]> {
+    /// Returns the numerator and the positive denominator if the fraction is exact.
+    pub(crate) fn exactly(self) -> Option<[f256; 2]> {
         let is_exact = self.error.eq_zero() && self.is_plain();
-        is_exact.then(|| [self.numerator.into(), self.denominator.into()])
+        is_exact.then_some([self.numerator, self.denominator])
     }
 
     fn is_whole(self) -> bool {

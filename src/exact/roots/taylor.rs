@@ -51,6 +51,11 @@ pub trait FunctionOnLine {
         Polynomial::unknown()
     }
 
+    /// Returns a simple root of a polynomial with the last digits right, where the one given may be off by rounding.
+    fn polished(&self, root: f64) -> f64 {
+        root
+    }
+
     /// Calls a function with the pieces between two places on which there may be a root, in their order, until it returns one.
     fn pieces(&self, (low, high): (f64, f64), visit: &mut dyn FnMut(f64, f64) -> Option<f64>) -> Option<f64> {
         visit(low, high)

@@ -60,7 +60,7 @@ impl<T: Implicit> FormulaOnRay<'_, T> {
 
     /// Returns a simple root that may be off by the rounding of `f64`, with twice the digits where that would be more than the
     /// last ones of its distance.
-    pub(super) fn polished(&self, root: f64) -> f64 {
+    pub(super) fn with_all_digits(&self, root: f64) -> f64 {
         let hidden = self.at(Interval::constant(root)).width();
         let slope = self.at(Dual::variable(root)).slope.abs();
         if hidden <= HIDDEN * f64::EPSILON * (self.closest + root).abs() * slope {

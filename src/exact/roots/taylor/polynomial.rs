@@ -102,10 +102,10 @@ impl<L: FunctionOnLine> Search<'_, L> {
                 self.judge_monotone(low, high, rises, low + near * (high - low))
             }
         };
-        match judgement {
-            Judgement::Root(root) if self.is_in_range(root) => Some(root),
-            _ => None,
-        }
+        // On its piece still, so that the same pieces are left out where the range begins or ends beside it.
+        let Judgement::Root(root) = judgement else { return None };
+        let root = self.line.polished(root).clamp(low, high);
+        self.is_in_range(root).then_some(root)
     }
 
     /// Notes that nothing is certain where the root on a piece may lie where rounding hides whether the line is still between
