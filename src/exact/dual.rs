@@ -98,8 +98,8 @@ impl<N: Scalar> Scalar for Dual<N> {
     }
 
     #[inline(always)]
-    fn enclosure(self) -> crate::interval::Interval {
-        self.value.enclosure()
+    fn bounds(self) -> [f64; 2] {
+        self.value.bounds()
     }
 
     #[inline(always)]

@@ -134,8 +134,8 @@ impl<N: Scalar> Scalar for Jet<N> {
     }
 
     #[inline(always)]
-    fn enclosure(self) -> crate::interval::Interval {
-        self.value.enclosure()
+    fn bounds(self) -> [f64; 2] {
+        self.value.bounds()
     }
 
     #[inline(always)]

@@ -4,7 +4,6 @@
 //! One formula evaluated with one type after the other gives values, derivatives and proven bounds. The functions are
 //! those of the `libm` crate, whose results do not depend on the machine.
 
-use crate::interval::Interval;
 use crate::spline::{Coefficient, Spline};
 use glam::DVec3;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -45,8 +44,8 @@ pub trait Scalar:
     }
     /// Returns bounds of the number: all numbers for types that do not know any.
     #[inline(always)]
-    fn enclosure(self) -> Interval {
-        Interval::WHOLE
+    fn bounds(self) -> [f64; 2] {
+        [f64::NEG_INFINITY, f64::INFINITY]
     }
 
     /// Returns the sine and the cosine of an angle in radians.
@@ -169,8 +168,8 @@ impl Scalar for f64 {
     }
 
     #[inline(always)]
-    fn enclosure(self) -> Interval {
-        Interval { low: self, high: self }
+    fn bounds(self) -> [f64; 2] {
+        [self, self]
     }
 
     fn sin_cos(self) -> (Self, Self) {

@@ -361,7 +361,7 @@ fn frames_have_values_that_change_and_names_by_their_numbers() {
 fn the_warnings_of_a_film_are_told_once_and_where_they_change() {
     let folder = folder();
     let text = "camera eye { pixeldim 4 3 worlddim 8 6 viewpoint 4 3 6 }\nmaterial m { ambient 1 1 1 }
-sphere s { material m center 4 3 -2 radius 1.5 }\n";
+sphere s { material m center 4 3 -2 radius 1.9 }\n";
     fs::write(folder.path().join("a.ray"), text).expect("a scene");
     // From the third frame on the ball is behind the viewer.
     let film = ["render", "a.ray", "-o", "film.png", "--frames", "1..5", "--sweep", "s.center=4 3 -2..18"];

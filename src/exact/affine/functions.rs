@@ -73,8 +73,9 @@ impl Scalar for Affine {
     }
 
     #[inline(always)]
-    fn enclosure(self) -> Interval {
-        self.range()
+    fn bounds(self) -> [f64; 2] {
+        let Interval { low, high } = self.range();
+        [low, high]
     }
 
     fn sin_cos(self) -> (Self, Self) {

@@ -72,8 +72,8 @@ impl Scalar for DoubleDouble {
     }
 
     #[inline(always)]
-    fn enclosure(self) -> crate::interval::Interval {
-        crate::interval::Interval { low: self.high.next_down(), high: self.high.next_up() }
+    fn bounds(self) -> [f64; 2] {
+        [self.high.next_down(), self.high.next_up()]
     }
 
     fn sin_cos(self) -> (Self, Self) {

@@ -6,6 +6,7 @@ use super::program::{MOST_REGISTERS, Program, Values};
 use super::step::{Function, Step};
 use super::variables::{SPACE, SURFACE};
 use super::{FEW_REGISTERS, Formula};
+use crate::interval::Interval;
 use crate::scalar::Scalar;
 use std::sync::Arc;
 
@@ -83,8 +84,11 @@ impl<const COUNT: usize> FieldOf<COUNT> {
     /// Evaluates the formula at a point.
     #[inline(always)]
     pub fn at<N: Scalar>(&self, at: [N; COUNT]) -> N {
-        let cell =
-            self.cells.as_ref().and_then(|cells| cells.program([0, 1, 2].map(|axis| at[axis].enclosure())));
+        let bounds = |axis: usize| {
+            let [low, high] = at[axis].bounds();
+            Interval { low, high }
+        };
+        let cell = self.cells.as_ref().and_then(|cells| cells.program([0, 1, 2].map(bounds)));
         let program = cell.unwrap_or(&self.quick.program);
         let with = |registers: &mut [N]| {
             registers[..COUNT].copy_from_slice(&at);

@@ -132,8 +132,9 @@ impl<F: Float> Scalar for Interval<F> {
     }
 
     #[inline(always)]
-    fn enclosure(self) -> Interval {
-        self.coarse()
+    fn bounds(self) -> [f64; 2] {
+        let Interval { low, high } = self.coarse();
+        [low, high]
     }
 
     fn sin_cos(self) -> (Self, Self) {

@@ -3,6 +3,7 @@
 mod survey;
 
 use glam::DVec3;
+use crate::threads::renderer_with;
 use std::ops::Range;
 use survey::Survey;
 use tabray_core::geometry::aabb::Aabb;
@@ -89,6 +90,11 @@ pub fn remark(plan: &Plan, part: [&Range<usize>; 2], levels: &Levels) -> Option<
 
 /// Returns what is to be said of a model's image, of which a few pixels are tried.
 pub fn tried(model: &Model) -> Option<Remark> {
+    // The deepest reflections need more of a stack than the program's own thread has.
+    renderer_with(1).ok()?.run(|| tried_here(model))
+}
+
+fn tried_here(model: &Model) -> Option<Remark> {
     let [width, height] = model.camera.value.pixels;
     let part = [&(0..width), &(0..height)];
     let mut plan = Plan::new(model);

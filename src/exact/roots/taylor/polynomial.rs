@@ -58,7 +58,9 @@ impl<L: FunctionOnLine> Search<'_, L> {
         expansion: &Expansion<'_, N>,
     ) -> Option<f64> {
         let is_given_up = self.line.wants_proof() && !self.is_certain;
-        if is_given_up || self.base + high <= self.range.near || self.base + low >= self.range.far {
+        // What is hidden is judged with all that is hidden beside it, wherever the range begins or ends: the root is the same.
+        let is_beyond = self.base + low >= self.range.far && self.hidden.is_none();
+        if is_given_up || is_beyond {
             return None;
         }
         let middle = low + 0.5 * (high - low);
