@@ -4,7 +4,9 @@ use crate::common;
 use crate::common::{load, model, model_in, registry, root, scenes};
 use proptest::prelude::*;
 use std::path::Path;
-use tabray::scene::{self, Attribute, Counts, Datum, Entity, Fault, Kind, Model, Severity, Syntax, Type, dump};
+use tabray::scene::{
+    self, Attribute, Counts, Datum, Entity, Fault, Kind, Model, Severity, Syntax, Type, dump,
+};
 
 /// Returns every value of a model, to its last bit.
 fn values(model: &Model) -> Vec<String> {

@@ -1,18 +1,19 @@
 //! Formulas along lines, as polynomials: their operations in place, as polynomials are too long to be copied for each.
 
-use super::field::Field;
 use super::program::{MOST_REGISTERS, Program, Value, Values};
 use super::step::Step;
 use crate::polynomial::{Coefficient, Polynomial};
 use crate::scalar::Scalar;
 
-impl Field {
-    /// Evaluates the formula at a point that is a polynomial.
-    pub fn along<C: Coefficient, const N: usize>(&self, at: [Polynomial<C, N>; 3]) -> Polynomial<C, N> {
-        let program = self.by_products();
-        let mut registers = Vec::with_capacity(program.registers.max(at.len()));
+impl Program {
+    /// Evaluates operations at a point that is a polynomial.
+    pub(super) fn along<C: Coefficient, const N: usize>(
+        &self,
+        at: [Polynomial<C, N>; 3],
+    ) -> Polynomial<C, N> {
+        let mut registers = Vec::with_capacity(self.registers.max(at.len()));
         registers.extend_from_slice(&at);
-        for instruction in &program.instructions {
+        for instruction in &self.instructions {
             let (a, b) = (usize::from(instruction.operands[0]), usize::from(instruction.operands[1]));
             let result = usize::from(instruction.result);
             if result == registers.len() {
@@ -29,7 +30,7 @@ impl Field {
                 step => registers[result] = step.of::<_, true>(registers[a], registers[b], None),
             }
         }
-        registers[usize::from(program.result)]
+        registers[usize::from(self.result)]
     }
 }
 

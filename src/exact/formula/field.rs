@@ -7,6 +7,7 @@ use super::step::{Function, Step};
 use super::variables::{SPACE, SURFACE};
 use super::{FEW_REGISTERS, Formula};
 use crate::interval::Interval;
+use crate::polynomial::{Coefficient, Polynomial};
 use crate::scalar::Scalar;
 use std::sync::Arc;
 
@@ -84,11 +85,7 @@ impl<const COUNT: usize> FieldOf<COUNT> {
     /// Evaluates the formula at a point.
     #[inline(always)]
     pub fn at<N: Scalar>(&self, at: [N; COUNT]) -> N {
-        let bounds = |axis: usize| {
-            let [low, high] = at[axis].bounds();
-            Interval { low, high }
-        };
-        let cell = self.cells.as_ref().and_then(|cells| cells.program([0, 1, 2].map(bounds)));
+        let cell = self.cells.as_ref().and_then(|cells| cells.program(bounds_of([at[0], at[1], at[2]])));
         let program = cell.unwrap_or(&self.quick.program);
         let with = |registers: &mut [N]| {
             registers[..COUNT].copy_from_slice(&at);
@@ -124,7 +121,7 @@ impl Field {
 
     /// Returns the estimated number of arithmetic operations per evaluation at some points, as [`Formula::cost`] does.
     pub fn cost<N: Scalar>(&self, at: [N; 3]) -> u64 {
-        let cell = self.cells().and_then(|cells| cells.program(at.map(N::enclosure)));
+        let cell = self.cells().and_then(|cells| cells.program(bounds_of(at)));
         cell.unwrap_or(self.program()).instructions.iter().map(|of| of.step.cost()).sum()
     }
 }
@@ -182,6 +179,22 @@ fn with_constants(steps: &[Step]) -> Vec<Step> {
         out.push(*step);
     }
     out
+}
+
+impl Field {
+    /// Evaluates the formula at a point that is a polynomial.
+    pub fn along<C: Coefficient, const N: usize>(&self, at: [Polynomial<C, N>; 3]) -> Polynomial<C, N> {
+        self.by_products().along(at)
+    }
+}
+
+/// Returns the box of a point.
+#[inline(always)]
+fn bounds_of<N: Scalar>(at: [N; 3]) -> [Interval; 3] {
+    at.map(|place| {
+        let [low, high] = place.bounds();
+        Interval { low, high }
+    })
 }
 
 #[cfg(test)]

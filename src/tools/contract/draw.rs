@@ -119,6 +119,7 @@ impl Draw {
             }
         }
         let is_plain = |other: &&Entity| other.kind() == Kind::Object && !refers_to(other, Kind::Object);
+        let mut objects = String::new();
         if refers_to(entity, Kind::Object)
             && let Some(other) = registry.iter().find(is_plain)
         {
@@ -129,14 +130,15 @@ impl Draw {
             let are_same = most > 1 && self.below(2) == 0;
             for index in 0..most {
                 let one = if index == 0 || are_same { first.clone() } else { self.entity(other, "NAME") };
-                text += &one.replacen("NAME", &of_list(name(Kind::Object), index), 1);
+                objects += &one.replacen("NAME", &of_list(name(Kind::Object), index), 1);
             }
         }
         if matches!(entity.kind(), Kind::Shader | Kind::Object | Kind::Light | Kind::Background) {
             let (tried, named) = (self.entity(entity, "tried"), format!("shader {}\n", name(Kind::Shader)));
-            if tried.contains(&named) {
+            if objects.contains(&named) || tried.contains(&named) {
                 text += &self.aside(|draw| draw.shader(registry, entity));
             }
+            text += &objects;
             text += &tried;
         }
         text

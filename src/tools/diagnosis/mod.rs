@@ -2,8 +2,8 @@
 
 mod survey;
 
-use glam::DVec3;
 use crate::threads::renderer_with;
+use glam::DVec3;
 use std::ops::Range;
 use survey::Survey;
 use tabray_core::geometry::aabb::Aabb;
