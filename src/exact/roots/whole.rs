@@ -9,22 +9,18 @@
 
 mod divisor;
 mod dyadic;
+mod polynomial;
 
 pub use dyadic::Dyadic;
+pub use polynomial::Whole;
 
 use crate::interval::{Float, Wide};
 use crate::roots::bernstein::BINOMIALS;
-use dashu_int::{IBig, Sign};
+use dashu_int::IBig;
+use polynomial::sign;
 
 /// The number of halvings after which a root's enclosure is no longer narrowed, as a fraction of the whole piece.
 const HALVINGS: usize = 128;
-
-/// A polynomial with whole coefficients.
-#[derive(Clone, Debug)]
-pub struct Whole {
-    /// The coefficients of the powers from 0 on. The last one is not 0, but for the polynomial 0.
-    coefficients: Vec<IBig>,
-}
 
 /// A root of a polynomial.
 #[derive(Clone, Debug)]
@@ -50,48 +46,6 @@ impl Root {
 }
 
 impl Whole {
-    /// Makes a polynomial of the coefficients of the powers from 0 on.
-    pub fn new(mut coefficients: Vec<IBig>) -> Self {
-        while coefficients.len() > 1 && coefficients.last().is_some_and(IBig::is_zero) {
-            coefficients.pop();
-        }
-        Self { coefficients }
-    }
-
-    /// Returns the coefficients of the powers from 0 on.
-    pub fn coefficients(&self) -> &[IBig] {
-        &self.coefficients
-    }
-
-    /// Returns the degree; 0 for the polynomial 0.
-    pub fn degree(&self) -> usize {
-        self.coefficients.len() - 1
-    }
-
-    /// Returns whether the polynomial is 0 everywhere.
-    pub fn is_zero(&self) -> bool {
-        self.coefficients.iter().all(IBig::is_zero)
-    }
-
-    /// Returns the sign at a place: 1, 0 or -1.
-    pub fn sign_at(&self, place: &Dyadic) -> i32 {
-        let mut sum = IBig::ZERO;
-        let up = place.exponent.max(0) as usize;
-        let down = (-place.exponent).max(0) as usize;
-        let at = &place.digits << up;
-        for (step, coefficient) in self.coefficients.iter().rev().enumerate() {
-            sum = sum * &at + (coefficient << (down * step));
-        }
-        sign(&sum)
-    }
-
-    /// Returns the derivative.
-    pub fn derivative(&self) -> Self {
-        let slopes = self.coefficients.iter().enumerate().skip(1).map(|(power, of)| of * IBig::from(power));
-        let slopes: Vec<_> = slopes.collect();
-        Self::new(if slopes.is_empty() { vec![IBig::ZERO] } else { slopes })
-    }
-
     /// Returns the first root from `low` to `high` that is wanted. The polynomial 0 has none.
     pub fn first_root(&self, low: f64, high: f64, is_wanted: impl Fn(&Root) -> bool) -> Option<Root> {
         if self.is_zero() || low > high || !(high - low).is_finite() {
@@ -152,15 +106,6 @@ impl Whole {
             (self.sign_at(low), self.sign_at(high))
         };
         Root { rises: (before != after).then_some(after > 0), bounds }
-    }
-}
-
-/// Returns 1, 0 or -1.
-fn sign(of: &IBig) -> i32 {
-    match of.sign() {
-        _ if of.is_zero() => 0,
-        Sign::Positive => 1,
-        Sign::Negative => -1,
     }
 }
 

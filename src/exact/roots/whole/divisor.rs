@@ -1,6 +1,6 @@
 //! The greatest common divisor of a polynomial and its derivative: the factors that it has more than once.
 
-use super::Whole;
+use super::polynomial::Whole;
 use dashu_int::ops::{Abs, DivRem, Gcd};
 use dashu_int::{IBig, UBig};
 
