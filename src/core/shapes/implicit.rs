@@ -18,6 +18,7 @@ use crate::world::coincidence::ROUNDING;
 use crate::world::hittable::{Bracketed, Certified, Hittable, Searched};
 use crate::world::packets::shape::by_distance;
 use crate::world::shape::Shape;
+use finely::ExactRay;
 pub use formula::Implicit;
 use glam::{DVec2, DVec3};
 use std::ops::Range;
@@ -243,6 +244,12 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         Self { shape, base, dir, blur: frame::blur(base, closest), turn: BLUR, by_proof: false, ray, closest }
     }
 
+    /// Returns the formula along the ray as it is given.
+    fn exactly(&self) -> ExactRay<'s, T> {
+        let ImplicitShape { formula, frame, .. } = self.shape;
+        ExactRay { formula, frame, ray: self.ray, closest: self.closest }
+    }
+
     /// Stands for all rays within a drift.
     fn within(self, drift: RayError) -> Self {
         let blur = self.blur + drift.origin + self.closest.abs() * drift.dir;
@@ -370,7 +377,8 @@ impl<T: Implicit> taylor::FunctionOnLine for FormulaOnRay<'_, T> {
     }
 
     fn polished(&self, root: f64) -> f64 {
-        self.with_all_digits(root)
+        let hidden = self.at(Interval::constant(root)).width();
+        self.exactly().polished(root, hidden, self.at(Dual::variable(root)).slope.abs())
     }
 
     fn pieces(&self, ends: (f64, f64), mut visit: &mut dyn FnMut(f64, f64) -> Option<f64>) -> Option<f64> {
@@ -390,8 +398,8 @@ impl<T: Implicit> taylor::FunctionOnLine for FormulaOnRay<'_, T> {
         if self.is_lost(twice::STILL_HIDDEN) {
             return None;
         }
-        if self.shape.degree.is_some() {
-            return self.finely(piece, origin_side);
+        if let Some(degree) = self.shape.degree {
+            return self.exactly().first_root(degree, piece, origin_side);
         }
         let hidden = self.at(Interval::constant(piece.middle())).width();
         let exact = self.shape.frame.exactly(self.ray, self.closest);

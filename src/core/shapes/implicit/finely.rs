@@ -1,6 +1,8 @@
 //! Roots of polynomials on pieces of a ray that `f64` does not decide: with twice the digits, and then exactly.
 
-use super::{FormulaOnRay, Implicit};
+use super::formula::Implicit;
+use crate::geometry::frame::Frame;
+use crate::geometry::ray::Ray;
 use crate::geometry::sight::{Line, Sight};
 use crate::world::certify::exact_line;
 use tabray_exact::double_double::DoubleDouble;
@@ -9,8 +11,7 @@ use tabray_exact::interval::Interval;
 use tabray_exact::polynomial::{Coefficient, FEW, MOST, Polynomial};
 use tabray_exact::roots::isolation::{self, Part};
 use tabray_exact::roots::range::Side;
-use tabray_exact::roots::taylor::FunctionOnLine;
-use tabray_exact::scalar::{Scalar, per_axis};
+use tabray_exact::scalar::per_axis;
 
 /// How far bounds of a root may be apart, in ulps of its distance: it is nearly always in their middle.
 const HIDDEN: f64 = 64.0;
@@ -18,26 +19,37 @@ const HIDDEN: f64 = 64.0;
 /// By how much more a piece is searched exactly, as a fraction of the places on it: a root at its end belongs to it.
 const BEYOND: f64 = 4.0 * f64::EPSILON;
 
-impl<T: Implicit> FormulaOnRay<'_, T> {
+/// A formula along a ray as it is given.
+pub(super) struct ExactRay<'s, T> {
+    pub formula: &'s T,
+    pub frame: &'s Frame,
+    /// The ray in the world, and the distance along it from which roots are counted, in world units.
+    pub ray: &'s Ray,
+    pub closest: f64,
+}
+
+impl<T: Implicit> ExactRay<'_, T> {
     /// Returns the first root on a piece of the ray as it is given, or of its wanted side where it leaves the surface.
-    pub(super) fn finely(&self, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
-        match self.shape.degree {
-            Some(degree) if degree < FEW => self.finely_with::<FEW>(piece, origin_side),
-            _ => self.finely_with::<MOST>(piece, origin_side),
+    pub fn first_root(&self, degree: usize, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
+        if degree < FEW {
+            self.first_root_with::<FEW>(piece, origin_side)
+        } else {
+            self.first_root_with::<MOST>(piece, origin_side)
         }
     }
 
-    fn finely_with<const N: usize>(&self, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
+    fn first_root_with<const N: usize>(&self, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
         let counts = |rises: bool| origin_side.is_none_or(|side| rises == (side == Side::Inside));
-        let Line { origin, dir } = self.shape.frame.exactly(self.ray, self.closest);
+        let Line { origin, dir } = self.frame.exactly(self.ray, self.closest);
         let along = Polynomial::<DoubleDouble, N>::along(piece);
-        let size = self.ray.origin.abs().max_element() + self.closest.abs() + self.base.abs().max_element();
+        let start = self.frame.from_origin(self.ray, self.closest).abs().max_element();
+        let size = self.ray.origin.abs().max_element() + self.closest.abs() + 2.0 * start;
         let error = 4.0 * DoubleDouble::ROUNDING;
         let place = |axis: usize| {
             let origin = Polynomial::number(origin[axis], error * size);
             origin + Polynomial::number(dir[axis], error) * along
         };
-        let polynomial = self.shape.formula.along(per_axis(place));
+        let polynomial = self.formula.along(per_axis(place));
         let at = |s: DoubleDouble| {
             let [low, high] = [piece.low, piece.high].map(|end| DoubleDouble::from(0.5 * end));
             ((low + high) + (high - low) * s).high
@@ -59,17 +71,15 @@ impl<T: Implicit> FormulaOnRay<'_, T> {
     }
 
     /// Returns a simple root that may be off by the rounding of `f64`, with twice the digits where that would be more than the
-    /// last ones of its distance.
-    pub(super) fn with_all_digits(&self, root: f64) -> f64 {
-        let hidden = self.at(Interval::constant(root)).width();
-        let slope = self.at(Dual::variable(root)).slope.abs();
+    /// last ones of its distance. The formula is known within `hidden` there, and has this slope.
+    pub fn polished(&self, root: f64, hidden: f64, slope: f64) -> f64 {
         if hidden <= HIDDEN * f64::EPSILON * (self.closest + root).abs() * slope {
             return root;
         }
-        let exact = self.shape.frame.exactly(self.ray, self.closest);
+        let exact = self.frame.exactly(self.ray, self.closest);
         let mut fine = DoubleDouble::from(root);
         for _ in 0..2 {
-            let Dual { value, slope } = self.shape.formula.value(exact.along(Dual::variable(fine)));
+            let Dual { value, slope } = self.formula.value(exact.along(Dual::variable(fine)));
             fine = fine - value / slope;
         }
         // Written so that a NaN is none.
@@ -79,8 +89,8 @@ impl<T: Implicit> FormulaOnRay<'_, T> {
     /// Returns the first root from one place to another, exactly; `None` where the formula or the line has numbers that are no
     /// fractions.
     fn exactly(&self, low: f64, high: f64, origin_side: Option<Side>) -> Option<Option<f64>> {
-        let field = self.shape.formula.field()?;
-        let [origin, dir] = exact_line(&self.shape.frame.line(Sight::along(self.ray).line()))?;
+        let field = self.formula.field()?;
+        let [origin, dir] = exact_line(&self.frame.line(Sight::along(self.ray).line()))?;
         let whole = field.exactly_along(&origin, &dir)?;
         let beyond = BEYOND * (low.abs() + high.abs() + self.closest.abs());
         let root =

@@ -1,7 +1,7 @@
 //! The normals with which a mesh looks smooth: those of the faces around a corner, as far as edges are no creases.
 
 use super::edges::Edges;
-use super::surface::in_order_of_use;
+use super::face::in_order_of_use;
 use crate::shapes::triangle::Triangle;
 use crate::world::accuracy::Exact;
 use glam::DVec3;

@@ -124,7 +124,7 @@ impl Surface {
             Bvh::of(kept.len(), |face| Aabb::around(&kept[face].map(|corner| vertices[corner as usize])));
         let sorted = tree.take_order();
         let mut faces: Vec<_> = sorted.iter().map(|face| kept[*face as usize]).collect();
-        let vertices = in_order_of_use(&vertices, &mut faces);
+        let vertices = face::in_order_of_use(&vertices, &mut faces);
         let normals = normals.sorted(&sorted);
         let mut order: Vec<_> = sorted.iter().map(|face| order[*face as usize]).collect();
         let slots =
@@ -248,21 +248,6 @@ fn merge(vertices: Vec<DVec3>, faces: &mut [[u32; 3]], placement: &ToWorld) -> V
     }
     merged.shrink_to_fit();
     merged
-}
-
-/// Sorts what the corners of faces refer to in the order in which faces use it, so that what belongs to a node of the tree
-/// lies close together in memory.
-pub(super) fn in_order_of_use<T: Copy>(all: &[T], faces: &mut [[u32; 3]]) -> Vec<T> {
-    let (mut places, mut sorted) = (vec![u32::MAX; all.len()], Vec::with_capacity(all.len()));
-    for corner in faces.iter_mut().flatten() {
-        let place = &mut places[*corner as usize];
-        if *place == u32::MAX {
-            *place = sorted.len() as u32;
-            sorted.push(all[*corner as usize]);
-        }
-        *corner = *place;
-    }
-    sorted
 }
 
 /// Tells of faces without an area, if there are any.
