@@ -93,9 +93,8 @@ impl Shader for Tiles {
             None => (at.position, n(OFFSET)),
         };
         let [u, v] = along_sides(constants(normal), constants(xdir), position);
-        let tile = |along: Interval<F>, side: usize| {
-            ((along + offset) / n(self.dimensions[side])).certain_floor()
-        };
+        let tile =
+            |along: Interval<F>, side: usize| ((along + offset) / n(self.dimensions[side])).certain_floor();
         let specular = if self.mirrors { self.other.specular } else { material.specular };
         let other = Material { specular, ..(*self.other).clone() };
         let (own, other) = (LookBounds::from(material), LookBounds::from(&other));
