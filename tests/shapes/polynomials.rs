@@ -259,7 +259,7 @@ fn judge(surface: &Surface, rays: usize, random: &mut Random, tally: &mut Tally)
             continue;
         }
         let (from, to) = clipped(&ray);
-        if !(from < to) {
+        if from >= to {
             continue;
         }
         let mut line = vec![IBig::ONE];
