@@ -51,11 +51,14 @@ pub fn camera_pose(camera: &Args) -> CameraPose {
 /// with a target goes the other way. A viewer before an image plane that stays goes with the hand, as that moves what is
 /// behind the image plane.
 pub fn moved(camera: &Args, from: &CameraPose, movement: &Movement, pivot: DVec3) -> Option<CameraPose> {
+    let is_in_front = |camera: &Args| point(camera, Pose::Position).is_some_and(|at| at.z > 0.0);
     let mut camera = camera.clone();
     let film = placed(&mut camera, from)?;
+    let before = is_in_front(&camera);
     let after = OrbitCamera::of(&camera, &film, pivot)?.moved(movement);
     placed(&mut camera, &after)?;
-    Some(after)
+    // Through an image plane that stays, the viewer would look back.
+    (!is_window(&camera) || is_in_front(&camera) == before).then_some(after)
 }
 
 /// Returns the film of a camera that is put where it stands then.
