@@ -32,7 +32,6 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::Instant;
-use tabray::render::Renderer;
 use tabray::tools::threads::renderer_with;
 use tally::Tally;
 
