@@ -86,10 +86,12 @@ impl Args {
     }
 
     /// Refuses to let a preview, an image of a size asked for or a part replace an image of another size, such as the one
-    /// that took an hour.
+    /// that took an hour. One with a checkpoint beside it is not finished.
     pub fn refuse_other_size(&self, path: &Path, part: &Part) -> Result<(), Failure> {
         let is_asked_for = self.quick || self.size.is_some() || self.crop.is_some();
-        if self.force || !is_asked_for || !path.is_file() {
+        let mut checkpoint = path.as_os_str().to_owned();
+        checkpoint.push(".checkpoint");
+        if self.force || !is_asked_for || !path.is_file() || Path::new(&checkpoint).exists() {
             return Ok(());
         }
         let reader = ImageReader::open(path).and_then(ImageReader::with_guessed_format).ok();

@@ -70,10 +70,8 @@ pub fn warning(model: &Model) -> Option<Fault> {
     }
     // Planes end before such a viewer's image plane.
     let is_endless = |object: &Object| object.shape.bounds().is_none();
-    let ends = camera
-        .camera
-        .planes_end_at()
-        .filter(|end| viewer.z < *end && model.objects.iter().any(is_endless))?;
+    let ends =
+        camera.camera.planes_end_at().filter(|_| viewer.z < 0.0 && model.objects.iter().any(is_endless))?;
     Some(
         Fault::warning(None, "the viewer is behind the image plane, and planes are not seen beyond it").help(
             format!(
