@@ -105,7 +105,7 @@ pub fn remark(frame: &Frame, Remark { message, help }: &Remark) -> Bytes {
 struct ImageRemark<'w> {
     /// The version of the scene.
     version: u64,
-    /// What is so, and what cures it.
+    /// The message: what is likely not meant, its reason, and its cure.
     words: &'w str,
 }
 

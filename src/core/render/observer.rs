@@ -83,8 +83,8 @@ pub enum Count {
     },
     /// A pixel has used up its ray budget; it lacks at most this much light in any channel.
     Cut(f64),
-    /// Of a number of rays from the viewer, light from mirrors or through glass was left out, because its path is too
-    /// long by the notes' rules.
+    /// This number of rays from the viewer lack light from mirrors or through glass, as its path is too long by the notes'
+    /// rules.
     Far(usize),
     /// A pixel has a camera ray for which it could not be decided whether it hits the object of this index first.
     Undecided(usize, Doubt),

@@ -42,9 +42,9 @@ const BOUNCES: usize = 4;
 /// Something about an image that is likely not to be meant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Remark {
-    /// What is so, and why.
+    /// The fault and its reason, in lower case.
     pub message: String,
-    /// What cures it.
+    /// The cure.
     pub help: String,
 }
 

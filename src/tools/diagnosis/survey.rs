@@ -16,10 +16,13 @@ pub struct Lamp {
     pub near: f64,
     /// The most light that it adds in any channel, as the viewer sees it.
     pub most: f64,
-    /// The same without any division by lengths.
+    /// The most light that it would add without any division by lengths.
     pub free: f64,
+    /// The number of places on which it shines.
     pub shines: usize,
+    /// The number of places that objects hide from it.
     pub blocked: usize,
+    /// The number of places that face away from it.
     pub behind: usize,
 }
 
