@@ -244,7 +244,7 @@ pub fn tell_of_far(FarPaths { rays, of }: FarPaths) {
     if rays > 0 {
         messages::note(&format!(
             "light in mirrors and glass ends after {MAX_DIST} units by the notes' rules, and is black beyond: in {rays} of {of} \
-             rays from the viewer"
+             rays from the viewer; `rules free` in the camera has no such end"
         ));
     }
 }
