@@ -152,7 +152,10 @@ impl<W: Write> Probe<'_, W> {
             }
             RayPurpose::Shadow { distance } => {
                 self.light = Some(distance);
-                let heading = format!("shadow ray, {} to the light", number(distance));
+                let heading = match distance.is_finite() {
+                    true => format!("shadow ray, {} to the light", number(distance)),
+                    false => "shadow ray, toward the sky".to_owned(),
+                };
                 self.held += &format!("{}{heading}\n", indent(self.depth));
             }
         }

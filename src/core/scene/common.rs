@@ -1,6 +1,6 @@
 //! The attributes that all entities of a kind have beside those of their tables.
 
-use crate::scene::pparm::{Pparm, Table};
+use crate::scene::pparm::{Pparm, Row, Table};
 use crate::world::accuracy::Accuracy;
 use crate::world::body::Paint;
 use crate::world::display::{Tone, Transfer};
@@ -80,6 +80,14 @@ pub(super) static AT: Pparm<f64> =
         .unit("world units")
         .must("above 0", |at| *at > 0.0)
         .not_dumped();
+
+/// Whether a background lights surfaces.
+pub(super) static LIGHTS: Pparm<bool> =
+    Pparm::or("lights", "whether its light falls on surfaces, by the free rules", false)
+        .not_dumped();
+
+/// The attribute that every background has after its own.
+pub(super) const BACKGROUND: Table = &[&LIGHTS as &dyn Row];
 
 /// The attributes that every light has after its own.
 pub(super) const LIGHT: Table = &[&FALLOFF, &AT];

@@ -2,7 +2,7 @@
 
 use crate::scene::attribute::Attribute;
 use crate::scene::common::{
-    ACCURACY, AT, EXPOSURE, FALLOFF, FILM, LIGHT, MATERIAL, MATERIAL_OF_ALL, OBJECT, OF_OBJECTS, PIXELDIM,
+    ACCURACY, AT, BACKGROUND, EXPOSURE, FALLOFF, FILM, LIGHT, LIGHTS, MATERIAL, MATERIAL_OF_ALL, OBJECT, OF_OBJECTS, PIXELDIM,
     RULES, SAMPLES, SHADER, TONE, TRANSFER,
 };
 use crate::scene::counts::OneOf;
@@ -167,7 +167,14 @@ impl Entity {
         Self::new(name, meaning, tables, Construct::Light(construct))
     }
 
-    /// Describes a type of background.
+    /// Describes a type of light whose distance changes nothing but the angle at which it is seen: the attributes `falloff`
+    /// and `at` are not added to its table.
+    pub const fn without_falloff(mut self) -> Self {
+        self.common = [&[], &[]];
+        self
+    }
+
+    /// Describes a type of background. The attribute `lights` is added to its table.
     #[track_caller]
     pub const fn background(
         name: &'static str,
@@ -189,6 +196,7 @@ impl Entity {
             Construct::Camera(_) => FILM,
             Construct::Object(_) => [OBJECT, &[]],
             Construct::Light(_) => [&[], LIGHT],
+            Construct::Background(_) => [&[], BACKGROUND],
             _ => [&[], &[]],
         };
         let (aliases, numbers, place): (&[&str], _, _) = (&[], [None; 2], Location::caller());
@@ -362,7 +370,16 @@ impl Args {
 
     /// Returns the lamp of a light with this entity's attributes.
     pub fn lamp(&self, light: AnyLight) -> Lamp {
-        Lamp { light, fading: Fading { falloff: self.get(&FALLOFF), at: self.get(&AT) } }
+        let fading = match self.find(FALLOFF.name()) {
+            Some(_) => Fading { falloff: self.get(&FALLOFF), at: self.get(&AT) },
+            None => Fading::NONE,
+        };
+        Lamp { light, fading }
+    }
+
+    /// Tells whether a background lights surfaces.
+    pub fn lights(&self) -> bool {
+        self.get(&LIGHTS)
     }
 
     /// Returns the names of a camera's attributes that the scene gives and only the free rules use.

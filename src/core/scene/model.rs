@@ -5,7 +5,7 @@ use crate::scene::kind::Kind;
 use crate::scene::store::Record;
 use crate::scene::value::Type;
 use crate::world::any_shape::AnyShape;
-use crate::world::background::AnyBackground;
+use crate::world::background::Background;
 use crate::world::body::{AnyShader, NamedBody, Paint};
 use crate::world::film::Film;
 use crate::world::lamp::Lamp;
@@ -27,14 +27,14 @@ pub struct Model {
     pub textures: Vec<Item<Arc<Texture>>>,
     /// The shaders, in the order of the scene.
     pub shaders: Vec<Item<Paint>>,
-    /// The visible objects, in the order of the scene.
+    /// The visible objects, in the order of the scene, lights that are seen among them.
     pub objects: Vec<Object>,
     /// The objects that other entities refer to, in the order of the scene: they are seen only where these put them.
     pub patterns: Vec<Item<NamedBody>>,
-    /// The lights, in the order of the scene.
+    /// The lights, in the order of the scene, and last the background, if it lights surfaces.
     pub lights: Vec<Item<Lamp>>,
     /// The colour of rays that hit nothing; black without a background.
-    pub background: Option<Item<AnyBackground>>,
+    pub background: Option<Item<Arc<dyn Background>>>,
     /// The files that the scene names: those that it includes, and those of its entities.
     pub files: Vec<PathBuf>,
 }
@@ -49,13 +49,17 @@ impl Model {
             Kind::Shader => self.shaders.iter().map(|item| &item.args).collect(),
             Kind::Object => {
                 let shown = self.objects.iter().map(|object| &object.args);
+                let shown = shown.filter(|record| record.entity().kind() == Kind::Object);
                 let mut all: Vec<_> = shown.chain(self.patterns.iter().map(|item| &item.args)).collect();
                 all.sort_unstable_by_key(|record| record.order());
                 // An object may be seen as several.
                 all.dedup_by_key(|record| record.order());
                 all
             }
-            Kind::Light => self.lights.iter().map(|item| &item.args).collect(),
+            Kind::Light => {
+                let lights = self.lights.iter().map(|item| &item.args);
+                lights.filter(|record| record.entity().kind() == Kind::Light).collect()
+            }
             Kind::Background => self.background.iter().map(|item| &item.args).collect(),
         }
     }

@@ -9,14 +9,21 @@ pub type AnyBackground = Box<dyn Background>;
 
 /// The colour of rays that hit nothing: primary, reflected and transmitted ones.
 ///
-/// Its light comes from infinitely far away, so it is not divided by the distance. It is seen, but it lights no
-/// surface.
+/// Its light comes from infinitely far away, so it is not divided by the distance. With `lights yes` in a scene, it lights
+/// surfaces as well: see [`SkyLight`](crate::world::sky_light::SkyLight).
 pub trait Background: Send + Sync {
     /// Returns the colour in a direction, given by a unit vector. Every channel is finite and 0 or more.
     fn colour(&self, toward: DVec3) -> Rgb;
 
     /// Returns an upper bound of all colours, per channel. It decides how deep rays are followed into mirrors and glass.
     fn brightest(&self) -> Rgb;
+
+    /// Returns the columns and rows of an equirectangular map, as that of an environment, in whose cells the colours vary
+    /// little; `None` if they vary slowly everywhere. It decides in which directions its light is looked for, and changes
+    /// no mean.
+    fn detail(&self) -> Option<[u32; 2]> {
+        None
+    }
 
     /// Encloses the true colours, before any rounding, in all directions of a box, per channel. Proofs of colours ask
     /// for them. The default is always correct.

@@ -1,15 +1,17 @@
 //! Lights: the trait that a plugin implements.
 
 use crate::geometry::aabb::Aabb;
+use crate::world::body::Body;
 use crate::world::certify::Precise;
+use crate::world::emitter::Emitter;
 use crate::world::material::Rgb;
 use glam::DVec3;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::constants;
 
-/// A source of light.
+/// A source of light: a point, a ball with a [`size`](Self::size), or what an [`emitter`](Self::emitter) describes.
 pub trait Light: Send + Sync {
-    /// Returns the light's position, in world coordinates.
+    /// Returns the light's position, in world coordinates: a point, or the middle of what shines.
     fn location(&self) -> DVec3;
 
     /// Returns the light sent toward a point, or `None` where the light does not point there (the notes' `vischeck`).
@@ -42,8 +44,26 @@ pub trait Light: Send + Sync {
         false
     }
 
-    /// Returns the radius of a spherical light in world units; 0 for a point light, whose shadows have sharp edges.
+    /// Returns the radius of a spherical light in world units; 0 for a point light, whose shadows have sharp edges. Of
+    /// another shape, it is that of a ball around its [`location`](Self::location) which holds all of it.
     fn size(&self) -> f64 {
         0.0
+    }
+
+    /// Returns how the light is spread out, if it is neither a point nor a ball. What it adds is then what its samples say,
+    /// and [`emissivity`](Self::emissivity) is its radiance; [`brightest`](Self::brightest) bounds `light` of each sample
+    /// times the cosine of the angle at which it arrives, and if it has highlights, without the cosine.
+    fn emitter(&self) -> Option<&dyn Emitter> {
+        None
+    }
+
+    /// Tells whether the light comes from infinitely far away, so that its [`location`](Self::location) means nothing.
+    fn is_far(&self) -> bool {
+        false
+    }
+
+    /// Returns the object as which the light is seen, with its material; `None` for a light that is not seen itself.
+    fn body(&self) -> Option<Body> {
+        None
     }
 }

@@ -57,6 +57,7 @@ pub fn model(
     // Objects and lights may ask for the camera, wherever it stands in the text, so they are constructed last.
     let store = check.construct_waiting(source);
     check.textures_can_be_read(&store, source);
+    check.light_by_background(&store, source);
     let (model, places) = check.finish(&store, source);
     (model, places, time + (now() - start))
 }

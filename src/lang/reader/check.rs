@@ -25,7 +25,7 @@ use tabray_core::scene::model::{Item, Object};
 use tabray_core::scene::store::Store;
 use tabray_core::scene::value::Datum;
 use tabray_core::world::accuracy::Accuracy;
-use tabray_core::world::background::AnyBackground;
+use tabray_core::world::background::Background;
 use tabray_core::world::body::{NamedBody, Paint};
 use tabray_core::world::film::Film;
 use tabray_core::world::lamp::Lamp;
@@ -131,7 +131,7 @@ pub(super) struct Check<'r, 't> {
     pub(super) lights: Vec<Item<Lamp>>,
     /// The warning of colours from 0 to 255, if there is one.
     pub(super) levels: Option<Fault>,
-    pub(super) background: Option<(usize, AnyBackground)>,
+    pub(super) background: Option<(usize, Arc<dyn Background>)>,
     quick: Quick<'r>,
 }
 
@@ -337,7 +337,7 @@ impl Check<'_, '_> {
             }
             Construct::Background(construct) => {
                 let made = self.made(parsed, args, construct);
-                self.background = made.map(|background| (order, background));
+                self.background = made.map(|background| (order, background.into()));
             }
             Construct::Object(_) | Construct::Light(_) => {}
         }

@@ -15,7 +15,8 @@ use tabray_core::scene::value::Datum;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_core::world::body::{Body, Warning};
 use tabray_core::world::lamp::Lamp;
-use tabray_core::world::rules::{Falloff, Rules};
+use tabray_core::world::rules::{Fading, Falloff, Rules};
+use tabray_core::world::sky_light::SkyLight;
 
 impl Check<'_, '_> {
     /// Constructs the objects and the lights. Those that read files, and those that others refer to, are constructed one
@@ -80,6 +81,10 @@ impl Check<'_, '_> {
                         if let Some(warning) = self.unused_falloff(&lamp) {
                             self.warn(&record.args(), &[warning], source);
                         }
+                        if lamp.emitter().is_some() && self.setting.camera.rules == Rules::Notes {
+                            self.refused(&record.args(), only_free(None), source);
+                        }
+                        self.objects.extend(lamp.body().into_iter().flat_map(|body| objects(record.clone(), body)));
                         self.lights.push(Item { args: record, value: lamp });
                     }
                     Err(refusal) => self.refused(&record.args(), refusal, source),
@@ -88,6 +93,20 @@ impl Check<'_, '_> {
         }
         self.objects.shrink_to_fit();
         store
+    }
+
+    /// Adds the light of a background that lights surfaces.
+    pub fn light_by_background(&mut self, store: &Arc<Store>, source: &Source<'_, '_>) {
+        let Some((order, background)) = &self.background else { return };
+        let args = store.args(*order);
+        if !args.lights() {
+            return;
+        }
+        let lamp = Lamp { light: Box::new(SkyLight::new(background.clone())), fading: Fading::NONE };
+        self.lights.push(Item { args: Record::new(store, *order), value: lamp });
+        if self.setting.camera.rules == Rules::Notes {
+            self.refused(&args, only_free(Some("lights")), source);
+        }
     }
 
     /// Constructs the body of an object within the memory that is left, and reports a refusal or warnings.
@@ -133,6 +152,15 @@ impl Check<'_, '_> {
     fn refused(&mut self, args: &Args, refusal: Refusal, source: &Source<'_, '_>) {
         let parsed = source.entity(self.registry, args.order, &self.places.get(args.order));
         self.refuse(parsed.as_deref(), args, refusal);
+    }
+}
+
+/// Returns why the notes' rules refuse a light.
+fn only_free(attribute: Option<&'static str>) -> Refusal {
+    Refusal {
+        attribute,
+        message: "is a light that the notes' rules of light do not know".to_owned(),
+        help: "give the camera `rules free`, and do not render with `--method classic`, which always means the notes' rules",
     }
 }
 

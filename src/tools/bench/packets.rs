@@ -94,7 +94,7 @@ impl Packet {
                 view.dir.set(lane, ray.dir);
                 toward.origin.set(lane, hit.point);
                 toward.dir.set(lane, ray.dir);
-                if let Some(light) = plan.model.lights.first() {
+                if let Some(light) = plan.model.lights.iter().find(|light| !light.value.is_far()) {
                     let between = light.value.location() - hit.point;
                     toward.dir.set(lane, between.normalize());
                     t_max[lane] = if between.dot(normal) > 0.0 { between.length() } else { 0.0 };

@@ -74,7 +74,7 @@ pub fn work(study: &Study) -> usize {
 
 /// Tells whether any light of a model has a size.
 pub fn has_size(model: &Model) -> bool {
-    model.lights.iter().any(|light| light.value.size() > 0.0)
+    model.lights.iter().any(|light| light.value.size() > 0.0 || light.value.emitter().is_some())
 }
 
 /// Plans an image with one ray through the centre of each pixel.

@@ -11,6 +11,7 @@ use tabray_core::render::flaws::Flaws;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::trace::{self, Scratch, Tracer};
 use tabray_core::scene::attribute::Pose;
+use tabray_core::scene::kind::Kind;
 use tabray_core::scene::model::Model;
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::text::{self, short};
@@ -79,12 +80,22 @@ pub fn remark(plan: &Plan, part: [&Range<usize>; 2], levels: &Levels) -> Option<
     empty(plan, &places).or_else(|| {
         let is_black = levels.brightest < DARK;
         if !is_black && !levels.is_burnt() {
-            return None;
+            return flat(plan.model);
         }
         // The plan of a picture leaves out lights.
         let plan = Plan::new(plan.model);
         let survey = Survey::of(&plan, &places);
         if is_black { Some(black(&plan, &survey, levels.brightest)) } else { burnt(&plan, &survey, levels) }
+    })
+}
+
+/// Says that a background lights the scene from one direction, where pixels have one sample.
+fn flat(model: &Model) -> Option<Remark> {
+    let Film { samples, adaptive, .. } = &model.camera.value;
+    let sky = model.lights.iter().find(|light| light.args.entity().kind() == Kind::Background)?;
+    (*samples == 1 && adaptive.is_none()).then(|| Remark {
+        message: format!("`{}` lights the scene, but each pixel has one sample, which sees a single direction", sky.args.name()),
+        help: "take more: `samples 64` in the camera, `--samples 64` or `--max-error 2`".to_owned(),
     })
 }
 
@@ -195,7 +206,8 @@ fn black(plan: &Plan, survey: &Survey, brightest: u8) -> Remark {
                 why.join(", ")
             )
         } else {
-            format!("{name} is {} away, and {rules}adds up to {} levels", units(lamp.near), level(lamp.most))
+            let away = if lamp.near.is_finite() { format!("is {} away, and ", units(lamp.near)) } else { String::new() };
+            format!("{name} {away}{rules}adds up to {} levels", level(lamp.most))
         });
     }
     let more = lamps.len().saturating_sub(NAMED);

@@ -115,8 +115,10 @@ impl TraceObserver for Survey<'_> {
                     LightOutcome::Aside => {}
                     LightOutcome::Blocked(_) => lamp.blocked += 1,
                     LightOutcome::Shines { colour, .. } => {
-                        let location = self.plan.model.lights[light].value.location();
-                        let distance = location.distance(self.current.point);
+                        let lamp = &self.plan.model.lights[light].value;
+                        let away = lamp.location().distance(self.current.point);
+                        let distance = if lamp.is_far() { f64::INFINITY } else { away };
+                        let lamp = &mut self.lamps[light];
                         (lamp.shines, lamp.near) = (lamp.shines + 1, lamp.near.min(distance));
                         self.current.lit.push((light, colour.max_element(), distance));
                     }

@@ -1,5 +1,6 @@
 //! The light that reaches the points of a surface.
 
+use super::emitted;
 use super::number::{Endpoint, Number, ranges};
 use super::panes::{Passes, passed};
 use super::scene::{Colour, Path, Scene};
@@ -39,6 +40,9 @@ pub(super) fn shine<N: Number>(
     let has_glint = shininess != 0.0 && !is_black(&surface.specular);
     if is_black(&surface.diffuse) && !has_glint {
         return Some(black);
+    }
+    if let Some(emitter) = light.emitter() {
+        return emitted::shine(scene, (index, seen), emitter, surface, dir);
     }
     let toward = toward(&**light, (index, seen), surface.at)?;
     let distance = dot(toward, toward).sqrt();
@@ -140,7 +144,7 @@ fn orthonormal_pair<N: Number>([x, y, z]: [N; 3]) -> Option<[[N; 3]; 2]> {
 }
 
 /// Encloses the power of a cosine above 0; 0 below.
-fn power<N: Number>(cosine: N, shininess: f64) -> N {
+pub(super) fn power<N: Number>(cosine: N, shininess: f64) -> N {
     let n = N::constant;
     let cosine = cosine.max(n(0.0)).min(n(1.0));
     let whole = shininess as i32;

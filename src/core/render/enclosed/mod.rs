@@ -11,6 +11,7 @@
 //! [`Interval`]: tabray_exact::interval::Interval
 //! [`Affine`]: tabray_exact::affine::Affine
 
+mod emitted;
 mod light;
 mod number;
 mod panes;

@@ -53,7 +53,7 @@ pub(super) fn shut_out(model: &Model, objects: &Objects) -> Vec<(usize, usize)> 
             && is_inside.is_some_and(|is_inside| self::is_inside(object, at, size) == Some(!is_inside))
             && object.shape.why_not_closed().is_none()
     };
-    let lights = model.lights.iter().enumerate();
+    let lights = model.lights.iter().enumerate().filter(|(_, item)| !item.value.is_far());
     let by = lights.filter_map(|(light, item)| {
         let (at, size) = (item.value.location(), item.value.size());
         let around = objects.around(at);

@@ -83,14 +83,14 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             shadows,
         } = lighting;
         let (points, normals) = (surface.points.view(count), surface.normals.view(count));
-        let is_point = light.size() == 0.0;
-        let source = if is_point {
-            Aabb { low: light.location(), high: light.location() }
-        } else {
+        let emitter = light.emitter();
+        let is_ball = emitter.is_none() && light.size() != 0.0;
+        let mut source = Aabb { low: light.location(), high: light.location() };
+        if is_ball {
             self.sample_light(&**light, index, group, surface, (lights, draws));
-            aabb::around(cpu, lights.view(count))
-        };
-        let lights = (!is_point).then(|| lights.view(count));
+            source = aabb::around(cpu, lights.view(count));
+        }
+        let lights = is_ball.then(|| lights.view(count));
         let (t_max, shines, blocked) =
             (resized(t_max, count), resized(shines, count), resized(blocked, count));
         let samples = LightSamples {
@@ -101,7 +101,10 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             shines,
         };
         let shading = ShadingPoints { points, normals, lights, rules, slack: self.slack() };
-        let mut faced = light.sample(cpu, &shading, samples);
+        let mut faced = match emitter {
+            None => light.sample(cpu, &shading, samples),
+            Some(emitter) => self.sample_emitter((emitter, index), group, &shading, draws, samples, &mut source),
+        };
         if surface.is_bent {
             faced.any_shines = surface.hide_from_behind(toward.view(count), shines, t_max);
         }
@@ -159,16 +162,18 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 },
             },
         };
-        light::shine(cpu, &lit, material.shininess, colours.resized(count));
+        let shows_highlights = emitter.is_none_or(|emitter| emitter.has_highlights());
+        let shininess = if shows_highlights { material.shininess } else { 0.0 };
+        light::shine(cpu, &lit, shininess, colours.resized(count));
         if self.scratch.trails.is_on {
-            let is_shiny = material.shininess != 0.0;
+            let is_shiny = shininess != 0.0;
             let has_tints = light.uniform().is_some() && !fades;
             self.scratch.trails.see_light(&group.camera[..group.len], index, &lit, [is_shiny, has_tints]);
         }
         if W::SEES {
             let mut alone = VectorList::default();
             alone.fill(count, Rgb::ZERO);
-            light::shine(cpu, &lit, material.shininess, alone.resized(count));
+            light::shine(cpu, &lit, shininess, alone.resized(count));
             self.observer
                 .see(Event::Light(index, LightOutcome::Shines { passed: tint, colour: alone.get(0) }));
         }
@@ -189,6 +194,23 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         if self.scratch.samples.is_empty() {
             return;
         }
+        let [x, y] = self.draw(index, group, draws);
+        for lane in 0..x.len() {
+            let Some(axis) = (middle - surface.points.get(lane)).try_normalize() else { continue };
+            let (across, up) = axis.any_orthonormal_pair();
+            let (radius, angle) = (size * x[lane].sqrt(), std::f64::consts::TAU * y[lane]);
+            lights.set(lane, middle + radius * (libm::cos(angle) * across + libm::sin(angle) * up));
+        }
+    }
+
+    /// Returns the two numbers from 0 to 1 by which the primary ray's sample chooses a point of a light, for each ray of a
+    /// packet; for probes, 1 and a part of a turn.
+    pub(super) fn draw<'d>(
+        &self,
+        index: usize,
+        group: &RayGroup,
+        draws: &'d mut LightDraws,
+    ) -> [&'d mut [f64]; 2] {
         let count = group.camera.len().min(group.padded());
         let LightDraws { samples, places: [x, y] } = draws;
         samples.clear();
@@ -200,11 +222,6 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         } else {
             sample::on_lights(self.cpu, samples, index, x, y);
         }
-        for lane in 0..count {
-            let Some(axis) = (middle - surface.points.get(lane)).try_normalize() else { continue };
-            let (across, up) = axis.any_orthonormal_pair();
-            let (radius, angle) = (size * x[lane].sqrt(), std::f64::consts::TAU * y[lane]);
-            lights.set(lane, middle + radius * (libm::cos(angle) * across + libm::sin(angle) * up));
-        }
+        [x, y]
     }
 }

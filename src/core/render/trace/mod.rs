@@ -12,6 +12,7 @@ mod charge;
 mod closest_hit;
 mod context;
 mod direct_light;
+mod emitted;
 mod estimate;
 mod grow;
 mod hit_record;

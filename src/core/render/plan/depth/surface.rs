@@ -163,9 +163,11 @@ fn own(model: &Model, object: &Object, look: &Look, of: Part, any_light_comes: b
         // A light with a size is sampled on a disc perpendicular to the direction of its centre, so no sample is nearer
         // than the centre.
         let clearance = || clearance(object, light.value.location());
-        own += match model.camera.value.rules {
-            Rules::Free => sent.abs() * light.value.fading.factor(clearance()) * (diffuse + highlight),
-            Rules::Notes => {
+        own += match (light.value.emitter(), model.camera.value.rules) {
+            (Some(emitter), _) if !emitter.has_highlights() => sent.abs() * diffuse,
+            (Some(_), _) => sent.abs() * (diffuse + highlight),
+            (None, Rules::Free) => sent.abs() * light.value.fading.factor(clearance()) * (diffuse + highlight),
+            (None, Rules::Notes) => {
                 let scattered = match clearance() {
                     _ if diffuse == Rgb::ZERO => Rgb::ZERO,
                     0.0 => return f64::INFINITY,

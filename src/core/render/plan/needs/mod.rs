@@ -133,7 +133,10 @@ impl Scene<'_> {
         };
         let mut needs =
             Needs { lights: Vec::new(), dark: Vec::new(), unreached: Vec::new(), clearance: f64::INFINITY };
-        let candidates = views.as_deref().map_or_else(Vec::new, |views| self.unseen(views));
+        // The paths to a sky lead everywhere.
+        let is_any_far = self.model.lights.iter().any(|item| item.value.is_far());
+        let near_views = views.as_deref().filter(|_| !is_any_far);
+        let candidates = near_views.map_or_else(Vec::new, |views| self.unseen(views));
         let mut regions: Vec<Hull> = Vec::new();
         for (index, item) in self.model.lights.iter().enumerate() {
             let (light, mut reason) = (&item.value, None);
@@ -246,7 +249,7 @@ impl Scene<'_> {
             return Some(UnlitReason::Black);
         }
         let (location, size) = (light.location(), light.size());
-        if let Some([at, normal]) = object.shape.plane() {
+        if let Some([at, normal]) = object.shape.plane().filter(|_| !light.is_far()) {
             let height = |point| normal.dot(point - at);
             let slack = size + 1e-9 * (at.abs() + location.abs()).max_element();
             let turned = match (object.shape.is_two_sided(), view) {

@@ -1,0 +1,95 @@
+//! The light of what is spread out that reaches the points of a surface.
+
+use super::light::{LightPoints, power};
+use super::number::{Endpoint, Number, ranges};
+use super::panes::{Passes, passed};
+use super::scene::{Colour, Path, Scene};
+use super::surface::Surface;
+use crate::geometry::sight::Line;
+use crate::world::emitter::{Emitter, Extent};
+use crate::world::patch::Patch;
+use tabray_exact::interval::Interval;
+use tabray_exact::scalar::{constants, dot, per_axis};
+
+/// Encloses what a light that is spread out adds to the colour of points; `None` where it is open. `dir` is the unit vector
+/// along the rays that see the points.
+///
+/// The mean over a patch is enclosed by what its points add; the sum of what a sky sends, or a sample, by nothing and the most
+/// that there may be.
+pub(super) fn shine<N: Number>(
+    scene: &Scene,
+    (index, seen): (usize, LightPoints),
+    emitter: &dyn Emitter,
+    surface: &Surface<N>,
+    dir: [N; 3],
+) -> Option<Colour<N>> {
+    let light = &scene.model.lights[index].value;
+    let shininess = scene.model.objects[surface.place.object].material.shininess;
+    let has_highlight = shininess != 0.0 && emitter.has_highlights();
+    if !scene.bounds.passes_fractions {
+        return None;
+    }
+    let sent = N::End::sent(&**light, ranges(surface.at))?;
+    let sent: Colour<N> = per_axis(|channel| N::enclosing(sent[channel]));
+    // Without highlights, the mean of all samples is no more than the radiance.
+    let most = match (seen, has_highlight) {
+        (LightPoints::All, false) => per_axis(|channel| sent[channel].range().coarse().magnitude()),
+        _ => light.brightest()?.abs().to_array(),
+    };
+    let any = per_axis(|channel| {
+        let reflected = match has_highlight {
+            true => {
+                surface.diffuse[channel].coarse().magnitude() + surface.specular[channel].coarse().magnitude()
+            }
+            false => surface.diffuse[channel].coarse().magnitude(),
+        };
+        let most = (Interval::point(reflected) * Interval::point(most[channel])).high;
+        let is_positive = [surface.diffuse[channel], surface.specular[channel], sent[channel]]
+            .iter()
+            .all(|factor| factor.coarse().low >= 0.0);
+        let low = if is_positive { 0.0 } else { -most };
+        N::enclosing(Interval::from_f64(Interval { low, high: most }))
+    });
+    let (LightPoints::All, Extent::Patch(patch)) = (seen, emitter.extent()) else {
+        return Some(any);
+    };
+    let Patch { middle, half, .. } = patch;
+    let n = N::constant;
+    let [x, y] = [0, 1].map(N::on_light);
+    let toward =
+        per_axis(|axis| n(middle[axis]) - surface.at[axis] + (x * n(half[0][axis]) + y * n(half[1][axis])));
+    let square = dot(toward, toward);
+    let distance = square.sqrt();
+    // The rounding of its area and its direction is below what colours are compared to.
+    let facing = constants::<N>(patch.facing());
+    let leaving = (dot(toward, facing) / distance).abs();
+    let cosine = dot(toward, surface.normal) / distance;
+    let above = surface.unbent.map_or(cosine, |unbent| cosine.min(dot(toward, unbent))).range();
+    let (zero, black) = (N::of(0.0), [n(0.0); 3]);
+    if above.high <= zero {
+        return Some(black);
+    }
+    let weight = n(patch.area()) * leaving / (N::enclosing(Interval::pi()) * square);
+    let mut scattered = per_axis(|channel| surface.diffuse[channel] * cosine);
+    if has_highlight {
+        let half = per_axis(|axis| toward[axis] / distance - dir[axis]);
+        let strength = power(dot(half, surface.normal) / dot(half, half).sqrt(), shininess);
+        scattered = per_axis(|channel| scattered[channel] + surface.specular[channel] * strength);
+    }
+    let passes =
+        passed(scene, &Path { line: Line { origin: surface.at, dir: toward }, leaves: Some(surface.place) });
+    Some(per_axis(|channel| {
+        let full = scattered[channel] * sent[channel] * weight;
+        let lit = match &passes {
+            Passes::Nothing => black[channel],
+            Passes::All => full,
+            Passes::Part(fraction) => full * fraction[channel],
+            Passes::Open => full.hull(black[channel]),
+        };
+        let lit = if above.low > zero { lit } else { lit.hull(black[channel]) };
+        let mean = lit.mean_over_light();
+        let width = |of: N| of.mean().coarse().width();
+        // Near a patch, its points say less than all that there may be.
+        if width(mean) <= width(any[channel]) { mean } else { any[channel] }
+    }))
+}
