@@ -19,8 +19,8 @@ inventory::submit! {
 }
 
 /// A disc in the plane y = 0.
-struct Disc {
-    radius: f64,
+pub struct Disc {
+    pub radius: f64,
 }
 
 impl Implicit for Disc {

@@ -45,6 +45,10 @@ impl Background for Environment {
         self.brightness * along(row(lower)).lerp(along(row(lower + 1.0)), y - lower)
     }
 
+    fn detail(&self) -> Option<[u32; 2]> {
+        Some(self.texture.size())
+    }
+
     fn brightest(&self) -> Rgb {
         Rgb::splat(self.brightness * self.texture.brightest())
     }

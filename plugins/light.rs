@@ -2,10 +2,10 @@
 
 use tabray::prelude::*;
 
-static LOCATION: Pparm<DVec3> = Pparm::required("location", "the position of the light")
+pub static LOCATION: Pparm<DVec3> = Pparm::required("location", "the position of the light")
     .known_as(&["position", "center"])
     .unit("world coordinates");
-static EMISSIVITY: Pparm<Rgb> = Pparm::required("emissivity", "the emission in red, green and blue")
+pub static EMISSIVITY: Pparm<Rgb> = Pparm::required("emissivity", "the emission in red, green and blue")
     .known_as(&["intensity", "power", "brightness", "color", "colour"])
     .each(COLOUR);
 

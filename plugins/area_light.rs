@@ -1,0 +1,144 @@
+//! An area light: a rectangle or a disc that shines evenly on both sides.
+
+use super::disc::Disc;
+use super::light;
+use std::f64::consts::PI;
+use std::sync::Arc;
+use tabray::prelude::*;
+use tabray::shapes::outline;
+
+static TARGET: Pparm<DVec3> = Pparm::required("target", "a point that it faces, from its middle")
+    .known_as(&["look_at", "point_at", "to"])
+    .unit("world coordinates");
+static DIMENSIONS: Pparm<Option<DVec2>> =
+    Pparm::or("dimensions", "the width and height of a rectangle", None)
+        .each(&["width", "height"])
+        .unit("world units")
+        .must("positive in each dimension", |size| size.is_none_or(|size| size.min_element() > 0.0));
+static RADIUS: Pparm<Option<f64>> = Pparm::or("radius", "the radius of a disc", None)
+    .unit("world units")
+    .must("positive", |radius| radius.is_none_or(|radius| radius > 0.0));
+static SHAPE: OneOf = OneOf { meaning: "the shape", names: &["dimensions", "radius"] };
+static UP: Pparm<DVec3> = Pparm::or(
+    "up",
+    "the direction of a rectangle's height; if it faces that way, its width lies along x",
+    DVec3::Y,
+)
+.nonzero();
+static VISIBLE: Pparm<bool> = Pparm::or(
+    "visible",
+    "whether it is seen, also in mirrors; if it is not, shiny surfaces have highlights of it",
+    true,
+);
+
+const TABLE: Table =
+    &[&light::LOCATION, &light::EMISSIVITY, &TARGET, &DIMENSIONS, &RADIUS, &SHAPE, &UP, &VISIBLE];
+
+inventory::submit! {
+    Entity::light("area_light", "a rectangle or a disc that shines evenly on both sides", &[TABLE], |args| {
+        let light = AreaLight::new(args)?;
+        let too_small = Refusal {
+            attribute: None,
+            message: "is too small at its position: its corners coincide, or are too far away".to_owned(),
+            help: "its sides must be longer than the rounding of its coordinates, about 1e-16 of their size",
+        };
+        light.shape().map_or(Err(too_small), |_| Ok(Box::new(light) as _))
+    })
+    .known_as(&["arealight", "rectlight", "quad_light", "softbox", "emitter"])
+    .without_falloff()
+}
+
+struct AreaLight {
+    patch: Patch,
+    radiance: Rgb,
+    is_visible: bool,
+    accuracy: Accuracy,
+}
+
+impl AreaLight {
+    fn new(args: &Args) -> Result<Self, Refusal> {
+        let (middle, up) = (args.get(&light::LOCATION), args.get(&UP).normalize());
+        let Some(facing) = (args.get(&TARGET) - middle).try_normalize() else {
+            return Err(Refusal {
+                attribute: Some("target"),
+                message: "has its `target` at its `location`".to_owned(),
+                help: "it faces from `location` toward `target`, so the two must differ",
+            });
+        };
+        let across = [up, DVec3::NEG_Z, DVec3::X].map(|up| up.cross(facing));
+        let across = across.into_iter().find(|across| across.length() > 1e-6).unwrap_or(DVec3::X).normalize();
+        let radius = args.get(&RADIUS);
+        let size = radius.map_or(0.5 * args.get(&DIMENSIONS).unwrap_or(DVec2::ONE), DVec2::splat);
+        let half = [size.x * across, size.y * facing.cross(across)];
+        Ok(Self {
+            patch: Patch { middle, half, is_round: radius.is_some() },
+            radiance: args.get(&light::EMISSIVITY),
+            is_visible: args.get(&VISIBLE),
+            accuracy: args.accuracy(),
+        })
+    }
+
+    /// Returns the object as which it is seen; `None` if it has no area.
+    fn shape(&self) -> Option<Body> {
+        let Patch { middle, half: [across, up], is_round } = self.patch;
+        if is_round {
+            let disc = Disc { radius: across.length() };
+            return Some(Body::implicit(disc, Frame::around(middle, self.patch.facing())));
+        }
+        let corners =
+            vec![middle - across - up, middle + across - up, middle + across + up, middle - across + up];
+        outline::body(outline::polygon(corners, vec![[0, 1, 2], [0, 2, 3]]), true, self.accuracy).ok()
+    }
+}
+
+impl Light for AreaLight {
+    fn location(&self) -> DVec3 {
+        self.patch.middle
+    }
+
+    fn emissivity(&self, _toward: DVec3) -> Option<Rgb> {
+        Some(self.radiance)
+    }
+
+    fn enclose<F: Precise>(&self, _toward: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
+        Some(constants(self.radiance))
+    }
+
+    /// It covers at most half of all directions, which are 2 pi.
+    fn brightest(&self) -> Option<Rgb> {
+        Some(2.0 * self.radiance.abs())
+    }
+
+    fn size(&self) -> f64 {
+        self.patch.radius()
+    }
+
+    fn emitter(&self) -> Option<&dyn Emitter> {
+        Some(self)
+    }
+
+    fn body(&self) -> Option<Body> {
+        let material = Material { ambient: self.radiance, ..Material::default() };
+        let body = self.shape().filter(|_| self.is_visible)?;
+        Some(Body { material: Some(Arc::new(material)), ..body })
+    }
+}
+
+impl Emitter for AreaLight {
+    fn sample(&self, at: DVec3, _normal: DVec3, numbers: DVec2) -> Option<LightSample> {
+        let (toward, solid_angle) = self.patch.sample(at, numbers)?;
+        // Its own surface is not in its way, however flat the ray meets it.
+        let distance = toward.length() * (1.0 - 1e-9);
+        let light = solid_angle / PI * self.radiance;
+        Some(LightSample { toward: toward.try_normalize()?, distance, light })
+    }
+
+    fn extent(&self) -> Extent {
+        Extent::Patch(self.patch)
+    }
+
+    /// Mirrors show it if it is seen.
+    fn has_highlights(&self) -> bool {
+        !self.is_visible
+    }
+}

@@ -1,0 +1,82 @@
+//! A sun: a disc in the sky, infinitely far away.
+
+use super::light;
+use tabray::prelude::*;
+
+static DIRECTION: Pparm<DVec3> =
+    Pparm::required("direction", "the direction in which it stands, seen from the scene")
+        .known_as(&["toward", "position"])
+        .nonzero();
+static ANGLE: Pparm<f64> =
+    Pparm::or("angle", "the angle at which its disc is seen, which makes shadows soft", 0.53)
+        .known_as(&["size", "angular_size"])
+        .unit("degrees")
+        .between(0.0, 90.0);
+
+const TABLE: Table = &[&DIRECTION, &light::EMISSIVITY, &ANGLE];
+
+inventory::submit! {
+    Entity::light("sun", "a disc in the sky: a surface that faces it gets its `emissivity`, at any distance", &[TABLE], |args| {
+        let (direction, half) = (args.get(&DIRECTION), 0.5 * args.get(&ANGLE).to_radians());
+        let sine = libm::sin(0.5 * half);
+        Ok(Box::new(Sun {
+            direction: tabray::exact::double_double::scaled(direction).normalize(),
+            height: 2.0 * sine * sine,
+            emissivity: args.get(&light::EMISSIVITY),
+        }))
+    })
+    .known_as(&["sunlight", "directional", "directional_light", "distant", "parallel"])
+    .without_falloff()
+}
+
+struct Sun {
+    /// The unit vector toward its middle.
+    direction: DVec3,
+    /// 1 minus the cosine of half the angle at which it is seen.
+    height: f64,
+    emissivity: Rgb,
+}
+
+impl Sun {
+    /// Returns `light` of each sample: its radiance, which is the emissivity divided by the square of the sine of half the
+    /// angle, times the solid angle of its disc over pi.
+    fn light(&self) -> Rgb {
+        2.0 / (2.0 - self.height) * self.emissivity
+    }
+}
+
+impl Light for Sun {
+    fn location(&self) -> DVec3 {
+        DVec3::ZERO
+    }
+
+    fn is_far(&self) -> bool {
+        true
+    }
+
+    fn emissivity(&self, _toward: DVec3) -> Option<Rgb> {
+        Some(self.emissivity)
+    }
+
+    fn enclose<F: Precise>(&self, _toward: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
+        let light = constants::<Interval<F>>(self.emissivity);
+        let more = Interval::<F>::constant(2.0) / Interval::constant(2.0 - self.height);
+        Some(per_axis(|channel| light[channel].hull(light[channel] * more)))
+    }
+
+    fn brightest(&self) -> Option<Rgb> {
+        // More than its rounding.
+        Some((1.0 + 1e-12) * self.light().abs())
+    }
+
+    fn emitter(&self) -> Option<&dyn Emitter> {
+        Some(self)
+    }
+}
+
+impl Emitter for Sun {
+    fn sample(&self, _at: DVec3, _normal: DVec3, numbers: DVec2) -> Option<LightSample> {
+        let toward = emitter::in_cone(self.direction, self.height, numbers);
+        Some(LightSample { toward, distance: f64::INFINITY, light: self.light() })
+    }
+}
