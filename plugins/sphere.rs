@@ -80,29 +80,25 @@ impl<A: AccuracyTag> Hittable for Sphere<A> {
         (at - self.center).normalize()
     }
 
-    fn uv(&self, at: DVec3) -> Option<DVec2> {
-        Some(uv::on_sphere((at - self.center).normalize_or_zero()))
+    #[inline]
+    fn facts(&self) -> Facts {
+        Facts {
+            can_hit_itself: if A::IS_CLASSIC { Sides::NONE } else { Sides::INSIDE },
+            is_two_sided: !A::IS_CLASSIC,
+            ..Facts::within(sphere::bounds(self.center, self.radius))
+        }
     }
 
-    fn bounds(&self) -> Option<Aabb> {
-        Some(sphere::bounds(self.center, self.radius))
+    fn uv(&self, at: DVec3) -> Option<DVec2> {
+        Some(uv::on_sphere((at - self.center).normalize_or_zero()))
     }
 
     fn clearance(&self, from: DVec3) -> Option<f64> {
         Some(sphere::clearance(self.center, self.radius, from))
     }
 
-    #[inline]
-    fn can_hit_itself(&self, leaving: Side) -> bool {
-        !A::IS_CLASSIC && leaving == Side::Inside
-    }
-
     fn why_not_closed(&self) -> Option<&'static str> {
         None
-    }
-
-    fn is_two_sided(&self) -> bool {
-        !A::IS_CLASSIC
     }
 
     fn method(&self) -> String {

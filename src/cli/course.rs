@@ -103,7 +103,7 @@ fn of_default(classic: &Model, exact: &Model) -> Vec<Difference> {
     let goes_on = |object: &Object| !classic.lights.is_empty() || object.material.specular != Rgb::ZERO;
     let viewer = classic.camera.value.origins().middle;
     let is_around_viewer = |object: &Object| {
-        let bounds = object.shape.bounds();
+        let bounds = object.shape.facts().bounds;
         bounds.is_some_and(|bounds| bounds.low.cmple(viewer).all() && viewer.cmple(bounds.high).all())
     };
     let is_glass = |object: &Object| object.material.transparency != 0.0;

@@ -19,6 +19,7 @@ pub use crate::world::background::Background;
 pub use crate::world::body::{AnyShader, Body, NamedBody, Paint, Warning};
 pub use crate::world::camera::{Camera, Origins, Projected};
 pub use crate::world::emitter::{self, Emitter, Extent, LightSample};
+pub use crate::world::facts::{Facts, Sides};
 pub use crate::world::film::AnyCamera;
 pub use crate::world::hittable::{Bracketed, Certified, Hittable};
 pub use crate::world::interface::{AnyInterface, Crossing, Interface};

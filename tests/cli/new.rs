@@ -49,7 +49,7 @@ fn a_new_scene_fits_its_mesh_at_any_scale() {
         let mut model = load(&folder.path().join(name).with_extension("ray"));
         (model.camera.value.pixels, model.camera.value.samples) = ([80, 60], 1);
         let mesh = model.objects.iter().find(|object| object.args.entity().name == "mesh").expect("a mesh");
-        let bounds = mesh.shape.bounds().expect("its box");
+        let bounds = mesh.shape.facts().bounds.expect("its box");
         let mut seen = Vec::new();
         for index in 0..8 {
             let at = |axis: usize| if index >> axis & 1 == 0 { bounds.low[axis] } else { bounds.high[axis] };

@@ -10,7 +10,7 @@ use tabray::render::{Plan, trace};
 use tabray::tools::assumptions;
 use tabray::tools::colours::{self, Prover};
 use tabray::tools::verify::{self, Verdict};
-use tabray::world::Hittable;
+use tabray::world::{Facts, Hittable};
 use tempfile::TempDir;
 
 /// Scenes in which many pixels look at an edge on purpose, or at two coinciding surfaces.
@@ -102,8 +102,9 @@ impl Hittable for Bare {
         at - self.middle
     }
 
-    fn bounds(&self) -> Option<Aabb> {
-        self.has_bounds.then(|| Aabb { low: self.middle - 1.0, high: self.middle + 1.0 })
+    fn facts(&self) -> Facts {
+        let facts = Facts::within(Aabb { low: self.middle - 1.0, high: self.middle + 1.0 });
+        if self.has_bounds { facts } else { Facts { bounds: None, ..facts } }
     }
 }
 

@@ -35,7 +35,7 @@ fn many_entities_are_each_what_the_text_says() {
     for (index, object) in objects.iter().enumerate() {
         assert_eq!(object.args.name(), format!("s{index}"));
         assert_eq!(object.material.ambient.x, (index - index % 100) as f64);
-        assert_eq!(object.shape.bounds().expect("a sphere").middle().x, index as f64);
+        assert_eq!(object.shape.facts().bounds.expect("a sphere").middle().x, index as f64);
         assert!(object.shape.method().contains("twice the precision"), "the camera's accuracy");
     }
     assert!(objects.iter().map(|object| object.args.order()).is_sorted());

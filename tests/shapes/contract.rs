@@ -13,8 +13,8 @@ use tabray::shapes::Implicit;
 use tabray::tools::contract::{self, Breach, Promise};
 use tabray::world::certify::Equation;
 use tabray::world::{
-    AnyInterface, Background, Body, Bracketed, Camera, Certified, Crossing, Hittable, Interface, Light,
-    Material, Origins, Projected, Rgb, Shader, Shape, SurfacePoint,
+    AnyInterface, Background, Body, Bracketed, Camera, Certified, Crossing, Facts, Hittable, Interface, Light,
+    Material, Origins, Projected, Rgb, Shader, Shape, Sides, SurfacePoint,
 };
 
 #[test]
@@ -176,20 +176,20 @@ impl Hittable for Ball {
         if self.flaw == Flaw::Smooth { (normal + DVec3::Y).normalize() } else { normal }
     }
 
-    fn bounds(&self) -> Option<Aabb> {
-        let reach = match self.flaw {
+    fn facts(&self) -> Facts {
+        let half_size = match self.flaw {
             Flaw::Bounds => 0.9 * self.radius,
             _ => 2.0 * self.radius,
         };
-        Some(Aabb { low: self.center - reach, high: self.center + reach })
+        let is_hit_again = matches!(self.flaw, Flaw::MeetsItsStart | Flaw::MeetsNothingAgain);
+        Facts {
+            can_hit_itself: if is_hit_again { Sides::BOTH } else { Sides::INSIDE },
+            ..Facts::within(Aabb { low: self.center - half_size, high: self.center + half_size })
+        }
     }
 
     fn is_clear_of(&self, region: &Aabb) -> bool {
-        self.flaw == Flaw::Clear || !self.bounds().is_some_and(|bounds| bounds.overlaps(region))
-    }
-
-    fn can_hit_itself(&self, leaving: Side) -> bool {
-        leaving == Side::Inside || matches!(self.flaw, Flaw::MeetsItsStart | Flaw::MeetsNothingAgain)
+        self.flaw == Flaw::Clear || !self.facts().bounds.is_some_and(|bounds| bounds.overlaps(region))
     }
 }
 

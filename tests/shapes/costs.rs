@@ -17,7 +17,7 @@ use tabray::simd::cpu::Cpu;
 use tabray::world::certify::{Enclosure, Precision, Premise, ProofMethods};
 use tabray::world::interaction::SurfaceInteraction;
 use tabray::world::packets::shape::{HitQueries, PacketIntersect, PacketShape};
-use tabray::world::{Accuracy, AnyShape, Body, Hittable, NamedBody, Shape};
+use tabray::world::{Accuracy, AnyShape, Body, Facts, Hittable, NamedBody, Shape};
 
 /// The most that a shape may cost as a part of something else, as a multiple of what it costs alone.
 const MOST: f64 = 3.0;
@@ -75,20 +75,8 @@ impl Hittable for Counted {
         self.0.shape.shading_normal(at, normal)
     }
 
-    fn is_smooth(&self) -> bool {
-        self.0.shape.is_smooth()
-    }
-
-    fn bounds(&self) -> Option<Aabb> {
-        self.0.shape.bounds()
-    }
-
-    fn can_hit_itself(&self, leaving: Side) -> bool {
-        self.0.shape.can_hit_itself(leaving)
-    }
-
-    fn is_two_sided(&self) -> bool {
-        self.0.shape.is_two_sided()
+    fn facts(&self) -> Facts {
+        self.0.shape.facts()
     }
 
     fn why_not_closed(&self) -> Option<&str> {
@@ -103,20 +91,8 @@ impl Hittable for Counted {
         self.0.shape.is_clear_of(region)
     }
 
-    fn plane(&self) -> Option<[DVec3; 2]> {
-        self.0.shape.plane()
-    }
-
-    fn may_be_costly(&self) -> bool {
-        self.0.shape.may_be_costly()
-    }
-
     fn search_cost(&self, ray: &Ray, origin_side: Option<Side>) -> u32 {
         self.0.shape.search_cost(ray, origin_side)
-    }
-
-    fn reach(&self) -> f64 {
-        self.0.shape.reach()
     }
 }
 
@@ -232,8 +208,8 @@ impl Hittable for Bare {
         at.normalize()
     }
 
-    fn bounds(&self) -> Option<Aabb> {
-        Some(Aabb { low: DVec3::NEG_ONE, high: DVec3::ONE })
+    fn facts(&self) -> Facts {
+        Facts::within(Aabb { low: DVec3::NEG_ONE, high: DVec3::ONE })
     }
 }
 
@@ -252,8 +228,8 @@ impl Hittable for Forgetful {
         Bare.normal(at)
     }
 
-    fn bounds(&self) -> Option<Aabb> {
-        Bare.bounds()
+    fn facts(&self) -> Facts {
+        Bare.facts()
     }
 }
 
@@ -301,7 +277,7 @@ fn ratios(folder: &Path, text: &str, is_meant: &dyn Fn(&Object) -> bool) -> Vec<
     };
     let bounds = |name: &str| {
         let object = model.objects.iter().find(|object| object.args.name() == name);
-        object.and_then(|object| object.shape.bounds()).expect("a closed shape")
+        object.and_then(|object| object.shape.facts().bounds).expect("a closed shape")
     };
     let work = |text: &str| work(&registry, folder, text);
     let closed = names(&|object| object.shape.why_not_closed().is_none());

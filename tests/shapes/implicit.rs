@@ -13,7 +13,7 @@ use tabray::exact::Scalar;
 use tabray::geometry::{Frame, MISS, Ray, RayRange, Side};
 use tabray::scene::Model;
 use tabray::shapes::Implicit;
-use tabray::world::{AnyShape, Body, Hittable};
+use tabray::world::{AnyShape, Body, Facts, Hittable};
 
 const CENTER: DVec3 = DVec3::new(4.1, 2.9, -2.7);
 const AXIS: DVec3 = DVec3::new(0.4, 1.0, -0.3);
@@ -156,8 +156,8 @@ impl Hittable for Quartics {
         (at - RADIUS * at.reject_from_normalized(axis).normalize()).normalize()
     }
 
-    fn is_two_sided(&self) -> bool {
-        true
+    fn facts(&self) -> Facts {
+        Facts { is_two_sided: true, ..Facts::unbounded(0.0) }
     }
 }
 

@@ -17,7 +17,7 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 use tabray::exact::Formula;
 use tabray::geometry::{MISS, Ray, RayRange};
-use tabray::world::{AnyShape, Hittable};
+use tabray::world::{AnyShape, Facts, Hittable};
 
 /// The number of rays of each kind for each profile.
 const RAYS: usize = 1_000_000;
@@ -76,6 +76,10 @@ impl Hittable for Steps {
 
     fn normal(&self, _at: DVec3) -> DVec3 {
         DVec3::Y
+    }
+
+    fn facts(&self) -> Facts {
+        Facts::unbounded(0.0)
     }
 }
 

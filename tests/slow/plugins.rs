@@ -467,9 +467,9 @@ impl Hittable for Pill {
         self.out(at).normalize()
     }
 
-    fn bounds(&self) -> Option<Aabb> {
+    fn facts(&self) -> Facts {
         let out = DVec3::splat(self.radius);
-        Some(Aabb { low: self.from.min(self.to) - out, high: self.from.max(self.to) + out })
+        Facts::within(Aabb { low: self.from.min(self.to) - out, high: self.from.max(self.to) + out })
     }
 }
 ";

@@ -18,7 +18,7 @@ pub fn are_met(film: &Film, object: &Object) -> bool {
         _ => None,
     };
     let (Some([corner, normal]), Some(sides), Some(xdir), Some(_)) =
-        (object.shape.plane(), numbers("dimensions"), numbers("xdir"), object.shape.bounds())
+        (object.shape.facts().plane, numbers("dimensions"), numbers("xdir"), object.shape.facts().bounds)
     else {
         return false;
     };

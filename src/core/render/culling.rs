@@ -6,7 +6,7 @@ use crate::scene::model::Object;
 
 /// Returns the bounding box by which an object may be culled, if there is one.
 pub(super) fn bounds(object: &Object) -> Option<Aabb> {
-    object.shape.bounds().filter(|_| !object.shape.packets().is_of_the_notes())
+    object.shape.facts().bounds.filter(|_| !object.shape.packets().is_of_the_notes())
 }
 
 /// Tells whether an object may be culled because no part of it lies in a region.

@@ -1,10 +1,10 @@
 //! Shapes whose hits are found by another root-finding method than their own, for comparison.
 
-use crate::geometry::aabb::Aabb;
-use crate::geometry::ray::{MISS, Ray, RayRange, Side};
+use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::geometry::sight::Sight;
 use crate::world::any_shape::AnyShape;
 use crate::world::certify::{Enclosure, Precision, Premise};
+use crate::world::facts::Facts;
 use crate::world::hittable::Hittable;
 use crate::world::packets::shape::{HitQueries, TieBreaking};
 use crate::world::shape::{ByDistance, Shape};
@@ -42,16 +42,9 @@ impl Hittable for WithMethod {
         self.shape.normal(at)
     }
 
-    fn bounds(&self) -> Option<Aabb> {
-        self.shape.bounds()
-    }
-
-    fn can_hit_itself(&self, leaving: Side) -> bool {
-        self.shape.can_hit_itself(leaving)
-    }
-
-    fn is_two_sided(&self) -> bool {
-        self.shape.is_two_sided()
+    fn facts(&self) -> Facts {
+        // The searches of other methods are not counted.
+        Facts { may_be_costly: false, ..self.shape.facts() }
     }
 }
 

@@ -6,6 +6,7 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
 use crate::world::accuracy::{AccuracyTag, Bounded};
 use crate::world::certify::Equation;
+use crate::world::facts::Facts;
 use crate::world::hittable::{Bracketed, Certified, Hittable};
 use glam::{DVec2, DVec3};
 use tabray_exact::double_double::DoubleDouble;
@@ -24,33 +25,18 @@ impl<A: AccuracyTag> Hittable for FinitePlane<A> {
         self.plane.normal
     }
 
+    #[inline]
+    fn facts(&self) -> Facts {
+        let (bounds, max_coordinate) = (Some(self.rectangle.around()), self.reach);
+        Facts { bounds, max_coordinate, ..self.plane.facts() }
+    }
+
     fn uv(&self, at: DVec3) -> Option<DVec2> {
         Some(self.rectangle.coordinates(at) / self.rectangle.dimensions)
     }
 
-    fn bounds(&self) -> Option<Aabb> {
-        Some(self.rectangle.around())
-    }
-
-    #[inline]
-    fn can_hit_itself(&self, _leaving: Side) -> bool {
-        false
-    }
-
     fn is_clear_of(&self, region: &Aabb) -> bool {
         self.plane.is_clear_of(region) || !self.rectangle.around().overlaps(region)
-    }
-
-    fn ends_as_planes(&self) -> bool {
-        true
-    }
-
-    fn plane(&self) -> Option<[DVec3; 2]> {
-        Some([self.plane.point, self.plane.normal])
-    }
-
-    fn reach(&self) -> f64 {
-        self.reach
     }
 
     fn method(&self) -> String {

@@ -15,6 +15,7 @@ use crate::geometry::sight::Line;
 use crate::world::body::Body;
 use crate::world::certify::Equation;
 use crate::world::coincidence::ROUNDING;
+use crate::world::facts::Facts;
 use crate::world::hittable::{Bracketed, Certified, Hittable, Searched};
 use crate::world::packets::shape::by_distance;
 use crate::world::shape::Shape;
@@ -91,21 +92,13 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
         self.frame.axes * normal
     }
 
-    fn bounds(&self) -> Option<Aabb> {
+    fn facts(&self) -> Facts {
         let own = Aabb { low: self.low, high: self.high };
-        Some(self.frame.bounds(&own))
+        Facts { is_two_sided: true, may_be_costly: true, ..Facts::within(self.frame.bounds(&own)) }
     }
 
     fn why_not_closed(&self) -> Option<&'static str> {
         self.formula.why_not_closed()
-    }
-
-    fn is_two_sided(&self) -> bool {
-        true
-    }
-
-    fn may_be_costly(&self) -> bool {
-        true
     }
 
     /// Returns the same cost for all rays that enter the box, because a search that is repeated to count it takes as

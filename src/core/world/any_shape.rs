@@ -6,6 +6,7 @@ use crate::geometry::ray_packet::{Nearest, RayPacket};
 use crate::geometry::sight::Sight;
 use crate::simd::cpu::Cpu;
 use crate::world::certify::{Enclosure, HitEnclosure, HitProofs, Precision, Premise, ProofMethods};
+use crate::world::facts::{Facts, Sides};
 use crate::world::hittable::Hittable;
 use crate::world::packets::shape::{HitQueries, PacketIntersect, PacketShape};
 use crate::world::shape::Shape;
@@ -14,52 +15,77 @@ use std::ops::Deref;
 use tabray_exact::interval::Fraction;
 
 /// The shape of an object, of any type. It dereferences to [`Hittable`].
-pub struct AnyShape(Box<dyn PacketShape>);
+pub struct AnyShape {
+    shape: Box<dyn PacketShape>,
+    // The facts that each hit asks for; all of them would take more memory than most shapes.
+    can_hit_itself: Sides,
+    is_two_sided: bool,
+    is_smooth: bool,
+}
 
 impl AnyShape {
     /// Wraps a shape that takes packets and proofs itself.
     pub fn of_packets(shape: impl PacketShape + 'static) -> Self {
-        Self(Box::new(shape))
+        let Facts { can_hit_itself, is_two_sided, is_smooth, .. } = shape.hittable().facts();
+        Self { shape: Box::new(shape), can_hit_itself, is_two_sided, is_smooth }
+    }
+
+    /// Tells whether a ray that leaves the shape on a side may hit it again, as its facts say.
+    #[inline]
+    pub fn can_hit_itself(&self, leaving: Side) -> bool {
+        self.can_hit_itself.contain(leaving)
+    }
+
+    /// Tells whether both sides of the surface are lit, as its facts say.
+    #[inline]
+    pub fn is_two_sided(&self) -> bool {
+        self.is_two_sided
+    }
+
+    /// Tells whether the surface is shaded with other normals than its own anywhere, as its facts say.
+    #[inline]
+    pub fn is_smooth(&self) -> bool {
+        self.is_smooth
     }
 
     /// Returns the shape's interface for packets of rays.
     #[inline]
     pub fn packets(&self) -> &dyn PacketShape {
-        &*self.0
+        &*self.shape
     }
 
     /// Returns a bracket of the distance of the ray's first hit, as tight as is quickly known.
     pub fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
-        self.0.t_bounds(&ray.into(), range)
+        self.shape.t_bounds(&ray.into(), range)
     }
 
     /// Returns the distance of a hit that [`t_bounds`](Self::t_bounds) has found for certain, or NaN where it takes
     /// more than plain arithmetic. `origin_side` is the side of the shape that the ray starts on, if it starts on the
     /// shape.
     pub fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
-        self.0.refine_one(ray, origin_side)
+        self.shape.refine_one(ray, origin_side)
     }
 
     /// Tells whether a point lies on the surface, up to an error in world units.
     pub fn touches(&self, at: DVec3, error: f64) -> bool {
-        self.0.touches(at, error)
+        self.shape.touches(at, error)
     }
 
     /// Tells whether a point lies in a closed shape; `None` where the surface may be within an error in world units.
     pub fn holds(&self, at: DVec3, error: f64) -> Option<bool> {
-        self.0.holds(at, error)
+        self.shape.holds(at, error)
     }
 
     /// Returns the plane that contains all of a closed shape's surface within an error, in world units, of a point;
     /// `None` where that is not known.
     pub fn facet(&self, at: DVec3, error: f64) -> Option<Facet> {
-        self.0.facet(at, error)
+        self.shape.facet(at, error)
     }
 
     /// Passes on what proofs about the shape start from, each with the name of the entity type that it is about: `of`, or
     /// where the shape is made of others, as a copy and a solid are, the type of these.
     pub fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
-        self.0.premises(of, each);
+        self.shape.premises(of, each);
     }
 
     /// Tells whether the shape, and each of those that it is made of, has an equation. About the hits of others nothing
@@ -72,7 +98,7 @@ impl AnyShape {
 
     /// Returns what is proven about a ray's first hit.
     pub fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        let found = self.0.certify(sight, precision);
+        let found = self.shape.certify(sight, precision);
         let is_open = precision == Precision::Octuple && matches!(found, Enclosure::Doubtful(_));
         if is_open && self.is_parallel(sight) { Enclosure::Misses } else { found }
     }
@@ -81,19 +107,19 @@ impl AnyShape {
     /// No number of digits tells that of numbers such as a third, but fractions do.
     fn is_parallel(&self, sight: &Sight) -> bool {
         let found = |proven| HitProofs::<Fraction>::first_hit(proven, &sight.line(), None).0;
-        self.bounds().is_none() && self.proven().is_some_and(|proven| found(proven) == HitEnclosure::Misses)
+        self.facts().bounds.is_none() && self.proven().is_some_and(|proven| found(proven) == HitEnclosure::Misses)
     }
 
     /// Returns the functions for proofs about other rays than primary ones; `None` for a shape without an equation.
     pub fn proven(&self) -> Option<&dyn ProofMethods> {
-        self.0.proven()
+        self.shape.proven()
     }
 
     /// Merges the hits of a packet's rays with this shape into the nearest hits so far, and tells whether the order of
     /// any two hits is in doubt. `id` is the object's index in the scene plus 1.
     #[inline]
     pub fn closest_hits(&self, cpu: Cpu, rays: RayPacket, id: u64, nearest: Nearest) -> bool {
-        self.0.closest_hits(cpu, rays, id, nearest)
+        self.shape.closest_hits(cpu, rays, id, nearest)
     }
 }
 
@@ -101,7 +127,7 @@ impl Deref for AnyShape {
     type Target = dyn Hittable;
 
     fn deref(&self) -> &Self::Target {
-        self.0.hittable()
+        self.shape.hittable()
     }
 }
 
@@ -117,6 +143,6 @@ where
     Shape<T, S, P>: PacketIntersect + HitQueries,
 {
     fn from(shape: Shape<T, S, P>) -> Self {
-        Self(Box::new(shape))
+        Self::of_packets(shape)
     }
 }

@@ -189,7 +189,7 @@ impl Body {
     /// Returns the origin and the unit of length of patterns on the object.
     pub fn anchor(&self) -> Anchor {
         let of_box = || {
-            let bounds = self.shape.bounds()?;
+            let bounds = self.shape.facts().bounds?;
             let unit = 2.0 * bounds.half_size().max_element();
             Some(Anchor { origin: bounds.middle(), unit })
         };

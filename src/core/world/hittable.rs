@@ -8,14 +8,15 @@ use crate::geometry::facet::Facet;
 use crate::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
 use crate::world::certify::{Assumption, Equation};
 use crate::world::coincidence;
+use crate::world::facts::Facts;
 use glam::{DMat3, DVec2, DVec3};
 use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::roots::Method;
 
 /// A shape that rays can hit. Shapes do not change while an image is rendered.
 ///
-/// A plugin implements `distance` and `normal`, and overrides other methods if it knows more than their defaults. Each
-/// default is correct for every shape, except that of [`reach`](Self::reach) for a shape without bounds.
+/// A plugin implements `distance`, `normal` and `facts`, and overrides other methods if it knows more than their defaults.
+/// Each default is correct for every shape.
 pub trait Hittable: Send + Sync {
     /// Returns the distance from the ray's origin to its first hit of the shape within the range, in world units, or
     /// [`MISS`](crate::geometry::ray::MISS).
@@ -24,6 +25,9 @@ pub trait Hittable: Send + Sync {
     /// Returns the unit normal at a point of the surface.
     fn normal(&self, at: DVec3) -> DVec3;
 
+    /// Returns what the shape is, apart from any point and any ray.
+    fn facts(&self) -> Facts;
+
     /// Returns the unit normal for shading at a point of the surface, where it differs from the surface's own: a mesh
     /// may look smooth. `normal` is that of the surface, flipped to face the ray where both sides are lit.
     #[inline]
@@ -31,36 +35,10 @@ pub trait Hittable: Send + Sync {
         normal
     }
 
-    /// Tells whether [`shading_normal`](Self::shading_normal) differs from the surface's own normal anywhere.
-    #[inline]
-    fn is_smooth(&self) -> bool {
-        false
-    }
-
-    /// Returns a bounding box of the shape, or `None` for an unbounded shape.
-    fn bounds(&self) -> Option<Aabb> {
-        None
-    }
-
     /// Returns a bounding box of the image of the shape under a linear map, up to rounding, if the shape knows one that
     /// is tighter than that of the corners of its box.
     fn bounds_after(&self, _linear: &DMat3) -> Option<Aabb> {
         None
-    }
-
-    /// Tells whether a ray that leaves the shape on this side may hit it again. If not, the ray is not tested against
-    /// the shape. A ray that leaves a plane cannot hit it again, and a ray that leaves a sphere only from inside.
-    /// `true` is correct for every shape whose [`distance`](Self::distance) respects `range.origin_side`.
-    #[inline]
-    fn can_hit_itself(&self, _leaving: Side) -> bool {
-        true
-    }
-
-    /// Tells whether both sides of the surface are lit. If so, the normal is flipped to face the ray. A plane is lit on
-    /// one side.
-    #[inline]
-    fn is_two_sided(&self) -> bool {
-        false
     }
 
     /// Says why the surface is not closed, phrased to follow "is not a closed shape: "; `None` for a closed surface, whose normal
@@ -103,28 +81,7 @@ pub trait Hittable: Send + Sync {
     /// Tells whether no part of the shape lies in a region, which may be unbounded. The default asks the bounding box;
     /// an unbounded shape may know more. `false` is always correct.
     fn is_clear_of(&self, region: &Aabb) -> bool {
-        self.bounds().is_some_and(|bounds| !bounds.overlaps(region))
-    }
-
-    /// Returns a point and the unit normal of the plane that contains the whole shape, if there is one: rays that leave
-    /// the shape stay on their side of the plane, it is shaded with the plane's normal, and a light behind the plane does
-    /// not light it. `None` is always correct.
-    fn plane(&self) -> Option<[DVec3; 2]> {
-        None
-    }
-
-    /// Tells whether the shape ends where the camera cuts off planes
-    /// ([`planes_end_at`](crate::world::camera::Camera::planes_end_at)). Its copies end at the same z of the world.
-    #[inline]
-    fn ends_as_planes(&self) -> bool {
-        false
-    }
-
-    /// Tells whether the search for a ray's hit may take as long as several plain rays. Shapes without bounds are not
-    /// asked.
-    #[inline]
-    fn may_be_costly(&self) -> bool {
-        false
+        self.facts().bounds.is_some_and(|bounds| !bounds.overlaps(region))
     }
 
     /// Returns the cost of the search for a ray's hit, in plain rays, beyond the ray itself. It depends only on the
@@ -137,13 +94,6 @@ pub trait Hittable: Send + Sync {
     /// box gives as good a bound.
     fn clearance(&self, _from: DVec3) -> Option<f64> {
         None
-    }
-
-    /// Returns the largest magnitude of the shape's own coordinates that its hits are computed from, in world units.
-    /// The ray's coordinates do not count. The default is that of the bounding box, and 0 without one: a shape without
-    /// bounds overrides it.
-    fn reach(&self) -> f64 {
-        self.bounds().map_or(0.0, |bounds| bounds.low.abs().max(bounds.high.abs()).max_element())
     }
 }
 

@@ -69,7 +69,7 @@ pub fn warning(model: &Model) -> Option<Fault> {
         );
     }
     // Planes end before such a viewer's image plane.
-    let is_endless = |object: &Object| object.shape.bounds().is_none();
+    let is_endless = |object: &Object| object.shape.facts().bounds.is_none();
     let ends =
         camera.camera.planes_end_at().filter(|_| viewer.z < 0.0 && model.objects.iter().any(is_endless))?;
     Some(
@@ -89,7 +89,7 @@ fn is_dark(object: &Object) -> bool {
 
 /// Tells whether all objects have bounds of which this is so. At the first other one, no more are asked for.
 fn all_are(model: &Model, is_so: impl Fn(&Aabb) -> bool) -> bool {
-    model.objects.iter().all(|object| object.shape.bounds().is_some_and(|bounds| is_so(&bounds)))
+    model.objects.iter().all(|object| object.shape.facts().bounds.is_some_and(|bounds| is_so(&bounds)))
 }
 
 /// Tells whether all of a box lies behind the plane through a point with this normal.

@@ -123,7 +123,7 @@ impl Pair<'_> {
 
     /// Returns a bound of how far rounding moves the ray and the surface at a distance, in world units.
     fn rounding(&self, distance: f64) -> f64 {
-        ROUNDING * (self.ray.origin.abs().max_element() + distance.abs() + self.shape.reach())
+        ROUNDING * (self.ray.origin.abs().max_element() + distance.abs() + self.shape.facts().max_coordinate)
     }
 
     fn judge_by(&self, truth: &Truth, found: f64, promise: f64) -> Judgement {
@@ -185,6 +185,7 @@ mod tests {
     use super::*;
     use tabray_core::geometry::ray::RayRange;
     use tabray_core::world::certify::Equation;
+    use tabray_core::world::facts::Facts;
     use tabray_core::world::hittable::{Certified, Hittable};
     use tabray_core::world::shape::Shape;
 
@@ -212,6 +213,10 @@ mod tests {
 
         fn normal(&self, _at: DVec3) -> DVec3 {
             DVec3::Y
+        }
+
+        fn facts(&self) -> Facts {
+            Facts::unbounded(0.0)
         }
     }
 

@@ -117,7 +117,7 @@ impl Promise {
                 "make `normal` depend on the point alone, and continuous on a smooth surface"
             }
             Self::NormalsPointOut => "negate `normal`: it must point out of a closed shape",
-            Self::IsNotMetAgain => "return `true` from `can_hit_itself` for that side, which is the default",
+            Self::IsNotMetAgain => "let `can_hit_itself` have that side: `Sides::BOTH`, the default, is always correct",
             Self::StartIsNoHit => {
                 "where `range.origin_side` is given, leave out the root at which the ray starts, whatever rounding makes of it"
             }
@@ -165,7 +165,7 @@ impl fmt::Display for Promise {
             Self::NormalIsUpright => "a normal is perpendicular to the surface",
             Self::NormalsAgree => "neighbouring normals point to the same side",
             Self::NormalsPointOut => "the normals of a convex shape point outward",
-            Self::IsNotMetAgain => "a ray that leaves a shape does not hit it again where `can_hit_itself` is `false`",
+            Self::IsNotMetAgain => "a ray that leaves a shape does not hit it again on a side that `can_hit_itself` leaves out",
             Self::StartIsNoHit => "a ray that leaves the surface hits what lies beyond, not its own start",
             Self::IsMet => "some ray hits the shape",
             Self::ReflectivityIsSound => {

@@ -63,7 +63,7 @@ fn aims(object: &Object) -> Vec<DVec3> {
             aims.extend(numbers.as_chunks::<3>().0.iter().map(|point| DVec3::from(*point)));
         }
     }
-    aims.extend(object.shape.bounds().map(|bounds| bounds.middle()));
+    aims.extend(object.shape.facts().bounds.map(|bounds| bounds.middle()));
     aims.retain(|aim| aim.abs().max_element() <= FAR);
     aims
 }

@@ -39,7 +39,7 @@ impl RayTrial<'_> {
             let found = format!("`is_clear_of` is true of {region:?}, yet it is hit at {at}");
             return Err(Promise::BoundsHoldHits.fault(found));
         }
-        match self.shape.bounds() {
+        match self.shape.facts().bounds {
             Some(bounds) if !bounds.with_slack(100.0).overlaps(&Aabb { low: at, high: at }) => {
                 Err(Promise::BoundsHoldHits.fault(format!("it is hit at {at}, outside {bounds:?}")))
             }
@@ -143,7 +143,7 @@ impl RayTrial<'_> {
     /// given only that error, contain the distance of the ray that leaves the surface.
     pub fn is_touched(&self, met: &SurfaceHit, draw: &mut Draw) -> Result<(), Fault> {
         let Self { shape, ray, .. } = self;
-        let origin_error = coincidence::error(ray, met.distance, met.normal, shape.reach());
+        let origin_error = coincidence::error(ray, met.distance, met.normal, shape.facts().max_coordinate);
         let fault = |what: String| Err(Promise::HitIsTouched.fault(what));
         if !shape.touches(met.at, origin_error) {
             return fault(format!(
@@ -188,7 +188,7 @@ impl RayTrial<'_> {
             if !self.shape.can_hit_itself(side) {
                 if self.distance_in_range(&ahead, &RayRange::ALL)? != MISS {
                     let found = format!(
-                        "`can_hit_itself` is false for its {side:?}, yet a ray that leaves it hits it again, {}",
+                        "`can_hit_itself` leaves out its {side:?}, yet a ray that leaves it hits it again, {}",
                         describe_ray(&ahead)
                     );
                     return Err(Promise::IsNotMetAgain.fault(found));

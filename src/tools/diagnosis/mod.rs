@@ -148,7 +148,7 @@ fn empty(plan: &Plan, places: &[[usize; 2]]) -> Option<Remark> {
     if places[middle..].iter().chain(&places[..middle]).any(is_hit) {
         return None;
     }
-    let bounds: Vec<Aabb> = model.objects.iter().filter_map(|object| object.shape.bounds()).collect();
+    let bounds: Vec<Aabb> = model.objects.iter().filter_map(|object| object.shape.facts().bounds).collect();
     let is_shown = |bounds: &Aabb| {
         let point = bounds.middle();
         let Projected::At(at) = camera.project(point) else { return false };

@@ -42,7 +42,7 @@ impl SceneBounds {
     /// Returns the bounds of a model.
     pub fn of(model: &Model) -> Self {
         let around = |object: &Object| {
-            let Aabb { low, high } = object.shape.bounds()?;
+            let Aabb { low, high } = object.shape.facts().bounds?;
             let slack = SLACK * low.abs().max(high.abs()).max_element();
             Some(Aabb { low: low - slack, high: high + slack })
         };

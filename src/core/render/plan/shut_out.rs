@@ -67,7 +67,7 @@ pub(super) fn shut_out(model: &Model, objects: &Objects) -> Vec<(usize, usize)> 
 /// and the object is not.
 fn is_behind_glass(model: &Model, index: usize) -> bool {
     let object = &model.objects[index];
-    let may_touch = |other: &Object| match (object.shape.bounds(), other.shape.bounds()) {
+    let may_touch = |other: &Object| match (object.shape.facts().bounds, other.shape.facts().bounds) {
         (Some(bounds), Some(of_other)) => bounds.overlaps(&of_other),
         _ => true,
     };
@@ -76,7 +76,7 @@ fn is_behind_glass(model: &Model, index: usize) -> bool {
 
 /// Tells whether a ball lies inside of a closed object, rather than outside; `None` where that is not certain.
 fn is_inside(object: &Object, middle: DVec3, radius: f64) -> Option<bool> {
-    let margin = MARGIN * (middle.abs().max_element() + object.shape.reach());
+    let margin = MARGIN * (middle.abs().max_element() + object.shape.facts().max_coordinate);
     let is_clear = radius == 0.0 || clearance(object, middle) > radius + margin;
     if is_clear { object.shape.holds(middle, margin) } else { None }
 }

@@ -67,7 +67,7 @@ impl<'m, 'w, W: TraceObserver> Tracer<'m, 'w, W> {
         if self.is_classic() {
             return Errors::NONE;
         }
-        let reach = shape.reach() + self.viewer;
+        let reach = shape.facts().max_coordinate + self.viewer;
         Errors { reach: Some(reach), most: coincidence::most_error(self.cpu, travelled, reach, cosines) }
     }
 }

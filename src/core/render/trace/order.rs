@@ -29,7 +29,7 @@ pub(super) fn is_before(
     }
     let Divergence { per_shift, cosine } = divergence(ray, (one, distance), other);
     let lost = (shift(distance) + origin_error) * per_shift;
-    let size = ray.origin.abs().max_element() + distance + one.reach() + other.reach();
+    let size = ray.origin.abs().max_element() + distance + one.facts().max_coordinate + other.facts().max_coordinate;
     if let (Some(fine), Some(fine_far)) =
         (one.packets().fine_distance(ray, distance), other.packets().fine_distance(ray, far))
     {

@@ -1,11 +1,11 @@
 //! Hits of ellipsoids, and what is certain about them.
 
 use super::Ellipsoid;
-use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
 use crate::shapes::{sphere, uv};
 use crate::world::accuracy::{AccuracyTag, Bounded};
 use crate::world::certify::Equation;
+use crate::world::facts::{Facts, Sides};
 use crate::world::hittable::{Bracketed, Certified, Hittable};
 use glam::{DVec2, DVec3};
 use tabray_exact::interval::Interval;
@@ -26,25 +26,21 @@ impl<A: AccuracyTag> Hittable for Ellipsoid<A> {
         self.unit_normal(at)
     }
 
+    #[inline]
+    fn facts(&self) -> Facts {
+        Facts {
+            can_hit_itself: if A::IS_CLASSIC { Sides::NONE } else { Sides::INSIDE },
+            is_two_sided: !A::IS_CLASSIC,
+            ..Facts::within(self.around())
+        }
+    }
+
     fn uv(&self, at: DVec3) -> Option<DVec2> {
         Some(uv::on_sphere(((at - self.center) / self.scale).normalize_or_zero()))
     }
 
-    fn bounds(&self) -> Option<Aabb> {
-        Some(self.around())
-    }
-
-    #[inline]
-    fn can_hit_itself(&self, leaving: Side) -> bool {
-        !A::IS_CLASSIC && leaving == Side::Inside
-    }
-
     fn why_not_closed(&self) -> Option<&'static str> {
         None
-    }
-
-    fn is_two_sided(&self) -> bool {
-        !A::IS_CLASSIC
     }
 
     fn method(&self) -> String {

@@ -10,7 +10,6 @@ use crate::shapes::triangle::{crossings, unit_normals};
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::{LANES, Vectors};
 use crate::world::accuracy::Bounded;
-use crate::world::hittable::Hittable;
 use crate::world::interaction::{SurfaceInteraction, turned};
 use crate::world::packets::shape::PacketIntersect;
 use crate::world::shape::{ByPackets, Shape};
@@ -182,7 +181,7 @@ kernels! {
         mesh: &Mesh<A>, rays: RayPacket, distances: &[f64], memo: &mut Memo, sides: &mut [Side],
         cosines: &mut [f64], travelled: &mut [f64]
     ) => points, normals, unbent {
-        let (is_two_sided, is_smooth, surface) = (mesh.is_two_sided(), mesh.is_smooth(), &mesh.surface);
+        let (is_two_sided, is_smooth, surface) = (mesh.is_two_sided(), mesh.surface.is_smooth(), &mesh.surface);
         let mut known = ([usize::MAX; LANES], Vectors::ZERO);
         for first in (0..travelled.len()).step_by(LANES) {
             let mut faces = [usize::MAX; LANES];

@@ -17,6 +17,7 @@ use crate::world::certify::{
     ProofMethods,
 };
 use crate::world::coincidence::{CLOSE, ROUNDING};
+use crate::world::facts::{Facts, Sides};
 use crate::world::hittable::Hittable;
 use crate::world::packets::shape::HitQueries;
 use crate::world::shape::{ByPackets, Shape};
@@ -48,6 +49,11 @@ impl<A: Bounded> Mesh<A> {
     pub fn shape(surface: Arc<Surface>, accuracy: Accuracy) -> Shape<Self, ByPackets, ByFaces> {
         let can_hit_itself = accuracy != Accuracy::Classic;
         Shape::new(Self { surface, can_hit_itself, accuracy: PhantomData }).by()
+    }
+
+    /// Tells whether both sides of the surface are lit.
+    pub(super) fn is_two_sided(&self) -> bool {
+        self.surface.is_two_sided || self.surface.is_closed()
     }
 
     /// Returns what a ray leaves that starts on the mesh, or may start on it.
@@ -96,8 +102,14 @@ impl<A: Bounded> Hittable for Mesh<A> {
         self.surface.triangle::<A>(self.surface.face_at(at)).plane.normal
     }
 
-    fn is_smooth(&self) -> bool {
-        self.surface.is_smooth()
+    fn facts(&self) -> Facts {
+        Facts {
+            can_hit_itself: Sides::both_if(self.can_hit_itself),
+            is_two_sided: self.is_two_sided(),
+            is_smooth: self.surface.is_smooth(),
+            may_be_costly: true,
+            ..Facts::within(self.surface.bounds)
+        }
     }
 
     fn shading_normal(&self, at: DVec3, normal: DVec3) -> DVec3 {
@@ -112,10 +124,6 @@ impl<A: Bounded> Hittable for Mesh<A> {
         Some(self.surface.order[self.surface.face_at(at)])
     }
 
-    fn bounds(&self) -> Option<Aabb> {
-        Some(self.surface.bounds)
-    }
-
     fn bounds_after(&self, linear: &DMat3) -> Option<Aabb> {
         let vertices = &self.surface.vertices;
         let around = || {
@@ -127,24 +135,12 @@ impl<A: Bounded> Hittable for Mesh<A> {
         (vertices.len() <= MOST_MAPPED).then(around)
     }
 
-    fn can_hit_itself(&self, _leaving: Side) -> bool {
-        self.can_hit_itself
-    }
-
     fn why_not_closed(&self) -> Option<&str> {
         match self.surface.why_not_closed {
             Openness { open: 0, clashing: 0 } => self.surface.fault(self),
             Openness { open: 0, .. } => Some("some of its faces are turned against their neighbours"),
             _ => Some("some of its edges belong to one face only"),
         }
-    }
-
-    fn is_two_sided(&self) -> bool {
-        self.surface.is_two_sided || self.surface.is_closed()
-    }
-
-    fn may_be_costly(&self) -> bool {
-        true
     }
 
     fn search_cost(&self, _ray: &Ray, _origin_side: Option<Side>) -> u32 {
@@ -167,7 +163,7 @@ impl<A: Bounded> Hittable for Mesh<A> {
 
     fn clearance(&self, from: DVec3) -> Option<f64> {
         let nearest = self.surface.nearest(from).0;
-        Some((nearest - SLACK * (from.abs().max_element() + self.reach())).max(0.0))
+        Some((nearest - SLACK * (from.abs().max_element() + self.surface.reach())).max(0.0))
     }
 
     fn part(&self, ray: &Ray, distance: f64) -> Option<String> {

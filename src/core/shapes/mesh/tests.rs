@@ -108,7 +108,7 @@ proptest! {
                 if let Some(fine) = shape.packets().fine_distance(&ray, distance) {
                     prop_assert!((fine.high - distance).abs() <= 2.0 * coincidence::CLOSE * (distance + inside.length()));
                 }
-                prop_assert!(shape.touches(ray.at(distance), coincidence::error(&ray, distance, shape.normal(ray.at(distance)), shape.reach())));
+                prop_assert!(shape.touches(ray.at(distance), coincidence::error(&ray, distance, shape.normal(ray.at(distance)), shape.facts().max_coordinate)));
             }
         }
     }
@@ -140,7 +140,7 @@ proptest! {
                 if right < MISS {
                     // A ray that goes on inside leaves the mesh, as it is closed.
                     let (at, normal) = (ray.at(right), shape.normal(ray.at(right)));
-                    let origin_error = coincidence::error(&ray, right, normal, shape.reach());
+                    let origin_error = coincidence::error(&ray, right, normal, shape.facts().max_coordinate);
                     let side = Side::seen_along(dir, normal).opposite();
                     let range = RayRange { origin_side: Some(side), origin_error, ..RayRange::ALL };
                     let next = shape.distance(&Ray { origin: at, dir }, &range);

@@ -60,10 +60,9 @@ impl Placed {
             }
         }
         if is_from_camera && rays.drift.is_none() {
-            let mut bounds = None;
             for lane in 0..count {
                 let bracket = Bracket { near: near[lane], far: far[lane] };
-                let entry = || Self::entry(*bounds.get_or_insert_with(|| self.bounds()), &rays.get(lane));
+                let entry = || Self::entry(self.bounds, &rays.get(lane));
                 Bracket { near: near[lane], far: far[lane] } = entered(bracket, entry);
             }
         }
@@ -184,7 +183,7 @@ impl PacketIntersect for Shape<Placed, ByPackets, ByPlacement> {
         let (placed, count) = (&self.shape, t_max.len());
         // The shape does not know where its copy ends.
         let is_whole = placed.max_z.0.is_none() && !placed.body.shape.packets().is_of_the_notes();
-        let Some(bounds) = placed.bounds().filter(|_| is_whole) else {
+        let Some(bounds) = placed.bounds.filter(|_| is_whole) else {
             return shape::occluded_by_brackets(self, cpu, rays, t_max, blocked, doubt);
         };
         if count <= LANES {

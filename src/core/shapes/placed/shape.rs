@@ -9,6 +9,7 @@ use crate::geometry::sight::Sight;
 use crate::world::body::Body;
 use crate::world::certify::{Enclosure, Precision, Premise, ProofMethods};
 use crate::world::coincidence::{CLOSE, ROUNDING, close};
+use crate::world::facts::Facts;
 use crate::world::hittable::Hittable;
 use crate::world::packets::shape::HitQueries;
 use crate::world::shape::{ByPackets, Shape};
@@ -22,7 +23,7 @@ pub struct Placed {
     pub(super) placement: Placement,
     pub(super) to_object_space: DMat3,
     /// A bounding box in world coordinates.
-    bounds: Option<Aabb>,
+    pub(super) bounds: Option<Aabb>,
     /// Where a copy of a plane ends.
     pub(super) max_z: MaxZ,
 }
@@ -63,7 +64,7 @@ impl Placed {
     /// Returns the copy without what lies beyond a z, in world units, if one is given and the object is cut off as planes
     /// are.
     pub(super) fn up_to(self, max_z: Option<f64>) -> Self {
-        Self { max_z: MaxZ(max_z.filter(|_| self.ends_as_planes())), ..self }
+        Self { max_z: MaxZ(max_z.filter(|_| self.body.shape.facts().ends_as_planes)), ..self }
     }
 
     /// Takes a point from the world to the object's own coordinates.
@@ -157,7 +158,7 @@ impl Placed {
         let bracket = in_world(bracket, length, drift.dir, ray, range);
         let bracket = self.max_z.kept_bracket(ray, bracket, range.origin_error);
         if is_from_camera && ray.is_single() {
-            entered(bracket, || Self::entry(self.bounds(), ray))
+            entered(bracket, || Self::entry(self.bounds, ray))
         } else {
             bracket
         }
@@ -168,7 +169,7 @@ impl Placed {
 fn bounds(body: &Body, placement: Placement, to_object_space: DMat3) -> Option<Aabb> {
     let Placement { scale, translation, .. } = placement;
     let to_world = to_object_space.transpose() * DMat3::from_diagonal(scale * scale);
-    let own = body.shape.bounds()?;
+    let own = body.shape.facts().bounds?;
     let turned = body.shape.bounds_after(&to_world).unwrap_or_else(|| {
         let middle = to_world * own.middle();
         let DMat3 { x_axis, y_axis, z_axis } = to_world;
@@ -226,8 +227,14 @@ impl Hittable for Placed {
         (self.to_object_space.transpose() * self.body.shape.normal(self.object_point(at))).normalize()
     }
 
-    fn is_smooth(&self) -> bool {
-        self.body.shape.is_smooth()
+    fn facts(&self) -> Facts {
+        let Placement { scale, translation, .. } = self.placement;
+        let own = self.body.shape.facts();
+        // A rotation moves what lies in a corner of a cube onto an axis.
+        let reach = 3_f64.sqrt() * scale.max_element() * own.max_coordinate;
+        // Twice as much, for the rounding of the ray's way there and back.
+        let max_coordinate = 2.0 * (translation.abs().max_element() + reach);
+        Facts { bounds: self.bounds, max_coordinate, plane: None, ..own }
     }
 
     fn shading_normal(&self, at: DVec3, normal: DVec3) -> DVec3 {
@@ -251,28 +258,8 @@ impl Hittable for Placed {
         self.body.shape.face(self.object_point(at))
     }
 
-    fn bounds(&self) -> Option<Aabb> {
-        self.bounds
-    }
-
     fn why_not_closed(&self) -> Option<&str> {
         self.body.shape.why_not_closed()
-    }
-
-    fn can_hit_itself(&self, leaving: Side) -> bool {
-        self.body.shape.can_hit_itself(leaving)
-    }
-
-    fn is_two_sided(&self) -> bool {
-        self.body.shape.is_two_sided()
-    }
-
-    fn ends_as_planes(&self) -> bool {
-        self.body.shape.ends_as_planes()
-    }
-
-    fn may_be_costly(&self) -> bool {
-        self.body.shape.may_be_costly()
     }
 
     fn search_cost(&self, ray: &Ray, origin_side: Option<Side>) -> u32 {
@@ -281,14 +268,6 @@ impl Hittable for Placed {
 
     fn method(&self) -> String {
         format!("in the object's own coordinates: {}", self.body.shape.method())
-    }
-
-    fn reach(&self) -> f64 {
-        let Placement { scale, translation, .. } = self.placement;
-        // A rotation moves what lies in a corner of a cube onto an axis.
-        let own = 3_f64.sqrt() * scale.max_element() * self.body.shape.reach();
-        // Twice as much, for the rounding of the ray's way there and back.
-        2.0 * (translation.abs().max_element() + own)
     }
 }
 

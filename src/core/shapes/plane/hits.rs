@@ -4,6 +4,7 @@ use super::{Flat, Plane};
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
 use crate::world::accuracy::{AccuracyTag, Bounded};
+use crate::world::facts::{Facts, Sides};
 use crate::world::hittable::{Bracketed, Certified, Hittable};
 use glam::DVec3;
 use tabray_exact::double_double::DoubleDouble;
@@ -20,8 +21,13 @@ impl<A: AccuracyTag> Hittable for Plane<A> {
     }
 
     #[inline]
-    fn can_hit_itself(&self, _leaving: Side) -> bool {
-        false
+    fn facts(&self) -> Facts {
+        Facts {
+            can_hit_itself: Sides::NONE,
+            plane: Some([self.point, self.normal]),
+            ends_as_planes: true,
+            ..Facts::unbounded(self.point.abs().max_element())
+        }
     }
 
     fn is_clear_of(&self, region: &Aabb) -> bool {
@@ -31,18 +37,6 @@ impl<A: AccuracyTag> Hittable for Plane<A> {
     fn clearance(&self, from: DVec3) -> Option<f64> {
         let rounding = SLACK * (from.length() + self.point.length());
         Some((self.normal.dot(from - self.point).abs() - rounding).max(0.0))
-    }
-
-    fn ends_as_planes(&self) -> bool {
-        true
-    }
-
-    fn plane(&self) -> Option<[DVec3; 2]> {
-        Some([self.point, self.normal])
-    }
-
-    fn reach(&self) -> f64 {
-        self.point.abs().max_element()
     }
 
     fn method(&self) -> String {

@@ -1,10 +1,10 @@
 //! Hits of quadrics, and what is certain about them.
 
 use super::Quadric;
-use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
 use crate::world::accuracy::{AccuracyTag, Bounded};
 use crate::world::certify::Equation;
+use crate::world::facts::{Facts, Sides};
 use crate::world::hittable::{Bracketed, Certified, Hittable};
 use glam::DVec3;
 use tabray_exact::scalar::Scalar;
@@ -25,22 +25,20 @@ impl<A: AccuracyTag> Hittable for Quadric<A> {
         self.unit_normal(at)
     }
 
-    fn bounds(&self) -> Option<Aabb> {
-        Some(self.around())
-    }
-
     #[inline]
-    fn can_hit_itself(&self, _leaving: Side) -> bool {
-        !A::IS_CLASSIC
+    fn facts(&self) -> Facts {
+        Facts {
+            // The box only clips, and may be far larger than what is seen of the surface, so its corners do not count.
+            max_coordinate: self.center.abs().max_element(),
+            can_hit_itself: Sides::both_if(!A::IS_CLASSIC),
+            is_two_sided: !A::IS_CLASSIC,
+            ..Facts::within(self.around())
+        }
     }
 
     fn why_not_closed(&self) -> Option<&'static str> {
         (!self.is_closed())
             .then_some("it is not an ellipsoid within its box whose equation is below J inside")
-    }
-
-    fn is_two_sided(&self) -> bool {
-        !A::IS_CLASSIC
     }
 
     fn method(&self) -> String {
@@ -49,11 +47,6 @@ impl<A: AccuracyTag> Hittable for Quadric<A> {
 
     fn clearance(&self, from: DVec3) -> Option<f64> {
         Some(self.clearance_by_value(from).max(self.clearance_by_box(from)))
-    }
-
-    fn reach(&self) -> f64 {
-        // The box only clips, and may be far larger than what is seen of the surface, so its corners do not count.
-        self.center.abs().max_element()
     }
 }
 

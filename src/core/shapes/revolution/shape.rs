@@ -13,6 +13,7 @@ use crate::geometry::sight::Line;
 use crate::shapes::uv;
 use crate::simd::cpu::Cpu;
 use crate::world::certify::Equation;
+use crate::world::facts::{Facts, Sides};
 use crate::world::hittable::{Certified, Hittable, Searched};
 use crate::world::interaction::SurfaceInteraction;
 use crate::world::packets::shape::{HitQueries, PacketIntersect, by_distance};
@@ -65,17 +66,13 @@ impl Hittable for InFrame<ClassicRevolution> {
         (self.frame.axes * self.surface.normal(self.frame.point(at))).normalize()
     }
 
-    fn can_hit_itself(&self, _leaving: Side) -> bool {
-        false
+    fn facts(&self) -> Facts {
+        let [low, high] = self.surface.extent();
+        Facts { can_hit_itself: Sides::NONE, ..Facts::within(self.frame.bounds(&Aabb { low, high })) }
     }
 
     fn uv(&self, at: DVec3) -> Option<DVec2> {
         Some(uv::on_height(self.frame.point(at), self.surface.height))
-    }
-
-    fn bounds(&self) -> Option<Aabb> {
-        let [low, high] = self.surface.extent();
-        Some(self.frame.bounds(&Aabb { low, high }))
     }
 
     fn method(&self) -> String {
@@ -92,24 +89,20 @@ impl Hittable for InFrame<Revolution> {
         self.surface.normal_in(&self.frame, at)
     }
 
+    fn facts(&self) -> Facts {
+        Facts {
+            is_two_sided: true,
+            may_be_costly: self.surface.may_be_costly(),
+            ..Facts::within(self.frame.bounds(&self.surface.bounds()))
+        }
+    }
+
     fn uv(&self, at: DVec3) -> Option<DVec2> {
         Some(uv::on_height(self.frame.point(at), self.surface.height))
     }
 
-    fn bounds(&self) -> Option<Aabb> {
-        Some(self.frame.bounds(&self.surface.bounds()))
-    }
-
     fn why_not_closed(&self) -> Option<&'static str> {
         self.surface.why_not_closed()
-    }
-
-    fn is_two_sided(&self) -> bool {
-        true
-    }
-
-    fn may_be_costly(&self) -> bool {
-        self.surface.may_be_costly()
     }
 
     fn search_cost(&self, ray: &Ray, origin_side: Option<Side>) -> u32 {

@@ -153,7 +153,7 @@ impl Body {
 /// Returns the bodies of the parts whose surface may be seen.
 fn seen(solid: &Solid) -> Vec<Body> {
     let parts: Arc<[Part]> = solid.parts.clone().into();
-    let bounds = parts.iter().map(|part| Some(part.body.shape.bounds()?.with_slack(0.0)));
+    let bounds = parts.iter().map(|part| Some(part.body.shape.facts().bounds?.with_slack(0.0)));
     let bounds: Arc<[Option<Aabb>]> = bounds.collect();
     let whole = solid.tree.bounds(&|part| bounds[part]);
     let body = |index: usize| {

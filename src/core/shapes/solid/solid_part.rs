@@ -7,6 +7,7 @@ use crate::world::any_shape::AnyShape;
 use crate::world::body::Part;
 use crate::world::certify::{Enclosure, HitProofs, Precision, Premise, ProofMethods};
 use crate::world::coincidence::{self, CLOSE, LEAST_COSINE, ROUNDING};
+use crate::world::facts::Facts;
 use crate::world::hittable::Hittable;
 use crate::world::packets::shape::{HitQueries, by_distance};
 use crate::world::shape::{ByPackets, Shape};
@@ -43,7 +44,7 @@ pub struct SolidPart {
     pub(super) tree: Tree,
     /// The way to the part through the tree.
     path: Vec<usize>,
-    bounds: Option<Aabb>,
+    facts: Facts,
 }
 
 impl SolidPart {
@@ -56,7 +57,10 @@ impl SolidPart {
         bounds: Option<Aabb>,
     ) -> Self {
         let (parts, around) = (parts.clone(), around.clone());
-        Self { parts, around, index, is_outer, tree, path, bounds }
+        let own = parts[index].body.shape.facts();
+        let can_hit_itself = if is_outer { own.can_hit_itself.opposite() } else { own.can_hit_itself };
+        let facts = Facts { bounds, can_hit_itself, is_two_sided: true, plane: None, ends_as_planes: false, ..own };
+        Self { parts, around, index, is_outer, tree, path, facts }
     }
 
     /// Returns the shape of the part.
@@ -66,7 +70,7 @@ impl SolidPart {
 
     /// Returns the box around the surface.
     pub(super) fn around(&self) -> Option<&Aabb> {
-        self.bounds.as_ref()
+        self.facts.bounds.as_ref()
     }
 
     /// Tells whether all of the part's surface is the solid's.
@@ -144,7 +148,7 @@ impl SolidPart {
         let at = ray.at(distance);
         // The error of any hit first, then that of this one, which takes its normal.
         self.is_on_solid(at, ROUNDING / LEAST_COSINE * size).or_else(|| {
-            let error = coincidence::error(ray, distance, self.own().normal(at), self.reach());
+            let error = coincidence::error(ray, distance, self.own().normal(at), self.facts.max_coordinate);
             self.is_on_solid(at, error).or_else(|| self.is_on_solid_in_plane(at, error))
         })
     }
@@ -155,7 +159,7 @@ impl SolidPart {
         let before = ray.at(distance - SHORTLY * size);
         // What lies far from this surface is not in its tree.
         let is_near =
-            self.bounds.is_none_or(|Aabb { low, high }| low.cmple(before).all() && before.cmple(high).all());
+            self.facts.bounds.is_none_or(|Aabb { low, high }| low.cmple(before).all() && before.cmple(high).all());
         is_near
             && distance > 2.0 * SHORTLY * size
             && self.tree.holds(&mut |part| self.holds(part, before, ROUNDING * size)) == Some(true)
@@ -164,7 +168,7 @@ impl SolidPart {
     /// Returns the distance of the first hit that is seen, and whether it is certain. `first` is the distance of the
     /// part's own first hit, if that is known.
     pub(super) fn first_hit(&self, ray: &Ray, range: &RayRange, mut first: Option<f64>) -> (f64, bool) {
-        let (shape, reach) = (self.own(), self.reach());
+        let (shape, max_coordinate) = (self.own(), self.facts.max_coordinate);
         let (mut start, mut gone, mut is_certain) = (*ray, 0.0, true);
         let mut leaves = range.origin_side.map(|side| self.side(side));
         let mut error = range.origin_error;
@@ -193,7 +197,7 @@ impl SolidPart {
                 _ => Side::seen_along(ray.dir, shape.normal(at)),
             };
             is_certain &= !bracket.is_doubtful() || leaves == Some(side);
-            let size = ray.origin.abs().max_element() + distance + reach;
+            let size = ray.origin.abs().max_element() + distance + max_coordinate;
             let sure = self.is_certainly_on_solid(ray, distance, size).or_else(|| {
                 let is_hidden = self.side(side) == Side::Outside && self.is_within(ray, distance, size);
                 is_hidden.then_some(false)
@@ -201,7 +205,7 @@ impl SolidPart {
             is_certain &= sure.is_some();
             let is_on_solid = sure.unwrap_or_else(|| {
                 let normal = shape.normal(at);
-                self.is_on_solid_by_sides(ray, at, normal, coincidence::error(ray, distance, normal, reach))
+                self.is_on_solid_by_sides(ray, at, normal, coincidence::error(ray, distance, normal, max_coordinate))
             });
             if is_on_solid {
                 return (range.keep(distance), is_certain);
@@ -256,8 +260,8 @@ impl Hittable for SolidPart {
         if self.is_outer { -normal } else { normal }
     }
 
-    fn is_smooth(&self) -> bool {
-        self.own().is_smooth()
+    fn facts(&self) -> Facts {
+        self.facts
     }
 
     fn shading_normal(&self, at: DVec3, normal: DVec3) -> DVec3 {
@@ -282,22 +286,6 @@ impl Hittable for SolidPart {
         self.parts.iter().for_each(|part| part.body.shape.read_from_files(each));
     }
 
-    fn bounds(&self) -> Option<Aabb> {
-        self.bounds
-    }
-
-    fn can_hit_itself(&self, leaving: Side) -> bool {
-        self.own().can_hit_itself(self.side(leaving))
-    }
-
-    fn is_two_sided(&self) -> bool {
-        true
-    }
-
-    fn may_be_costly(&self) -> bool {
-        self.own().may_be_costly()
-    }
-
     fn search_cost(&self, ray: &Ray, origin_side: Option<Side>) -> u32 {
         let own = self.own().search_cost(ray, origin_side.map(|side| self.side(side)));
         // That for the first hit, and as much for those after it.
@@ -317,16 +305,13 @@ impl Hittable for SolidPart {
     fn clearance(&self, from: DVec3) -> Option<f64> {
         self.own().clearance(from)
     }
-
-    fn reach(&self) -> f64 {
-        self.own().reach()
-    }
 }
 
 impl HitQueries for Shape<SolidPart, ByPackets, ByParts> {
     fn touches(&self, at: DVec3, error: f64) -> bool {
         let is_near = self
             .shape
+            .facts
             .bounds
             .is_none_or(|Aabb { low, high }| (low - error).cmple(at).all() && at.cmple(high + error).all());
         is_near && self.shape.own().touches(at, error)

@@ -7,6 +7,7 @@ use crate::shapes::plane::{Flat, Plane};
 use crate::shapes::uv;
 use crate::world::accuracy::{AccuracyTag, Bounded};
 use crate::world::certify::Equation;
+use crate::world::facts::Facts;
 use crate::world::hittable::{Bracketed, Certified, Hittable};
 use glam::{DVec2, DVec3};
 use tabray_exact::double_double::DoubleDouble;
@@ -26,29 +27,18 @@ impl<A: AccuracyTag> Hittable for Triangle<A> {
         self.plane.normal
     }
 
+    #[inline]
+    fn facts(&self) -> Facts {
+        let Facts { bounds, max_coordinate, .. } = Facts::within(Aabb::around(&self.corners));
+        Facts { bounds, max_coordinate, ..self.plane.facts() }
+    }
+
     fn uv(&self, at: DVec3) -> Option<DVec2> {
         Some(uv::on_triangle(self.corners, at))
     }
 
-    fn bounds(&self) -> Option<Aabb> {
-        Some(Aabb::around(&self.corners))
-    }
-
-    #[inline]
-    fn can_hit_itself(&self, _leaving: Side) -> bool {
-        false
-    }
-
     fn is_clear_of(&self, region: &Aabb) -> bool {
         self.plane.is_clear_of(region) || !Aabb::around(&self.corners).overlaps(region)
-    }
-
-    fn ends_as_planes(&self) -> bool {
-        true
-    }
-
-    fn plane(&self) -> Option<[DVec3; 2]> {
-        Some([self.plane.point, self.plane.normal])
     }
 
     fn method(&self) -> String {

@@ -67,13 +67,13 @@ impl<T: Hittable, S> HitQueries for Shape<T, S, Unproven> {
 
     fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
         each(of, Premise::NoEquation);
-        if self.shape.bounds().is_some() {
+        if self.shape.facts().bounds.is_some() {
             each(of, Premise::Assumed(Assumption::Bounds));
         }
     }
 
     fn certify(&self, sight: &Sight, _precision: Precision) -> Enclosure {
-        certify::first_hit_in(self.shape.bounds(), &sight.line()).into()
+        certify::first_hit_in(self.shape.facts().bounds, &sight.line()).into()
     }
 }
 

@@ -13,6 +13,7 @@ use crate::geometry::ray_packet::{
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::LANES;
 use crate::world::coincidence::close;
+use crate::world::facts::{Facts, Sides};
 use crate::world::hittable::{Bracketed, Hittable};
 use crate::world::interaction::{SurfaceInteraction, turned};
 use crate::world::shape::{ByBracket, ByDistance, ByEquation, ByFormula, ByRoots, Shape, Unproven};
@@ -296,7 +297,7 @@ kernels! {
         let Nearest { near, far, met, doubt } = nearest;
         match rays.leaving {
             None => merge_nearest(count, &ShapeBounds { shape, rays }, id, near, far, met, doubt),
-            Some(sides) => merge_nearest(count, &LeavingBounds { shape, rays, sides }, id, near, far, met, doubt),
+            Some(sides) => merge_nearest(count, &LeavingBounds::new(shape, rays, sides), id, near, far, met, doubt),
         }
     }
 
@@ -307,7 +308,7 @@ kernels! {
         let rays = RayPacket { drift: RayError::NONE, ..rays.first(t_max.len()) };
         match rays.leaving {
             None => mark_occluded(&ShapeBounds { shape, rays }, t_max, blocked, doubt),
-            Some(sides) => mark_occluded(&LeavingBounds { shape, rays, sides }, t_max, blocked, doubt),
+            Some(sides) => mark_occluded(&LeavingBounds::new(shape, rays, sides), t_max, blocked, doubt),
         }
     }
 
@@ -316,7 +317,7 @@ kernels! {
         let (ends, rays) = (&ends[..near.len()], rays.first(near.len()));
         match rays.leaving {
             None => write(&ShapeBounds { shape, rays }, ends, near, far),
-            Some(sides) => write(&LeavingBounds { shape, rays, sides }, ends, near, far),
+            Some(sides) => write(&LeavingBounds::new(shape, rays, sides), ends, near, far),
         }
     }
 
@@ -329,7 +330,7 @@ kernels! {
     fn interact[T: Hittable](
         shape: &T, rays: RayPacket, distances: &[f64], sides: &mut [Side], cosines: &mut [f64], travelled: &mut [f64]
     ) => points, normals, unbent {
-        let (count, is_two_sided, is_smooth) = (travelled.len(), shape.is_two_sided(), shape.is_smooth());
+        let (count, Facts { is_two_sided, is_smooth, .. }) = (travelled.len(), shape.facts());
         let (rays, distances) = (rays.first(count), &distances[..count]);
         let (sides, cosines) = (&mut sides[..count], &mut cosines[..count]);
         let (mut points, mut normals) = (points.first(count), normals.first(count));
@@ -378,13 +379,21 @@ struct LeavingBounds<'b, T> {
     shape: &'b T,
     rays: RayPacket<'b>,
     sides: &'b [Side],
+    can_hit_itself: Sides,
+}
+
+impl<'b, T: ScalarIntersect> LeavingBounds<'b, T> {
+    #[inline(always)]
+    fn new(shape: &'b T, rays: RayPacket<'b>, sides: &'b [Side]) -> Self {
+        Self { shape, rays, sides, can_hit_itself: shape.author().facts().can_hit_itself }
+    }
 }
 
 impl<T: ScalarIntersect> Brackets for LeavingBounds<'_, T> {
     #[inline(always)]
     fn get(&self, lane: usize, far: f64) -> Bracket {
         let origin_side = self.sides[lane];
-        if !self.shape.author().can_hit_itself(origin_side) {
+        if !self.can_hit_itself.contain(origin_side) {
             return Bracket::MISS;
         }
         let (origin_side, origin_error) = (Some(origin_side), self.rays.origin_error);

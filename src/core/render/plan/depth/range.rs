@@ -90,7 +90,7 @@ fn least(model: &Model, darkest: Rgb) -> Option<Rgb> {
 
 /// Encloses the look of an object, at all of its points.
 fn look(object: &Object) -> Option<LookBounds<f64>> {
-    let position = around(object.shape.bounds());
+    let position = around(object.shape.facts().bounds);
     let points = PointBounds { position, normal: None, uv: None, face: None };
     EncloseLook::<f64>::look(&*object.shader, &object.material, &points)
 }

@@ -203,9 +203,9 @@ fn can_hit_itself(object: &Object, side: Side) -> bool {
 /// Tells on which sides of the plane that contains an object, if there is one, another object may be hit. `farthest` is the
 /// length of a path whose rounding is allowed for.
 fn lies(of: &Object, object: &Object, farthest: f64) -> Sides<bool> {
-    let Some([point, normal]) = of.shape.plane() else { return [true; 2] };
+    let Some([point, normal]) = of.shape.facts().plane else { return [true; 2] };
     let size = |at: DVec3| at.abs().max_element();
-    let (middle, reach) = match (culling::bounds(object), object.shape.plane()) {
+    let (middle, reach) = match (culling::bounds(object), object.shape.facts().plane) {
         (Some(bounds), _) => (bounds.middle(), bounds.half_size()),
         (None, Some([other, its_normal])) if its_normal == normal || its_normal == -normal => {
             (other, DVec3::ZERO)

@@ -217,7 +217,7 @@ impl Scene<'_> {
                 return None;
             }
             for index in shown.iter().filter(|index| mirror != Some(**index) && self.reflects(**index)) {
-                let [at, normal] = self.model.objects[*index].shape.plane()?;
+                let [at, normal] = self.model.objects[*index].shape.facts().plane?;
                 if !normal.is_normalized() {
                     return None;
                 }
@@ -249,7 +249,7 @@ impl Scene<'_> {
             return Some(UnlitReason::Black);
         }
         let (location, size) = (light.location(), light.size());
-        if let Some([at, normal]) = object.shape.plane().filter(|_| !light.is_far()) {
+        if let Some([at, normal]) = object.shape.facts().plane.filter(|_| !light.is_far()) {
             let height = |point| normal.dot(point - at);
             let slack = size + 1e-9 * (at.abs() + location.abs()).max_element();
             let turned = match (object.shape.is_two_sided(), view) {

@@ -51,7 +51,7 @@ impl View {
             return VisibleRegion::of(bounds);
         }
         let crossing = |dir: &DVec3| {
-            let [at, normal] = object.shape.plane()?;
+            let [at, normal] = object.shape.facts().plane?;
             let distance = normal.dot(at - self.apex) / normal.dot(*dir);
             (normal.dot(*dir).abs() > 1e-6 && distance > 0.0).then(|| self.apex + distance * *dir)
         };
@@ -122,5 +122,5 @@ pub(super) fn clearance(region: &Hull, object: &Object, bounds: Option<&Aabb>) -
         return by_box;
     }
     let of_plane = |[at, normal]: [DVec3; 2]| region.clearance_of_plane(at, normal);
-    object.shape.plane().map_or(0.0, of_plane)
+    object.shape.facts().plane.map_or(0.0, of_plane)
 }
