@@ -13,8 +13,8 @@ use tabray::shapes::Implicit;
 use tabray::tools::contract::{self, Breach, Promise};
 use tabray::world::certify::Equation;
 use tabray::world::{
-    AnyInterface, Background, Body, Bracketed, Camera, Certified, Crossing, Facts, Hittable, Interface, Light,
-    Material, Origins, Projected, Rgb, Shader, Shape, Sides, SurfacePoint,
+    AnyInterface, Background, Body, Bracketed, Camera, Certified, Crossing, Facts, Hittable, Interface,
+    Light, Material, Origins, Projected, Rgb, Shader, Shape, Sides, SurfacePoint,
 };
 
 #[test]

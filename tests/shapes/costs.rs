@@ -8,6 +8,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 use tabray::exact::double_double::DoubleDouble;
+use tabray::geometry::ray_packet::SurfaceInteraction;
 use tabray::geometry::{Aabb, Bracket, Facet, Nearest, Ray, RayBall, RayPacket, RayRange, Side, Sight};
 use tabray::glam::{DVec2, DVec3};
 use tabray::prelude::{Entity, MISS, Pparm, Table};
@@ -15,7 +16,6 @@ use tabray::scene::model::Object;
 use tabray::scene::{self, Kind, Model, Registry};
 use tabray::simd::cpu::Cpu;
 use tabray::world::certify::{Enclosure, Precision, Premise, ProofMethods};
-use tabray::world::interaction::SurfaceInteraction;
 use tabray::world::packets::shape::{HitQueries, PacketIntersect, PacketShape};
 use tabray::world::{Accuracy, AnyShape, Body, Facts, Hittable, NamedBody, Shape};
 

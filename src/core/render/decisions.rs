@@ -1,6 +1,5 @@
 //! A plan's decisions as text, each with its reason.
 
-use crate::render::culling;
 use crate::render::features::{FEATURE_SAMPLES, Features};
 use crate::render::footprint::{MAX_CUTS, MAX_FOOTPRINTS};
 use crate::render::limits::{MAX_DIST, MAX_RAYS, MAX_TREE};
@@ -311,7 +310,7 @@ fn small(features: &Features) -> String {
 fn objects(plan: &Plan) -> Vec<Decision> {
     let mut alike: Vec<(&'static str, String, Vec<&str>)> = Vec::new();
     for (_, object) in kept(plan) {
-        let place = match (&plan.tree, culling::bounds(object)) {
+        let place = match (&plan.tree, object.shape.culling_bounds()) {
             (Some(_), Some(_)) => "in the BVH",
             (None, Some(_)) => "with bounds",
             (_, None) => "without bounds",

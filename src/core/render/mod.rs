@@ -2,7 +2,6 @@
 
 pub mod brightness;
 pub mod bytes;
-mod culling;
 pub mod decisions;
 pub mod division;
 pub mod enclosed;

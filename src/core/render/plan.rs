@@ -11,7 +11,6 @@ use shut_out::{Objects, shut_out};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::Bvh;
 use crate::parallel;
-use crate::render::culling;
 use crate::render::features::Features;
 use crate::render::footprint::Prover;
 use crate::scene::model::{Model, Object};
@@ -87,7 +86,7 @@ impl<'m> Plan<'m> {
 
     fn with(model: &'m Model, needs: impl FnOnce(&[Option<Aabb>], Option<&Depth>) -> Needs) -> Self {
         let objects = &model.objects;
-        let bounds = parallel::filled(objects.len(), MANY, |index| culling::bounds(&objects[index]));
+        let bounds = parallel::filled(objects.len(), MANY, |index| objects[index].shape.culling_bounds());
         let depth = Depth::new(model);
         let mut needs = needs(&bounds, depth.as_ref());
         let mut unreached = needs.unreached.iter().peekable();

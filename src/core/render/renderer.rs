@@ -6,12 +6,12 @@ use crate::render::flaws::Flaws;
 use crate::render::observer::TraceObserver;
 use crate::render::plan::Plan;
 use crate::render::ray_stats::RayStats;
-use crate::render::tiles::{self, BAND, Band, Strip, TILE, locked};
+use crate::render::tiles::{self, BAND, Band, TILE, locked};
 use crate::render::trace::{Scratch, Tracer};
 use crate::simd::cpu::Cpu;
+use crate::simd::soa::View;
 use rayon::ThreadPool;
 use std::ops::{ControlFlow, Range};
-use std::sync::Mutex;
 
 /// The stack size of a thread in bytes that is enough for the deepest chain of reflections that the ray budget allows. The
 /// system commits only what is used.
@@ -99,69 +99,30 @@ impl Renderer {
         overseer: RenderCallbacks,
         watched: &(dyn Fn(W) + Sync),
     ) {
-        W::fill(self, plan, band, overseer, watched);
-    }
-
-    fn fill_watched<W: TraceObserver + Default>(
-        &self,
-        plan: &Plan,
-        band: &Band,
-        overseer: RenderCallbacks,
-        watched: &(dyn Fn(W) + Sync),
-    ) {
+        let ([_, height], display) = (plan.camera.pixels, plan.camera.display());
+        let (left, width) = (band.columns.start, band.columns.len());
         let strip = |scratch: &mut Scratch, index: usize| {
-            let mut observer = W::default();
-            let from_top = band.rows.start + TILE * index;
-            let rows = from_top..band.rows.end.min(from_top + TILE);
-            let tracer = Tracer::new(plan, self.cpu, scratch, &mut observer);
-            self.strip(tracer, &band.strips[index], [&band.columns, &rows], overseer);
+            let top = band.rows.start + TILE * index;
+            let rows = top..band.rows.end.min(top + TILE);
+            let strip = &band.strips[index];
+            let is_done = locked(strip).tiles.clone();
+            let open = (0..is_done.len()).filter(|tile| !is_done[*tile]).collect();
+            let mut bytes = [[0; 3]; TILE * TILE];
+            let mut add = |tile: usize, pixels: &[[usize; 2]], colours: View| {
+                to_bytes(self.cpu, &display, colours, &mut bytes[..pixels.len()]);
+                let mut strip = locked(strip);
+                for ([x, y], bytes) in pixels.iter().zip(&bytes) {
+                    strip.pixels[(height - 1 - y - top) * width + x - left] = *bytes;
+                }
+                strip.tiles[tile] = true;
+            };
+            let tiles = StripTiles { columns: &band.columns, rows: &rows, indices: open };
+            let (observer, _) = W::trace(plan, self.cpu, scratch, &tiles, overseer.stops, &mut add);
             watched(observer);
             rows.for_each(|_| (overseer.row)());
         };
         // With strips assigned beforehand, threads would wait for the slowest one.
         self.run(|| parallel::for_each_in_order(band.strips.len(), &strip));
-    }
-
-    /// Renders the tiles of one strip. `rows` count from the top.
-    fn strip<W: TraceObserver>(
-        &self,
-        mut tracer: Tracer<W>,
-        strip: &Mutex<Strip>,
-        [columns, rows]: [&Range<usize>; 2],
-        overseer: RenderCallbacks,
-    ) {
-        let (width, height) = (columns.len(), tracer.height());
-        let (top, below) = (height - 1 - rows.start, height - rows.end);
-        let (mut pixels, mut bytes) = (Vec::new(), [[0; 3]; TILE * TILE]);
-        let display = tracer.display();
-        let wide = |index: usize| {
-            let left = columns.start + TILE * index;
-            left..columns.end.min(left + TILE)
-        };
-        let left: Vec<_> = (0..width.div_ceil(TILE)).filter(|index| !locked(strip).tiles[*index]).collect();
-        for indices in left.chunks(tracer.tiles_together()) {
-            if (overseer.stops)() {
-                break;
-            }
-            let rows = below..top + 1;
-            pixels.clear();
-            indices.iter().for_each(|index| tiles::list(wide(*index), rows.clone(), &mut pixels));
-            let (colours, mut from) = (tracer.pixels(&pixels), 0);
-            for index in indices {
-                let count = wide(*index).len() * rows.len();
-                to_bytes(self.cpu, &display, colours.part(from..from + count), &mut bytes[..count]);
-                from += count;
-                let mut rest = &bytes[..];
-                let mut strip = locked(strip);
-                for (run, y) in tiles::runs(wide(*index), rows.clone()) {
-                    let (bytes, others) = rest.split_at(run.len());
-                    strip.pixels[(top - y) * width + run.start - columns.start..][..run.len()]
-                        .copy_from_slice(bytes);
-                    rest = others;
-                }
-                strip.tiles[*index] = true;
-            }
-        }
     }
 
     /// Renders a part of the image with its colours before they are clamped and rounded: red, green and blue of each pixel, in rows from
@@ -170,45 +131,29 @@ impl Renderer {
     pub fn colours<W: ImageObserver>(
         &self,
         plan: &Plan,
-        part: [&Range<usize>; 2],
-        overseer: RenderCallbacks,
-        watched: &(dyn Fn(W) + Sync),
-    ) -> Option<Vec<f32>> {
-        W::colours(self, plan, part, overseer, watched)
-    }
-
-    fn colours_watched<W: TraceObserver + Default>(
-        &self,
-        plan: &Plan,
         [columns, rows]: [&Range<usize>; 2],
         overseer: RenderCallbacks,
         watched: &(dyn Fn(W) + Sync),
     ) -> Option<Vec<f32>> {
-        let (width, end, display) = (columns.len(), plan.camera.pixels[1], plan.camera.display());
+        let ([_, height], display) = (plan.camera.pixels, plan.camera.display());
+        let (left, width) = (columns.start, columns.len());
         let mut all = vec![0.0; 3 * width * rows.len()];
         let strip = |index: usize, strip: &mut [f32]| {
-            let mut observer = W::default();
-            let (top, mut pixels, mut scratch) = (rows.start + TILE * index, Vec::new(), Scratch::default());
-            let tall = strip.len() / (3 * width);
-            let mut tracer = Tracer::new(plan, self.cpu, &mut scratch, &mut observer);
-            let side = TILE * tracer.tiles_together();
-            for left in columns.clone().step_by(side) {
-                if (overseer.stops)() {
-                    return ControlFlow::Break(());
-                }
-                let right = columns.end.min(left + side);
-                pixels.clear();
-                tiles::list(left..right, end - top - tall..end - top, &mut pixels);
-                let colours = tracer.pixels(&pixels);
+            let top = rows.start + TILE * index;
+            let rows = top..top + strip.len() / (3 * width);
+            let mut add = |_: usize, pixels: &[[usize; 2]], colours: View| {
                 for (index, [x, y]) in pixels.iter().enumerate() {
-                    let at = 3 * ((end - 1 - y - top) * width + x - columns.start);
-                    strip[at..at + 3]
-                        .copy_from_slice(&display.full_range(colours.get(index)).as_vec3().to_array());
+                    let colour = display.full_range(colours.get(index)).as_vec3().to_array();
+                    strip[3 * ((height - 1 - y - top) * width + x - left)..][..3].copy_from_slice(&colour);
                 }
-            }
+            };
+            let indices = (0..width.div_ceil(TILE)).collect();
+            let tiles = StripTiles { columns, rows: &rows, indices };
+            let mut scratch = Scratch::default();
+            let (observer, flow) = W::trace(plan, self.cpu, &mut scratch, &tiles, overseer.stops, &mut add);
             watched(observer);
-            (0..tall).for_each(|_| (overseer.row)());
-            ControlFlow::Continue(())
+            rows.for_each(|_| (overseer.row)());
+            flow
         };
         let finished = self.run(|| parallel::chunks(&mut all, 3 * width * TILE, strip));
         finished.is_continue().then_some(all)
@@ -245,48 +190,81 @@ impl Renderer {
     }
 }
 
+/// Tiles of one strip of an image.
+pub struct StripTiles<'s> {
+    /// The columns of the strip, counted from the left of the image.
+    columns: &'s Range<usize>,
+    /// The rows of the strip, counted from the top of the image.
+    rows: &'s Range<usize>,
+    /// The indices of the tiles, from the left.
+    indices: Vec<usize>,
+}
+
+/// Takes the colours of a tile: its index in the strip, its pixels by column and row from the bottom, and a colour for
+/// each.
+type TileSink<'s> = dyn FnMut(usize, &[[usize; 2]], View) + 's;
+
 /// An observer with which images are rendered. What traces rays for it is compiled in this crate, and not again in each that
 /// renders.
 pub trait ImageObserver: TraceObserver + Default {
-    /// Does what [`Renderer::fill`] does.
-    fn fill(
-        renderer: &Renderer,
+    /// Computes the colours of tiles, with a new observer, which is returned; until `stops` returns true, which breaks.
+    fn trace(
         plan: &Plan,
-        band: &Band,
-        overseer: RenderCallbacks,
-        watched: &(dyn Fn(Self) + Sync),
-    );
-    /// Does what [`Renderer::colours`] does.
-    fn colours(
-        renderer: &Renderer,
-        plan: &Plan,
-        part: [&Range<usize>; 2],
-        overseer: RenderCallbacks,
-        watched: &(dyn Fn(Self) + Sync),
-    ) -> Option<Vec<f32>>;
+        cpu: Cpu,
+        scratch: &mut Scratch,
+        tiles: &StripTiles,
+        stops: &dyn Fn() -> bool,
+        sink: &mut TileSink,
+    ) -> (Self, ControlFlow<()>);
+}
+
+/// Does what [`ImageObserver::trace`] does.
+fn trace<W: TraceObserver + Default>(
+    plan: &Plan,
+    cpu: Cpu,
+    scratch: &mut Scratch,
+    StripTiles { columns, rows, indices }: &StripTiles,
+    stops: &dyn Fn() -> bool,
+    sink: &mut TileSink,
+) -> (W, ControlFlow<()>) {
+    let mut observer = W::default();
+    let mut tracer = Tracer::new(plan, cpu, scratch, &mut observer);
+    let [_, height] = plan.camera.pixels;
+    let (rows, mut pixels, mut flow) =
+        (height - rows.end..height - rows.start, Vec::new(), ControlFlow::Continue(()));
+    for together in indices.chunks(tracer.tiles_together()) {
+        if stops() {
+            flow = ControlFlow::Break(());
+            break;
+        }
+        pixels.clear();
+        let end = |index: &usize| {
+            let left = columns.start + TILE * index;
+            tiles::list(left..columns.end.min(left + TILE), rows.clone(), &mut pixels);
+            pixels.len()
+        };
+        let ends: Vec<usize> = together.iter().map(end).collect();
+        let (colours, mut start) = (tracer.pixels(&pixels), 0);
+        for (index, end) in together.iter().zip(ends) {
+            sink(*index, &pixels[start..end], colours.part(start..end));
+            start = end;
+        }
+    }
+    (observer, flow)
 }
 
 macro_rules! image_observers {
     ($($Observer:ty),*) => {$(
         impl ImageObserver for $Observer {
-            fn fill(
-                renderer: &Renderer,
+            fn trace(
                 plan: &Plan,
-                band: &Band,
-                overseer: RenderCallbacks,
-                watched: &(dyn Fn(Self) + Sync),
-            ) {
-                renderer.fill_watched(plan, band, overseer, watched);
-            }
-
-            fn colours(
-                renderer: &Renderer,
-                plan: &Plan,
-                part: [&Range<usize>; 2],
-                overseer: RenderCallbacks,
-                watched: &(dyn Fn(Self) + Sync),
-            ) -> Option<Vec<f32>> {
-                renderer.colours_watched(plan, part, overseer, watched)
+                cpu: Cpu,
+                scratch: &mut Scratch,
+                tiles: &StripTiles,
+                stops: &dyn Fn() -> bool,
+                sink: &mut TileSink,
+            ) -> (Self, ControlFlow<()>) {
+                trace(plan, cpu, scratch, tiles, stops, sink)
             }
         }
     )*};

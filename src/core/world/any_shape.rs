@@ -1,15 +1,14 @@
 //! A shape of any type, together with the traits that it implements beyond [`Hittable`].
 
+use crate::geometry::aabb::Aabb;
 use crate::geometry::facet::Facet;
 use crate::geometry::ray::{Bracket, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{Nearest, RayPacket};
 use crate::geometry::sight::Sight;
 use crate::simd::cpu::Cpu;
 use crate::world::certify::{Enclosure, HitEnclosure, HitProofs, Precision, Premise, ProofMethods};
-use crate::world::facts::{Facts, Sides};
-use crate::world::hittable::Hittable;
+use crate::world::hittable::{Facts, Hittable, Shape, Sides};
 use crate::world::packets::shape::{HitQueries, PacketIntersect, PacketShape};
-use crate::world::shape::Shape;
 use glam::DVec3;
 use std::ops::Deref;
 use tabray_exact::interval::Fraction;
@@ -46,6 +45,17 @@ impl AnyShape {
     #[inline]
     pub fn is_smooth(&self) -> bool {
         self.is_smooth
+    }
+
+    /// Returns the bounding box by which the shape may be culled, if there is one. Shapes of the notes never are, since the
+    /// notes' program tests every ray against every shape.
+    pub fn culling_bounds(&self) -> Option<Aabb> {
+        self.facts().bounds.filter(|_| !self.shape.is_of_the_notes())
+    }
+
+    /// Tells whether the shape may be culled because no part of it lies in a region.
+    pub fn is_culled_in(&self, region: &Aabb) -> bool {
+        self.is_clear_of(region) && !self.shape.is_of_the_notes()
     }
 
     /// Returns the shape's interface for packets of rays.
@@ -107,7 +117,8 @@ impl AnyShape {
     /// No number of digits tells that of numbers such as a third, but fractions do.
     fn is_parallel(&self, sight: &Sight) -> bool {
         let found = |proven| HitProofs::<Fraction>::first_hit(proven, &sight.line(), None).0;
-        self.facts().bounds.is_none() && self.proven().is_some_and(|proven| found(proven) == HitEnclosure::Misses)
+        self.facts().bounds.is_none()
+            && self.proven().is_some_and(|proven| found(proven) == HitEnclosure::Misses)
     }
 
     /// Returns the functions for proofs about other rays than primary ones; `None` for a shape without an equation.

@@ -1,15 +1,15 @@
 //! Shapes: the traits that a plugin implements, each for one ray.
 //!
 //! [`Hittable`] is all that a shape needs. A shape opts into faster methods with [`Bracketed`] and into proofs with
-//! [`Certified`], and declares both to [`Shape`](crate::world::shape::Shape).
+//! [`Certified`], and declares both to [`Shape`].
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::facet::Facet;
 use crate::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
 use crate::world::certify::{Assumption, Equation};
 use crate::world::coincidence;
-use crate::world::facts::Facts;
 use glam::{DMat3, DVec2, DVec3};
+use std::marker::PhantomData;
 use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::roots::Method;
 
@@ -140,4 +140,179 @@ pub trait Certified: Hittable + Equation {
 pub trait Searched: Certified {
     /// Returns the distance by another root-finding method, for comparison.
     fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> f64;
+}
+
+/// What a shape is, apart from any point and any ray.
+///
+/// A shape that is made of another one copies its facts, and changes those that differ: `..self.shape.facts()`.
+#[derive(Clone, Copy, Debug)]
+pub struct Facts {
+    /// A box that contains the shape; `None` for an unbounded shape.
+    pub bounds: Option<Aabb>,
+    /// The largest magnitude of the shape's own coordinates that its hits are computed from, in world units. The ray's
+    /// coordinates do not count.
+    pub max_coordinate: f64,
+    /// The sides from which a ray that leaves the shape may hit it again. From other sides, the ray is not tested against
+    /// the shape. A ray that leaves a plane cannot hit it again, and a ray that leaves a sphere only from inside.
+    /// [`Sides::BOTH`] is correct for every shape whose [`distance`](Hittable::distance) respects
+    /// `range.origin_side`.
+    pub can_hit_itself: Sides,
+    /// Whether both sides of the surface are lit. If so, the normal is flipped to face the ray. A plane is lit on one
+    /// side.
+    pub is_two_sided: bool,
+    /// Whether [`shading_normal`](Hittable::shading_normal) differs from the surface's own normal
+    /// anywhere.
+    pub is_smooth: bool,
+    /// A point and the unit normal of the plane that contains the whole shape, if there is one: rays that leave the shape
+    /// stay on their side of the plane, it is shaded with the plane's normal, and a light behind the plane does not light
+    /// it. `None` is always correct.
+    pub plane: Option<[DVec3; 2]>,
+    /// Whether the shape ends where the camera cuts off planes
+    /// ([`planes_end_at`](crate::world::camera::Camera::planes_end_at)). Its copies end at the same z of the world.
+    pub ends_as_planes: bool,
+    /// Whether the search for a ray's hit may take as long as several plain rays
+    /// ([`search_cost`](Hittable::search_cost)). Shapes without bounds are not asked.
+    pub may_be_costly: bool,
+}
+
+impl Facts {
+    /// Returns the facts of a shape without bounds of which no more is known than its largest coordinate.
+    #[inline]
+    pub const fn unbounded(max_coordinate: f64) -> Self {
+        Self {
+            bounds: None,
+            max_coordinate,
+            can_hit_itself: Sides::BOTH,
+            is_two_sided: false,
+            is_smooth: false,
+            plane: None,
+            ends_as_planes: false,
+            may_be_costly: false,
+        }
+    }
+
+    /// Returns the facts of a shape of which no more is known than a box that contains it.
+    #[inline]
+    pub fn within(bounds: Aabb) -> Self {
+        let max_coordinate = bounds.low.abs().max(bounds.high.abs()).max_element();
+        Self { bounds: Some(bounds), ..Self::unbounded(max_coordinate) }
+    }
+}
+
+/// Some of the two sides of a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sides {
+    outside: bool,
+    inside: bool,
+}
+
+impl Sides {
+    /// Neither side.
+    pub const NONE: Self = Self { outside: false, inside: false };
+    /// The inside alone.
+    pub const INSIDE: Self = Self { outside: false, inside: true };
+    /// Both sides.
+    pub const BOTH: Self = Self { outside: true, inside: true };
+
+    /// Returns both sides where a condition holds, and neither where it does not.
+    #[inline]
+    pub const fn both_if(condition: bool) -> Self {
+        Self { outside: condition, inside: condition }
+    }
+
+    /// Tells whether a side is one of them.
+    #[inline]
+    pub const fn contain(self, side: Side) -> bool {
+        match side {
+            Side::Outside => self.outside,
+            Side::Inside => self.inside,
+        }
+    }
+
+    /// Returns the sides opposite to these.
+    #[inline]
+    pub const fn opposite(self) -> Self {
+        Self { outside: self.inside, inside: self.outside }
+    }
+}
+
+/// A shape, how packets of rays are tested against it (`S`), and how its hits are proven (`P`).
+///
+/// By default, hits are found by the shape's distance, and nothing about them is proven.
+pub struct Shape<T, S = ByDistance, P = Unproven> {
+    pub(crate) shape: T,
+    how: PhantomData<fn() -> (S, P)>,
+}
+
+impl<T: Hittable> Shape<T> {
+    /// Makes a shape whose hits are found by its distance.
+    pub fn new(shape: T) -> Self {
+        Self { shape, how: PhantomData }
+    }
+}
+
+impl<T, S, P> Shape<T, S, P> {
+    /// Returns the same shape, with hits found and proven in other ways.
+    pub fn by<U, Q>(self) -> Shape<T, U, Q> {
+        Shape { shape: self.shape, how: PhantomData }
+    }
+}
+
+impl<T: Bracketed, P> Shape<T, ByDistance, P> {
+    /// Finds hits by the shape's brackets.
+    pub fn bracketed(self) -> Shape<T, ByBracket, P> {
+        self.by()
+    }
+}
+
+impl<T: Certified, S> Shape<T, S> {
+    /// Proves hits by the shape's equation.
+    pub fn certified(self) -> Shape<T, S, ByEquation> {
+        self.by()
+    }
+}
+
+impl<T: Searched, S> Shape<T, S> {
+    /// Proves hits by the shape's equation, and finds them by other methods for comparison.
+    pub fn searched(self) -> Shape<T, S, ByRoots> {
+        self.by()
+    }
+}
+
+impl<T: Hittable + Equation> Shape<T> {
+    /// Finds hits by a formula of the notes, which computes a distance as quickly as a bracket. The distance is not
+    /// refined, even where the shape coincides with another surface. The equation states the surface that the notes
+    /// mean.
+    pub fn classic(self) -> Shape<T, ByDistance, ByFormula> {
+        self.by()
+    }
+}
+
+/// Marks a shape whose hits are found by its distance.
+pub struct ByDistance;
+/// Marks a shape whose hits are found by its bracket, and refined by its distance.
+pub struct ByBracket;
+/// Marks a shape whose hits are found by functions of its own that take packets.
+pub struct ByPackets;
+
+/// Marks a shape about whose hits nothing is proven.
+pub struct Unproven;
+/// Marks a shape whose hits are proven by its equation.
+pub struct ByEquation;
+/// Marks a shape whose hits are proven by its equation, and can be found by other root-finding methods.
+pub struct ByRoots;
+/// Marks a shape whose hits are found by a formula of the notes, with an equation of the surface that they mean.
+pub struct ByFormula;
+
+/// Whether the order of hits at nearly equal distances is refined.
+pub trait TieBreaking {
+    /// Whether distances are taken as they are, without refinement.
+    const IS_PLAIN: bool = false;
+}
+
+impl TieBreaking for Unproven {}
+impl TieBreaking for ByEquation {}
+impl TieBreaking for ByRoots {}
+impl TieBreaking for ByFormula {
+    const IS_PLAIN: bool = true;
 }

@@ -185,9 +185,7 @@ mod tests {
     use super::*;
     use tabray_core::geometry::ray::RayRange;
     use tabray_core::world::certify::Equation;
-    use tabray_core::world::facts::Facts;
-    use tabray_core::world::hittable::{Certified, Hittable};
-    use tabray_core::world::shape::Shape;
+    use tabray_core::world::hittable::{Certified, Facts, Hittable, Shape};
 
     /// A sphere of radius 1 around the origin, or the plane y = 0.
     enum Surface {

@@ -261,7 +261,8 @@ fn unbounded(plan: &Plan) -> f64 {
     let viewer = plan.camera.origins();
     let shown = plan.model.objects.iter().zip(&depth.objects).filter(|(_, bounds)| bounds.beyond > 0.0);
     let distance = |bounds: Option<Aabb>| bounds.map_or(0.0, |bounds| viewer.distance(&bounds));
-    let nearest = shown.map(|(object, _)| distance(object.shape.facts().bounds)).fold(f64::INFINITY, f64::min);
+    let nearest =
+        shown.map(|(object, _)| distance(object.shape.facts().bounds)).fold(f64::INFINITY, f64::min);
     let own = depth.objects.iter().map(|bounds| bounds.own).fold(0.0, f64::max);
     let most = plan.camera.display().steepest() * own / nearest;
     if nearest > 0.0 { most } else { f64::INFINITY }

@@ -117,7 +117,9 @@ impl Promise {
                 "make `normal` depend on the point alone, and continuous on a smooth surface"
             }
             Self::NormalsPointOut => "negate `normal`: it must point out of a closed shape",
-            Self::IsNotMetAgain => "let `can_hit_itself` have that side: `Sides::BOTH`, the default, is always correct",
+            Self::IsNotMetAgain => {
+                "let `can_hit_itself` have that side: `Sides::BOTH`, the default, is always correct"
+            }
             Self::StartIsNoHit => {
                 "where `range.origin_side` is given, leave out the root at which the ray starts, whatever rounding makes of it"
             }

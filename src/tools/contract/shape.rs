@@ -4,13 +4,12 @@ use super::looks::same_bits;
 use super::promise::{Fault, Promise};
 use glam::DVec3;
 use tabray_core::geometry::ray::{MISS, Ray, RayBall, RayError, RayRange, Side};
-use tabray_core::geometry::ray_packet::{Nearest, RayPacket};
+use tabray_core::geometry::ray_packet::{Nearest, RayPacket, SurfaceInteraction};
 use tabray_core::geometry::sight::Sight;
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::simd::soa::{LANES, Vectors};
 use tabray_core::world::any_shape::AnyShape;
 use tabray_core::world::certify::{Enclosure, Precision};
-use tabray_core::world::interaction::SurfaceInteraction;
 use tabray_exact::interval::{Float, Wide};
 
 /// The maximum distance by which rounding may shift a ray sideways, as a fraction of the numbers from which its

@@ -12,10 +12,9 @@ mod bins;
 mod build;
 mod nearby;
 mod node;
-mod order;
 mod packet;
 mod tree;
 
-pub use order::Order;
+pub use node::Order;
 pub use packet::{PacketVisitor, visit};
 pub use tree::{Bvh, Stack};

@@ -6,8 +6,7 @@
 
 use crate::geometry::aabb::{Aabb, SLACK, larger, smaller};
 use crate::geometry::bvh::beam::{Beam, Eight};
-use crate::geometry::bvh::node::WIDTH;
-use crate::geometry::bvh::order::Order;
+use crate::geometry::bvh::node::{Order, WIDTH};
 use crate::geometry::bvh::tree::{Ahead, Bvh, OBJECT, Stack, descend, push};
 use crate::geometry::ray::RayError;
 use crate::geometry::ray_packet::{RayPacket, split};

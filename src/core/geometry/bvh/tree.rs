@@ -3,8 +3,7 @@
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::bvh::beam::{Beam, Eight};
 use crate::geometry::bvh::build;
-use crate::geometry::bvh::node::{Entered, Node, WIDTH};
-use crate::geometry::bvh::order::Order;
+use crate::geometry::bvh::node::{Entered, Node, Order, WIDTH};
 use crate::geometry::ray::{Ray, RayError};
 use crate::simd::cpu::{Cpu, kernels};
 use std::mem::take;

@@ -12,11 +12,10 @@
 //! [`Film::samples`]: crate::world::film::Film::samples
 
 use super::arrays::VectorList;
-use super::context::Tracer;
+use super::context::{PrimaryScratch, Scratch, Tracer};
 use super::estimate::{AdaptiveScratch, Estimate, RayResults, RaySummary, SampleRun};
 use super::ray_group::RayGroup;
 use super::sampled;
-use super::scratch::{PrimaryScratch, Scratch};
 use super::trail::PathHashes;
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::render::features::FEATURE_SAMPLES;

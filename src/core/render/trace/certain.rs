@@ -1,7 +1,6 @@
 //! Pixels whose colours are proven, and take no samples.
 
-use super::context::Tracer;
-use super::scratch::PrimaryScratch;
+use super::context::{PrimaryScratch, Tracer};
 use crate::render::footprint::{Proof, Prover};
 use crate::render::observer::{Count, TraceObserver};
 use crate::render::plan::Plan;

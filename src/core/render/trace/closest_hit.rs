@@ -2,14 +2,11 @@
 
 use super::arrays::resized;
 use super::context::Tracer;
-use super::hit_record::HitRecord;
-use super::one_ray::{Located, RoundedRay, exact, located};
-use super::order;
-use super::ray_group::RayGroup;
+use super::exact::{Located, RoundedRay, certain_order, exact, is_before, is_unclear, located};
+use super::ray_group::{HitRecord, RayGroup};
 use crate::geometry::bvh::{self, PacketVisitor, Stack};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayError, Side};
 use crate::geometry::ray_packet::{Nearest, RayPacket};
-use crate::render::culling;
 use crate::render::frusta::{self, PART};
 use crate::render::observer::{Count, DropReason, Event, Hit, TraceObserver};
 use crate::simd::cpu::kernels;
@@ -111,15 +108,15 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
             // A proof of equal distances takes as many digits as there are, and some shapes milliseconds.
             match self.model.objects[index].is_shaped_as(&self.model.objects[rival]) {
                 true => Some(Ordering::Equal),
-                false => order::certain_order(one.0, other.0, sight),
+                false => certain_order(one.0, other.0, sight),
             }
         };
-        if order::is_unclear(&start.ray, one, other)
+        if is_unclear(&start.ray, one, other)
             && let Some(order) = certain()
         {
             return order.then(index.cmp(&rival)) == Ordering::Less;
         }
-        let is_before = order::is_before(&start.ray, start.error, one, other);
+        let is_before = is_before(&start.ray, start.error, one, other);
         let is_before = is_before.map(|is_before| if is_before { Ordering::Less } else { Ordering::Greater });
         let order = is_before.or_else(certain).unwrap_or(Ordering::Equal);
         order.then(index.cmp(&rival)) == Ordering::Less
@@ -220,7 +217,7 @@ impl<W: TraceObserver> ClosestHitSearch<'_, '_, '_, W> {
         for index in &plan.unbounded {
             let object = &self.tracer.model.objects[*index];
             if self.tracer.may_meet(self.group.left(), *index) {
-                self.in_parts(*index, frusta.which(|region| !culling::is_clear_of(object, region)));
+                self.in_parts(*index, frusta.which(|region| !object.shape.is_culled_in(region)));
             }
         }
         let mut parts = take(&mut self.tracer.scratch.parts);

@@ -1,10 +1,9 @@
 //! Direct light: what a scene's lights contribute at the points of a surface.
 
 use super::arrays::{VectorList, resized};
-use super::context::Tracer;
+use super::context::{LightDraws, LightScratch, Tracer};
 use super::light::{self, Colours, LitPoints, Reflectivities};
 use super::ray_group::RayGroup;
-use super::scratch::{LightDraws, LightScratch};
 use super::shadow_rays::LightPaths;
 use super::surface::Surface;
 use crate::geometry::aabb::{self, Aabb};

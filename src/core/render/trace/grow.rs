@@ -1,16 +1,16 @@
 //! How the [trees](super::tree) of a packet of primary rays grow, round by round.
 
 use super::arrays::VectorList;
-use super::context::Tracer;
+use super::context::{ShadingScratch, Tracer};
 use super::ray_group::RayGroup;
 use super::refract;
 use super::round::TreeScratch;
-use super::scratch::ShadingScratch;
 use super::tree::{Budget, End, Ends, OpenRay, Tree};
 use crate::geometry::ray::Side;
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::render::limits::MAX_RAYS;
 use crate::render::observer::{Count, Event, RayKind, RayPurpose, TraceObserver};
+use crate::render::plan::depth::Depth;
 use crate::world::interface::Crossing;
 use crate::world::material::Rgb;
 use crate::world::rules;
@@ -25,8 +25,7 @@ const HEAVY: f64 = 1.0 / 16.0;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Computes the colours that primary rays return by the free rules.
-    pub(super) fn grow(&mut self, group: &mut RayGroup, colours: &mut VectorList) {
-        let Some(depth) = &self.plan.depth else { return self.trace(group, colours) };
+    pub(super) fn grow(&mut self, depth: &Depth, group: &mut RayGroup, colours: &mut VectorList) {
         let (len, ends) = (group.len, Ends::of(&self.plan.camera));
         let mut scratch = self.scratch.trees.take().unwrap_or_default();
         // A budget that differs from the usual one was set for this ray.

@@ -7,36 +7,30 @@
 
 mod adaptive;
 mod arrays;
+mod budget;
 mod certain;
-mod charge;
 mod closest_hit;
 mod context;
 mod direct_light;
 mod emitted;
 mod estimate;
+mod exact;
 mod grow;
-mod hit_record;
 mod light;
-mod missing;
 mod occlusion;
-mod one_ray;
-mod order;
 mod ray_group;
 mod refract;
 mod round;
 mod sampled;
-mod scratch;
 mod shade;
 mod shadow_rays;
 mod surface;
 mod trail;
 mod transmittance;
 mod tree;
-mod undecided;
 
-pub use context::Tracer;
-pub use one_ray::primary_distance;
-pub use scratch::Scratch;
+pub use context::{Scratch, Tracer};
+pub use exact::primary_distance;
 
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::geometry::sight::Sight;
@@ -50,11 +44,10 @@ use crate::world::material::Rgb;
 use crate::world::rules::Rules;
 use crate::world::sample::{self, Sample};
 use arrays::VectorList;
+use context::PrimaryScratch;
 use direct_light::RIM_POINTS;
 use glam::DVec2;
-use hit_record::HitRecord;
-use ray_group::RayGroup;
-use scratch::PrimaryScratch;
+use ray_group::{HitRecord, RayGroup};
 
 /// Computes the colour of a pixel, before it is clamped to what an image can show. `x` counts pixels from the left and
 /// `y` from the bottom.
@@ -333,16 +326,20 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.observer.count(Count::Rays(RayKind::Primary, group.len));
         self.viewer = self.plan.camera.reach();
         self.begin_missing(&group.ray_budget[..group.len]);
-        self.scratch.trails.begin(group.len);
+        if self.scratch.trails.is_on {
+            self.scratch.trails.begin(group.len);
+        }
         if W::SEES {
             self.observer.see(Event::Begin(RayPurpose::Primary));
         }
-        match self.plan.camera.rules {
-            Rules::Notes => {
+        let plan = self.plan;
+        match (plan.camera.rules, &plan.depth) {
+            (Rules::Free, Some(depth)) => self.grow(depth, group, colours),
+            (Rules::Free, None) => self.trace(group, colours),
+            (Rules::Notes, _) => {
                 self.trace(group, colours);
                 self.count_far();
             }
-            Rules::Free => self.grow(group, colours),
         }
     }
 }

@@ -2,13 +2,12 @@
 
 use super::arrays::resized;
 use super::context::Tracer;
-use super::one_ray::{RoundedRay, exact};
+use super::exact::{RoundedRay, exact};
 use super::surface::Surface;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::{self, Order, PacketVisitor, Stack};
 use crate::geometry::ray::{RayError, Side};
 use crate::geometry::ray_packet::RayPacket;
-use crate::render::culling;
 use crate::render::observer::{Count, TraceObserver};
 use crate::simd::soa::LANES;
 use std::mem::take;
@@ -88,7 +87,7 @@ impl<W: TraceObserver> Occlusion<'_, '_, '_, W> {
             }
             let object = &self.tracer.model.objects[*index];
             if bounds.is_some_and(|bounds| !bounds.overlaps(&self.region))
-                || culling::is_clear_of(object, &self.region)
+                || object.shape.is_culled_in(&self.region)
             {
                 self.tracer.observer.count(Count::Culled(*index, self.shadow_rays.going));
                 continue;

@@ -1,15 +1,15 @@
-//! Groups of rays that are traced together.
+//! Groups of rays that are traced together, and what they hit.
 
 use super::arrays::{VectorList, gather, resized};
 use super::light::{self, PathWeight};
 use super::surface::{Errors, SecondaryRays, Surface};
 use super::tree::OpenRay;
-use crate::geometry::ray::Side;
-use crate::geometry::ray_packet::{PACKET_SIZE, RayPacket};
+use crate::geometry::ray::{MISS, Side};
+use crate::geometry::ray_packet::{Nearest, PACKET_SIZE, RayPacket};
 use crate::geometry::sight::Sight;
 use crate::render::limits::MAX_RAYS;
 use crate::render::plan::depth::{Branch, Depth};
-use crate::simd::cpu::Cpu;
+use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::LANES;
 use crate::world::film::Film;
 use glam::DVec3;
@@ -41,7 +41,7 @@ pub(super) struct RayGroup {
     pub sight: Option<Sight>,
     /// Whether these are the current primary rays, each through its position in [`Scratch::places`].
     ///
-    /// [`Scratch::places`]: super::scratch::Scratch::places
+    /// [`Scratch::places`]: super::context::Scratch::places
     pub looks: bool,
     /// What the rays can add to a pixel; `None` where no ray continues, or where that has no bound.
     pub path_weight: Option<PathWeight>,
@@ -340,5 +340,61 @@ impl HitGroups {
             }
         }
         Some((id, &self.lanes[..count]))
+    }
+}
+
+/// The object that each ray of a packet hits first, and a bracket of the distance.
+#[derive(Default)]
+pub(super) struct HitRecord {
+    /// The lower bounds of the distances, in world units.
+    pub near: Vec<f64>,
+    /// The upper bounds of the distances, in world units.
+    pub far: Vec<f64>,
+    /// The object's index plus 1; 0 for no object.
+    pub met: Vec<u64>,
+    /// Not 0 where the last tested object's bracket overlaps that of another one.
+    pub doubt: Vec<u64>,
+}
+
+impl HitRecord {
+    /// Starts with no hits before `t_max`, and charges each ray to its budget. Rays whose budget is used up end at 0.
+    /// Returns whether there are any such rays.
+    pub fn begin(&mut self, cpu: Cpu, ray_budget: &mut [u32], count: usize, t_max: Option<&[f64]>) -> bool {
+        let (near, far) = (resized(&mut self.near, count), resized(&mut self.far, count));
+        // Each shape that is tested overwrites `doubt`.
+        resized(&mut self.doubt, count);
+        begin(cpu, &mut ray_budget[..count], t_max, near, far, resized(&mut self.met, count))
+    }
+
+    /// Borrows the hits of some of the rays.
+    pub fn part(&mut self, range: Range<usize>) -> Nearest<'_> {
+        Nearest {
+            near: &mut self.near[range.clone()],
+            far: &mut self.far[range.clone()],
+            met: &mut self.met[range.clone()],
+            doubt: &mut self.doubt[range],
+        }
+    }
+}
+
+kernels! {
+    /// Starts rays with no hits and charges each to its budget. Returns whether the budget of any is used up.
+    fn begin(
+        ray_budget: &mut [u32], t_max: Option<&[f64]>, near: &mut [f64], far: &mut [f64], met: &mut [u64]
+    ) -> bool {
+        let (count, mut any_over) = (ray_budget.len(), 0);
+        let (near, far, met) = (&mut near[..count], &mut far[..count], &mut met[..count]);
+        match t_max {
+            Some(t_max) => far.copy_from_slice(&t_max[..count]),
+            None => far.fill(MISS),
+        }
+        for lane in 0..count {
+            let is_over = ray_budget[lane] == 0;
+            let end = if is_over { 0.0 } else { far[lane] };
+            (near[lane], far[lane], met[lane]) = (end, end, 0);
+            ray_budget[lane] -= u32::from(!is_over);
+            any_over |= u32::from(is_over);
+        }
+        any_over != 0
     }
 }

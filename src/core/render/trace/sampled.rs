@@ -5,8 +5,7 @@
 //! sample; where the number of samples depends on the pixel, it takes only the first number. What a sample may cost
 //! depends on those before it, which are traced first.
 
-use super::context::Tracer;
-use super::scratch::{PrimaryScratch, Scratch};
+use super::context::{PrimaryScratch, Scratch, Tracer};
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::render::limits::MAX_RAYS;
 use crate::render::observer::TraceObserver;

@@ -2,18 +2,17 @@
 
 use super::arrays::{VectorList, compact, gather, resized};
 use super::closest_hit;
-use super::context::Tracer;
+use super::context::{HitScratch, ShadingScratch, Tracer};
 use super::light;
 use super::ray_group::RayGroup;
 use super::refract;
-use super::scratch::{HitScratch, ShadingScratch};
 use super::surface::Errors;
 use crate::geometry::ray::Side;
+use crate::geometry::ray_packet::SurfaceInteraction;
 use crate::render::observer::{Count, DropReason, Event, Hit, RayKind, RayPurpose, TraceObserver};
 use crate::render::plan::depth::{Branch, STEPS, step};
 use crate::scene::model::Object;
 use crate::world::background::Background;
-use crate::world::interaction::SurfaceInteraction;
 use crate::world::interface::Interface;
 use crate::world::material::Rgb;
 use crate::world::packets::shader::SurfacePoints;

@@ -1,10 +1,9 @@
 //! Shadow rays in a scene without glass: from which points of a surface a light is occluded.
 
 use super::arrays::{VectorList, gather, resized};
-use super::context::Tracer;
+use super::context::{ShadowScratch, Tracer};
 use super::occlusion::ShadowRays;
 use super::ray_group::RayGroup;
-use super::scratch::ShadowScratch;
 use super::surface::Surface;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray_packet::RayPacket;

@@ -26,12 +26,10 @@ impl PathHashes {
     /// Starts the trails of new primary rays.
     #[inline]
     pub fn begin(&mut self, len: usize) {
-        if self.is_on {
-            self.marks.clear();
-            self.marks.resize(len, 0);
-            self.distances.clear();
-            self.distances.resize(len, f64::INFINITY);
-        }
+        self.marks.clear();
+        self.marks.resize(len, 0);
+        self.distances.clear();
+        self.distances.resize(len, f64::INFINITY);
     }
 
     /// Records that descendants of the primary rays in these lanes hit the object of this index; the tiles or texels at

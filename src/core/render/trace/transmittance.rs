@@ -1,9 +1,8 @@
 //! How much of a light passes through glass.
 
 use super::arrays::{VectorList, compact, gather, resized};
-use super::context::Tracer;
+use super::context::{Tracer, Transmittance};
 use super::ray_group::RayGroup;
-use super::scratch::Transmittance;
 use super::shadow_rays::LightPaths;
 use super::surface::Surface;
 use crate::geometry::ray::{Ray, Side};

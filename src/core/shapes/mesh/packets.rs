@@ -5,14 +5,13 @@ use super::memo::Memo;
 use super::search::Aims;
 use super::shape::{ByFaces, Mesh};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
-use crate::geometry::ray_packet::{self, PACKET_SIZE, RayPacket};
+use crate::geometry::ray_packet::{self, PACKET_SIZE, RayPacket, SurfaceInteraction, turned};
 use crate::shapes::triangle::{crossings, unit_normals};
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::{LANES, Vectors};
 use crate::world::accuracy::Bounded;
-use crate::world::interaction::{SurfaceInteraction, turned};
+use crate::world::hittable::{ByPackets, Shape};
 use crate::world::packets::shape::PacketIntersect;
-use crate::world::shape::{ByPackets, Shape};
 
 impl<A: Bounded> PacketIntersect for Shape<Mesh<A>, ByPackets, ByFaces> {
     fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {

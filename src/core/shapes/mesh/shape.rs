@@ -17,10 +17,8 @@ use crate::world::certify::{
     ProofMethods,
 };
 use crate::world::coincidence::{CLOSE, ROUNDING};
-use crate::world::facts::{Facts, Sides};
-use crate::world::hittable::Hittable;
+use crate::world::hittable::{ByPackets, Facts, Hittable, Shape, Sides};
 use crate::world::packets::shape::HitQueries;
-use crate::world::shape::{ByPackets, Shape};
 use glam::{DMat3, DVec2, DVec3};
 use std::marker::PhantomData;
 use std::sync::Arc;

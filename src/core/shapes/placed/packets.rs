@@ -5,13 +5,11 @@ use super::object_space::{ObjectSpaceRays, take_out, to_world};
 use super::shape::{ByPlacement, Placed, entered};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
-use crate::geometry::ray_packet::{RayPacket, split};
+use crate::geometry::ray_packet::{RayPacket, SurfaceInteraction, split};
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::LANES;
-use crate::world::hittable::Hittable;
-use crate::world::interaction::SurfaceInteraction;
+use crate::world::hittable::{ByPackets, Hittable, Shape};
 use crate::world::packets::shape::{self, PacketIntersect};
-use crate::world::shape::{ByPackets, Shape};
 
 /// The number of rays that are taken to an object's own coordinates together, where there are more than [`LANES`].
 const PART: usize = 64;

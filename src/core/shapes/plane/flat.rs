@@ -4,9 +4,8 @@ use super::surface::Plane;
 use crate::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
 use crate::geometry::ray_packet::RayPacket;
 use crate::world::accuracy::{Accuracy, AccuracyTag, Bounded};
-use crate::world::hittable::Bracketed;
+use crate::world::hittable::{Bracketed, Shape};
 use crate::world::packets::shape::ScalarIntersect;
-use crate::world::shape::Shape;
 
 /// A bracketed shape that is all or a part of a plane.
 pub trait Flat: Bracketed {

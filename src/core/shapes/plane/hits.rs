@@ -4,8 +4,7 @@ use super::{Flat, Plane};
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
 use crate::world::accuracy::{AccuracyTag, Bounded};
-use crate::world::facts::{Facts, Sides};
-use crate::world::hittable::{Bracketed, Certified, Hittable};
+use crate::world::hittable::{Bracketed, Certified, Facts, Hittable, Sides};
 use glam::DVec3;
 use tabray_exact::double_double::DoubleDouble;
 

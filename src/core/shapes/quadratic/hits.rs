@@ -4,8 +4,7 @@ use super::Quadric;
 use crate::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
 use crate::world::accuracy::{AccuracyTag, Bounded};
 use crate::world::certify::Equation;
-use crate::world::facts::{Facts, Sides};
-use crate::world::hittable::{Bracketed, Certified, Hittable};
+use crate::world::hittable::{Bracketed, Certified, Facts, Hittable, Sides};
 use glam::DVec3;
 use tabray_exact::scalar::Scalar;
 

@@ -3,10 +3,9 @@
 use super::surface::Revolution;
 use crate::geometry::frame::Frame;
 use crate::geometry::ray::Side;
-use crate::geometry::ray_packet::RayPacket;
+use crate::geometry::ray_packet::{RayPacket, turned};
 use crate::simd::cpu::kernels;
 use crate::simd::soa::{LANES, Vectors};
-use crate::world::interaction;
 use glam::DVec3;
 use tabray_exact::dual::Dual;
 use tabray_exact::interval::Interval;
@@ -108,10 +107,10 @@ kernels! {
                 }
             }
             for lane in 0..LANES {
-                let turned;
-                (sides[lane], cosines[lane], turned) =
-                    interaction::turned(rays.dir.get(lane), normal.get(lane), true);
-                normals.set(lane, turned);
+                let facing;
+                (sides[lane], cosines[lane], facing) =
+                    turned(rays.dir.get(lane), normal.get(lane), true);
+                normals.set(lane, facing);
             }
         }
     }

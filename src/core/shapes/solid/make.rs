@@ -9,8 +9,8 @@ use crate::scene::list::List;
 use crate::scene::pparm::Pparm;
 use crate::shapes::placed::Placed;
 use crate::world::body::{Body, NamedBody, Part, Solid};
+use crate::world::hittable::{ByPackets, Shape};
 use crate::world::material::Material;
-use crate::world::shape::{ByPackets, Shape};
 use crate::world::solid::{Operation, Tree, common};
 use std::sync::Arc;
 

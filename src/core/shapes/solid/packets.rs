@@ -2,12 +2,10 @@
 
 use super::solid_part::{ByParts, SolidPart};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
-use crate::geometry::ray_packet::{Nearest, PACKET_SIZE, RayPacket};
+use crate::geometry::ray_packet::{Nearest, PACKET_SIZE, RayPacket, SurfaceInteraction};
 use crate::simd::cpu::Cpu;
-use crate::world::hittable::Hittable;
-use crate::world::interaction::SurfaceInteraction;
+use crate::world::hittable::{ByPackets, Hittable, Shape};
 use crate::world::packets::shape::{self, PacketIntersect};
-use crate::world::shape::{ByPackets, Shape};
 
 impl SolidPart {
     /// Calls a function with rays that leave the solid as rays that leave the part.

@@ -7,10 +7,8 @@ use crate::world::any_shape::AnyShape;
 use crate::world::body::Part;
 use crate::world::certify::{Enclosure, HitProofs, Precision, Premise, ProofMethods};
 use crate::world::coincidence::{self, CLOSE, LEAST_COSINE, ROUNDING};
-use crate::world::facts::Facts;
-use crate::world::hittable::Hittable;
+use crate::world::hittable::{ByPackets, Facts, Hittable, Shape};
 use crate::world::packets::shape::{HitQueries, by_distance};
-use crate::world::shape::{ByPackets, Shape};
 use crate::world::solid::Tree;
 use f256::f256;
 use glam::{DVec2, DVec3};
@@ -59,7 +57,8 @@ impl SolidPart {
         let (parts, around) = (parts.clone(), around.clone());
         let own = parts[index].body.shape.facts();
         let can_hit_itself = if is_outer { own.can_hit_itself.opposite() } else { own.can_hit_itself };
-        let facts = Facts { bounds, can_hit_itself, is_two_sided: true, plane: None, ends_as_planes: false, ..own };
+        let facts =
+            Facts { bounds, can_hit_itself, is_two_sided: true, plane: None, ends_as_planes: false, ..own };
         Self { parts, around, index, is_outer, tree, path, facts }
     }
 
@@ -158,8 +157,10 @@ impl SolidPart {
     fn is_within(&self, ray: &Ray, distance: f64, size: f64) -> bool {
         let before = ray.at(distance - SHORTLY * size);
         // What lies far from this surface is not in its tree.
-        let is_near =
-            self.facts.bounds.is_none_or(|Aabb { low, high }| low.cmple(before).all() && before.cmple(high).all());
+        let is_near = self
+            .facts
+            .bounds
+            .is_none_or(|Aabb { low, high }| low.cmple(before).all() && before.cmple(high).all());
         is_near
             && distance > 2.0 * SHORTLY * size
             && self.tree.holds(&mut |part| self.holds(part, before, ROUNDING * size)) == Some(true)
@@ -205,7 +206,12 @@ impl SolidPart {
             is_certain &= sure.is_some();
             let is_on_solid = sure.unwrap_or_else(|| {
                 let normal = shape.normal(at);
-                self.is_on_solid_by_sides(ray, at, normal, coincidence::error(ray, distance, normal, max_coordinate))
+                self.is_on_solid_by_sides(
+                    ray,
+                    at,
+                    normal,
+                    coincidence::error(ray, distance, normal, max_coordinate),
+                )
             });
             if is_on_solid {
                 return (range.keep(distance), is_certain);
@@ -309,11 +315,10 @@ impl Hittable for SolidPart {
 
 impl HitQueries for Shape<SolidPart, ByPackets, ByParts> {
     fn touches(&self, at: DVec3, error: f64) -> bool {
-        let is_near = self
-            .shape
-            .facts
-            .bounds
-            .is_none_or(|Aabb { low, high }| (low - error).cmple(at).all() && at.cmple(high + error).all());
+        let is_near =
+            self.shape.facts.bounds.is_none_or(|Aabb { low, high }| {
+                (low - error).cmple(at).all() && at.cmple(high + error).all()
+            });
         is_near && self.shape.own().touches(at, error)
     }
 

@@ -1,6 +1,5 @@
 //! The packet versions of the traits of shapes, shaders and lights. Plugins do not use them.
 
-pub mod camera;
 pub mod light;
 mod proofs;
 pub mod shader;

@@ -5,8 +5,9 @@ use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::geometry::sight::Sight;
 use crate::world::certify::{self, Assumption, Enclosure, Equation, Precision, Premise, ProofMethods};
 use crate::world::coincidence::ROUNDING;
-use crate::world::hittable::{Certified, Hittable, Searched};
-use crate::world::shape::{ByEquation, ByFormula, ByRoots, Shape, Unproven};
+use crate::world::hittable::{
+    ByEquation, ByFormula, ByRoots, Certified, Hittable, Searched, Shape, Unproven,
+};
 use glam::DVec3;
 use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::roots::Method;

@@ -8,15 +8,12 @@ pub use super::proofs::HitQueries;
 
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
 use crate::geometry::ray_packet::{
-    self, Brackets, Nearest, PACKET_SIZE, RayPacket, mark_occluded, merge_nearest,
+    self, Brackets, Nearest, PACKET_SIZE, RayPacket, SurfaceInteraction, mark_occluded, merge_nearest, turned,
 };
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::LANES;
 use crate::world::coincidence::close;
-use crate::world::facts::{Facts, Sides};
-use crate::world::hittable::{Bracketed, Hittable};
-use crate::world::interaction::{SurfaceInteraction, turned};
-use crate::world::shape::{ByBracket, ByDistance, ByEquation, ByFormula, ByRoots, Shape, Unproven};
+use crate::world::hittable::{Bracketed, ByBracket, ByDistance, Facts, Hittable, Shape, Sides, TieBreaking};
 
 /// A shape of any type, with its interfaces for packets and proofs.
 pub trait PacketShape: PacketIntersect + HitQueries {
@@ -221,19 +218,6 @@ pub fn by_distance(
         return Bracket { near: distance - close, far: distance + close };
     }
     Bracket::exactly(distance)
-}
-
-/// Whether the order of hits at nearly equal distances is refined.
-pub trait TieBreaking {
-    /// Whether distances are taken as they are, without refinement.
-    const IS_PLAIN: bool = false;
-}
-
-impl TieBreaking for Unproven {}
-impl TieBreaking for ByEquation {}
-impl TieBreaking for ByRoots {}
-impl TieBreaking for ByFormula {
-    const IS_PLAIN: bool = true;
 }
 
 /// Tests packets one ray after the other, in loops that the compiler vectorizes.

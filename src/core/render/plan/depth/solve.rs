@@ -5,7 +5,6 @@ use super::sides::{SIDES, Sides, above, gain};
 use super::surface::Surface;
 use crate::geometry::aabb::SLACK;
 use crate::geometry::ray::Side;
-use crate::render::culling;
 use crate::render::limits::MAX_DIST;
 use crate::scene::model::{Model, Object};
 use crate::world::rules::Rules;
@@ -205,7 +204,7 @@ fn can_hit_itself(object: &Object, side: Side) -> bool {
 fn lies(of: &Object, object: &Object, farthest: f64) -> Sides<bool> {
     let Some([point, normal]) = of.shape.facts().plane else { return [true; 2] };
     let size = |at: DVec3| at.abs().max_element();
-    let (middle, reach) = match (culling::bounds(object), object.shape.facts().plane) {
+    let (middle, reach) = match (object.shape.culling_bounds(), object.shape.facts().plane) {
         (Some(bounds), _) => (bounds.middle(), bounds.half_size()),
         (None, Some([other, its_normal])) if its_normal == normal || its_normal == -normal => {
             (other, DVec3::ZERO)

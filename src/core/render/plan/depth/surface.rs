@@ -3,7 +3,6 @@
 use super::branch::{Branch, ContinuationBounds, FAINT, REFLECTED};
 use super::sides::{Sides, above, gain};
 use crate::geometry::aabb;
-use crate::render::culling;
 use crate::scene::model::{Model, Object};
 use crate::world::material::{Look, Rgb};
 use crate::world::rules::Rules;
@@ -183,6 +182,6 @@ fn own(model: &Model, object: &Object, look: &Look, of: Part, any_light_comes: b
 /// Returns a lower bound on the distance from a point to an object, in world units.
 pub(crate) fn clearance(object: &Object, from: DVec3) -> f64 {
     let by_bounds =
-        || aabb::clearance(from, culling::bounds(object), |region| culling::is_clear_of(object, region));
+        || aabb::clearance(from, object.shape.culling_bounds(), |region| object.shape.is_culled_in(region));
     object.shape.clearance(from).unwrap_or_else(by_bounds)
 }

@@ -1,14 +1,16 @@
-//! Bounds on the light that is missing where a pixel's ray budget is used up, and what is missing beyond the longest path.
+//! Ray budgets: what searches cost beyond plain rays, bounds on the light that is missing where a budget is used up, and
+//! what is missing beyond the longest path.
 
 use super::arrays::resized;
 use super::context::Tracer;
-use super::hit_record::HitRecord;
 use super::light;
-use super::ray_group::RayGroup;
+use super::ray_group::{HitRecord, RayGroup};
 use super::surface::Surface;
-use crate::geometry::ray_packet::PACKET_SIZE;
-use crate::render::limits::{KEPT_DEPTH, KEPT_PART};
+use crate::geometry::ray::Side;
+use crate::geometry::ray_packet::{PACKET_SIZE, RayPacket};
+use crate::render::limits::{KEPT_DEPTH, KEPT_PART, MAX_RAYS};
 use crate::render::observer::{Count, RayKind, TraceObserver};
+use crate::render::plan::CostlyObjects;
 use crate::render::plan::depth::Branch;
 use crate::world::material::Rgb;
 use crate::world::rules;
@@ -117,5 +119,38 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         // A NaN bounds nothing.
         *missing = if more >= 0.0 { *missing + more } else { f64::INFINITY };
         self.scratch.any_missing = true;
+    }
+}
+
+/// The number of rays of a pixel from which on searches are charged where a scene has one costly shape, as searches are
+/// made again to be counted. Of several shapes, each has its share, since a ray may be searched for in all of them.
+const UNCOUNTED: u32 = 16;
+
+impl<W: TraceObserver> Tracer<'_, '_, W> {
+    /// Charges some of a packet's rays for the searches in shapes where these may take as long as many plain rays.
+    ///
+    /// All such shapes of the scene count, those too that lie behind a ray's hit or are not needed for the image, so
+    /// that the charge depends on the ray alone.
+    pub(super) fn charge_searches(
+        &mut self,
+        rays: RayPacket,
+        left: Option<(usize, &[Side])>,
+        lanes: impl Iterator<Item = usize>,
+        ray_budget: &mut [u32],
+    ) {
+        let Some(CostlyObjects { tree, count }) = &self.plan.costly else { return };
+        let counted = 0..=MAX_RAYS as u32 - UNCOUNTED / count;
+        for lane in lanes {
+            let budget = &mut ray_budget[lane];
+            if *budget == 0 || !counted.contains(budget) {
+                continue;
+            }
+            let ray = rays.get(lane);
+            tree.closest(self.cpu, &mut self.scratch.stack, &ray, f64::INFINITY, |index, t_max| {
+                let side = left.filter(|(object, _)| *object == index).map(|(_, sides)| sides[lane]);
+                *budget = budget.saturating_sub(self.model.objects[index].shape.search_cost(&ray, side));
+                if *budget == 0 { -1.0 } else { t_max }
+            });
+        }
     }
 }
