@@ -45,7 +45,7 @@ impl Implicit for Cylinder {
         if self.is_open { wall } else { wall.max(y * (y - N::constant(self.height))) }
     }
 
-    fn kept<N: Scalar>(&self, [_, y, _]: [N; 3]) -> N {
+    fn inside_trim<N: Scalar>(&self, [_, y, _]: [N; 3]) -> N {
         if self.is_open { y.min(N::constant(self.height) - y) } else { N::constant(1.0) }
     }
 

@@ -30,7 +30,7 @@ impl Implicit for Disc {
         y
     }
 
-    fn kept<N: Scalar>(&self, [x, _, z]: [N; 3]) -> N {
+    fn inside_trim<N: Scalar>(&self, [x, _, z]: [N; 3]) -> N {
         N::constant(self.radius).powi(2) - x.powi(2) - z.powi(2)
     }
 

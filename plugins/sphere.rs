@@ -121,8 +121,8 @@ impl<A: Bounded> Bracketed for Sphere<A> {
 }
 
 impl<A: Bounded> Certified for Sphere<A> {
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        sphere::touches(at - self.center, self.radius, error)
+    fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
+        sphere::is_on_surface(at - self.center, self.radius, error)
     }
 }
 

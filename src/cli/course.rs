@@ -161,11 +161,11 @@ fn of_course(model: &Model) -> Vec<Difference> {
             }),
         ],
     );
-    let film = &model.camera.value;
-    if objects.len() * film.pixels[0] * film.pixels[1] <= MOST_RAYS {
+    let sensor = &model.camera.value;
+    if objects.len() * sensor.pixels[0] * sensor.pixels[1] <= MOST_RAYS {
         let reason =
             "rays exactly through an edge or between two texels, which the course's program rounds otherwise";
-        all.extend(differences(objects.iter(), &[(reason, &|object| edges::are_met(film, object))]));
+        all.extend(differences(objects.iter(), &[(reason, &|object| edges::are_met(sensor, object))]));
     }
     all
 }

@@ -100,7 +100,7 @@ pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
         let (scene, path) = (scene.clone(), target(&args, scene)?);
         let frames = args.frames.of(&path, &mut args.part.part)?;
         let stop = args.stop.watch()?;
-        let Some(frames) = frames else { return one(registry, &args, (&scene, path), &stop) };
+        let Some(frames) = frames else { return render_image(registry, &args, (&scene, path), &stop) };
         if path == Path::new("-") || input::is_standard(&scene) {
             return Err(Failure::Usage(
                 "`--frames` needs a scene in a file, and writes files".to_owned(),
@@ -122,7 +122,7 @@ pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
         for frame in frames {
             stop.exit_on_interrupt()?;
             args.set.values = [&set[..], &frame.sets].concat();
-            one(registry, &args, (&scene, frame.path), &stop)?;
+            render_image(registry, &args, (&scene, frame.path), &stop)?;
         }
         return Ok(());
     }
@@ -137,7 +137,7 @@ pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
     let stop = args.stop.watch()?;
     several::for_each_scene(&args.scenes, |index| {
         stop.exit_on_interrupt()?;
-        one(registry, &args, (&args.scenes[index], targets[index].clone()), &stop)
+        render_image(registry, &args, (&args.scenes[index], targets[index].clone()), &stop)
     })
 }
 
@@ -194,7 +194,7 @@ impl Args {
 }
 
 /// Renders one image of a scene to a path.
-fn one(
+fn render_image(
     registry: &Registry,
     args: &Args,
     (scene, path): (&Path, PathBuf),
@@ -264,21 +264,7 @@ fn one(
             stop,
             stats: args.stats.wants_any().then_some(&stats),
         };
-        let (levels, far) = job.run(output, begun)?;
-        if path != Path::new("-") {
-            let [width, height] = part.size();
-            let seconds = start.elapsed().as_secs_f64();
-            let which = progress::count();
-            messages::note(&format!(
-                "{which}wrote {} ({width} x {height} pixels, {seconds:.2} s)",
-                path.display()
-            ));
-            differences.print();
-            job::tell_of_far(far);
-            if !reader::is_black(&model) {
-                messages::remark(diagnosis::remark(&plan, [&part.columns, &part.rows], &levels));
-            }
-        }
+        render_bytes(&job, (output, begun), &differences, start)?;
     }
     stats.writing = whole.elapsed().saturating_sub(stats.rendering.get());
     args.stats.print(&stats, &model);
@@ -289,6 +275,29 @@ fn one(
     };
     stop.exit_on_interrupt()?;
     aov::write(&plan, exact, threads, format, beside)
+}
+
+/// Renders an image of bytes, and tells what was written since a time, unless that is standard output.
+fn render_bytes(
+    job: &Job,
+    (output, begun): (Output, Option<ResumedImage>),
+    differences: &Differences,
+    start: Instant,
+) -> Result<(), Failure> {
+    let (levels, far) = job.run(output, begun)?;
+    let &Job { plan, part, path, .. } = job;
+    if path == Path::new("-") {
+        return Ok(());
+    }
+    let [width, height] = part.size();
+    let (which, seconds) = (progress::count(), start.elapsed().as_secs_f64());
+    messages::note(&format!("{which}wrote {} ({width} x {height} pixels, {seconds:.2} s)", path.display()));
+    differences.print();
+    job::tell_of_far(far);
+    if !reader::is_black(plan.model) {
+        messages::remark(diagnosis::remark(plan, [&part.columns, &part.rows], &levels));
+    }
+    Ok(())
 }
 
 /// Renders a part of the image into a file of its own.

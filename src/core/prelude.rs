@@ -19,7 +19,6 @@ pub use crate::world::background::Background;
 pub use crate::world::body::{AnyShader, Body, NamedBody, Paint, Warning};
 pub use crate::world::camera::{Camera, Origins, Projected};
 pub use crate::world::emitter::{self, Emitter, Extent, LightSample};
-pub use crate::world::film::AnyCamera;
 pub use crate::world::hittable::{Bracketed, Certified, Facts, Hittable, Shape, Sides};
 pub use crate::world::interface::{AnyInterface, Crossing, Interface};
 pub use crate::world::light::Light;
@@ -28,6 +27,7 @@ pub use crate::world::patch::Patch;
 pub use crate::world::pinhole::Pinhole;
 pub use crate::world::rules::Rules;
 pub use crate::world::sample::Sampler;
+pub use crate::world::sensor::AnyCamera;
 pub use crate::world::shader::{Anchor, LookBounds, PointBounds, Shader, ShaderInputs, SurfacePoint};
 pub use crate::world::texture::Texture;
 

@@ -138,7 +138,7 @@ impl<N: Scalar> Scalar for Dual<N> {
 
     #[inline(always)]
     fn floor(self) -> Self {
-        self.chain(self.value.floor(), self.value.jump())
+        self.chain(self.value.floor(), self.value.d_floor())
     }
 
     #[inline(always)]
@@ -199,19 +199,19 @@ impl<N: Scalar> Scalar for Dual<N> {
 
     #[inline(always)]
     fn step(self) -> Self {
-        self.chain(self.value.step(), self.value.kink())
+        self.chain(self.value.step(), self.value.d_step())
     }
 
     #[inline(always)]
-    fn kink(self) -> Self {
-        let kink = self.value.kink();
-        self.chain(kink, kink)
+    fn d_step(self) -> Self {
+        let slope = self.value.d_step();
+        self.chain(slope, slope)
     }
 
     #[inline(always)]
-    fn jump(self) -> Self {
-        let jump = self.value.jump();
-        self.chain(jump, jump)
+    fn d_floor(self) -> Self {
+        let slope = self.value.d_floor();
+        self.chain(slope, slope)
     }
 
     #[inline(always)]

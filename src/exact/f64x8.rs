@@ -166,12 +166,12 @@ impl Scalar for F64x8 {
     }
 
     #[inline(always)]
-    fn kink(self) -> Self {
+    fn d_step(self) -> Self {
         Self::constant(0.0)
     }
 
     #[inline(always)]
-    fn jump(self) -> Self {
+    fn d_floor(self) -> Self {
         Self::constant(0.0)
     }
 

@@ -174,7 +174,7 @@ impl<N: Scalar> Scalar for Jet<N> {
 
     #[inline(always)]
     fn floor(self) -> Self {
-        self.chain(self.value.floor(), self.dual().jump())
+        self.chain(self.value.floor(), self.dual().d_floor())
     }
 
     #[inline(always)]
@@ -240,19 +240,19 @@ impl<N: Scalar> Scalar for Jet<N> {
 
     #[inline(always)]
     fn step(self) -> Self {
-        self.chain(self.value.step(), self.dual().kink())
+        self.chain(self.value.step(), self.dual().d_step())
     }
 
     #[inline(always)]
-    fn kink(self) -> Self {
-        let kink = self.dual().kink();
-        self.chain(kink.value, kink)
+    fn d_step(self) -> Self {
+        let slope = self.dual().d_step();
+        self.chain(slope.value, slope)
     }
 
     #[inline(always)]
-    fn jump(self) -> Self {
-        let jump = self.dual().jump();
-        self.chain(jump.value, jump)
+    fn d_floor(self) -> Self {
+        let slope = self.dual().d_floor();
+        self.chain(slope.value, slope)
     }
 
     #[inline(always)]
@@ -275,7 +275,7 @@ mod tests {
             x.powi(3) - x.sqrt() * x.exp() + x.ln().sin() / x.tan() + x.cos().abs() + x.pow(n(1.5)),
             x.pow(x) / x.shifted(3.0).powi(-2) - x.powi(2).scaled(0.5).ramp(2) * x.floor(),
             x.min(n(2.0) - x).max(-x.powi(2)) * x.sin() * x.ramp(1),
-            x.step() * x.powi(1) * x + x.powi(0) / (x + x.kink() + x.jump()),
+            x.step() * x.powi(1) * x + x.powi(0) / (x + x.d_step() + x.d_floor()),
             x.spline(&spline, 0) * x.spline(&spline, 1),
             N::about(1.5, 1e-9) * x.powi(2) / N::about(-2.0, 1e-3),
         ]

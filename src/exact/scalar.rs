@@ -111,9 +111,9 @@ pub trait Scalar:
     /// Returns the step function, 1 above 0 and 0 below: the derivative of `max(0, x)`.
     fn step(self) -> Self;
     /// Returns the derivative of [`step`](Self::step): unbounded where the number may be 0, else 0.
-    fn kink(self) -> Self;
+    fn d_step(self) -> Self;
     /// Returns the derivative of [`floor`](Self::floor): unbounded where the number may be an integer, else 0.
-    fn jump(self) -> Self;
+    fn d_floor(self) -> Self;
     /// Returns whether the number is exactly 0, with no other value possible.
     fn is_zero(self) -> bool;
 }
@@ -242,12 +242,12 @@ impl Scalar for f64 {
     }
 
     #[inline(always)]
-    fn kink(self) -> Self {
+    fn d_step(self) -> Self {
         0.0
     }
 
     #[inline(always)]
-    fn jump(self) -> Self {
+    fn d_floor(self) -> Self {
         0.0
     }
 

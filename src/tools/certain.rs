@@ -10,9 +10,9 @@ use tabray_core::render::tiles::{self, TILE, TOGETHER};
 use tabray_core::render::trace::{PixelBound, Scratch, Tracer};
 use tabray_core::scene::model::Model;
 use tabray_core::simd::cpu::Cpu;
-use tabray_core::world::film::Adaptive;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::{SCRAMBLE, Sampler};
+use tabray_core::world::sensor::Adaptive;
 
 /// The number of independent images that the true colours are the mean of, and of the samples per pixel of each.
 const IMAGES: u32 = 8;

@@ -19,7 +19,7 @@ use tabray_core::render::tiles::{Band, Strip, TILE, Tiles};
 use tabray_core::scene::choice::Choice;
 use tabray_core::scene::model::Model;
 use tabray_core::text::{self, Named};
-use tabray_core::world::film::Adaptive;
+use tabray_core::world::sensor::Adaptive;
 use tabray_lang::dump;
 use tabray_lang::syntax::Syntax;
 

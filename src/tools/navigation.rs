@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use tabray_core::scene::attribute::{Attribute, Pose};
 use tabray_core::scene::entity::{Args, Construct};
 use tabray_core::scene::value::Datum;
-use tabray_core::world::film::Film;
+use tabray_core::world::sensor::Sensor;
 
 /// The greatest angle in degrees by which a viewer who goes up or down looks down or up: straight up and down, there would
 /// be no side of the image at which `up` is.
@@ -53,16 +53,16 @@ pub fn camera_pose(camera: &Args) -> CameraPose {
 pub fn moved(camera: &Args, from: &CameraPose, movement: &Movement, pivot: DVec3) -> Option<CameraPose> {
     let is_in_front = |camera: &Args| point(camera, Pose::Position).is_some_and(|at| at.z > 0.0);
     let mut camera = camera.clone();
-    let film = placed(&mut camera, from)?;
+    let sensor = placed(&mut camera, from)?;
     let before = is_in_front(&camera);
-    let after = OrbitCamera::of(&camera, &film, pivot)?.moved(movement);
+    let after = OrbitCamera::of(&camera, &sensor, pivot)?.moved(movement);
     placed(&mut camera, &after)?;
     // Through an image plane that stays, the viewer would look back.
     (!is_window(&camera) || is_in_front(&camera) == before).then_some(after)
 }
 
-/// Returns the film of a camera that is put where it stands then.
-fn placed(camera: &mut Args, pose: &CameraPose) -> Option<Film> {
+/// Returns the sensor of a camera that is put where it stands then.
+fn placed(camera: &mut Args, pose: &CameraPose) -> Option<Sensor> {
     for (attribute, datum, is_given) in camera.values_mut() {
         let Some(values) = pose.get(attribute.name()) else { continue };
         let new = Datum::Numbers(values.clone());
@@ -75,7 +75,7 @@ fn placed(camera: &mut Args, pose: &CameraPose) -> Option<Film> {
         (*datum, *is_given) = (new, true);
     }
     let Construct::Camera(construct) = camera.entity.construct else { return None };
-    Some(camera.film(construct(camera).ok()?, (None, None)))
+    Some(camera.sensor(construct(camera).ok()?, (None, None)))
 }
 
 /// A camera and the point around which it moves, its pivot.
@@ -94,12 +94,12 @@ struct OrbitCamera<'c> {
 }
 
 impl<'c> OrbitCamera<'c> {
-    fn of(camera: &'c Args, film: &Film, pivot: DVec3) -> Option<Self> {
+    fn of(camera: &'c Args, sensor: &Sensor, pivot: DVec3) -> Option<Self> {
         let (position, target) = (point(camera, Pose::Position)?, point(camera, Pose::Target));
         let forward = (target.unwrap_or(pivot) - position).try_normalize()?;
         let depth = (pivot - position).dot(forward).abs();
-        let [x, y] = film.pixels.map(|side| 0.5 * (side as f64 - 1.0));
-        let seen = |right: f64, up: f64| film.ray(x + right, y + up).at(depth);
+        let [x, y] = sensor.pixels.map(|side| 0.5 * (side as f64 - 1.0));
+        let seen = |right: f64, up: f64| sensor.ray(x + right, y + up).at(depth);
         let pixel = [seen(0.5, 0.0) - seen(-0.5, 0.0), seen(0.0, 0.5) - seen(0.0, -0.5)];
         let up = point(camera, Pose::Up).unwrap_or(pixel[1]).try_normalize()?;
         let is_parallel = attributes(camera).any(|(_, pose)| pose == Pose::Extent);
@@ -210,9 +210,9 @@ mod tests {
 
     /// A point that the camera sees, behind its image plane if it has one.
     fn seen(camera: &Args) -> DVec3 {
-        let film = placed(&mut camera.clone(), &camera_pose(camera)).expect("as it was");
-        let [x, y] = film.pixels.map(|side| 0.45 * side as f64);
-        film.ray(x, y).at(if is_window(camera) { 2.0 } else { 0.7 } * reach(camera))
+        let sensor = placed(&mut camera.clone(), &camera_pose(camera)).expect("as it was");
+        let [x, y] = sensor.pixels.map(|side| 0.45 * side as f64);
+        sensor.ray(x, y).at(if is_window(camera) { 2.0 } else { 0.7 } * reach(camera))
     }
 
     /// Where the camera that stands there shows a point; `None` where it does not say.

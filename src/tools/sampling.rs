@@ -13,9 +13,9 @@ use tabray_core::render::trace::{Scratch, Tracer};
 use tabray_core::scene::model::Model;
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::world::display::Display;
-use tabray_core::world::film::Adaptive;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::{SCRAMBLE, Sampler};
+use tabray_core::world::sensor::Adaptive;
 
 /// Numbers of samples per pixel.
 #[derive(Clone, Copy, Debug)]

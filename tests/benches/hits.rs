@@ -83,10 +83,11 @@ fn meet(bencher: Bencher, name: &str) {
     bencher.counter(ItemsCount::new(packets.len() * WIDE)).bench_local(|| {
         for (origin, dir) in &packets {
             let (mut near, mut far) = ([MISS; WIDE], [MISS; WIDE]);
-            let (mut met, mut doubt) = ([0; WIDE], [0; WIDE]);
-            let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
+            let (mut hit_ids, mut doubt) = ([0; WIDE], [0; WIDE]);
+            let nearest =
+                Nearest { near: &mut near, far: &mut far, hit_ids: &mut hit_ids, doubt: &mut doubt };
             shape.closest_hits(cpu, RayPacket::new(origin.view(WIDE), dir.view(WIDE), 0.0), 1, nearest);
-            black_box((&near, &far, &met));
+            black_box((&near, &far, &hit_ids));
         }
     });
 }

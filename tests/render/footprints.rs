@@ -1,7 +1,7 @@
 //! Bounds on the colour of a pixel, from its footprint.
 
 use crate::common::model;
-use tabray::render::footprint::{Proof, Prover};
+use tabray::render::footprint::{PixelProver, Proof};
 use tabray::render::plan::depth::Depth;
 use tabray::scene::model::Model;
 use tabray::world::display::{Display, Tone, Transfer};
@@ -15,7 +15,7 @@ fn display(stops: f64) -> Display {
 
 fn proof(model: &Model, pixel: [usize; 2], error: f64) -> Proof {
     let depth = Depth::new(model);
-    Prover::new(model).pixel((model, depth.as_ref()), &model.camera.value, pixel, error)
+    PixelProver::new(model).pixel((model, depth.as_ref()), &model.camera.value, pixel, error)
 }
 
 /// A pixel is a thousandth of a unit wide on the image plane, and that of the image's middle looks along -z.

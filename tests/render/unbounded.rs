@@ -7,8 +7,8 @@ use tabray::render::trace::{self, Scratch, Tracer};
 use tabray::scene::model::Model;
 use tabray::simd::cpu::Cpu;
 use tabray::tools::threads::renderer_with;
-use tabray::world::film::Adaptive;
 use tabray::world::material::Rgb;
+use tabray::world::sensor::Adaptive;
 
 /// Panes that pass on more light than they receive.
 const SCENE: &str = "camera eye { pixeldim 5 4 worlddim 8 6 viewpoint 4 3 6 samples 5 }

@@ -6,23 +6,23 @@ use tabray::exact::double_double::DoubleDouble;
 use tabray::geometry::{ImagePoint, Ray};
 use tabray::render::{Plan, trace};
 use tabray::tools::threads::renderer_with;
-use tabray::world::Film;
+use tabray::world::Sensor;
 
-fn film(camera: &str) -> Film {
+fn sensor(camera: &str) -> Sensor {
     model(camera).camera.value
 }
 
 /// Returns a ray through a point of the lens.
-fn through(film: &Film, at: [f64; 2], lens: DVec2) -> Ray {
-    film.camera.ray(&ImagePoint { at, pixels: film.pixels }, lens)
+fn through(sensor: &Sensor, at: [f64; 2], lens: DVec2) -> Ray {
+    sensor.camera.ray(&ImagePoint { at, pixels: sensor.pixels }, lens)
 }
 
 #[test]
 fn look_at_shows_what_the_notes_camera_shows() {
-    let notes = film("camera c { pixeldim 161 121 worlddim 8 6 viewpoint 4 3 6 }");
+    let notes = sensor("camera c { pixeldim 161 121 worlddim 8 6 viewpoint 4 3 6 }");
     // 161 pixels, which are 0.05 wide, from a distance of 6.
     let angle = 2.0 * (0.5 * 161.0 * 0.05_f64 / 6.0).atan().to_degrees();
-    let free = film(&format!("look_at c {{ pixeldim 161 121 position 4 3 6 target 4 3 0 angle {angle} }}"));
+    let free = sensor(&format!("look_at c {{ pixeldim 161 121 position 4 3 6 target 4 3 0 angle {angle} }}"));
     for (x, y) in [(0.0, 0.0), (160.0, 0.0), (80.0, 60.0), (17.5, 120.0)] {
         let (one, other) = (notes.ray(x, y), free.ray(x, y));
         assert_eq!(one.origin, other.origin);
@@ -32,12 +32,12 @@ fn look_at_shows_what_the_notes_camera_shows() {
 
 #[test]
 fn look_at_shows_its_target_in_the_middle_and_up_above() {
-    let film = film("look_at c { pixeldim 41 31 position 1 -2 5 target -3 4 -1 up 0.3 1 0.2 angle 60 }");
+    let sensor = sensor("look_at c { pixeldim 41 31 position 1 -2 5 target -3 4 -1 up 0.3 1 0.2 angle 60 }");
     let toward = (DVec3::new(-3.0, 4.0, -1.0) - DVec3::new(1.0, -2.0, 5.0)).normalize();
-    assert!(film.ray(20.0, 15.0).dir.distance(toward) < 1e-15);
-    let (up, above) = (DVec3::new(0.3, 1.0, 0.2), film.ray(20.0, 30.0).dir);
+    assert!(sensor.ray(20.0, 15.0).dir.distance(toward) < 1e-15);
+    let (up, above) = (DVec3::new(0.3, 1.0, 0.2), sensor.ray(20.0, 30.0).dir);
     assert!((above - toward).dot(up) > 0.0 && above.dot(toward.cross(up)).abs() < 1e-14);
-    let [left, right] = [-0.5, 40.5].map(|x| film.ray(x, 15.0).dir);
+    let [left, right] = [-0.5, 40.5].map(|x| sensor.ray(x, 15.0).dir);
     assert!((left.angle_between(right).to_degrees() - 60.0).abs() < 1e-9);
 }
 
@@ -46,9 +46,10 @@ fn up_may_have_any_length() {
     for kind in ["look_at", "fisheye", "orthographic"] {
         let seen = |up: &str| {
             let size = if kind == "orthographic" { "width 7" } else { "" };
-            let film =
-                film(&format!("{kind} c {{ pixeldim 41 31 position 1 -2 5 target -3 4 -1 up {up} {size} }}"));
-            let ray = film.ray(3.0, 4.0);
+            let sensor = sensor(&format!(
+                "{kind} c {{ pixeldim 41 31 position 1 -2 5 target -3 4 -1 up {up} {size} }}"
+            ));
+            let ray = sensor.ray(3.0, 4.0);
             [ray.origin, ray.dir]
         };
         assert_eq!(seen("1e308 1e308 0"), seen("1 1 0"), "{kind}");
@@ -69,12 +70,12 @@ fn rays_are_rounded_no_more_than_those_of_the_notes_camera() {
             let [px, py, pz, tx, ty, tz, ux, uy, uz] =
                 [10.0, 10.0, 10.0, 3.0, 3.0, 3.0, 1.0, 1.0, 1.0].map(&mut random);
             let size = if kind == "look_at" { "angle 90" } else { "width 7" };
-            let film = film(&format!(
+            let sensor = sensor(&format!(
                 "{kind} c {{ pixeldim 64 48 position {px} {py} {pz} target {tx} {ty} {tz} up {ux} {uy} {uz} {size} }}"
             ));
             for _ in 0..20 {
                 let (x, y) = (32.0 + random(32.0), 24.0 + random(24.0));
-                let (ray, line) = (film.ray(x, y), film.sight(x, y).line::<DoubleDouble>());
+                let (ray, line) = (sensor.ray(x, y), sensor.sight(x, y).line::<DoubleDouble>());
                 let [a, b, c] = line.dir;
                 let length = (a * a + b * b + c * c).sqrt();
                 for axis in 0..3 {
@@ -90,21 +91,24 @@ fn rays_are_rounded_no_more_than_those_of_the_notes_camera() {
 
 #[test]
 fn rays_of_an_orthographic_camera_are_parallel_and_as_far_apart_as_its_width() {
-    let film = film("orthographic c { pixeldim 80 60 position 1 2 9 target 4 -3 0 width 4 }");
-    let [left, right] = [-0.5, 79.5].map(|x| film.ray(x, 10.0));
+    let sensor = sensor("orthographic c { pixeldim 80 60 position 1 2 9 target 4 -3 0 width 4 }");
+    let [left, right] = [-0.5, 79.5].map(|x| sensor.ray(x, 10.0));
     assert_eq!(left.dir, right.dir);
     assert!((left.origin.distance(right.origin) - 4.0).abs() < 1e-14);
-    let low = film.ray(-0.5, -0.5);
-    assert!((film.ray(-0.5, 59.5).origin.distance(low.origin) - 3.0).abs() < 1e-14, "its pixels are square");
+    let low = sensor.ray(-0.5, -0.5);
+    assert!(
+        (sensor.ray(-0.5, 59.5).origin.distance(low.origin) - 3.0).abs() < 1e-14,
+        "its pixels are square"
+    );
 }
 
 #[test]
 fn the_angle_of_a_fisheye_grows_evenly() {
-    let film = film("fisheye c { pixeldim 101 101 position 0 0 0 target 0 0 -1 angle 270 }");
-    let middle = film.ray(50.0, 50.0).dir;
+    let sensor = sensor("fisheye c { pixeldim 101 101 position 0 0 0 target 0 0 -1 angle 270 }");
+    let middle = sensor.ray(50.0, 50.0).dir;
     for pixels in [10.0, 25.0, 50.5] {
         for (x, y) in [(50.0 + pixels, 50.0), (50.0, 50.0 - pixels)] {
-            let angle = middle.angle_between(film.ray(x, y).dir).to_degrees();
+            let angle = middle.angle_between(sensor.ray(x, y).dir).to_degrees();
             assert!((angle - 135.0 * pixels / 50.5).abs() < 1e-9, "{angle} after {pixels} pixels");
         }
     }
@@ -112,16 +116,16 @@ fn the_angle_of_a_fisheye_grows_evenly() {
 
 #[test]
 fn rays_through_a_lens_meet_in_its_focus_and_nowhere_else() {
-    let film = film("thin_lens c { pixeldim 40 30 position 0 0 5 target 0 0 0 aperture 0.5 focus 8 }");
+    let sensor = sensor("thin_lens c { pixeldim 40 30 position 0 0 5 target 0 0 0 aperture 0.5 focus 8 }");
     let at = [33.0, 4.0];
-    let sharp = through(&film, at, DVec2::ZERO);
+    let sharp = through(&sensor, at, DVec2::ZERO);
     let sharp = sharp.at(8.0 / -sharp.dir.z);
     assert!((sharp.z + 3.0).abs() < 1e-14);
     for lens in [DVec2::new(1.0, 0.0), DVec2::new(-0.6, 0.8), DVec2::new(0.0, -0.3)] {
-        let ray = through(&film, at, lens);
+        let ray = through(&sensor, at, lens);
         assert!((ray.origin - DVec3::new(0.25 * lens.x, 0.25 * lens.y, 5.0)).length() < 1e-15);
         assert!(ray.at(8.0 / -ray.dir.z).distance(sharp) < 1e-14);
-        assert!((ray.at(4.0 / -ray.dir.z) - through(&film, at, DVec2::ZERO).at(4.0)).length() > 1e-3);
+        assert!((ray.at(4.0 / -ray.dir.z) - through(&sensor, at, DVec2::ZERO).at(4.0)).length() > 1e-3);
     }
 }
 
@@ -135,11 +139,11 @@ const BEFORE: &str = "material m { ambient 9 9 9 }
 fn planes_are_on_both_sides_of_z_0_but_for_the_notes_camera() {
     let seen = |camera: &str, at: DVec3| {
         let model = model(&format!("{camera} {BEFORE}"));
-        let film = &model.camera.value;
+        let sensor = &model.camera.value;
         let place = (0..81 * 61).map(|index| [f64::from(index % 81), f64::from(index / 81)]);
-        let angle = |[x, y]: &[f64; 2]| film.ray(*x, *y).dir.angle_between(at - film.ray(*x, *y).origin);
+        let angle = |[x, y]: &[f64; 2]| sensor.ray(*x, *y).dir.angle_between(at - sensor.ray(*x, *y).origin);
         let [x, y] = place.min_by(|one, other| angle(one).total_cmp(&angle(other))).expect("a pixel");
-        trace::first_hit(&Plan::new(&model), &film.sight(x, y)).map(|hit| hit.object.args.name().to_owned())
+        trace::first_hit(&Plan::new(&model), &sensor.sight(x, y)).map(|hit| hit.object.args.name().to_owned())
     };
     let points = [DVec3::new(4.0, 3.0, 2.0), DVec3::new(1.0, 1.0, 2.5), DVec3::new(6.0, 0.0, 1.0)];
     let [notes, free] = [

@@ -212,7 +212,7 @@ impl Bracketed for Ball {
 }
 
 impl Certified for Ball {
-    fn touches(&self, at: DVec3, error: f64) -> bool {
+    fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
         self.flaw != Flaw::Untouched && self.is_near(at, error)
     }
 }
@@ -225,7 +225,7 @@ impl Equation for Ball {
         part(0) + part(1) + part(2) - N::constant(self.radius).powi(2)
     }
 
-    fn kept<N: Scalar>(&self, _at: [N; 3]) -> N {
+    fn inside_trim<N: Scalar>(&self, _at: [N; 3]) -> N {
         N::constant(if self.flaw == Flaw::Proof { -1.0 } else { 1.0 })
     }
 }

@@ -145,14 +145,14 @@ impl PacketIntersect for Counted {
 }
 
 impl HitQueries for Counted {
-    fn touches(&self, at: DVec3, error: f64) -> bool {
+    fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
         count(1);
-        self.packets().touches(at, error)
+        self.packets().is_on_surface(at, error)
     }
 
-    fn holds(&self, at: DVec3, error: f64) -> Option<bool> {
+    fn contains(&self, at: DVec3, error: f64) -> Option<bool> {
         count(1);
-        self.packets().holds(at, error)
+        self.packets().contains(at, error)
     }
 
     fn facet(&self, at: DVec3, error: f64) -> Option<Facet> {

@@ -21,7 +21,7 @@ fn prints(actual: DVec3, decimals: usize, expected: &str) {
 // "Translating from pixel to world coordinates", "An alternative world view", "Computing the direction of a ray"
 
 /// Returns the camera of a scene, with this many pixels.
-fn camera(pixels: &str) -> tabray::world::Film {
+fn camera(pixels: &str) -> tabray::world::Sensor {
     model(&format!("camera c {{ pixeldim {pixels} worlddim 8 6 viewpoint 4 3 6 }}")).camera.value
 }
 

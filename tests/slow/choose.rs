@@ -17,8 +17,8 @@ use tabray::scene::Model;
 use tabray::simd::cpu::Cpu;
 use tabray::tools::threads::renderer_with;
 use tabray::world::Rgb;
-use tabray::world::film::Adaptive;
 use tabray::world::sample::{SCRAMBLE, Sampler};
+use tabray::world::sensor::Adaptive;
 use tempfile::TempDir;
 
 const SIZE: [usize; 2] = [48, 36];

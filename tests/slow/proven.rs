@@ -63,7 +63,7 @@ fn pixels() -> impl Iterator<Item = [usize; 2]> {
 
 /// Counts the pixels whose mean colours are certified.
 fn certified(model: &Model) -> usize {
-    let (prover, depth) = (footprint::Prover::new(model), Depth::new(model));
+    let (prover, depth) = (footprint::PixelProver::new(model), Depth::new(model));
     let camera = &model.camera.value;
     let display = camera.display();
     let proof = |pixel| prover.pixel((model, depth.as_ref()), camera, pixel, ERROR);

@@ -13,8 +13,8 @@ use tabray_core::scene::choice::Choice;
 use tabray_core::text;
 use tabray_core::text::Named;
 use tabray_core::world::accuracy::Accuracy;
-use tabray_core::world::film::{Adaptive, Film};
 use tabray_core::world::rules::Rules;
+use tabray_core::world::sensor::{Adaptive, Sensor};
 
 /// Returns the texts of an image, each with its keyword: the version of the program, the hash of the scene's text, and
 /// the options with which the program makes the same image of the scene. Threads, the level of CPU instructions and
@@ -23,7 +23,7 @@ use tabray_core::world::rules::Rules;
 pub fn texts(
     source: &Source,
     set: &set::Args,
-    camera: (&Film, f64),
+    camera: (&Sensor, f64),
     part: &Part,
 ) -> Vec<(&'static str, String)> {
     vec![
@@ -66,7 +66,7 @@ fn is_whole(path: &Path, texts: &[(&str, String)]) -> io::Result<bool> {
     Ok(true)
 }
 
-fn options((camera, exposure): (&Film, f64), part: &Part) -> String {
+fn options((camera, exposure): (&Sensor, f64), part: &Part) -> String {
     let [width, height] = camera.pixels;
     let mut words = format!("--size {width}x{height}");
     if part.size() != camera.pixels {

@@ -5,8 +5,8 @@ use crate::options::named::by_name;
 use crate::process::failure::Failure;
 use crate::process::messages;
 use tabray_core::world::accuracy::Accuracy;
-use tabray_core::world::film::{Adaptive, Film};
 use tabray_core::world::sample::Sampler;
+use tabray_core::world::sensor::{Adaptive, Sensor};
 
 /// The numbers of samples per pixel that `--max-error` chooses from, where `--samples` does not say.
 const BY_ERROR: [u32; 2] = [4, 4096];
@@ -53,7 +53,7 @@ impl Args {
     }
 
     /// Gives the camera the requested samples.
-    pub fn apply(&self, camera: &mut Film) -> Result<(), Failure> {
+    pub fn apply(&self, camera: &mut Sensor) -> Result<(), Failure> {
         camera.sampler = self.sampler;
         let limits = match (self.samples, self.max_error) {
             (None, None) => return Ok(()),

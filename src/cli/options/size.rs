@@ -6,7 +6,7 @@ use std::ffi::OsString;
 use std::ops::Range;
 use std::path::Path;
 use tabray_core::text;
-use tabray_core::world::film::Film;
+use tabray_core::world::sensor::Sensor;
 
 /// The maximum width and the maximum height in pixels, as for `pixeldim`.
 const MAX_SIDE: usize = 100_000;
@@ -53,7 +53,7 @@ impl Part {
     }
 
     /// Returns the whole image of a camera.
-    pub fn whole(camera: &Film) -> Self {
+    pub fn whole(camera: &Sensor) -> Self {
         let [width, height] = camera.pixels;
         Self { columns: 0..width, rows: 0..height }
     }
@@ -61,7 +61,7 @@ impl Part {
 
 impl Args {
     /// Gives the image the requested size, and returns the requested part of it.
-    pub fn apply(&self, camera: &mut Film) -> Result<Part, Failure> {
+    pub fn apply(&self, camera: &mut Sensor) -> Result<Part, Failure> {
         let [width, height] = camera.pixels;
         if self.quick {
             camera.pixels = camera.pixels.map(|side| (side / 4).max(1));
@@ -121,7 +121,7 @@ impl Args {
 }
 
 /// Returns the part that the user named, if the image contains it.
-fn part(camera: &Film, [x, y, wide, high]: [i64; 4]) -> Result<Part, Failure> {
+fn part(camera: &Sensor, [x, y, wide, high]: [i64; 4]) -> Result<Part, Failure> {
     let [width, height] = camera.pixels;
     let range = |from: i64, count: i64, whole: usize| {
         let (from, count) = (usize::try_from(from).ok()?, usize::try_from(count).ok()?);

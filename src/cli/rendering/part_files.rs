@@ -87,22 +87,7 @@ impl Parts {
                 }),
             ));
         }
-        let mut next = 0;
-        for (number, part) in &found {
-            if part.tiles.start != next {
-                return Err(refuse(
-                    format!("`{}` does not begin where part {} ends", part.path.display(), number - 1),
-                    "render the parts anew with one build of the program",
-                ));
-            }
-            next = part.tiles.end;
-        }
-        if next != label.grid().count() {
-            return Err(refuse(
-                format!("part {of} of `{}` ends before the image does", image.display()),
-                "render the parts anew with one build of the program",
-            ));
-        }
+        refuse_gaps(&found, &label, image)?;
         Ok(Self { label, paths: found.into_values().map(|part| part.path).collect() })
     }
 
@@ -119,6 +104,27 @@ impl Parts {
         };
         same((&other.paths[0], &like(&other.label)), (&self.paths[0], &self.label))
     }
+}
+
+/// Refuses parts, all that there are by their numbers, whose tiles are not those of the image, each once.
+fn refuse_gaps(found: &BTreeMap<usize, PartFile>, label: &Label, image: &Path) -> Result<(), Failure> {
+    let refuse_part = |message| Err(refuse(message, "render the parts anew with one build of the program"));
+    let mut next = 0;
+    for (number, part) in found {
+        if part.tiles.start != next {
+            return refuse_part(format!(
+                "`{}` does not begin where part {} ends",
+                part.path.display(),
+                number - 1
+            ));
+        }
+        next = part.tiles.end;
+    }
+    if next != label.grid().count() {
+        let of = label.part[1];
+        return refuse_part(format!("part {of} of `{}` ends before the image does", image.display()));
+    }
+    Ok(())
 }
 
 /// Names parts by their numbers.

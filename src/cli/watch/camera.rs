@@ -42,9 +42,9 @@ struct MoveRequest {
 /// Returns the point that a pixel shows, in world coordinates; where it shows none, one that is as far away as the camera
 /// looks.
 pub fn point(frame: &Frame, [x, y]: [usize; 2]) -> [f64; 3] {
-    let film = &frame.model.camera.value;
-    let hit = trace::first_hit(&Plan::new(&frame.model), &film.sight(x as f64, y as f64));
-    let far = || film.ray(x as f64, y as f64).at(navigation::reach(&frame.model.camera.args.args()));
+    let sensor = &frame.model.camera.value;
+    let hit = trace::first_hit(&Plan::new(&frame.model), &sensor.sight(x as f64, y as f64));
+    let far = || sensor.ray(x as f64, y as f64).at(navigation::reach(&frame.model.camera.args.args()));
     hit.map_or_else(far, |hit| hit.point).to_array()
 }
 

@@ -10,8 +10,8 @@ use tabray_core::render::bytes::to_byte;
 use tabray_core::render::progressive::Area;
 use tabray_core::scene::choice::Choice;
 use tabray_core::text::json;
-use tabray_core::world::film::Film;
 use tabray_core::world::material::Rgb;
+use tabray_core::world::sensor::Sensor;
 use tabray_tools::diagnosis::Remark;
 
 /// Announces a valid scene, whose image follows in parts.
@@ -55,7 +55,7 @@ struct Display {
 }
 
 impl Display {
-    fn of(camera: &Film) -> Self {
+    fn of(camera: &Sensor) -> Self {
         Self {
             rules: camera.rules.option().name,
             exposure: camera.exposure,

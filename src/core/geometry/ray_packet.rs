@@ -87,13 +87,13 @@ impl<'r> RayPacket<'r> {
 
 /// The closest hits of a packet's rays, as far as they are known. All arrays have one element per ray.
 pub struct Nearest<'n> {
-    /// Lower bounds of the distance of the hit of the object in `met`, in world units.
+    /// Lower bounds of the distance of the hit of the object in `hit_ids`, in world units.
     pub near: &'n mut [f64],
     /// Upper bounds of that distance, equal to `near` where it is known exactly. Both are the end of the search where
     /// nothing is hit.
     pub far: &'n mut [f64],
     /// The object's index plus 1; 0 for no object.
-    pub met: &'n mut [u64],
+    pub hit_ids: &'n mut [u64],
     /// Nonzero where brackets overlap, so that it is not known which of two hits is closer.
     pub doubt: &'n mut [u64],
 }
@@ -104,7 +104,7 @@ impl Nearest<'_> {
         Nearest {
             near: &mut self.near[range.clone()],
             far: &mut self.far[range.clone()],
-            met: &mut self.met[range.clone()],
+            hit_ids: &mut self.hit_ids[range.clone()],
             doubt: &mut self.doubt[range],
         }
     }
@@ -116,7 +116,7 @@ kernels! {
         let count = nearest.near.len().min(near.len());
         let (near, far) = (&near[..count], &far[..count]);
         let known = Known { near, far };
-        merge_nearest(count, &known, id, nearest.near, nearest.far, nearest.met, nearest.doubt)
+        merge_nearest(count, &known, id, nearest.near, nearest.far, nearest.hit_ids, nearest.doubt)
     }
 
     /// Marks the rays that brackets show to be occluded before `t_max`. Returns whether any ray is in doubt.
@@ -158,24 +158,24 @@ pub(crate) fn merge_nearest(
     id: u64,
     near: &mut [f64],
     far: &mut [f64],
-    met: &mut [u64],
+    hit_ids: &mut [u64],
     doubt: &mut [u64],
 ) -> bool {
     let (near, far) = (&mut near[..count], &mut far[..count]);
-    let (met, doubt) = (&mut met[..count], &mut doubt[..count]);
+    let (hit_ids, doubt) = (&mut hit_ids[..count], &mut doubt[..count]);
     let mut any = 0;
     for lane in 0..count {
         let Bracket { near: low, far: high } = brackets.get(lane, far[lane]);
         let is_nearer = high < near[lane];
         // Of two hits at the same distance, the object that is earlier in the scene wins.
-        let is_earlier = (low == far[lane]) & (met[lane] > id);
+        let is_earlier = (low == far[lane]) & (hit_ids[lane] > id);
         let is_farther = (low >= far[lane]) & !is_earlier;
         // A minimum, not a choice between two values: the compiler would turn a choice into masked stores, which are
         // slow without AVX-512.
         let (low, high) = if is_nearer { (low, high) } else { (MISS, MISS) };
         near[lane] = if low < near[lane] { low } else { near[lane] };
         far[lane] = if high < far[lane] { high } else { far[lane] };
-        met[lane] ^= if is_nearer { met[lane] ^ id } else { 0 };
+        hit_ids[lane] ^= if is_nearer { hit_ids[lane] ^ id } else { 0 };
         doubt[lane] = u64::from(!(is_nearer | is_farther));
         any |= doubt[lane];
     }
@@ -211,7 +211,7 @@ pub struct SurfaceInteraction<'l> {
     pub normals: ViewMut<'l>,
     /// The unit normals of the surface itself, flipped likewise; not written unless the shape
     /// is shaded with others.
-    pub unbent: ViewMut<'l>,
+    pub geometric_normals: ViewMut<'l>,
     /// The side that each ray hits.
     pub sides: &'l mut [Side],
     /// The cosines of the angles between the rays and the unflipped normals, from -1 to 1.

@@ -9,9 +9,9 @@ use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::render::trace::{self, PixelBound};
 use crate::world::display::{Display, Tone, Transfer};
-use crate::world::film::Film;
 use crate::world::material::Rgb;
 use crate::world::rules::Rules;
+use crate::world::sensor::Sensor;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::io;
@@ -151,7 +151,7 @@ pub struct Setting {
 
 impl Setting {
     /// Returns that of a camera.
-    pub fn of(camera: &Film) -> Self {
+    pub fn of(camera: &Sensor) -> Self {
         Self {
             size: camera.pixels,
             most: camera.adaptive.map_or(camera.samples, |adaptive| adaptive.most),

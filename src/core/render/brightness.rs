@@ -4,9 +4,9 @@ use crate::render::enclosed::{LightPoints, Scene, SceneBounds, Tracer};
 use crate::render::footprint::{LIMITS, lines};
 use crate::render::plan::depth::{Depth, clearance};
 use crate::scene::model::Model;
-use crate::world::film::Film;
 use crate::world::material::Rgb;
 use crate::world::rules::Rules;
+use crate::world::sensor::Sensor;
 use std::cell::Cell;
 use tabray_exact::affine::Affine;
 
@@ -27,7 +27,7 @@ impl<'m> Brightness<'m> {
     }
 
     /// Bounds any channel of any primary ray, where 1 is white; infinite where there is no bound.
-    pub fn most(&self, camera: &Film) -> f64 {
+    pub fn most(&self, camera: &Sensor) -> f64 {
         let (viewer, rules) = (camera.origins(), camera.rules);
         let hits = self.model.objects.iter().zip(&self.depth.objects).map(|(object, bounds)| {
             let distance = clearance(object, viewer.middle) - viewer.radius;
@@ -45,7 +45,7 @@ impl<'m> Brightness<'m> {
 
     /// Bounds the colours of all primary rays through a square of the image, given by its middle and half its width in
     /// pixels: the least and the greatest of each channel, infinite where there is no bound.
-    pub fn within(&self, camera: &Film, middle: [f64; 2], half: f64) -> [Rgb; 2] {
+    pub fn within(&self, camera: &Sensor, middle: [f64; 2], half: f64) -> [Rgb; 2] {
         let Self { model, depth, lights, bounds } = self;
         let meets_uncertified = Cell::new(false);
         let scene = Scene { model, lights, depth: Some(depth), bounds, meets_uncertified };

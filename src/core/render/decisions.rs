@@ -10,10 +10,10 @@ use crate::scene::model::{Item, Model, Object};
 use crate::scene::store::Record;
 use crate::text::{count, list, short};
 use crate::world::accuracy::Accuracy;
-use crate::world::film::{Adaptive, Film};
 use crate::world::material::{Material, Rgb};
 use crate::world::rules::Rules;
 use crate::world::sample::Sampler;
+use crate::world::sensor::{Adaptive, Sensor};
 use crate::world::texture::Texture;
 use std::collections::HashMap;
 use std::fmt;
@@ -67,8 +67,8 @@ pub fn of(plan: &Plan) -> Vec<Decision> {
     all
 }
 
-fn picture(camera: &Film) -> String {
-    let Film { pixels: [width, height], samples, sampler, .. } = *camera;
+fn picture(camera: &Sensor) -> String {
+    let Sensor { pixels: [width, height], samples, sampler, .. } = *camera;
     let size = format!("{width} x {height} pixels");
     if let Some(Adaptive { most, error }) = camera.adaptive {
         let kind = match sampler {

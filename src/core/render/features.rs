@@ -4,7 +4,7 @@ use crate::geometry::aabb::Aabb;
 use crate::render::tiles::TILE;
 use crate::scene::model::Object;
 use crate::world::camera::Projected;
-use crate::world::film::Film;
+use crate::world::sensor::Sensor;
 use glam::{DVec2, DVec3};
 use std::ops::RangeInclusive;
 use tabray_exact::scalar::per_axis;
@@ -40,7 +40,7 @@ struct SmallObject {
 
 impl Features {
     /// Projects the bounds of objects.
-    pub fn new(camera: &Film, objects: &[Object]) -> Self {
+    pub fn new(camera: &Sensor, objects: &[Object]) -> Self {
         let squares = camera.pixels.map(|side| side.div_ceil(TILE));
         let is_unknown = camera.project(camera.origins().middle) == Projected::Unknown;
         let small =
@@ -92,7 +92,7 @@ impl Features {
 
 impl SmallObject {
     /// Projects bounds; `None` where they are not small, or not in the image.
-    fn of(camera: &Film, bounds: &Aabb) -> Option<Self> {
+    fn of(camera: &Sensor, bounds: &Aabb) -> Option<Self> {
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for corner in 0..8 {
             let part = |axis: usize| {

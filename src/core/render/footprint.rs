@@ -16,8 +16,8 @@ use crate::render::enclosed::{LightPoints, Limits, Scene, SceneBounds, Tracer};
 use crate::render::plan::depth::Depth;
 use crate::scene::model::Model;
 use crate::world::display::Display;
-use crate::world::film::Film;
 use crate::world::material::Rgb;
+use crate::world::sensor::Sensor;
 use std::cell::Cell;
 use tabray_exact::affine::Affine;
 use tabray_exact::double_double::power_of_two;
@@ -111,12 +111,12 @@ impl Footprint {
 }
 
 /// Proves the colours of a model's pixels.
-pub struct Prover {
+pub struct PixelProver {
     bounds: SceneBounds,
     lights: Vec<usize>,
 }
 
-impl Prover {
+impl PixelProver {
     /// Prepares the proofs of a model.
     pub fn new(model: &Model) -> Self {
         Self { bounds: SceneBounds::of(model), lights: (0..model.lights.len()).collect() }
@@ -127,7 +127,7 @@ impl Prover {
     pub fn pixel(
         &self,
         (model, depth): (&Model, Option<&Depth>),
-        camera: &Film,
+        camera: &Sensor,
         [x, y]: [usize; 2],
         error: f64,
     ) -> Proof {
@@ -182,7 +182,7 @@ fn proof(all: &[Footprint], count: usize) -> Proof {
 
 /// Returns the primary rays through a square of the image, given by its middle and half its width in pixels; `None` where
 /// the camera does not say.
-pub(super) fn lines(camera: &Film, middle: [f64; 2], half: f64) -> Option<Line<Affine>> {
+pub(super) fn lines(camera: &Sensor, middle: [f64; 2], half: f64) -> Option<Line<Affine>> {
     let at = [0, 1].map(|side| Affine::variable(side, middle[side], half));
     camera.camera.footprint(ImagePoint { at, pixels: camera.pixels })
 }

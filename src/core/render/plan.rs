@@ -12,9 +12,9 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::Bvh;
 use crate::parallel;
 use crate::render::features::Features;
-use crate::render::footprint::Prover;
+use crate::render::footprint::PixelProver;
 use crate::scene::model::{Model, Object};
-use crate::world::film::{Adaptive, Film};
+use crate::world::sensor::{Adaptive, Sensor};
 
 /// The number of bounded objects from which on a BVH is faster than a list.
 pub(crate) const TREE: usize = 24;
@@ -28,7 +28,7 @@ pub struct Plan<'m> {
     pub model: &'m Model,
     /// The camera, initially the model's own. What may be changed afterwards: a fixed number of samples, the sampler, and,
     /// in a plan for any ray, the size of the image. The plan depends on the rest.
-    pub camera: Film,
+    pub camera: Sensor,
     /// The indices of the objects without bounds.
     pub(crate) unbounded: Vec<usize>,
     /// The indices and bounding boxes of the objects with bounds, unless they are in `tree`.
@@ -40,7 +40,7 @@ pub struct Plan<'m> {
     /// The objects that are small in the image, where the number of a pixel's samples depends on them.
     pub(crate) features: Option<Features>,
     /// What proves the colours of pixels, where that is wanted.
-    pub(crate) prover: Option<Prover>,
+    pub(crate) prover: Option<PixelProver>,
     /// How deep rays are followed; `None` where no object reflects or transmits rays.
     pub depth: Option<Depth>,
     /// The objects whose hits may take long to find, where rays continue.
@@ -107,7 +107,7 @@ impl<'m> Plan<'m> {
         }
         let camera = model.camera.value.clone();
         let features = camera.adaptive.map(|_| Features::new(&camera, objects));
-        let prover = camera.certain.then(|| Prover::new(model));
+        let prover = camera.certain.then(|| PixelProver::new(model));
         let mut unreached = needs.unreached.iter().peekable();
         let mut met = objects.iter().enumerate().filter(|(index, _)| unreached.next_if_eq(&index).is_none());
         let has_glass = met.any(|(_, object)| object.material.transparency != 0.0);

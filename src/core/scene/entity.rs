@@ -13,10 +13,10 @@ use crate::text;
 use crate::world::accuracy::Accuracy;
 use crate::world::background::AnyBackground;
 use crate::world::body::{AnyLight, Body, Paint};
-use crate::world::film::{AnyCamera, Film};
 use crate::world::lamp::Lamp;
 use crate::world::material::Material;
 use crate::world::rules::{Fading, Rules};
+use crate::world::sensor::{AnyCamera, Sensor};
 use crate::world::texture::Texture;
 use std::collections::BTreeMap;
 use std::ops::Deref;
@@ -277,7 +277,7 @@ impl Entity {
 pub struct Setting {
     /// The scene's camera. Only objects and lights are certain to be constructed after it; other entities may see a
     /// default camera.
-    pub camera: Film,
+    pub camera: Sensor,
     /// The folder to which the scene's file names are relative.
     pub folder: PathBuf,
     /// The scene's materials by their names; only objects and lights are certain to see all of them.
@@ -340,9 +340,9 @@ impl Args {
         if self.is_pattern { None } else { self.setting.camera.planes_end_at() }
     }
 
-    /// Returns the film of a camera with this entity's attributes, and with an accuracy and rules of light that override
+    /// Returns the sensor of a camera with this entity's attributes, and with an accuracy and rules of light that override
     /// its own. With the notes' method the rules are the notes', too, unless the scene itself chooses both otherwise.
-    pub fn film(&self, camera: AnyCamera, (accuracy, rules): (Option<Accuracy>, Option<Rules>)) -> Film {
+    pub fn sensor(&self, camera: AnyCamera, (accuracy, rules): (Option<Accuracy>, Option<Rules>)) -> Sensor {
         let is_classic = accuracy == Some(Accuracy::Classic);
         // The notes' command line has a default accuracy of its own.
         let own = || self.get_given(&ACCURACY).unwrap_or(self.accuracy());
@@ -356,7 +356,7 @@ impl Args {
             Rules::Notes => Default::default(),
             Rules::Free => (self.get(&EXPOSURE), self.get(&TONE), self.get(&TRANSFER)),
         };
-        Film {
+        Sensor {
             // The attributes' rules ensure that these casts are lossless.
             samples: self.get(&SAMPLES) as u32,
             accuracy,
@@ -364,7 +364,7 @@ impl Args {
             exposure,
             tone,
             transfer,
-            ..Film::new(camera, self.get(&PIXELDIM).map(|side| side as usize))
+            ..Sensor::new(camera, self.get(&PIXELDIM).map(|side| side as usize))
         }
     }
 

@@ -7,9 +7,9 @@ use crate::scene::value::Type;
 use crate::world::any_shape::AnyShape;
 use crate::world::background::Background;
 use crate::world::body::{AnyShader, NamedBody, Paint};
-use crate::world::film::Film;
 use crate::world::lamp::Lamp;
 use crate::world::material::{Material, Rgb};
+use crate::world::sensor::Sensor;
 use crate::world::shader::SurfacePoint;
 use crate::world::texture::Texture;
 use glam::DVec3;
@@ -20,7 +20,7 @@ use std::sync::Arc;
 /// All that an image depends on.
 pub struct Model {
     /// The viewer and the image plane.
-    pub camera: Item<Film>,
+    pub camera: Item<Sensor>,
     /// The materials, in the order of the scene.
     pub materials: Vec<Item<Arc<Material>>>,
     /// The textures, in the order of the scene.

@@ -49,8 +49,8 @@ impl Hittable for WithMethod {
 impl TieBreaking for OriginalProofs {}
 
 impl HitQueries for Shape<WithMethod, ByDistance, OriginalProofs> {
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        self.shape.shape.touches(at, error)
+    fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
+        self.shape.shape.is_on_surface(at, error)
     }
 
     fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {

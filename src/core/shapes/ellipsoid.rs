@@ -75,12 +75,12 @@ impl<A> Ellipsoid<A> {
     }
 
     /// Tells whether a point that is off by at most an error may lie on the ellipsoid.
-    pub fn touches(&self, at: DVec3, error: f64) -> bool {
+    pub fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
         // To first order, an error moves the distance from the centre of the divided space by at most the error times
         // this distance's gradient.
         let from = (at - self.center) / self.scale;
         let gradient = (from / self.scale).length() / from.length();
-        sphere::touches(from, self.radius, error * gradient)
+        sphere::is_on_surface(from, self.radius, error * gradient)
     }
 }
 

@@ -66,9 +66,9 @@ impl<A: Bounded> Flat for FinitePlane<A> {
 }
 
 impl<A: Bounded> Certified for FinitePlane<A> {
-    fn touches(&self, at: DVec3, error: f64) -> bool {
+    fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
         // A ray that starts on the plane beside the rectangle does not hit the rectangle either.
-        self.plane.touches(at, error)
+        self.plane.is_on_surface(at, error)
     }
 
     fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
@@ -90,7 +90,7 @@ impl<A> Equation for FinitePlane<A> {
         Some([u / Interval::constant(x), v / Interval::constant(y)])
     }
 
-    fn kept<N: Scalar>(&self, at: [N; 3]) -> N {
-        self.plane.kept(at).min(self.inside_of(at))
+    fn inside_trim<N: Scalar>(&self, at: [N; 3]) -> N {
+        self.plane.inside_trim(at).min(self.inside_of(at))
     }
 }

@@ -118,8 +118,8 @@ impl<T: Implicit> Bracketed for ImplicitShape<T> {
         if !ray.is_single() {
             return FormulaOnRay::new(self, ray).within(ray.drift).bracket(range);
         }
-        let touches = || self.touches(ray.origin, range.origin_error);
-        by_distance(ray, range, touches, |range| {
+        let is_on_surface = || self.is_on_surface(ray.origin, range.origin_error);
+        by_distance(ray, range, is_on_surface, |range| {
             let line = FormulaOnRay { by_proof: true, ..FormulaOnRay::new(self, ray) };
             let FirstRoot { root, is_certain } = line.first_hit(range);
             is_certain.then(|| line.distance(root, range))
@@ -167,7 +167,7 @@ impl<T: Implicit> Searched for ImplicitShape<T> {
 }
 
 impl<T: Implicit> Equation for ImplicitShape<T> {
-    fn own<N: Scalar>(&self, line: Line<N>) -> Line<N> {
+    fn to_local<N: Scalar>(&self, line: Line<N>) -> Line<N> {
         self.frame.line(line)
     }
 
@@ -191,12 +191,12 @@ impl<T: Implicit> Equation for ImplicitShape<T> {
         self.formula.uv_bounds(at)
     }
 
-    fn kept<N: Scalar>(&self, at: [N; 3]) -> N {
+    fn inside_trim<N: Scalar>(&self, at: [N; 3]) -> N {
         let inside = |axis: usize| {
             let (low, high) = (N::constant(self.low[axis]), N::constant(self.high[axis]));
             (at[axis] - low).min(high - at[axis])
         };
-        inside(0).min(inside(1)).min(inside(2)).min(self.formula.kept(at))
+        inside(0).min(inside(1)).min(inside(2)).min(self.formula.inside_trim(at))
     }
 
     fn extent(&self) -> [DVec3; 2] {
@@ -261,7 +261,8 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         let Some((low, high, rises)) = taylor::bracket(self, root, width) else { return Bracket::UNKNOWN };
         // The function does not cross 0 from the start to the root, and so has the sign there that it starts with.
         let is_first = if rises { start.high < 0.0 } else { start.low > 0.0 };
-        let is_kept = !T::IS_CUT || self.shape.formula.kept(self.on_line(Interval { low, high })).low >= 0.0;
+        let is_kept =
+            !T::IS_CUT || self.shape.formula.inside_trim(self.on_line(Interval { low, high })).low >= 0.0;
         if is_first && is_kept {
             let near = (self.closest + low - rounding).max(0.0);
             Bracket { near, far: self.closest + high + rounding }
@@ -321,7 +322,7 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
     fn kept(&self, root: f64) -> (bool, bool) {
         let error = 4.0 * f64::EPSILON * root.abs() + self.blur;
         let at = self.on_line(Interval { low: root - error, high: root + error });
-        let kept = self.shape.formula.kept(at);
+        let kept = self.shape.formula.inside_trim(at);
         if kept.low >= 0.0 || kept.high < 0.0 {
             return (kept.low >= 0.0, true);
         }
@@ -330,7 +331,7 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         let start = DoubleDouble::from(root);
         let Dual { value, slope } = value(Dual::variable(start));
         let fine = start - value / slope;
-        let kept = self.shape.formula.kept(exact.along(Dual::<DoubleDouble>::fixed(fine))).value;
+        let kept = self.shape.formula.inside_trim(exact.along(Dual::<DoubleDouble>::fixed(fine))).value;
         (kept.high >= 0.0, false)
     }
 

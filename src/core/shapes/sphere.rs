@@ -170,7 +170,7 @@ pub fn refine<A: AccuracyTag>(line: &SphereLine, radius: f64, origin_side: Optio
 /// sphere's own coordinates, and the rounding error of its distance from the center. That is less than 2 EPSILON of the
 /// length: half an EPSILON for the coordinates, 3/4 for the sum of squares and 1/2 for the root.
 #[inline(always)]
-pub fn touches(from: DVec3, radius: f64, error: f64) -> bool {
+pub fn is_on_surface(from: DVec3, radius: f64, error: f64) -> bool {
     (from.length() - radius).abs() <= error + 4.0 * f64::EPSILON * radius
 }
 

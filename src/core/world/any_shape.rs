@@ -77,13 +77,13 @@ impl AnyShape {
     }
 
     /// Tells whether a point lies on the surface, up to an error in world units.
-    pub fn touches(&self, at: DVec3, error: f64) -> bool {
-        self.shape.touches(at, error)
+    pub fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
+        self.shape.is_on_surface(at, error)
     }
 
     /// Tells whether a point lies in a closed shape; `None` where the surface may be within an error in world units.
-    pub fn holds(&self, at: DVec3, error: f64) -> Option<bool> {
-        self.shape.holds(at, error)
+    pub fn contains(&self, at: DVec3, error: f64) -> Option<bool> {
+        self.shape.contains(at, error)
     }
 
     /// Returns the plane that contains all of a closed shape's surface within an error, in world units, of a point;

@@ -41,29 +41,29 @@ pub(crate) fn close(ray: &Ray, distance: f64) -> f64 {
 pub(crate) const SAME: f64 = 1e-28;
 
 /// Returns a bound on how far the computed point of a hit is from the true one, in world units: the error along the ray
-/// is the error along the normal, divided by the cosine between them. `distance` is in world units; `reach` is
-/// [`Hittable::reach`](crate::world::hittable::Hittable::reach).
+/// is the error along the normal, divided by the cosine between them. `distance` is in world units; `max_coordinate` is
+/// that of the [facts](crate::world::hittable::Facts::max_coordinate).
 #[inline(always)]
-pub fn error(ray: &Ray, distance: f64, normal: DVec3, reach: f64) -> f64 {
+pub fn error(ray: &Ray, distance: f64, normal: DVec3, max_coordinate: f64) -> f64 {
     let origin = ray.origin.abs();
-    let size = larger(larger(origin.x, origin.y), origin.z) + distance + reach;
+    let size = larger(larger(origin.x, origin.y), origin.z) + distance + max_coordinate;
     ROUNDING * size / larger(ray.dir.dot(normal).abs(), LEAST_COSINE)
 }
 
 /// Returns the bound that [`error`] gives for a hit point, or a larger one, in world units, from the cosine of the
-/// angle between the ray and the normal. `travelled` is the length of the whole path from the viewer, and `reach` is
+/// angle between the ray and the normal. `travelled` is the length of the whole path from the viewer, and `max_coordinate` is
 /// that of the shape and of the viewer together: no ray starts farther from the viewer than `travelled`.
 #[inline(always)]
-pub(crate) fn error_after(travelled: f64, reach: f64, cosine: f64) -> f64 {
+pub(crate) fn error_after(travelled: f64, max_coordinate: f64, cosine: f64) -> f64 {
     // A division in single precision takes a third of the time, and its relative error of 2^-24 or so does not matter
     // to a bound that is rounded up from 11 to 16 ulps.
-    ROUNDING * (travelled + reach) * f64::from(1.0 / larger(cosine.abs(), LEAST_COSINE) as f32)
+    ROUNDING * (travelled + max_coordinate) * f64::from(1.0 / larger(cosine.abs(), LEAST_COSINE) as f32)
 }
 
 kernels! {
     /// Returns an upper bound of [`error_after`] over some points. The bound of one point grows with the path length
     /// and shrinks as the cosine grows, and rounding keeps both monotonic.
-    pub(crate) fn most_error(travelled: &[f64], reach: f64, cosines: &[f64]) -> f64 {
+    pub(crate) fn most_error(travelled: &[f64], max_coordinate: f64, cosines: &[f64]) -> f64 {
         let travelled = &travelled[..cosines.len()];
         let (mut max_travelled, mut min_cosine) = (0, i64::MAX);
         for lane in 0..cosines.len() {
@@ -71,16 +71,16 @@ kernels! {
             max_travelled = max_travelled.max(travelled[lane].to_bits() as i64);
             min_cosine = min_cosine.min(larger(cosines[lane].abs(), LEAST_COSINE).to_bits() as i64);
         }
-        error_after(f64::from_bits(max_travelled as u64), reach, f64::from_bits(min_cosine as u64))
+        error_after(f64::from_bits(max_travelled as u64), max_coordinate, f64::from_bits(min_cosine as u64))
     }
 }
 
 /// Tells whether a surface may pass through the box that extends `error` world units from a point along each axis:
-/// [`Certified::touches`](crate::world::hittable::Certified::touches) of a shape that has an equation.
-pub fn touches(shape: &(impl Equation + ?Sized), at: DVec3, error: f64) -> bool {
+/// [`Certified::is_on_surface`](crate::world::hittable::Certified::is_on_surface) of a shape that has an equation.
+pub fn is_on_surface(shape: &(impl Equation + ?Sized), at: DVec3, error: f64) -> bool {
     let origin = at.to_array().map(|place| Interval { low: place - error, high: place + error });
     let point = Line { origin, dir: [Interval::constant(0.0); 3] };
-    shape.value(shape.own(point).origin).has_zero()
+    shape.value(shape.to_local(point).origin).has_zero()
 }
 
 /// Returns the distance of a hit by Newton's method in double-double arithmetic, starting from `near`:
@@ -88,7 +88,7 @@ pub fn touches(shape: &(impl Equation + ?Sized), at: DVec3, error: f64) -> bool 
 /// Returns `None` where the iteration does not converge, as for a grazing ray.
 pub fn distance(shape: &(impl Equation + ?Sized), ray: &Ray, near: f64) -> Option<DoubleDouble> {
     let (mut at, mut last_step) = (DoubleDouble::from(near), f64::INFINITY);
-    let line = shape.own(Sight::along(ray).line::<DoubleDouble>());
+    let line = shape.to_local(Sight::along(ray).line::<DoubleDouble>());
     for _ in 0..4 {
         let Dual { value, slope } = shape.value(line.along(Dual::variable(at)));
         let step = value / slope;
@@ -112,13 +112,13 @@ mod tests {
         #[test]
         fn the_most_error_is_no_less_than_any(
             points in prop::collection::vec((0.0..1e3, prop_oneof![-1.0..1.0, -1e-7..1e-7, Just(0.0), Just(f64::NAN)]), 1..20),
-            reach in 0.0..1e3,
+            max_coordinate in 0.0..1e3,
         ) {
             let (travelled, cosines): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
             for cpu in Cpu::all() {
-                let most = most_error(cpu, &travelled, reach, &cosines);
+                let most = most_error(cpu, &travelled, max_coordinate, &cosines);
                 for (travelled, cosine) in travelled.iter().zip(&cosines) {
-                    prop_assert!(error_after(*travelled, reach, *cosine) <= most, "{} {} {}", travelled, cosine, cpu);
+                    prop_assert!(error_after(*travelled, max_coordinate, *cosine) <= most, "{} {} {}", travelled, cosine, cpu);
                 }
             }
         }

@@ -119,8 +119,8 @@ pub trait Bracketed: Hittable {
 pub trait Certified: Hittable + Equation {
     /// Tells whether a point lies on the surface, up to an error in world units and to the rounding of the shape's own
     /// numbers. Rays that start at such a point leave the shape.
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        coincidence::touches(self, at, error)
+    fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
+        coincidence::is_on_surface(self, at, error)
     }
 
     /// Returns the plane that contains all of a closed shape's surface within an error, in world units, of a point;

@@ -3,8 +3,8 @@
 use crate::files::{self, ImageBytes};
 use crate::text;
 use crate::world::display::Display;
-use crate::world::film::Film;
 use crate::world::material::Rgb;
+use crate::world::sensor::Sensor;
 use crate::world::texels::Texels;
 use bytesize::ByteSize;
 use image::metadata::Orientation;
@@ -119,7 +119,7 @@ impl Texture {
         let (colours, orientation) =
             (decoder.color_type(), decoder.orientation().unwrap_or(Orientation::NoTransforms));
         let pixels = u64::from(width) * u64::from(height);
-        let display = self.display.get_or_init(|| Film::default().display());
+        let display = self.display.get_or_init(|| Sensor::default().display());
         let is_light =
             matches!(colours, ColorType::Rgb32F | ColorType::Rgba32F) && display.truncates().is_none();
         let each = if is_light { 4 } else { 1 };

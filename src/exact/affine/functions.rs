@@ -181,12 +181,12 @@ impl Scalar for Affine {
         self.by_range(Interval::step)
     }
 
-    fn kink(self) -> Self {
-        self.by_range(Interval::kink)
+    fn d_step(self) -> Self {
+        self.by_range(Interval::d_step)
     }
 
-    fn jump(self) -> Self {
-        self.by_range(Interval::jump)
+    fn d_floor(self) -> Self {
+        self.by_range(Interval::d_floor)
     }
 
     fn is_zero(self) -> bool {

@@ -173,11 +173,11 @@ impl Scalar for DoubleDouble {
         if self.is_negative() { Self::ZERO } else { Self::ONE }
     }
 
-    fn kink(self) -> Self {
+    fn d_step(self) -> Self {
         Self::ZERO
     }
 
-    fn jump(self) -> Self {
+    fn d_floor(self) -> Self {
         Self::ZERO
     }
 

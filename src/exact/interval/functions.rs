@@ -258,11 +258,11 @@ impl<F: Float> Scalar for Interval<F> {
     }
 
     #[inline(always)]
-    fn kink(self) -> Self {
+    fn d_step(self) -> Self {
         if self.has_zero() { Self::whole() } else { Self::constant(0.0) }
     }
 
-    fn jump(self) -> Self {
+    fn d_floor(self) -> Self {
         let below = self.low.floor();
         if below == self.high.floor() && self.low > below { Self::constant(0.0) } else { Self::whole() }
     }

@@ -310,12 +310,12 @@ impl<C: Coefficient, const N: usize> Scalar for Polynomial<C, N> {
         self.map(Scalar::step)
     }
 
-    fn kink(self) -> Self {
-        self.map(Scalar::kink)
+    fn d_step(self) -> Self {
+        self.map(Scalar::d_step)
     }
 
-    fn jump(self) -> Self {
-        self.map(Scalar::jump)
+    fn d_floor(self) -> Self {
+        self.map(Scalar::d_floor)
     }
 
     fn is_zero(self) -> bool {

@@ -27,10 +27,10 @@ use tabray_core::scene::value::Datum;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_core::world::background::Background;
 use tabray_core::world::body::{NamedBody, Paint};
-use tabray_core::world::film::Film;
 use tabray_core::world::lamp::Lamp;
 use tabray_core::world::material::Material;
 use tabray_core::world::rules::Rules;
+use tabray_core::world::sensor::Sensor;
 use tabray_core::world::texture::Texture;
 
 /// The entities of a scene: parsed while they are checked, or all of them parsed before.
@@ -117,7 +117,7 @@ pub(super) struct Check<'r, 't> {
     pub(super) store: Store,
     pub(super) places: Places,
     /// What was constructed, with the orders of the entities.
-    pub(super) camera: Option<(usize, Film)>,
+    pub(super) camera: Option<(usize, Sensor)>,
     pub(super) materials: Vec<(usize, Arc<Material>)>,
     pub(super) textures: Vec<(usize, Arc<Texture>)>,
     /// The textures by the paths of their files.
@@ -143,7 +143,7 @@ impl<'r, 't> Check<'r, 't> {
         accuracy: ReadOptions<'_>,
         report: &'r mut Report<'t>,
     ) -> Self {
-        let camera = Film { accuracy: accuracy.by_default, ..Film::default() };
+        let camera = Sensor { accuracy: accuracy.by_default, ..Sensor::default() };
         let memory = accuracy.memory.unwrap_or(u64::MAX);
         let setting = Setting { camera, folder: folder.to_owned(), materials: Arc::default(), memory };
         Self {
@@ -303,7 +303,7 @@ impl Check<'_, '_> {
         match args.entity.construct {
             Construct::Camera(construct) => {
                 if let Some(camera) = self.made(parsed, args, construct) {
-                    let camera = args.film(camera, self.above_all);
+                    let camera = args.sensor(camera, self.above_all);
                     self.warn_of_unused(parsed, args, &camera);
                     Arc::make_mut(&mut self.setting).camera = camera.clone();
                     self.camera = Some((order, camera));
@@ -354,7 +354,7 @@ impl Check<'_, '_> {
     }
 
     /// Warns of attributes of a camera that its rules of light do not use.
-    fn warn_of_unused(&mut self, parsed: &Parsed<'_>, args: &Args, camera: &Film) {
+    fn warn_of_unused(&mut self, parsed: &Parsed<'_>, args: &Args, camera: &Sensor) {
         let unused = (camera.rules == Rules::Notes).then(|| args.given_of_free_rules()).into_iter().flatten();
         for attribute in unused {
             let place = place_of(args.entity, parsed, Some(attribute));

@@ -134,13 +134,14 @@ pub(super) fn times(
     let mut closest = || {
         for (packet, objects) in &viewed {
             let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
-            let (mut met, mut doubt) = ([0; PACKET_SIZE], [0; PACKET_SIZE]);
+            let (mut hit_ids, mut doubt) = ([0; PACKET_SIZE], [0; PACKET_SIZE]);
             for object in objects {
-                let (near, far, met, doubt) = (&mut near[..], &mut far[..], &mut met[..], &mut doubt[..]);
-                let nearest = Nearest { near, far, met, doubt };
+                let (near, far, hit_ids, doubt) =
+                    (&mut near[..], &mut far[..], &mut hit_ids[..], &mut doubt[..]);
+                let nearest = Nearest { near, far, hit_ids, doubt };
                 shape(*object).closest_hits(cpu, packet.view.rays(), *object as u64 + 1, nearest);
             }
-            black_box((&near, &far, &met));
+            black_box((&near, &far, &hit_ids));
         }
     };
     let mut occluded = || {
@@ -158,8 +159,9 @@ pub(super) fn times(
         .iter()
         .map(|view| {
             let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
-            let (mut met, mut doubt) = ([0; PACKET_SIZE], [0; PACKET_SIZE]);
-            let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
+            let (mut hit_ids, mut doubt) = ([0; PACKET_SIZE], [0; PACKET_SIZE]);
+            let nearest =
+                Nearest { near: &mut near, far: &mut far, hit_ids: &mut hit_ids, doubt: &mut doubt };
             shape(view.object).closest_hits(cpu, view.view.rays(), 1, nearest);
             (near, far)
         })

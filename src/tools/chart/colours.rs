@@ -63,7 +63,7 @@ fn oklab(colour: Rgb) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tabray_core::world::film::Film;
+    use tabray_core::world::sensor::Sensor;
 
     #[test]
     fn white_is_light_and_has_no_colour() {
@@ -75,7 +75,7 @@ mod tests {
 
     #[test]
     fn differences_are_of_what_is_shown() {
-        let notes = Film::default().display();
+        let notes = Sensor::default().display();
         let far = [DVec3::splat(7.0), DVec3::new(f64::NAN, -1.0, 0.0)];
         let right = [DVec3::ONE, DVec3::ZERO];
         assert_eq!(

@@ -24,7 +24,7 @@ use tabray_core::render::renderer::Renderer;
 use tabray_core::scene::choice::Choice;
 use tabray_core::scene::model::Model;
 use tabray_core::world::accuracy::Accuracy;
-use tabray_core::world::film::Film;
+use tabray_core::world::sensor::Sensor;
 
 /// The numbers of samples to choose from, and the number of samples that they are compared with.
 const STAGES: [(&[u32], u32); 2] = [(&[1, 2, 4, 8, 16, 32, 64], 256), (&[128, 256], 1024)];
@@ -127,7 +127,7 @@ fn of_pixel((samples, against): (&[u32], u32), accuracies: usize) -> u32 {
 /// Those of [`estimates`].
 pub(super) fn panel(load: Load, progress: &mut dyn Progress) -> io::Result<Panel> {
     let model = load(None)?;
-    let Film { samples, pixels: [width, height], .. } = model.camera.value;
+    let Sensor { samples, pixels: [width, height], .. } = model.camera.value;
     let estimates = estimates(load, Goal::None, 0.0, progress)?;
     let all = (width * height) as f64;
     let point = |one: &Estimate| {

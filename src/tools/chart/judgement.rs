@@ -135,7 +135,7 @@ impl Pair<'_> {
             Truth::Hit { at, distance } => (at, distance),
         };
         let error = promise + self.rounding(found);
-        let is_on = |distance: f64| self.shape.touches(self.ray.at(distance), error);
+        let is_on = |distance: f64| self.shape.is_on_surface(self.ray.at(distance), error);
         // Between two roots the ray leaves the surface, the farthest about half-way.
         let is_same =
             |root: f64| (found - root).abs() <= error || is_on(found) && is_on(0.5 * (root + found));

@@ -10,9 +10,9 @@ use tabray_core::render::renderer::Renderer;
 use tabray_core::render::trace::{Scratch, Tracer};
 use tabray_core::scene::model::Model;
 use tabray_core::simd::cpu::Cpu;
-use tabray_core::world::film::Adaptive;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::Sampler;
+use tabray_core::world::sensor::Adaptive;
 
 /// About how many rays all choices take of a pixel that is measured alone, with the probes around it.
 pub(super) const RAYS: u32 = 120;

@@ -7,7 +7,7 @@ use tabray_core::render::trace;
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::simd::soa::{LANES, Vectors};
 use tabray_core::world::any_shape::AnyShape;
-use tabray_core::world::film::Film;
+use tabray_core::world::sensor::Sensor;
 
 /// Rays that are tested against one object.
 pub struct Packet {
@@ -22,7 +22,7 @@ pub struct Packet {
 impl Packet {
     /// Makes as many packets as needed for the rays through these points of an image, in pixels from the left and from
     /// the bottom.
-    pub fn of(object: usize, camera: &Film, places: &[[f64; 2]]) -> impl Iterator<Item = Self> {
+    pub fn of(object: usize, camera: &Sensor, places: &[[f64; 2]]) -> impl Iterator<Item = Self> {
         places.chunks(PACKET_SIZE).map(move |places| {
             let (origin, dir) = (Vectors::ZERO, Vectors::ZERO);
             let sights = places.iter().map(|[x, y]| camera.sight(*x, *y)).collect();
@@ -64,8 +64,8 @@ impl Packet {
         // As the tracer decides what a packet leaves open.
         let exactly = |lane: usize| trace::primary_distance(shape, rays.get(lane), &self.sights[lane]);
         let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
-        let (mut met, mut doubt) = ([0; PACKET_SIZE], [0; PACKET_SIZE]);
-        let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
+        let (mut hit_ids, mut doubt) = ([0; PACKET_SIZE], [0; PACKET_SIZE]);
+        let nearest = Nearest { near: &mut near, far: &mut far, hit_ids: &mut hit_ids, doubt: &mut doubt };
         if shape.closest_hits(cpu, rays, 1, nearest) {
             for lane in (0..len).filter(|lane| doubt[*lane] != 0) {
                 near[lane] = exactly(lane);

@@ -22,9 +22,9 @@ use tabray_core::render::renderer::Renderer;
 use tabray_core::render::trace::{self, Scratch, Tracer};
 use tabray_core::scene::model::Model;
 use tabray_core::simd::cpu::Cpu;
-use tabray_core::world::film::Adaptive;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::{Sample, Sampler};
+use tabray_core::world::sensor::Adaptive;
 
 /// The number of samples per pixel of an image that counts as true. It serves as a reference for up to a quarter as
 /// many samples.

@@ -19,9 +19,9 @@ use tabray_core::render::renderer::Renderer;
 use tabray_core::render::trace::{Scratch, Tracer};
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::world::display::Display;
-use tabray_core::world::film::Film;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::{Sample, Sampler};
+use tabray_core::world::sensor::Sensor;
 
 /// The least and the greatest brightness, where 1 is white, up to which nothing counts as small. What is less bright must take
 /// a large part of a pixel, or of many pixels, to matter, and then samples see it.
@@ -247,7 +247,7 @@ impl SmallThings {
 /// Bounds on the colours of an image.
 struct Bounds<'b> {
     bounds: Brightness<'b>,
-    camera: &'b Film,
+    camera: &'b Sensor,
     /// The brightness up to which nothing counts as small.
     bright: f64,
     /// The brightness that stands for one that is not bounded.
@@ -337,7 +337,7 @@ impl SmallPixel {
     fn more(
         &self,
         count: u32,
-        camera: &Film,
+        camera: &Sensor,
         tracer: &mut Tracer<Flaws>,
     ) -> ([(Rgb, u32); 2], [Vec<Rgb>; 2]) {
         let middle = DVec2::new(self.at[0] as f64, self.at[1] as f64);

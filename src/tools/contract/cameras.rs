@@ -8,7 +8,7 @@ use tabray_core::geometry::sight::Line;
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::simd::soa::{LANES, Vectors};
 use tabray_core::world::camera::{Origins, Projected};
-use tabray_core::world::film::Film;
+use tabray_core::world::sensor::Sensor;
 
 /// Points of the lens, in its radius: the centre, and some of the rim and within.
 const LENSES: [DVec2; 4] =
@@ -22,8 +22,8 @@ const DIRECTION_OFF: f64 = 1e-6;
 const ROUNDING: f64 = 1e-12;
 
 /// Checks the rays of a camera through the corners and the centre of its image, and what it says of them.
-pub fn camera(camera: &Film) -> Result<(), Fault> {
-    let Film { pixels: [width, height], samples, .. } = *camera;
+pub fn camera(camera: &Sensor) -> Result<(), Fault> {
+    let Sensor { pixels: [width, height], samples, .. } = *camera;
     if width == 0 || height == 0 || samples == 0 {
         let found = format!("{width} by {height} pixels, {samples} samples");
         return Err(Promise::CameraLooks.fault(found));
@@ -41,7 +41,7 @@ pub fn camera(camera: &Film) -> Result<(), Fault> {
 }
 
 /// Checks one ray.
-fn looks(camera: &Film, at: [f64; 2], lens: DVec2) -> Result<(), Fault> {
+fn looks(camera: &Sensor, at: [f64; 2], lens: DVec2) -> Result<(), Fault> {
     let place = ImagePoint { at, pixels: camera.pixels };
     let fault = |promise: Promise, found: String| {
         let [x, y] = at;
@@ -68,7 +68,7 @@ fn looks(camera: &Film, at: [f64; 2], lens: DVec2) -> Result<(), Fault> {
 }
 
 /// Checks what a camera says of its rays at a place.
-fn knows(camera: &Film, at: [f64; 2]) -> Result<(), Fault> {
+fn knows(camera: &Sensor, at: [f64; 2]) -> Result<(), Fault> {
     let fault = |found: String| {
         let [x, y] = at;
         Err(Promise::CameraKnows.fault(format!("pixel {x} {y}: {found}")))
@@ -119,7 +119,7 @@ fn is_between(dir: DVec3, corners: [DVec3; 4]) -> bool {
 }
 
 /// Checks that packets of rays are those of single places, whatever the processor.
-fn in_packets(camera: &Film, [right, top]: [f64; 2]) -> Result<(), Fault> {
+fn in_packets(camera: &Sensor, [right, top]: [f64; 2]) -> Result<(), Fault> {
     let part = |lane: usize| lane as f64 / (LANES - 1) as f64;
     let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
     let [mut u, mut v] = [[0.0; LANES]; 2];

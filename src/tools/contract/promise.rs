@@ -110,7 +110,7 @@ impl Promise {
             }
             Self::BoundsHoldHits => "make `bounds` contain every point of the shape; return none if in doubt",
             Self::HitIsTouched => {
-                "make `touches` true within at least the error that it is given, and `t_bounds` without a certain end there; if in doubt, leave out `touches`, and `Bracketed`"
+                "make `is_on_surface` true within at least the error that it is given, and `t_bounds` without a certain end there; if in doubt, leave out `is_on_surface`, and `Bracketed`"
             }
             Self::NormalIsUpright => "make `normal` the gradient of the surface's formula, normalized",
             Self::NormalsAgree => {
@@ -163,7 +163,7 @@ impl fmt::Display for Promise {
             Self::HitIsOnTheSurface => "a hit is found wherever its ray starts",
             Self::AgreesWithItsProof => "the distance is that of the first hit that `certify` proves",
             Self::BoundsHoldHits => "the bounds contain every hit",
-            Self::HitIsTouched => "`touches` is true at each point where a ray hits the shape",
+            Self::HitIsTouched => "`is_on_surface` is true at each point where a ray hits the shape",
             Self::NormalIsUpright => "a normal is perpendicular to the surface",
             Self::NormalsAgree => "neighbouring normals point to the same side",
             Self::NormalsPointOut => "the normals of a convex shape point outward",

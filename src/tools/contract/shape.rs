@@ -92,65 +92,72 @@ impl RayTrial<'_> {
         if !refined.is_nan() && refined.to_bits() != distance.to_bits() {
             return fault(format!("`distance` gives {distance}, and `refine` {refined}"));
         }
-        let lanes = |of: DVec3| Vectors::<LANES> { x: [of.x; LANES], y: [of.y; LANES], z: [of.z; LANES] };
-        let (origin, dir) = (lanes(ray.origin), lanes(ray.dir));
-        for cpu in Cpu::all() {
+        let (origin, dir) = (Vectors::<LANES>::of(ray.origin), Vectors::<LANES>::of(ray.dir));
+        Cpu::all().try_for_each(|cpu| {
             let rays = RayPacket::new(origin.view(LANES), dir.view(LANES), 0.0);
-            let (mut near, mut far) = ([MISS; LANES], [MISS; LANES]);
-            let (mut met, mut doubt) = ([0; LANES], [0; LANES]);
-            let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
-            shape.closest_hits(cpu, rays, 1, nearest);
-            let (low, high) = (near[0], far[0]);
-            if doubt[0] == 0 && !(low <= distance && distance <= high) {
-                return fault(format!("`distance` gives {distance}, and packets {low} to {high} ({cpu})"));
-            }
-            // As in the tracer, which does not refine a distance that is known exactly.
-            if doubt[0] == 0 && low < high {
-                let mut many = near;
-                shape.packets().refine(cpu, rays, (&near, &far), &mut many);
-                if !many[0].is_nan() && many[0].to_bits() != distance.to_bits() {
-                    return fault(format!("`distance` gives {distance}, and {} in packets ({cpu})", many[0]));
-                }
-            }
-            if distance != MISS {
-                let (mut points, mut normals) = (Vectors::<LANES>::ZERO, Vectors::<LANES>::ZERO);
-                let mut unbent = Vectors::<LANES>::ZERO;
-                let (mut sides, mut cosines) = ([Side::Inside; LANES], [0.0; LANES]);
-                let mut travelled = [1.0; LANES];
-                let interaction = SurfaceInteraction {
-                    points: points.view_mut(LANES),
-                    normals: normals.view_mut(LANES),
-                    unbent: unbent.view_mut(LANES),
-                    sides: &mut sides,
-                    cosines: &mut cosines,
-                    travelled: &mut travelled,
-                };
-                shape.packets().interact(cpu, rays, &[distance; LANES], interaction);
-                let (at, normal) = (ray.at(distance), shape.normal(ray.at(distance)));
-                let side = Side::seen_along(ray.dir, normal);
-                let turned = shape.is_two_sided() && side == Side::Inside;
-                let (one, many) =
-                    (shape.shading_normal(at, if turned { -normal } else { normal }), normals.get(0));
-                // At an edge the surface has two normals, and packets may take that of the face that the ray comes to.
-                if shape.packets().finds_normals_by_rays() && is_beside(shape, at, [normal, many]) {
-                    continue;
-                }
-                if !same_bits(one, many) && one.is_finite() {
-                    return fault(format!("the normal {one} in single rays, and {many} in packets ({cpu})"));
-                }
-                if !same_bits(at, points.get(0)) || sides[0] != side || travelled[0] != 1.0 + distance {
-                    return fault(format!("packets give {} in place of {at} ({cpu})", points.get(0)));
-                }
-                let cosine = ray.dir.dot(normal);
-                if cosine.to_bits() != cosines[0].to_bits() && cosine.is_finite() {
-                    return fault(format!(
-                        "the cosine {cosine} in single rays, and {} in packets ({cpu})",
-                        cosines[0]
-                    ));
-                }
+            let found = self.packet_fault(cpu, rays, distance).or_else(|| {
+                (distance != MISS).then(|| self.interaction_fault(cpu, rays, distance)).flatten()
+            });
+            found.map_or(Ok(()), |found| fault(format!("{found} ({cpu})")))
+        })
+    }
+
+    /// Says in what the distance of a packet of copies of the ray differs from that of the ray.
+    fn packet_fault(&self, cpu: Cpu, rays: RayPacket, distance: f64) -> Option<String> {
+        let (mut near, mut far) = ([MISS; LANES], [MISS; LANES]);
+        let (mut hit_ids, mut doubt) = ([0; LANES], [0; LANES]);
+        let nearest = Nearest { near: &mut near, far: &mut far, hit_ids: &mut hit_ids, doubt: &mut doubt };
+        self.shape.closest_hits(cpu, rays, 1, nearest);
+        let (low, high) = (near[0], far[0]);
+        if doubt[0] != 0 {
+            return None;
+        }
+        if !(low <= distance && distance <= high) {
+            return Some(format!("`distance` gives {distance}, and packets {low} to {high}"));
+        }
+        // As in the tracer, which does not refine a distance that is known exactly.
+        if low < high {
+            let mut many = near;
+            self.shape.packets().refine(cpu, rays, (&near, &far), &mut many);
+            if !many[0].is_nan() && many[0].to_bits() != distance.to_bits() {
+                return Some(format!("`distance` gives {distance}, and {} in packets", many[0]));
             }
         }
-        Ok(())
+        None
+    }
+
+    /// Says in what the hit of a packet of copies of the ray differs from that of the ray.
+    fn interaction_fault(&self, cpu: Cpu, rays: RayPacket, distance: f64) -> Option<String> {
+        let Self { shape, ray, .. } = self;
+        let (mut points, mut normals) = (Vectors::<LANES>::ZERO, Vectors::<LANES>::ZERO);
+        let mut geometric_normals = Vectors::<LANES>::ZERO;
+        let (mut sides, mut cosines, mut travelled) = ([Side::Inside; LANES], [0.0; LANES], [1.0; LANES]);
+        let interaction = SurfaceInteraction {
+            points: points.view_mut(LANES),
+            normals: normals.view_mut(LANES),
+            geometric_normals: geometric_normals.view_mut(LANES),
+            sides: &mut sides,
+            cosines: &mut cosines,
+            travelled: &mut travelled,
+        };
+        shape.packets().interact(cpu, rays, &[distance; LANES], interaction);
+        let (at, normal) = (ray.at(distance), shape.normal(ray.at(distance)));
+        let side = Side::seen_along(ray.dir, normal);
+        let turned = shape.is_two_sided() && side == Side::Inside;
+        let (one, many) = (shape.shading_normal(at, if turned { -normal } else { normal }), normals.get(0));
+        // At an edge the surface has two normals, and packets may take that of the face that the ray comes to.
+        if shape.packets().finds_normals_by_rays() && is_beside(shape, at, [normal, many]) {
+            return None;
+        }
+        if !same_bits(one, many) && one.is_finite() {
+            return Some(format!("the normal {one} in single rays, and {many} in packets"));
+        }
+        if !same_bits(at, points.get(0)) || sides[0] != side || travelled[0] != 1.0 + distance {
+            return Some(format!("packets give {} in place of {at}", points.get(0)));
+        }
+        let cosine = ray.dir.dot(normal);
+        (cosine.to_bits() != cosines[0].to_bits() && cosine.is_finite())
+            .then(|| format!("the cosine {cosine} in single rays, and {} in packets", cosines[0]))
     }
 
     /// Checks that the bracket of a ray that stands for others holds the hits of these, as where a copy is placed.

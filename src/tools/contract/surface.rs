@@ -145,9 +145,9 @@ impl RayTrial<'_> {
         let Self { shape, ray, .. } = self;
         let origin_error = coincidence::error(ray, met.distance, met.normal, shape.facts().max_coordinate);
         let fault = |what: String| Err(Promise::HitIsTouched.fault(what));
-        if !shape.touches(met.at, origin_error) {
+        if !shape.is_on_surface(met.at, origin_error) {
             return fault(format!(
-                "it is hit at {}, {}, where `touches` is false",
+                "it is hit at {}, {}, where `is_on_surface` is false",
                 met.at,
                 describe_ray(ray)
             ));
@@ -164,7 +164,7 @@ impl RayTrial<'_> {
             };
             if !(bracket.near <= distance && distance <= bracket.far) {
                 return fault(format!(
-                    "`touches` is true of the start of a ray, whose distance on leaving is {distance}; `t_bounds` is {bracket:?} with an `origin_error` of {origin_error:e}, {}",
+                    "`is_on_surface` is true of the start of a ray, whose distance on leaving is {distance}; `t_bounds` is {bracket:?} with an `origin_error` of {origin_error:e}, {}",
                     describe_ray(&onward)
                 ));
             }

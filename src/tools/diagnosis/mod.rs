@@ -17,9 +17,9 @@ use tabray_core::simd::cpu::Cpu;
 use tabray_core::text::{self, short};
 use tabray_core::world::camera::Projected;
 use tabray_core::world::display::Display;
-use tabray_core::world::film::Film;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::rules::{Falloff, Rules};
+use tabray_core::world::sensor::Sensor;
 
 /// The maximum number of columns and rows of pixels that are looked at.
 const GRID: [usize; 2] = [40, 30];
@@ -129,7 +129,7 @@ fn tried_here(model: &Model) -> Option<Remark> {
 }
 
 /// Returns pixels of a part of an image that are spread over all of it, by column and row from the bottom.
-fn places(camera: &Film, [columns, rows]: [&Range<usize>; 2]) -> Vec<[usize; 2]> {
+fn places(camera: &Sensor, [columns, rows]: [&Range<usize>; 2]) -> Vec<[usize; 2]> {
     let spread = |range: &Range<usize>, most: usize| -> Vec<usize> {
         let count = range.len().min(most);
         (0..count).map(|index| range.start + index * (range.len() - 1) / (count - 1).max(1)).collect()

@@ -368,7 +368,7 @@ fn what_may_start_on_a_shape_is_in_doubt() {
             let (point, normal) = (ray.at(distance), shape.normal(ray.at(distance)));
             let origin_error =
                 tabray::world::coincidence::error(&ray, distance, normal, shape.facts().max_coordinate);
-            assert!(shape.touches(point, origin_error), "{text} is not where it is hit: {ray:?}");
+            assert!(shape.is_on_surface(point, origin_error), "{text} is not where it is hit: {ray:?}");
             let cosine = random.between(-1.0, 1.0);
             let dir = random.around(normal, cosine);
             let bracket =

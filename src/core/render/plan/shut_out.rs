@@ -78,5 +78,5 @@ fn is_behind_glass(model: &Model, index: usize) -> bool {
 fn is_inside(object: &Object, middle: DVec3, radius: f64) -> Option<bool> {
     let margin = MARGIN * (middle.abs().max_element() + object.shape.facts().max_coordinate);
     let is_clear = radius == 0.0 || clearance(object, middle) > radius + margin;
-    if is_clear { object.shape.holds(middle, margin) } else { None }
+    if is_clear { object.shape.contains(middle, margin) } else { None }
 }

@@ -1,6 +1,6 @@
 //! Pixels that take more samples where their colour is less certain.
 //!
-//! A pixel first takes [`Film::samples`] samples, and then twice as many again and again, by the sampler's sequence,
+//! A pixel first takes [`Sensor::samples`] samples, and then twice as many again and again, by the sampler's sequence,
 //! until [`Estimate::error`] is small enough. That depends on the pixel's own samples and on probes at the corners of
 //! the pixel and of the eight around it, and so not on tiles, threads, or the part of the image that is rendered. A
 //! pixel that ends with N samples has the colour that it has in an image of N samples per pixel.
@@ -9,7 +9,7 @@
 //! pixel separates its corners, and a shadow edge that crosses a light separates points of the light's rim, to each of
 //! which the rays of some probe go.
 //!
-//! [`Film::samples`]: crate::world::film::Film::samples
+//! [`Sensor::samples`]: crate::world::sensor::Sensor::samples
 
 use super::arrays::VectorList;
 use super::context::{PrimaryScratch, Scratch, Tracer};
@@ -20,8 +20,8 @@ use super::trail::PathHashes;
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::render::features::FEATURE_SAMPLES;
 use crate::render::observer::{Count, TraceObserver};
-use crate::world::film::Adaptive;
 use crate::world::sample::{self, Sample};
+use crate::world::sensor::Adaptive;
 use std::mem::take;
 use std::ops::Range;
 

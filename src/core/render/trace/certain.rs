@@ -1,11 +1,11 @@
 //! Pixels whose colours are proven, and take no samples.
 
 use super::context::{PrimaryScratch, Tracer};
-use crate::render::footprint::{Proof, Prover};
+use crate::render::footprint::{PixelProver, Proof};
 use crate::render::observer::{Count, TraceObserver};
 use crate::render::plan::Plan;
-use crate::world::film::Adaptive;
 use crate::world::material::Rgb;
+use crate::world::sensor::Adaptive;
 
 /// Returns the limit on the error of a pixel, where 1 is white.
 fn limit(adaptive: Option<Adaptive>) -> f64 {
@@ -31,7 +31,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         &mut self,
         pixels: &[[usize; 2]],
         adaptive: Adaptive,
-        prover: &Prover,
+        prover: &PixelProver,
         primary: &mut PrimaryScratch,
     ) {
         let (plan, camera) = (self.plan, &self.plan.camera);

@@ -57,15 +57,15 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
                 continue;
             }
             let Located { distance, bracket, .. } = located(shape, &start, origin_side, MISS);
-            let is_first = self.is_first(&start, (index, distance), (hits.met[0], nearest));
+            let is_first = self.is_first(&start, (index, distance), (hits.hit_ids[0], nearest));
             self.observer.see(Event::Tested(index, Some(if is_first { distance } else { MISS })));
             if is_first {
                 // As in a packet, so that the hit is refined in the same way.
-                (hits.near[0], hits.far[0], hits.met[0]) = (bracket.near, bracket.far, index as u64 + 1);
+                (hits.near[0], hits.far[0], hits.hit_ids[0]) = (bracket.near, bracket.far, index as u64 + 1);
                 nearest = distance;
             }
         }
-        let hit = (hits.met[0] as usize).checked_sub(1).map(|index| Hit {
+        let hit = (hits.hit_ids[0] as usize).checked_sub(1).map(|index| Hit {
             index,
             object: &self.model.objects[index],
             distance: nearest,
@@ -96,8 +96,13 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
 
     /// Tells whether a ray hits an object before its closest hit so far, given by the object's index plus 1 (0 for
     /// none) and the distance. Of coincident objects, the earlier one in the scene is first.
-    fn is_first(&self, start: &RoundedRay, (index, distance): (usize, f64), (met, far): (u64, f64)) -> bool {
-        let Some(rival) = (met as usize).checked_sub(1) else { return distance < far };
+    fn is_first(
+        &self,
+        start: &RoundedRay,
+        (index, distance): (usize, f64),
+        (hit_id, far): (u64, f64),
+    ) -> bool {
+        let Some(rival) = (hit_id as usize).checked_sub(1) else { return distance < far };
         if distance == MISS {
             return false;
         }
@@ -266,16 +271,16 @@ impl<W: TraceObserver> ClosestHitSearch<'_, '_, '_, W> {
         if distance == MISS {
             return;
         }
-        let (near, far, met) =
-            (&mut self.hits.near[lane], &mut self.hits.far[lane], &mut self.hits.met[lane]);
+        let (near, far, hit_id) =
+            (&mut self.hits.near[lane], &mut self.hits.far[lane], &mut self.hits.hit_ids[lane]);
         let rival_distance = if near == far {
             *far
         } else {
-            let rival = *met as usize - 1;
+            let rival = *hit_id as usize - 1;
             let rival_leaves = self.group.sides_of(rival).map(|sides| sides[lane]);
             exact(&objects[rival].shape, &start, rival_leaves, MISS)
         };
-        let is_first = self.tracer.is_first(&start, (index, distance), (*met, rival_distance));
+        let is_first = self.tracer.is_first(&start, (index, distance), (*hit_id, rival_distance));
         let nearest = if is_first { distance } else { rival_distance };
         // The unrounded primary ray hits the object anywhere in its bracket, and may hit other objects there.
         let bracket = match start.sight {
@@ -286,7 +291,7 @@ impl<W: TraceObserver> ClosestHitSearch<'_, '_, '_, W> {
         let is_known = bracket.near <= nearest && nearest <= bracket.far && bracket.far < MISS;
         (*near, *far) = if is_known { (bracket.near, bracket.far) } else { (nearest, nearest) };
         if is_first {
-            *met = index as u64 + 1;
+            *hit_id = index as u64 + 1;
         }
     }
 
@@ -329,12 +334,12 @@ impl<W: TraceObserver> PacketVisitor for ClosestHitSearch<'_, '_, '_, W> {
         self.tracer.observer.count(Count::Tested(index, 1));
         let hits = &mut *self.hits;
         let (mut near, mut far) = ([hits.near[lane]; LANES], [hits.far[lane]; LANES]);
-        let (mut met, mut doubt) = ([hits.met[lane]; LANES], [0; LANES]);
-        let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
+        let (mut hit_ids, mut doubt) = ([hits.hit_ids[lane]; LANES], [0; LANES]);
+        let nearest = Nearest { near: &mut near, far: &mut far, hit_ids: &mut hit_ids, doubt: &mut doubt };
         let sides = side.map(|side| [side; LANES]);
         let rays = single.rays(group).leaving(sides.as_ref().map(|sides| &sides[..]));
         let is_open = shape.closest_hits(self.tracer.cpu, rays, id, nearest);
-        (hits.near[lane], hits.far[lane], hits.met[lane]) = (near[0], far[0], met[0]);
+        (hits.near[lane], hits.far[lane], hits.hit_ids[lane]) = (near[0], far[0], hit_ids[0]);
         if is_open && doubt[0] != 0 {
             self.decide(lane, index, side);
         }

@@ -30,7 +30,7 @@ impl RoundedRay {
     pub fn leaves(&self, shape: &AnyShape, own: Option<Side>) -> Option<Side> {
         let Ray { origin, dir } = self.ray;
         let touched = || Side::seen_along(dir, shape.normal(origin)).opposite();
-        own.or_else(|| (self.error > 0.0 && shape.touches(origin, self.error)).then(touched))
+        own.or_else(|| (self.error > 0.0 && shape.is_on_surface(origin, self.error)).then(touched))
     }
 }
 
@@ -224,7 +224,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let Some(sight) = self.start(group, lane).sight else { continue };
             if let Some(proven) = shape.proven()
                 && shape.is_certified()
-                && (hits.met[lane] == index as u64 + 1 || in_world_units(from, &sight) <= hits.far[lane])
+                && (hits.hit_ids[lane] == index as u64 + 1 || in_world_units(from, &sight) <= hits.far[lane])
             {
                 let pixel = self.pixel_of(lane);
                 self.scratch.undecided.pixels.push((pixel, index, Doubt::of(proven, &sight, from)));

@@ -39,10 +39,10 @@ use crate::render::observer::{Count, DynObserver, Event, Hit, RayKind, RayPurpos
 use crate::render::plan::Plan;
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::View;
-use crate::world::film;
 use crate::world::material::Rgb;
 use crate::world::rules::Rules;
 use crate::world::sample::{self, Sample};
+use crate::world::sensor;
 use arrays::VectorList;
 use context::PrimaryScratch;
 use direct_light::RIM_POINTS;
@@ -194,7 +194,7 @@ pub fn first_hit<'m>(plan: &Plan<'m>, sight: &Sight) -> Option<Hit<'m>> {
     let mut group = RayGroup::primary(sight, None);
     let (mut hits, mut distances) = (HitRecord::default(), Vec::new());
     tracer.closest(&mut group, None, &mut hits);
-    let object = (hits.met[0] as usize).checked_sub(1)?;
+    let object = (hits.hit_ids[0] as usize).checked_sub(1)?;
     tracer.refine(&group, (&hits.near, &hits.far), object, &mut distances);
     let (distance, ray) = (distances[0], group.rays().get(0));
     Some(Hit { index: object, object: &plan.model.objects[object], distance, point: ray.at(distance) })
@@ -248,7 +248,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.scratch.samples.clear();
         for (pixels, first) in pixels.chunks(PACKET_SIZE).zip((0..).step_by(PACKET_SIZE)) {
             let [x, y] = &mut self.scratch.places;
-            film::middles(self.cpu, pixels, x, y);
+            sensor::middles(self.cpu, pixels, x, y);
             self.look(group, pixels.len());
             self.colours(group, seen);
             colours.copy_at(first, seen.view(pixels.len()));
@@ -324,7 +324,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Computes the colours that primary rays return.
     fn colours(&mut self, group: &mut RayGroup, colours: &mut VectorList) {
         self.observer.count(Count::Rays(RayKind::Primary, group.len));
-        self.viewer = self.plan.camera.reach();
+        self.viewer = self.plan.camera.max_coordinate();
         self.begin_missing(&group.ray_budget[..group.len]);
         if self.scratch.trails.is_on {
             self.scratch.trails.begin(group.len);

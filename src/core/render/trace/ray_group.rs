@@ -11,7 +11,7 @@ use crate::render::limits::MAX_RAYS;
 use crate::render::plan::depth::{Branch, Depth};
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::LANES;
-use crate::world::film::Film;
+use crate::world::sensor::Sensor;
 use glam::DVec3;
 use std::mem::swap;
 use std::ops::Range;
@@ -77,7 +77,7 @@ impl RayGroup {
     pub fn look(
         &mut self,
         cpu: Cpu,
-        camera: &Film,
+        camera: &Sensor,
         depth: Option<&Depth>,
         places: &mut [Vec<f64>; 2],
         lens: &mut [Vec<f64>; 2],
@@ -302,10 +302,10 @@ pub(super) struct HitGroups {
 
 impl HitGroups {
     /// Starts with the hits of a packet, each an object's index plus 1, or 0 for a miss.
-    pub fn begin(&mut self, met: &[u64]) {
+    pub fn begin(&mut self, hit_ids: &[u64]) {
         self.runs.clear();
         let mut start = 0;
-        for run in met.chunk_by(|one, other| one == other) {
+        for run in hit_ids.chunk_by(|one, other| one == other) {
             self.runs.push((run[0], start..start + run.len()));
             start += run.len();
         }
@@ -314,7 +314,7 @@ impl HitGroups {
             self.runs.sort_unstable_by_key(|(id, run)| (*id, run.start));
         }
         // Lanes are written eight at a time, beyond the end of a run.
-        resized(&mut self.lanes, met.len() + LANES);
+        resized(&mut self.lanes, hit_ids.len() + LANES);
         self.next = 0;
     }
 
@@ -351,7 +351,7 @@ pub(super) struct HitRecord {
     /// The upper bounds of the distances, in world units.
     pub far: Vec<f64>,
     /// The object's index plus 1; 0 for no object.
-    pub met: Vec<u64>,
+    pub hit_ids: Vec<u64>,
     /// Not 0 where the last tested object's bracket overlaps that of another one.
     pub doubt: Vec<u64>,
 }
@@ -363,7 +363,7 @@ impl HitRecord {
         let (near, far) = (resized(&mut self.near, count), resized(&mut self.far, count));
         // Each shape that is tested overwrites `doubt`.
         resized(&mut self.doubt, count);
-        begin(cpu, &mut ray_budget[..count], t_max, near, far, resized(&mut self.met, count))
+        begin(cpu, &mut ray_budget[..count], t_max, near, far, resized(&mut self.hit_ids, count))
     }
 
     /// Borrows the hits of some of the rays.
@@ -371,7 +371,7 @@ impl HitRecord {
         Nearest {
             near: &mut self.near[range.clone()],
             far: &mut self.far[range.clone()],
-            met: &mut self.met[range.clone()],
+            hit_ids: &mut self.hit_ids[range.clone()],
             doubt: &mut self.doubt[range],
         }
     }
@@ -380,10 +380,10 @@ impl HitRecord {
 kernels! {
     /// Starts rays with no hits and charges each to its budget. Returns whether the budget of any is used up.
     fn begin(
-        ray_budget: &mut [u32], t_max: Option<&[f64]>, near: &mut [f64], far: &mut [f64], met: &mut [u64]
+        ray_budget: &mut [u32], t_max: Option<&[f64]>, near: &mut [f64], far: &mut [f64], hit_ids: &mut [u64]
     ) -> bool {
         let (count, mut any_over) = (ray_budget.len(), 0);
-        let (near, far, met) = (&mut near[..count], &mut far[..count], &mut met[..count]);
+        let (near, far, hit_ids) = (&mut near[..count], &mut far[..count], &mut hit_ids[..count]);
         match t_max {
             Some(t_max) => far.copy_from_slice(&t_max[..count]),
             None => far.fill(MISS),
@@ -391,7 +391,7 @@ kernels! {
         for lane in 0..count {
             let is_over = ray_budget[lane] == 0;
             let end = if is_over { 0.0 } else { far[lane] };
-            (near[lane], far[lane], met[lane]) = (end, end, 0);
+            (near[lane], far[lane], hit_ids[lane]) = (end, end, 0);
             ray_budget[lane] -= u32::from(!is_over);
             any_over |= u32::from(is_over);
         }

@@ -26,7 +26,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let mut level = self.scratch.levels.pop().unwrap_or_default();
         let HitScratch { hits, parts, part, near, far, shading, seen } = &mut *level;
         self.closest(group, None, hits);
-        let met = &hits.met[..group.len];
+        let met = &hits.hit_ids[..group.len];
         if met[0] != 0 && closest_hit::is_one(self.cpu, met) {
             self.shade(group, (&hits.near, &hits.far), met[0] as usize - 1, shading, colours);
         } else {
@@ -76,7 +76,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let interaction = SurfaceInteraction {
             points: surface.points.resized(count),
             normals: surface.normals.resized(count),
-            unbent: surface.unbent.resized(count),
+            geometric_normals: surface.unbent.resized(count),
             sides: resized(&mut surface.sides, count),
             cosines: resized(&mut surface.cosines, count),
             travelled,

@@ -51,7 +51,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             self.observer.see(Event::Begin(RayPurpose::Shadow { distance: t_max[0] }));
         }
         self.closest(group, Some(t_max), hits);
-        parts.begin(&hits.met[..group.len]);
+        parts.begin(&hits.hit_ids[..group.len]);
         while let Some((id, lanes)) = parts.next() {
             let Some(index) = (id as usize).checked_sub(1) else { continue };
             if self.model.objects[index].material.transparency == 0.0 {

@@ -21,8 +21,8 @@ use crate::render::limits::{LEAST_PART, MAX_RAYS, MAX_TREE};
 use crate::render::observer::{DropReason, RayKind};
 use crate::render::plan::depth::{Depth, LightRange};
 use crate::world::display::Display;
-use crate::world::film::Film;
 use crate::world::material::Rgb;
+use crate::world::sensor::Sensor;
 use glam::DVec3;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -165,7 +165,7 @@ pub(super) struct Ends {
 }
 
 impl Ends {
-    pub fn of(camera: &Film) -> Self {
+    pub fn of(camera: &Sensor) -> Self {
         let (display, parts) = (camera.display(), camera.samples.min(LEAST_PART));
         Self {
             is_averaged: camera.samples > 1 || camera.adaptive.is_some(),

@@ -60,8 +60,8 @@ impl<A: Bounded> Bracketed for Ellipsoid<A> {
 }
 
 impl<A: Bounded> Certified for Ellipsoid<A> {
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        Ellipsoid::touches(self, at, error)
+    fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
+        Ellipsoid::is_on_surface(self, at, error)
     }
 }
 

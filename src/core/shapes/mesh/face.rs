@@ -152,7 +152,7 @@ impl<A> Equation for Face<A> {
         dot(self.0.area_normal(), per_axis(|axis| at[axis] - N::constant(corner[axis])))
     }
 
-    fn kept<N: Scalar>(&self, at: [N; 3]) -> N {
+    fn inside_trim<N: Scalar>(&self, at: [N; 3]) -> N {
         self.0.inside(at)
     }
 }

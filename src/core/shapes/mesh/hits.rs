@@ -3,7 +3,7 @@
 use super::approach::{Approach, FAR};
 use super::face::{Face, Leaving, t_bounds};
 use super::known::{Known, Nearest};
-use super::points::touches;
+use super::points::is_on_surface;
 use super::search::Scratch;
 use super::surface::Surface;
 use crate::geometry::aabb::{Aabb, larger};
@@ -152,7 +152,7 @@ impl Surface {
         let leaving = if leaves < 0.0 { NOTHING } else { Leaving { least: leaves, most: leaves } };
         self.each(ray, range, leaving, |face, _| {
             let triangle = self.triangle::<A>(face);
-            if leaves < 0.0 || !touches(&triangle, ray.origin, leaves) {
+            if leaves < 0.0 || !is_on_surface(&triangle, ray.origin, leaves) {
                 let distance = range.keep(triangle.plane.crossing(ray));
                 if distance < first && triangle.is_passed_by(ray) {
                     first = distance;
@@ -276,7 +276,7 @@ impl Surface {
     }
 
     /// Returns the largest magnitude of a coordinate, in world units.
-    pub(super) fn reach(&self) -> f64 {
+    pub(super) fn max_coordinate(&self) -> f64 {
         self.bounds.low.abs().max(self.bounds.high.abs()).max_element()
     }
 }

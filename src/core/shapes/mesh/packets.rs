@@ -84,7 +84,8 @@ impl<A: Bounded> PacketIntersect for Shape<Mesh<A>, ByPackets, ByFaces> {
     }
 
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction) {
-        let SurfaceInteraction { points, normals, unbent, sides, cosines, travelled } = interaction;
+        let SurfaceInteraction { points, normals, geometric_normals, sides, cosines, travelled } =
+            interaction;
         Memo::with(|memo| {
             interact(
                 cpu,
@@ -97,7 +98,7 @@ impl<A: Bounded> PacketIntersect for Shape<Mesh<A>, ByPackets, ByFaces> {
                 travelled,
                 points,
                 normals,
-                unbent,
+                geometric_normals,
             );
         });
     }
@@ -179,7 +180,7 @@ kernels! {
     fn interact[A: Bounded](
         mesh: &Mesh<A>, rays: RayPacket, distances: &[f64], memo: &mut Memo, sides: &mut [Side],
         cosines: &mut [f64], travelled: &mut [f64]
-    ) => points, normals, unbent {
+    ) => points, normals, geometric_normals {
         let (is_two_sided, is_smooth, surface) = (mesh.is_two_sided(), mesh.surface.is_smooth(), &mesh.surface);
         let mut known = ([usize::MAX; LANES], Vectors::ZERO);
         for first in (0..travelled.len()).step_by(LANES) {
@@ -204,7 +205,7 @@ kernels! {
                 points.set(lane, point);
                 normals.set(lane, surface.smoothed(faces[place], point, turn));
                 if is_smooth {
-                    unbent.set(lane, turn);
+                    geometric_normals.set(lane, turn);
                 }
                 travelled[lane] += distances[lane];
             }

@@ -19,7 +19,7 @@ impl Surface {
     /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file of those with the
     /// least rank.
     pub(super) fn first_at(&self, at: DVec3, rank: impl Fn(usize) -> u8) -> usize {
-        let rounding = 8.0 * f64::EPSILON * (at.abs().max_element() + self.reach());
+        let rounding = 8.0 * f64::EPSILON * (at.abs().max_element() + self.max_coordinate());
         let (distance, face) = self.nearest(at);
         let within = distance + rounding;
         let place = |face: usize| (rank(face), self.order[face]);
@@ -40,7 +40,7 @@ impl Surface {
     pub(super) fn is_alone(&self, at: [Interval; 3], own: impl Fn(usize) -> bool) -> bool {
         let middle = DVec3::from(at.map(Interval::middle));
         let size = DVec3::from(at.map(Interval::width)).length();
-        let within = size + 32.0 * f64::EPSILON * (middle.abs().max_element() + self.reach());
+        let within = size + 32.0 * f64::EPSILON * (middle.abs().max_element() + self.max_coordinate());
         let mut is_alone = within < MISS;
         self.near(middle, within, |face, distance| {
             is_alone &= distance > within || own(face);
@@ -52,7 +52,7 @@ impl Surface {
     /// Returns the distance of the nearest face to a point in world units, and the face.
     pub(super) fn nearest(&self, at: DVec3) -> (f64, usize) {
         // Most points are on the surface: few boxes are so near.
-        for within in [CLOSE * (at.abs().max_element() + self.reach()), MISS] {
+        for within in [CLOSE * (at.abs().max_element() + self.max_coordinate()), MISS] {
             let mut best = (within, None);
             self.near(at, within, |face, distance| {
                 if distance < best.0 {
@@ -75,11 +75,11 @@ impl Surface {
     }
 
     /// Tells whether a point is on a face, up to an error in world units and to rounding.
-    pub(super) fn touches<A: Bounded>(&self, at: DVec3, error: f64) -> bool {
+    pub(super) fn is_on_surface<A: Bounded>(&self, at: DVec3, error: f64) -> bool {
         let error_there = error + 8.0 * f64::EPSILON * at.abs().max_element();
         let mut any = false;
         self.tree.around(at, error_there, &mut |face| {
-            any |= Triangle::<A>::new(self.corners(face)).is_some_and(|face| touches(&face, at, error));
+            any |= Triangle::<A>::new(self.corners(face)).is_some_and(|face| is_on_surface(&face, at, error));
             if any { -1.0 } else { error_there }
         });
         any
@@ -87,8 +87,8 @@ impl Surface {
 }
 
 /// Tells whether a point is on a face, up to an error in world units and to rounding.
-pub(super) fn touches<A: Bounded>(triangle: &Triangle<A>, at: DVec3, error: f64) -> bool {
+pub(super) fn is_on_surface<A: Bounded>(triangle: &Triangle<A>, at: DVec3, error: f64) -> bool {
     let Aabb { low, high } = Aabb::around(&triangle.corners);
     let beside = error + 4.0 * f64::EPSILON * at.abs().max_element();
-    (low - beside).cmple(at).all() && at.cmple(high + beside).all() && triangle.plane.touches(at, error)
+    (low - beside).cmple(at).all() && at.cmple(high + beside).all() && triangle.plane.is_on_surface(at, error)
 }

@@ -60,7 +60,7 @@ impl<A: Bounded> Mesh<A> {
         match origin_side {
             // The error is at least that of a hit point at the viewer.
             Some(_) => {
-                let least = ROUNDING * self.surface.reach();
+                let least = ROUNDING * self.surface.max_coordinate();
                 Leaving { least, most: origin_error.max(least) }
             }
             None if origin_error > 0.0 => Leaving { least: -1.0, most: origin_error },
@@ -91,7 +91,7 @@ impl<A: Bounded> Hittable for Mesh<A> {
         }
         // The ray starts at the nearest face, however far that is from the rounded origin.
         let nearest = 2.0 * self.surface.nearest(ray.origin).0;
-        let leaves = range.origin_error.max(ROUNDING * self.surface.reach()).max(nearest);
+        let leaves = range.origin_error.max(ROUNDING * self.surface.max_coordinate()).max(nearest);
         self.surface.distance::<A>(ray, range, leaves)
     }
 
@@ -161,7 +161,7 @@ impl<A: Bounded> Hittable for Mesh<A> {
 
     fn clearance(&self, from: DVec3) -> Option<f64> {
         let nearest = self.surface.nearest(from).0;
-        Some((nearest - SLACK * (from.abs().max_element() + self.surface.reach())).max(0.0))
+        Some((nearest - SLACK * (from.abs().max_element() + self.surface.max_coordinate())).max(0.0))
     }
 
     fn part(&self, ray: &Ray, distance: f64) -> Option<String> {
@@ -184,12 +184,12 @@ impl<A: Bounded> Hittable for Mesh<A> {
 }
 
 impl<A: Bounded> HitQueries for Shape<Mesh<A>, ByPackets, ByFaces> {
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        self.shape.surface.touches::<A>(at, error)
+    fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
+        self.shape.surface.is_on_surface::<A>(at, error)
     }
 
-    fn holds(&self, at: DVec3, error: f64) -> Option<bool> {
-        self.shape.surface.holds::<A>(at, error)
+    fn contains(&self, at: DVec3, error: f64) -> Option<bool> {
+        self.shape.surface.contains::<A>(at, error)
     }
 
     fn facet(&self, at: DVec3, error: f64) -> Option<Facet> {

@@ -49,11 +49,11 @@ fn inside(planes: &[[DVec3; 2]], at: DVec3, error: f64) -> Option<bool> {
 impl Surface {
     /// Tells whether a point lies in a closed mesh; `None` where the surface may be within an error in world units, and
     /// where no face tells.
-    pub(super) fn holds<A: Bounded>(&self, at: DVec3, error: f64) -> Option<bool> {
+    pub(super) fn contains<A: Bounded>(&self, at: DVec3, error: f64) -> Option<bool> {
         if let Some(planes) = self.planes.get_or_init(|| self.convex::<A>()) {
             return inside(planes, at, error);
         }
-        if self.touches::<A>(at, error) {
+        if self.is_on_surface::<A>(at, error) {
             return None;
         }
         for dir in DIRECTIONS {

@@ -107,7 +107,7 @@ proptest! {
                 if let Some(fine) = shape.packets().fine_distance(&ray, distance) {
                     prop_assert!((fine.high - distance).abs() <= 2.0 * coincidence::CLOSE * (distance + inside.length()));
                 }
-                prop_assert!(shape.touches(ray.at(distance), coincidence::error(&ray, distance, shape.normal(ray.at(distance)), shape.facts().max_coordinate)));
+                prop_assert!(shape.is_on_surface(ray.at(distance), coincidence::error(&ray, distance, shape.normal(ray.at(distance)), shape.facts().max_coordinate)));
             }
         }
     }
@@ -201,7 +201,7 @@ proptest! {
             // Toward an edge, a vertex or the inside of a face.
             let [a, b, c] = surface.corners(to.index(surface.face_count()));
             let at = if along < 0.3 { a } else if along < 0.6 { a.lerp(b, along) } else { (a + b + c) / 3.0 };
-            let origin = 3.0 * surface.reach() * from;
+            let origin = 3.0 * surface.max_coordinate() * from;
             let Some(dir) = (at - origin).try_normalize() else { continue };
             let ray = Ray { origin, dir };
             for cpu in Cpu::all() {
@@ -226,7 +226,7 @@ proptest! {
         (leaves, drift) in (any::<bool>(), prop_oneof![Just(0.0), Just(1e-9)]),
     ) {
         let surface = surface(closed(&bumps, rows), &ToWorld::new(scale, Rotation::NONE, DVec3::ZERO));
-        let reach = surface.reach();
+        let reach = surface.max_coordinate();
         let count = ways.len().next_multiple_of(LANES);
         let (mut origin, mut dir) = (Vectors::<PACKET_SIZE>::ZERO, Vectors::<PACKET_SIZE>::ZERO);
         let mut ends = vec![0.0; count];
@@ -329,11 +329,11 @@ fn no_doubled_face_at_an_outline_is_seen_from_behind() {
                 let (from, along) = (Vectors::<LANES>::of(origin), Vectors::<LANES>::of(dir));
                 let rays = RayPacket::new(from.view(LANES), along.view(LANES), 0.0);
                 let (mut points, mut normals) = (Vectors::<LANES>::ZERO, Vectors::<LANES>::ZERO);
-                let mut unbent = Vectors::<LANES>::ZERO;
+                let mut geometric_normals = Vectors::<LANES>::ZERO;
                 let interaction = SurfaceInteraction {
                     points: points.view_mut(LANES),
                     normals: normals.view_mut(LANES),
-                    unbent: unbent.view_mut(LANES),
+                    geometric_normals: geometric_normals.view_mut(LANES),
                     sides: &mut [Side::Outside; LANES],
                     cosines: &mut [0.0; LANES],
                     travelled: &mut [0.0; LANES],

@@ -92,24 +92,24 @@ kernels! {
     /// Takes hits to the world.
     pub fn take_out(
         placed: &Placed, rays: RayPacket, distances: &[f64], cosines: &mut [f64], travelled: &mut [f64]
-    ) => points, normals, unbent {
+    ) => points, normals, geometric_normals {
         let (count, to_world) = (travelled.len(), placed.to_object_space.transpose());
         let (is_two_sided, is_smooth) = (placed.body.shape.is_two_sided(), placed.body.shape.is_smooth());
         let (rays, distances, cosines) = (rays.first(count), &distances[..count], &mut cosines[..count]);
         let (mut points, mut normals) = (points.first(count), normals.first(count));
-        let mut unbent = unbent.first(count);
+        let mut geometric_normals = geometric_normals.first(count);
         for lane in 0..count {
             let is_turned = is_two_sided && cosines[lane] >= 0.0;
             let turned = |normal: DVec3| if is_turned { -normal } else { normal };
             // Turned only after it is taken to the world, as single rays do: so even zeros have the same sign.
             let there = |normal: DVec3| (to_world * turned(normal)).normalize();
             let shaded = normals.get(lane);
-            let normal = there(if is_smooth { unbent.get(lane) } else { shaded });
+            let normal = there(if is_smooth { geometric_normals.get(lane) } else { shaded });
             cosines[lane] = rays.dir.get(lane).dot(normal);
             points.set(lane, rays.get(lane).at(distances[lane]));
             normals.set(lane, turned(if is_smooth { there(shaded) } else { normal }));
             if is_smooth {
-                unbent.set(lane, turned(normal));
+                geometric_normals.set(lane, turned(normal));
             }
             travelled[lane] += distances[lane];
         }

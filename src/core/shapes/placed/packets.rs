@@ -136,7 +136,7 @@ impl Placed {
         distances: &[f64],
         interaction: SurfaceInteraction,
     ) {
-        let SurfaceInteraction { mut points, mut normals, mut unbent, sides, cosines, travelled } =
+        let SurfaceInteraction { mut points, mut normals, mut geometric_normals, sides, cosines, travelled } =
             interaction;
         let count = travelled.len();
         let mut own = ObjectSpaceRays::<N>::NONE;
@@ -148,14 +148,14 @@ impl Placed {
         let own_interaction = SurfaceInteraction {
             points: points.first(count),
             normals: normals.first(count),
-            unbent: unbent.first(count),
+            geometric_normals: geometric_normals.first(count),
             sides,
             cosines: &mut *cosines,
             travelled: &mut [0.0; N][..count],
         };
         let shape = self.body.shape.packets();
         shape.interact(cpu, own.rays(count), &own_distances[..count], own_interaction);
-        take_out(cpu, self, rays, distances, cosines, travelled, points, normals, unbent);
+        take_out(cpu, self, rays, distances, cosines, travelled, points, normals, geometric_normals);
     }
 }
 
@@ -206,13 +206,13 @@ impl PacketIntersect for Shape<Placed, ByPackets, ByPlacement> {
         if shape.is_of_the_notes() || !shape.finds_normals_by_rays() {
             return shape::interact_each(cpu, &self.shape, rays, distances, interaction);
         }
-        let SurfaceInteraction { mut points, mut normals, mut unbent, sides, cosines, travelled } =
+        let SurfaceInteraction { mut points, mut normals, mut geometric_normals, sides, cosines, travelled } =
             interaction;
         for part in split(travelled.len(), PART) {
             let interaction = SurfaceInteraction {
                 points: points.part(part.clone()),
                 normals: normals.part(part.clone()),
-                unbent: unbent.part(part.clone()),
+                geometric_normals: geometric_normals.part(part.clone()),
                 sides: &mut sides[part.clone()],
                 cosines: &mut cosines[part.clone()],
                 travelled: &mut travelled[part.clone()],

@@ -270,17 +270,17 @@ impl Hittable for Placed {
 }
 
 /// Tells whether a point in the world lies on a copy, up to an error in world units.
-fn touches(placed: &Placed, at: DVec3, error: f64) -> bool {
-    placed.body.shape.touches(placed.object_point(at), placed.object_error(at, error))
+fn is_on_surface(placed: &Placed, at: DVec3, error: f64) -> bool {
+    placed.body.shape.is_on_surface(placed.object_point(at), placed.object_error(at, error))
 }
 
 impl HitQueries for Shape<Placed, ByPackets, ByPlacement> {
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        touches(&self.shape, at, error)
+    fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
+        is_on_surface(&self.shape, at, error)
     }
 
-    fn holds(&self, at: DVec3, error: f64) -> Option<bool> {
-        self.shape.body.shape.holds(self.shape.object_point(at), self.shape.object_error(at, error))
+    fn contains(&self, at: DVec3, error: f64) -> Option<bool> {
+        self.shape.body.shape.contains(self.shape.object_point(at), self.shape.object_error(at, error))
     }
 
     fn facet(&self, at: DVec3, error: f64) -> Option<Facet> {

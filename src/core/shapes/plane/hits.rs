@@ -65,8 +65,8 @@ impl<A: Bounded> Flat for Plane<A> {
 }
 
 impl<A: Bounded> Certified for Plane<A> {
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        Plane::touches(self, at, error)
+    fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
+        Plane::is_on_surface(self, at, error)
     }
 
     fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<DoubleDouble> {

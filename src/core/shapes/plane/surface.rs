@@ -79,7 +79,7 @@ impl<A> Plane<A> {
     /// from the plane, which is at most 4 EPSILON of the terms: half an ulp each for three operations on each term, and
     /// for the normal.
     #[inline(always)]
-    pub fn touches(&self, at: DVec3, error: f64) -> bool {
+    pub fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
         let between = self.point - at;
         let size = (self.normal * between).abs().element_sum();
         self.normal.dot(between).abs() <= error + 4.0 * f64::EPSILON * size
@@ -186,7 +186,7 @@ impl<A> Equation for Plane<A> {
         dot(self.given_normal(), per_axis(|axis| at[axis] - N::constant(self.point[axis])))
     }
 
-    fn kept<N: Scalar>(&self, [_, _, z]: [N; 3]) -> N {
+    fn inside_trim<N: Scalar>(&self, [_, _, z]: [N; 3]) -> N {
         N::constant(self.max_z) - z
     }
 }

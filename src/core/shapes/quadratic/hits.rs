@@ -53,7 +53,7 @@ impl<A: Bounded> Bracketed for Quadric<A> {
     #[inline(always)]
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         let may_leave = range.origin_error > 0.0 && range.origin_side.is_none();
-        if may_leave && self.touches(ray.origin, range.origin_error) {
+        if may_leave && self.is_on_surface(ray.origin, range.origin_error) {
             return Bracket::UNKNOWN;
         }
         Quadric::t_bounds(self, ray, range)
@@ -74,7 +74,7 @@ impl<A> Equation for Quadric<A> {
         Quadric::value(self, at)
     }
 
-    fn kept<N: Scalar>(&self, at: [N; 3]) -> N {
+    fn inside_trim<N: Scalar>(&self, at: [N; 3]) -> N {
         self.inside_box(at)
     }
 }

@@ -54,7 +54,7 @@ impl Equation for ClassicRevolution {
         self.line.radius.cost() as usize
     }
 
-    fn kept<N: Scalar>(&self, [_, y, _]: [N; 3]) -> N {
+    fn inside_trim<N: Scalar>(&self, [_, y, _]: [N; 3]) -> N {
         y.min(N::constant(self.height) - y)
     }
 

@@ -29,7 +29,7 @@ pub struct InFrame<S> {
 }
 
 impl<S: Equation> Equation for InFrame<S> {
-    fn own<N: Scalar>(&self, line: Line<N>) -> Line<N> {
+    fn to_local<N: Scalar>(&self, line: Line<N>) -> Line<N> {
         self.frame.line(line)
     }
 
@@ -45,8 +45,8 @@ impl<S: Equation> Equation for InFrame<S> {
         self.surface.cost()
     }
 
-    fn kept<N: Scalar>(&self, at: [N; 3]) -> N {
-        self.surface.kept(at)
+    fn inside_trim<N: Scalar>(&self, at: [N; 3]) -> N {
+        self.surface.inside_trim(at)
     }
 
     fn extent(&self) -> [DVec3; 2] {
@@ -112,11 +112,11 @@ impl Hittable for InFrame<Revolution> {
 }
 
 impl Certified for InFrame<Revolution> {
-    fn touches(&self, at: DVec3, error: f64) -> bool {
+    fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
         // Transforming the point into the frame rounds it once more. `every_plugin_keeps_its_contract` in
         // `tests/shapes/contract.rs` tests that hits are touched.
         let moved = 8.0 * f64::EPSILON * (at - self.frame.origin).abs().max_element();
-        self.surface.touches(self.frame.point(at), error + moved)
+        self.surface.is_on_surface(self.frame.point(at), error + moved)
     }
 }
 
@@ -161,8 +161,8 @@ where
         if !ray.is_single() {
             return self.shape.surface.bracket(&self.shape.frame, ray, range);
         }
-        let touches = || self.touches(ray.origin, range.origin_error);
-        by_distance(ray, range, touches, |range| {
+        let is_on_surface = || self.is_on_surface(ray.origin, range.origin_error);
+        by_distance(ray, range, is_on_surface, |range| {
             let (distance, is_certain) = self.shape.surface.first_hit(&self.shape.frame, ray, range);
             is_certain.then_some(distance)
         })

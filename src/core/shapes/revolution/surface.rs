@@ -48,7 +48,7 @@ impl Revolution {
 
     /// Returns whether the surface may intersect the cube of half size `error` around a point. Beyond the surface's
     /// ends the profile may be anything, and is not evaluated.
-    pub fn touches(&self, at: DVec3, error: f64) -> bool {
+    pub fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
         let [x, y, z] = at.to_array().map(|place| Interval { low: place - error, high: place + error });
         let y = Interval { low: y.low.max(0.0), high: y.high.min(self.height) };
         y.low <= y.high && self.value([x, y, z]).has_zero()
@@ -114,7 +114,7 @@ impl Equation for Revolution {
         self.square.cost() as usize
     }
 
-    fn kept<N: Scalar>(&self, [_, y, _]: [N; 3]) -> N {
+    fn inside_trim<N: Scalar>(&self, [_, y, _]: [N; 3]) -> N {
         let below_the_top = N::constant(self.height) - y;
         y.min(below_the_top).min(self.profile.at(y))
     }

@@ -84,19 +84,19 @@ impl SolidPart {
     }
 
     /// Tells whether a point lies in a part; `None` where its surface may be within an error in world units.
-    fn holds(&self, part: usize, at: DVec3, error: f64) -> Option<bool> {
+    fn contains(&self, part: usize, at: DVec3, error: f64) -> Option<bool> {
         if let Some(Aabb { low, high }) = self.around[part]
             && ((low - error).cmpgt(at).any() || at.cmpgt(high + error).any())
         {
             return Some(false);
         }
-        self.parts[part].body.shape.holds(at, error)
+        self.parts[part].body.shape.contains(at, error)
     }
 
     /// Tells whether a hit of the part is the solid's; `None` where the surface of another part may be within an error in
     /// world units.
     fn is_on_solid(&self, at: DVec3, error: f64) -> Option<bool> {
-        self.tree.is_on_solid(&self.path, &mut |part| self.holds(part, at, error))
+        self.tree.is_on_solid(&self.path, &mut |part| self.contains(part, at, error))
     }
 
     /// Tells whether a hit of the part is the solid's where other surfaces within an error in world units lie in the plane of
@@ -108,7 +108,7 @@ impl SolidPart {
         let mut is_known = true;
         self.tree.holds(&mut |part| {
             if part != self.index {
-                let beside = self.holds(part, at, error).map(|holds| [holds; 2]);
+                let beside = self.contains(part, at, error).map(|holds| [holds; 2]);
                 let beside = beside.or_else(|| self.parts[part].body.shape.facet(at, error)?.beside(&own));
                 match beside {
                     Some(beside) => [outside[part], inside[part]] = beside,
@@ -128,7 +128,7 @@ impl SolidPart {
         let ahead = if ray.dir.dot(normal) < 0.0 { -ray.dir } else { ray.dir };
         let beside = |outward: DVec3, may_guess: bool| -> Option<bool> {
             let sides = [(step * outward, false), (-step * outward, true)].map(|(step, is_inside)| {
-                let inside = |part: usize| match self.holds(part, at + step, 0.0) {
+                let inside = |part: usize| match self.contains(part, at + step, 0.0) {
                     _ if part == self.index => Some(is_inside),
                     None if may_guess => Some(false),
                     holds => holds,
@@ -163,7 +163,7 @@ impl SolidPart {
             .is_none_or(|Aabb { low, high }| low.cmple(before).all() && before.cmple(high).all());
         is_near
             && distance > 2.0 * SHORTLY * size
-            && self.tree.holds(&mut |part| self.holds(part, before, ROUNDING * size)) == Some(true)
+            && self.tree.holds(&mut |part| self.contains(part, before, ROUNDING * size)) == Some(true)
     }
 
     /// Returns the distance of the first hit that is seen, and whether it is certain. `first` is the distance of the
@@ -240,8 +240,8 @@ impl SolidPart {
         if !ray.is_single() {
             return Bracket::UNKNOWN;
         }
-        let touches = || self.own().touches(ray.origin, range.origin_error);
-        by_distance(ray, range, touches, |range| {
+        let is_on_surface = || self.own().is_on_surface(ray.origin, range.origin_error);
+        by_distance(ray, range, is_on_surface, |range| {
             let (distance, is_certain) = self.first_hit(ray, range, first);
             is_certain.then_some(distance)
         })
@@ -314,12 +314,12 @@ impl Hittable for SolidPart {
 }
 
 impl HitQueries for Shape<SolidPart, ByPackets, ByParts> {
-    fn touches(&self, at: DVec3, error: f64) -> bool {
+    fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
         let is_near =
             self.shape.facts.bounds.is_none_or(|Aabb { low, high }| {
                 (low - error).cmple(at).all() && at.cmple(high + error).all()
             });
-        is_near && self.shape.own().touches(at, error)
+        is_near && self.shape.own().is_on_surface(at, error)
     }
 
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {

@@ -68,8 +68,8 @@ impl<A: Bounded> Flat for Triangle<A> {
 }
 
 impl<A: Bounded> Certified for Triangle<A> {
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        self.plane.touches(at, error)
+    fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
+        self.plane.is_on_surface(at, error)
     }
 
     fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
@@ -85,8 +85,8 @@ impl<A> Equation for Triangle<A> {
         dot(self.area_normal(), per_axis(|axis| at[axis] - N::constant(corner[axis])))
     }
 
-    fn kept<N: Scalar>(&self, at: [N; 3]) -> N {
-        self.plane.kept(at).min(self.inside(at))
+    fn inside_trim<N: Scalar>(&self, at: [N; 3]) -> N {
+        self.plane.inside_trim(at).min(self.inside(at))
     }
     fn uv_bounds(&self, at: [Interval; 3]) -> Option<[Interval; 2]> {
         Some(uv::bounds_on_triangle(self.corners, at))

@@ -27,7 +27,7 @@ pub(super) fn first_hit<C: Coefficient>(
     line: &Line<Interval<C::End>>,
 ) -> Option<HitEnclosure<C::End>> {
     let zero = C::End::of(0.0);
-    let line = shape.own(*line);
+    let line = shape.to_local(*line);
     let [low, high] = shape.extent();
     let Some((from, to)) = line.clip(low, high) else { return Some(HitEnclosure::Misses) };
     if !to.is_finite() {
@@ -78,7 +78,7 @@ pub(super) fn first_hit<C: Coefficient>(
 /// numbers of the ray are no fractions of so few digits.
 pub(super) fn exact_hit(shape: &impl Equation, sight: &Sight) -> Option<HitEnclosure<f256>> {
     let field = shape.field()?;
-    let line = shape.own(sight.line::<Fine>());
+    let line = shape.to_local(sight.line::<Fine>());
     let [origin, dir] = exact_line(&line)?;
     let polynomial = field.exactly_along(&origin, &dir)?;
     let near = Line { origin: line.origin.map(Interval::wide), dir: line.dir.map(Interval::wide) };

@@ -24,7 +24,7 @@ pub(super) fn first_along<F: Float>(
     leaves: bool,
     pieces: usize,
 ) -> HitEnclosure<F> {
-    let line = shape.own(*line);
+    let line = shape.to_local(*line);
     if shape.is_quadratic() {
         closed::first_hit(shape, &line, leaves)
     } else {

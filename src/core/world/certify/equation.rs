@@ -18,7 +18,7 @@ pub trait Equation {
     const IS_QUADRATIC: bool = false;
 
     /// Transforms a line into the coordinates that the equation is written in; by default, those are world coordinates.
-    fn own<N: Scalar>(&self, line: Line<N>) -> Line<N> {
+    fn to_local<N: Scalar>(&self, line: Line<N>) -> Line<N> {
         line
     }
 
@@ -55,7 +55,7 @@ pub trait Equation {
 
     /// Returns a positive number where the surface is kept, 0 at its edge, which belongs to it, and a negative number
     /// where it is cut off.
-    fn kept<N: Scalar>(&self, _at: [N; 3]) -> N {
+    fn inside_trim<N: Scalar>(&self, _at: [N; 3]) -> N {
         N::constant(1.0)
     }
 
@@ -74,7 +74,7 @@ pub(super) trait Values<N: Scalar> {
     fn is_quadratic(&self) -> bool;
 
     /// Transforms a line into the coordinates that the equation is written in.
-    fn own(&self, line: Line<N>) -> Line<N>;
+    fn to_local(&self, line: Line<N>) -> Line<N>;
 
     /// Returns [`Equation::field`].
     fn field(&self) -> Option<&Field>;
@@ -89,7 +89,7 @@ pub(super) trait Values<N: Scalar> {
     fn bend(&self, at: [Jet<N>; 3]) -> Jet<N>;
 
     /// Returns a positive number where the surface is kept, and a negative one where it is cut off.
-    fn kept(&self, at: [N; 3]) -> N;
+    fn inside_trim(&self, at: [N; 3]) -> N;
 
     /// Returns [`Equation::extent`].
     fn extent(&self) -> [DVec3; 2];
@@ -100,8 +100,8 @@ impl<E: Equation, N: Scalar> Values<N> for E {
         E::IS_QUADRATIC
     }
 
-    fn own(&self, line: Line<N>) -> Line<N> {
-        Equation::own(self, line)
+    fn to_local(&self, line: Line<N>) -> Line<N> {
+        Equation::to_local(self, line)
     }
 
     fn field(&self) -> Option<&Field> {
@@ -120,8 +120,8 @@ impl<E: Equation, N: Scalar> Values<N> for E {
         Equation::value(self, at)
     }
 
-    fn kept(&self, at: [N; 3]) -> N {
-        Equation::kept(self, at)
+    fn inside_trim(&self, at: [N; 3]) -> N {
+        Equation::inside_trim(self, at)
     }
 
     fn extent(&self) -> [DVec3; 2] {
@@ -148,7 +148,7 @@ pub(super) fn is_kept<F: Float>(
     line: &Line<Interval<F>>,
     distance: Interval<F>,
 ) -> Option<bool> {
-    let kept = shape.kept(line.at(distance));
+    let kept = shape.inside_trim(line.at(distance));
     // The edge belongs to the surface.
     if kept.low >= F::of(0.0) {
         Some(true)

@@ -60,7 +60,7 @@ impl<E: Equation> OverFootprint for E {
 
     fn slope(&self, at: [Dual<Affine>; 3], _part: usize) -> Dual<Affine> {
         let point = Line { origin: at, dir: [Dual::constant(0.0); 3] };
-        self.value(self.own(point).origin)
+        self.value(self.to_local(point).origin)
     }
 }
 
@@ -81,7 +81,7 @@ fn hits_along(
     leaves: bool,
     met: &mut dyn FnMut(FootprintHit),
 ) {
-    let line = shape.own(*line);
+    let line = shape.to_local(*line);
     if shape.is_quadratic() {
         closed(shape, &line, leaves, met);
     } else {
@@ -91,7 +91,7 @@ fn hits_along(
 
 /// Tells whether the surface is kept at these t of all lines; `None` where that is uncertain.
 fn is_kept(shape: &dyn Values<Affine>, line: &Line<Affine>, at: Affine) -> Option<bool> {
-    let kept = shape.kept(line.at(at)).range();
+    let kept = shape.inside_trim(line.at(at)).range();
     if kept.low >= 0.0 {
         Some(true)
     } else if kept.has_zero() {

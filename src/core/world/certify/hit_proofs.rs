@@ -61,12 +61,12 @@ impl<E: Equation, F: Precise> HitProofs<F> for E {
 
     fn slope(&self, at: [Dual<Interval<F>>; 3], _part: usize) -> Dual<Interval<F>> {
         let point = Line { origin: at, dir: [Dual::constant(0.0); 3] };
-        self.value(self.own(point).origin)
+        self.value(self.to_local(point).origin)
     }
 
     fn uv_bounds(&self, at: [Interval<F>; 3], _part: usize) -> Option<[Interval; 2]> {
         let point = Line { origin: at.map(Interval::coarse), dir: [Interval::constant(0.0); 3] };
-        Equation::uv_bounds(self, self.own(point).origin)
+        Equation::uv_bounds(self, self.to_local(point).origin)
     }
 }
 

@@ -137,9 +137,9 @@ pub(crate) fn first_hit_in(bounds: Option<Aabb>, line: &Line<Interval>) -> HitEn
 
 /// Tells whether a point lies inside of a closed surface, where the equation is below 0; `None` where the surface may pass
 /// through the box that extends `error` world units from the point along each axis.
-pub fn holds(shape: &impl Equation, at: DVec3, error: f64) -> Option<bool> {
+pub fn contains(shape: &impl Equation, at: DVec3, error: f64) -> Option<bool> {
     let origin = at.to_array().map(|place| Interval { low: place - error, high: place + error });
-    let Line { origin, .. } = shape.own(Line { origin, dir: [Interval::constant(0.0); 3] });
+    let Line { origin, .. } = shape.to_local(Line { origin, dir: [Interval::constant(0.0); 3] });
     let [low, high] = shape.extent();
     if (0..3).any(|axis| origin[axis].high < low[axis] || origin[axis].low > high[axis]) {
         return Some(false);

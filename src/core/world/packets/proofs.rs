@@ -16,10 +16,10 @@ use tabray_exact::roots::Method;
 pub trait HitQueries: Send + Sync {
     /// Tells whether a point lies on the surface, up to an error in world units and to the rounding of the shape's own
     /// numbers. Rays that start at such a point leave the shape.
-    fn touches(&self, at: DVec3, error: f64) -> bool;
+    fn is_on_surface(&self, at: DVec3, error: f64) -> bool;
 
     /// Tells whether a point lies in a closed shape; `None` where the surface may be within an error in world units.
-    fn holds(&self, _at: DVec3, _error: f64) -> Option<bool> {
+    fn contains(&self, _at: DVec3, _error: f64) -> Option<bool> {
         None
     }
 
@@ -58,7 +58,7 @@ pub trait HitQueries: Send + Sync {
 }
 
 impl<T: Hittable, S> HitQueries for Shape<T, S, Unproven> {
-    fn touches(&self, at: DVec3, error: f64) -> bool {
+    fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
         is_met_within(&self.shape, at, error)
     }
 
@@ -83,7 +83,7 @@ impl<T: Hittable + Equation, S> HitQueries for Shape<T, S, ByFormula> {
         true
     }
 
-    fn touches(&self, at: DVec3, error: f64) -> bool {
+    fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
         is_met_within(&self.shape, at, error)
     }
 
@@ -104,12 +104,12 @@ impl<T: Hittable + Equation, S> HitQueries for Shape<T, S, ByFormula> {
 macro_rules! by_equation {
     ($Bound:ident, $Strategy:ty, $($more:tt)*) => {
         impl<T: $Bound, S> HitQueries for Shape<T, S, $Strategy> {
-            fn touches(&self, at: DVec3, error: f64) -> bool {
-                self.shape.touches(at, error)
+            fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
+                self.shape.is_on_surface(at, error)
             }
 
-            fn holds(&self, at: DVec3, error: f64) -> Option<bool> {
-                certify::holds(&self.shape, at, error)
+            fn contains(&self, at: DVec3, error: f64) -> Option<bool> {
+                certify::contains(&self.shape, at, error)
             }
 
             fn facet(&self, at: DVec3, error: f64) -> Option<Facet> {

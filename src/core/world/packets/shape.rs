@@ -188,8 +188,8 @@ where
         if P::IS_PLAIN {
             return Bracket::exactly(self.shape.distance(ray, range));
         }
-        let touches = || self.touches(ray.origin, range.origin_error);
-        by_distance(ray, range, touches, |range| Some(self.shape.distance(ray, range)))
+        let is_on_surface = || self.is_on_surface(ray.origin, range.origin_error);
+        by_distance(ray, range, is_on_surface, |range| Some(self.shape.distance(ray, range)))
     }
 
     #[inline(always)]
@@ -199,16 +199,16 @@ where
 }
 
 /// Returns the bracket of a shape that has no quicker one than its distance. The bracket is unknown where rounding
-/// decides the distance. `touches` tells whether the shape touches the ray's origin within the range's `origin_error`.
+/// decides the distance. `is_on_surface` tells whether the shape touches the ray's origin within the range's `origin_error`.
 #[inline(always)]
 pub fn by_distance(
     ray: &Ray,
     range: &RayRange,
-    touches: impl FnOnce() -> bool,
+    is_on_surface: impl FnOnce() -> bool,
     distance: impl FnOnce(&RayRange) -> Option<f64>,
 ) -> Bracket {
     let RayRange { far, origin_side, origin_error, .. } = *range;
-    if origin_side.is_none() && origin_error > 0.0 && touches() {
+    if origin_side.is_none() && origin_error > 0.0 && is_on_surface() {
         return Bracket::UNKNOWN;
     }
     let close = if far < MISS { close(ray, far) } else { 0.0 };
@@ -269,8 +269,8 @@ pub(crate) fn interact_each<T: Hittable>(
     distances: &[f64],
     interaction: SurfaceInteraction,
 ) {
-    let SurfaceInteraction { points, normals, unbent, sides, cosines, travelled } = interaction;
-    interact(cpu, shape, rays, distances, sides, cosines, travelled, points, normals, unbent);
+    let SurfaceInteraction { points, normals, geometric_normals, sides, cosines, travelled } = interaction;
+    interact(cpu, shape, rays, distances, sides, cosines, travelled, points, normals, geometric_normals);
 }
 
 kernels! {
@@ -278,10 +278,10 @@ kernels! {
     fn closest_hits[T: ScalarIntersect](shape: &T, rays: RayPacket, id: u64, nearest: Nearest) -> bool {
         let (count, rays) = (rays.len(), rays.first(rays.len()));
         let rays = RayPacket { drift: RayError::NONE, ..rays };
-        let Nearest { near, far, met, doubt } = nearest;
+        let Nearest { near, far, hit_ids, doubt } = nearest;
         match rays.leaving {
-            None => merge_nearest(count, &ShapeBounds { shape, rays }, id, near, far, met, doubt),
-            Some(sides) => merge_nearest(count, &LeavingBounds::new(shape, rays, sides), id, near, far, met, doubt),
+            None => merge_nearest(count, &ShapeBounds { shape, rays }, id, near, far, hit_ids, doubt),
+            Some(sides) => merge_nearest(count, &LeavingBounds::new(shape, rays, sides), id, near, far, hit_ids, doubt),
         }
     }
 
@@ -313,12 +313,12 @@ kernels! {
     /// Computes the arrays of [`interact_each`].
     fn interact[T: Hittable](
         shape: &T, rays: RayPacket, distances: &[f64], sides: &mut [Side], cosines: &mut [f64], travelled: &mut [f64]
-    ) => points, normals, unbent {
+    ) => points, normals, geometric_normals {
         let (count, Facts { is_two_sided, is_smooth, .. }) = (travelled.len(), shape.facts());
         let (rays, distances) = (rays.first(count), &distances[..count]);
         let (sides, cosines) = (&mut sides[..count], &mut cosines[..count]);
         let (mut points, mut normals) = (points.first(count), normals.first(count));
-        let mut unbent = unbent.first(count);
+        let mut geometric_normals = geometric_normals.first(count);
         for lane in 0..count {
             let ray = rays.get(lane);
             let point = ray.at(distances[lane]);
@@ -327,7 +327,7 @@ kernels! {
             points.set(lane, point);
             normals.set(lane, if is_smooth { shape.shading_normal(point, normal) } else { normal });
             if is_smooth {
-                unbent.set(lane, normal);
+                geometric_normals.set(lane, normal);
             }
             travelled[lane] += distances[lane];
         }

@@ -40,7 +40,7 @@ impl Scene {
         let farthest = match model.camera.value.rules {
             Rules::Notes => MAX_DIST,
             // The coordinates of the scene's points bound what matters of the length of a path.
-            Rules::Free => model.camera.value.reach(),
+            Rules::Free => model.camera.value.max_coordinate(),
         };
         let lies = |of: usize, object: usize| {
             if is_few { lies(&objects[of], &objects[object], farthest) } else { [true; 2] }

@@ -3,7 +3,7 @@
 use super::hull::Hull;
 use crate::geometry::aabb::Aabb;
 use crate::scene::model::Object;
-use crate::world::film::Film;
+use crate::world::sensor::Sensor;
 use glam::DVec3;
 use tabray_exact::scalar::per_axis;
 
@@ -21,7 +21,7 @@ pub(super) struct View {
 impl View {
     /// Returns the primary rays of an image, with all samples of its pixels; `None` where they do not start at one point,
     /// or are not known to be within half of space.
-    pub fn of(camera: &Film, margin: f64) -> Option<Self> {
+    pub fn of(camera: &Sensor, margin: f64) -> Option<Self> {
         let apex = camera.origins().middle;
         let dirs = camera.camera.corners(camera.pixels, margin)?;
         let is_sound = apex.is_finite() && dirs.iter().all(|dir| dir.is_finite());

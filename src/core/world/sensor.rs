@@ -1,4 +1,4 @@
-//! The film: what a camera's image is recorded on, and from a pixel to its primary rays.
+//! The sensor: what a camera's image is recorded on, and from a pixel to its primary rays.
 
 use crate::geometry::image_point::ImagePoint;
 use crate::geometry::ray::Ray;
@@ -18,9 +18,9 @@ use tabray_exact::affine::Affine;
 /// Any [`Camera`](crate::world::camera::Camera): `Arc::new(camera)` makes one.
 pub type AnyCamera = Arc<dyn PacketCamera>;
 
-/// The film of a camera: the image's size, its samples and its exposure, and the camera that projects onto it.
+/// The sensor of a camera: the image's size, its samples and its exposure, and the camera that projects onto it.
 #[derive(Clone, Debug)]
-pub struct Film {
+pub struct Sensor {
     /// The camera itself: which ray is seen at each place of the image.
     pub camera: AnyCamera,
     /// The image's width and height in pixels.
@@ -48,26 +48,26 @@ pub struct Film {
     pub rules: Rules,
 }
 
-/// The film of the notes' camera, without pixels.
-impl Default for Film {
+/// The sensor of the notes' camera, without pixels.
+impl Default for Sensor {
     fn default() -> Self {
         Self::new(Arc::new(Pinhole::default()), [0; 2])
     }
 }
 
-/// How many primary rays a pixel takes in adaptive sampling: [`Film::samples`], and then twice as many again and again,
+/// How many primary rays a pixel takes in adaptive sampling: [`Sensor::samples`], and then twice as many again and again,
 /// each time the next ones of the sampler's sequence, until its estimated error is small enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Adaptive {
-    /// The maximum number of primary rays per pixel: [`Film::samples`] times a power of two.
+    /// The maximum number of primary rays per pixel: [`Sensor::samples`] times a power of two.
     pub most: u32,
     /// The error of a pixel's colour, where 1 is white, at which its estimate must arrive; `None` if the samples are to
     /// lower the error of the whole image.
     pub error: Option<f64>,
 }
 
-impl Film {
-    /// Makes the film of a camera, with one sample for each pixel.
+impl Sensor {
+    /// Makes the sensor of a camera, with one sample for each pixel.
     pub fn new(camera: AnyCamera, pixels: [usize; 2]) -> Self {
         Self {
             camera,
@@ -211,7 +211,7 @@ impl Film {
     }
 
     /// Returns the largest magnitude of a coordinate of any primary ray's origin, in world units.
-    pub(crate) fn reach(&self) -> f64 {
+    pub(crate) fn max_coordinate(&self) -> f64 {
         let Origins { middle, radius } = self.origins();
         middle.abs().max_element() + radius
     }
