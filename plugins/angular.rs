@@ -13,8 +13,8 @@ inventory::submit! {
     Entity::shader("angular", "hues around the centre, independent of the material", &[TABLE], |args| {
         let hues = rainbow::palette(args, args.get(&BRIGHTNESS));
         Ok(match hues.are_of_the_notes() {
-            true => Paint::new(move |anchor| Angular::<true> { hues, anchor }),
-            false => Paint::new(move |anchor| Angular::<false> { hues, anchor }),
+            true => ShaderFactory::new(move |anchor| Angular::<true> { hues, anchor }),
+            false => ShaderFactory::new(move |anchor| Angular::<false> { hues, anchor }),
         })
     })
     .on_sphere(0)

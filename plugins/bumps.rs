@@ -4,7 +4,7 @@ use tabray::prelude::*;
 
 static HEIGHT: Pparm<Field> =
     Pparm::required("height", "how far the surface seems to be raised at each point, in world units");
-static SHADER: Pparm<Option<Paint>> =
+static SHADER: Pparm<Option<ShaderFactory>> =
     Pparm::or("shader", "the shader that gives the colours, in place of the material", None);
 
 const TABLE: Table = &[&HEIGHT, &SHADER];
@@ -12,7 +12,7 @@ const TABLE: Table = &[&HEIGHT, &SHADER];
 inventory::submit! {
     Entity::shader("bumps", "bumps and waves, by a formula of their height", &[TABLE], |args| {
         let (height, colours) = (args.get(&HEIGHT), args.get(&SHADER).unwrap_or_default());
-        Ok(Paint::new(move |anchor| Bumps { height: height.clone(), colours: colours.on(anchor) }))
+        Ok(ShaderFactory::new(move |anchor| Bumps { height: height.clone(), colours: colours.on(anchor) }))
     })
 }
 

@@ -13,7 +13,7 @@ const TABLE: Table = &[&SQUARES, &ALTMATERIAL];
 inventory::submit! {
     Entity::shader("checker", "squares in u and v, of the material and of another one in turn", &[TABLE], |args| {
         let (squares, other) = (args.get(&SQUARES).map(|count| count as f64), args.get(&ALTMATERIAL));
-        Ok(Paint::new(move |_| Checker { squares: DVec2::from(squares), other: other.clone() }))
+        Ok(ShaderFactory::new(move |_| Checker { squares: DVec2::from(squares), other: other.clone() }))
     })
 }
 

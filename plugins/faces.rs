@@ -16,7 +16,7 @@ const TABLE: Table = &[&COLOURS as &dyn Row];
 inventory::submit! {
     Entity::shader("faces", "a colour for each face of a box, a prism or a mesh", &[TABLE], |args| {
         let List(colours) = args.get(&COLOURS);
-        Ok(Paint::new(move |_| Faces { colours: colours.clone() }))
+        Ok(ShaderFactory::new(move |_| Faces { colours: colours.clone() }))
     })
 }
 

@@ -20,7 +20,7 @@ inventory::submit! {
             diffuse: args.get(&DIFFUSE),
             specular: args.get(&SPECULAR),
         };
-        Ok(Paint::new(move |_| look.clone()))
+        Ok(ShaderFactory::new(move |_| look.clone()))
     })
 }
 

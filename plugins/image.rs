@@ -15,7 +15,7 @@ inventory::submit! {
     Entity::shader("image", "an image on a surface, by its u and v", &[TABLE], |args| {
         let (texture, smooth) = (args.get(&TEXTURE), args.get(&SMOOTH));
         let repeat = DVec2::from(args.get(&REPEAT).map(|count| count as f64));
-        Ok(Paint::new(move |_| Image { texture: texture.clone(), repeat, smooth }))
+        Ok(ShaderFactory::new(move |_| Image { texture: texture.clone(), repeat, smooth }))
     })
 }
 

@@ -23,9 +23,9 @@ inventory::submit! {
     Entity::shader("rainbow", "hues around a point, independent of the material", &[TABLE], |args| {
         let (hues, axes) = (palette(args, args.get(&BRIGHTNESS)), args.get(&ON).axes());
         Ok(if hues.are_of_the_notes() && axes == [0, 1] {
-            Paint::new(move |anchor| Rainbow::<true> { hues, axes, anchor })
+            ShaderFactory::new(move |anchor| Rainbow::<true> { hues, axes, anchor })
         } else {
-            Paint::new(move |anchor| Rainbow::<false> { hues, axes, anchor })
+            ShaderFactory::new(move |anchor| Rainbow::<false> { hues, axes, anchor })
         })
     })
     .on_plane(1)

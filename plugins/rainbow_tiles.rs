@@ -14,8 +14,8 @@ inventory::submit! {
     Entity::shader("rainbow_tiles", "tiles along x and z: the material's colour and hues around a point in turn", &[TABLE], |args| {
         let (grid, hues) = (Grid::new(args), rainbow::palette(args, args.get(&BRIGHTNESS)));
         Ok(match hues.are_of_the_notes() {
-            true => Paint::new(move |anchor| RainbowTiles::<true> { grid, hues, anchor }),
-            false => Paint::new(move |anchor| RainbowTiles::<false> { grid, hues, anchor }),
+            true => ShaderFactory::new(move |anchor| RainbowTiles::<true> { grid, hues, anchor }),
+            false => ShaderFactory::new(move |anchor| RainbowTiles::<false> { grid, hues, anchor }),
         })
     })
     .on_plane(2)

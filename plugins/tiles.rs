@@ -12,8 +12,8 @@ inventory::submit! {
     Entity::shader("tiles", "tiles along x and z: the material's colour without red and without blue in turn", &[TABLE], |args| {
         let (grid, axes) = (Grid::new(args), args.get(&ON).axes());
         Ok(match args.get(&ON) {
-            Wall::Floor => Paint::new(move |_| Tiles::<true> { grid, axes }),
-            _ => Paint::new(move |_| Tiles::<false> { grid, axes }),
+            Wall::Floor => ShaderFactory::new(move |_| Tiles::<true> { grid, axes }),
+            _ => ShaderFactory::new(move |_| Tiles::<false> { grid, axes }),
         })
     })
     .on_plane(0)

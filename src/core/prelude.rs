@@ -16,7 +16,7 @@ pub use inventory;
 pub use crate::world::accuracy::{Accuracy, AccuracyTag, Bounded, Classic, Draft, Exact, Strict};
 pub use crate::world::any_shape::AnyShape;
 pub use crate::world::background::Background;
-pub use crate::world::body::{AnyShader, Body, NamedBody, Paint, Warning};
+pub use crate::world::body::{AnyShader, Body, NamedBody, ShaderFactory, Warning};
 pub use crate::world::camera::{Camera, Origins, Projected};
 pub use crate::world::emitter::{self, Emitter, Extent, LightSample};
 pub use crate::world::hittable::{Bracketed, Certified, Facts, Hittable, Shape, Sides};

@@ -407,7 +407,7 @@ const STRIPES: &str = "//! Stripes, as wide as a tenth of the anchor's unit.
 use tabray::prelude::*;
 
 inventory::submit! {
-    Entity::shader(\"stripes\", \"stripes across y\", &[], |_| Ok(Paint::new(Stripes)))
+    Entity::shader(\"stripes\", \"stripes across y\", &[], |_| Ok(ShaderFactory::new(Stripes)))
 }
 
 struct Stripes(Anchor);

@@ -2,7 +2,7 @@
 
 use crate::scene::pparm::{Pparm, Row, Table};
 use crate::world::accuracy::Accuracy;
-use crate::world::body::Paint;
+use crate::world::body::ShaderFactory;
 use crate::world::display::{Tone, Transfer};
 use crate::world::material::Material;
 use crate::world::rules::{Falloff, Rules};
@@ -22,7 +22,7 @@ pub(super) static MATERIAL_OF_ALL: Pparm<Option<Arc<Material>>> =
 pub(super) const OF_OBJECTS: Table = &[&MATERIAL_OF_ALL];
 
 /// An object whose own table has a `shader` has no other.
-pub(super) static SHADER: Pparm<Option<Paint>> = Pparm::or(
+pub(super) static SHADER: Pparm<Option<ShaderFactory>> = Pparm::or(
     "shader",
     "the shader that gives the look, defined earlier in the scene, or a type of shader",
     None,

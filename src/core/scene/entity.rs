@@ -12,7 +12,7 @@ use crate::scene::value::{Datum, Type};
 use crate::text;
 use crate::world::accuracy::Accuracy;
 use crate::world::background::AnyBackground;
-use crate::world::body::{AnyLight, Body, Paint};
+use crate::world::body::{AnyLight, Body, ShaderFactory};
 use crate::world::lamp::Lamp;
 use crate::world::material::Material;
 use crate::world::rules::{Fading, Rules};
@@ -67,7 +67,7 @@ pub enum Construct {
     /// Makes a texture.
     Texture(fn(&Args) -> Result<Texture, Refusal>),
     /// Makes a shader, which objects name.
-    Shader(fn(&Args) -> Result<Paint, Refusal>),
+    Shader(fn(&Args) -> Result<ShaderFactory, Refusal>),
     /// Makes an object's shape and, if it has one, its shader.
     Object(fn(&Args) -> Result<Body, Refusal>),
     /// Makes a light.
@@ -117,7 +117,7 @@ impl Entity {
         name: &'static str,
         meaning: &'static str,
         tables: &'static [Table],
-        construct: fn(&Args) -> Result<Paint, Refusal>,
+        construct: fn(&Args) -> Result<ShaderFactory, Refusal>,
     ) -> Self {
         Self::new(name, meaning, tables, Construct::Shader(construct))
     }

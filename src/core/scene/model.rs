@@ -6,7 +6,7 @@ use crate::scene::store::Record;
 use crate::scene::value::Type;
 use crate::world::any_shape::AnyShape;
 use crate::world::background::Background;
-use crate::world::body::{AnyShader, NamedBody, Paint};
+use crate::world::body::{AnyShader, NamedBody, ShaderFactory};
 use crate::world::lamp::Lamp;
 use crate::world::material::{Material, Rgb};
 use crate::world::sensor::Sensor;
@@ -26,7 +26,7 @@ pub struct Model {
     /// The textures, in the order of the scene.
     pub textures: Vec<Item<Arc<Texture>>>,
     /// The shaders, in the order of the scene.
-    pub shaders: Vec<Item<Paint>>,
+    pub shaders: Vec<Item<ShaderFactory>>,
     /// The visible objects, in the order of the scene, lights that are seen among them.
     pub objects: Vec<Object>,
     /// The objects that other entities refer to, in the order of the scene: they are seen only where these put them.

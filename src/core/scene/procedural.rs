@@ -8,13 +8,13 @@ use crate::scene::counts::Counts;
 use crate::scene::entity::{Args, Construct, Entity, Refusal};
 use crate::scene::kind::Kind;
 use crate::scene::value::{Datum, Type, Value};
-use crate::world::body::{Body, Paint};
+use crate::world::body::{Body, ShaderFactory};
 use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock};
 
 /// Returns the shader that a type of shader stands for, with its defaults; `None` where an attribute has none.
-pub fn of_type(name: &str) -> Option<&'static Paint> {
-    static PAINTS: LazyLock<BTreeMap<&str, Paint>> = LazyLock::new(|| {
+pub fn of_type(name: &str) -> Option<&'static ShaderFactory> {
+    static PAINTS: LazyLock<BTreeMap<&str, ShaderFactory>> = LazyLock::new(|| {
         let made = |entity: &'static Entity| {
             let Construct::Shader(construct) = entity.construct else { return None };
             let paint = construct(&Args::blank(entity, Arc::default())).ok()?;
@@ -58,7 +58,7 @@ fn has_defaults(entity: &Entity) -> bool {
 #[derive(Clone, Debug, PartialEq)]
 pub enum ByNumber<const ON: usize> {
     /// The shader that a scene chooses.
-    Paint(Paint),
+    ShaderFactory(ShaderFactory),
     /// The type of shader of this number, as a default.
     Number(i64),
 }
@@ -93,7 +93,7 @@ impl<const ON: usize> Value for ByNumber<ON> {
 
     fn to_datum(&self) -> Datum {
         match self {
-            Self::Paint(paint) => paint.to_datum(),
+            Self::ShaderFactory(paint) => paint.to_datum(),
             Self::Number(number) => {
                 let mut types = ShaderType::<ON>::all().into_iter().map(|shader| shader.option());
                 let numbered = types.find(|shader| shader.number == Some(*number));
@@ -104,8 +104,8 @@ impl<const ON: usize> Value for ByNumber<ON> {
 
     fn from_datum(datum: &Datum) -> Option<Self> {
         match datum {
-            Datum::Choice(choice) => of_type(choice.name).cloned().map(Self::Paint),
-            datum => Paint::from_datum(datum).map(Self::Paint),
+            Datum::Choice(choice) => of_type(choice.name).cloned().map(Self::ShaderFactory),
+            datum => ShaderFactory::from_datum(datum).map(Self::ShaderFactory),
         }
     }
 }

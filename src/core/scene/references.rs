@@ -2,7 +2,7 @@
 
 use crate::scene::kind::Kind;
 use crate::scene::value::{Datum, Type, one_word};
-use crate::world::body::{NamedBody, Paint};
+use crate::world::body::{NamedBody, ShaderFactory};
 use crate::world::material::Material;
 use crate::world::texture::Texture;
 use std::sync::Arc;
@@ -30,7 +30,7 @@ one_word!(
 
 one_word!(
     /// A shader, which a scene refers to by its name.
-    Paint, Type::Name(Kind::Shader),
+    ShaderFactory, Type::Name(Kind::Shader),
     paint => Datum::Shader { name: Arc::from(""), paint: paint.clone() },
     Datum::Shader { paint, .. } => Some(paint.clone())
 );

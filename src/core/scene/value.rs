@@ -3,7 +3,7 @@
 use crate::scene::choice::{Choice, ChoiceName, Choices};
 use crate::scene::counts::Counts;
 use crate::scene::kind::Kind;
-use crate::world::body::{NamedBody, Paint};
+use crate::world::body::{NamedBody, ShaderFactory};
 use crate::world::material::{Material, Rgb};
 use crate::world::texture::Texture;
 use glam::{DVec2, DVec3};
@@ -76,7 +76,7 @@ pub enum Datum {
         /// The name that the scene gives it.
         name: Arc<str>,
         /// The shader of this name.
-        paint: Paint,
+        paint: ShaderFactory,
     },
     /// One of several alternatives.
     Choice(ChoiceName),

@@ -15,10 +15,10 @@ pub type AnyShader = Box<dyn PacketShader>;
 
 /// What a shader entity of a scene makes: a function that makes the shader of each object that names the entity.
 #[derive(Clone)]
-pub struct Paint(Arc<dyn Fn(Anchor) -> AnyShader + Send + Sync>);
+pub struct ShaderFactory(Arc<dyn Fn(Anchor) -> AnyShader + Send + Sync>);
 
-impl Paint {
-    /// Makes a paint of a function, which is called for each object with the origin and the unit of length of the
+impl ShaderFactory {
+    /// Makes a factory of a function, which is called for each object with the origin and the unit of length of the
     /// pattern on it.
     pub fn new<S: Shader + 'static>(make: impl Fn(Anchor) -> S + Send + Sync + 'static) -> Self {
         Self(Arc::new(move |anchor| Box::new(make(anchor))))
@@ -30,23 +30,23 @@ impl Paint {
     }
 }
 
-/// The paint that leaves an object with the reflectivities of its material.
-impl Default for Paint {
+/// The factory that leaves an object with the reflectivities of its material.
+impl Default for ShaderFactory {
     fn default() -> Self {
         Self::new(|_| Plain)
     }
 }
 
-/// All paints are equal: a scene tells them apart by their names.
-impl PartialEq for Paint {
+/// All factories are equal: a scene tells them apart by their names.
+impl PartialEq for ShaderFactory {
     fn eq(&self, _other: &Self) -> bool {
         true
     }
 }
 
-impl fmt::Debug for Paint {
+impl fmt::Debug for ShaderFactory {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Paint")
+        f.write_str("ShaderFactory")
     }
 }
 
@@ -198,7 +198,7 @@ impl Body {
     }
 
     /// Gives the object the look of a shader, in place of its own.
-    pub fn painted(mut self, paint: &Paint) -> Self {
+    pub fn painted(mut self, paint: &ShaderFactory) -> Self {
         self.more = self.more.into_iter().map(|one| one.painted(paint)).collect();
         let shader = paint.on(self.anchor());
         let shader = match &self.to_object_space {

@@ -31,7 +31,7 @@ pub mod texture;
 pub use accuracy::{Accuracy, AccuracyTag, Bounded, Classic, Draft, Exact, Strict};
 pub use any_shape::AnyShape;
 pub use background::{AnyBackground, Background};
-pub use body::{AnyLight, AnyShader, Body, NamedBody, Paint, Part, Solid, Warning};
+pub use body::{AnyLight, AnyShader, Body, NamedBody, Part, ShaderFactory, Solid, Warning};
 pub use camera::{Camera, Origins, Projected};
 pub use emitter::{Emitter, Extent, LightSample};
 pub use hittable::{Bracketed, Certified, Facts, Hittable, Searched, Shape, Sides};

@@ -26,7 +26,7 @@ use tabray_core::scene::store::Store;
 use tabray_core::scene::value::Datum;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_core::world::background::Background;
-use tabray_core::world::body::{NamedBody, Paint};
+use tabray_core::world::body::{NamedBody, ShaderFactory};
 use tabray_core::world::lamp::Lamp;
 use tabray_core::world::material::Material;
 use tabray_core::world::rules::Rules;
@@ -122,7 +122,7 @@ pub(super) struct Check<'r, 't> {
     pub(super) textures: Vec<(usize, Arc<Texture>)>,
     /// The textures by the paths of their files.
     files: HashMap<PathBuf, Arc<Texture>>,
-    pub(super) shaders: Vec<(usize, Paint)>,
+    pub(super) shaders: Vec<(usize, ShaderFactory)>,
     /// How many more bytes the images of textures may take.
     pub(super) texture_memory: u64,
     pub(super) objects: Vec<Object>,

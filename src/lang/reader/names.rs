@@ -17,7 +17,7 @@ use tabray_core::scene::procedural;
 use tabray_core::scene::store::Store;
 use tabray_core::scene::value::{Datum, Value};
 use tabray_core::text::{self, nearest};
-use tabray_core::world::body::{NamedBody, Paint};
+use tabray_core::world::body::{NamedBody, ShaderFactory};
 
 /// The scope in which a name must be unique: the entity type for an object, and an empty string, the whole kind, for
 /// the others.
@@ -376,7 +376,7 @@ fn few(mut all: Vec<Repeated<'_>>, is_placed: bool) -> Vec<(Repeated<'_>, usize,
 pub fn placeholder(kind: Kind) -> Datum {
     match kind {
         Kind::Object => return Datum::Object { name: Arc::from(""), body: NamedBody::default() },
-        Kind::Shader => return Paint::default().to_datum(),
+        Kind::Shader => return ShaderFactory::default().to_datum(),
         _ => {}
     }
     static PLACEHOLDERS: LazyLock<[Datum; 2]> = LazyLock::new(|| {

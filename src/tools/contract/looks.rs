@@ -11,7 +11,7 @@ use tabray_core::shapes::revolution::{Refinement, Revolution};
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::simd::soa::{LANES, Vectors};
 use tabray_core::world::background::Background;
-use tabray_core::world::body::Paint;
+use tabray_core::world::body::ShaderFactory;
 use tabray_core::world::interface::Crossing;
 use tabray_core::world::light_samples::{LightSamples, ShadingPoints};
 use tabray_core::world::material::{Look, Material, Rgb};
@@ -107,7 +107,7 @@ pub fn same_bits(a: DVec3, b: DVec3) -> bool {
 }
 
 /// Checks a shader around its anchor, and at the anchor's origin, on surfaces with and without u, v and faces.
-pub fn paint(paint: &Paint, draw: &mut Draw) -> Result<(), Fault> {
+pub fn paint(paint: &ShaderFactory, draw: &mut Draw) -> Result<(), Fault> {
     for unit in [1.0, 0.3, 7.0] {
         let anchor = Anchor { origin: DVec3::new(4.0, 3.0, -2.5), unit };
         let made = paint.on(anchor);

@@ -194,7 +194,7 @@ fn of_choice(what: &str, choice: ChoiceName, outcome: Result<(), Fault>) -> Opti
 mod tests {
     use super::*;
     use glam::DVec3;
-    use tabray_core::world::body::Paint;
+    use tabray_core::world::body::ShaderFactory;
     use tabray_core::world::light::Light;
     use tabray_core::world::material::{Look, Material, Rgb};
     use tabray_core::world::shader::{Anchor, Plain, Shader, ShaderInputs, SurfacePoint};
@@ -238,7 +238,7 @@ mod tests {
         }
     }
 
-    fn breach(paint: &Paint) -> Fault {
+    fn breach(paint: &ShaderFactory) -> Fault {
         looks::paint(paint, &mut Draw::new("a shader")).expect_err("a breach")
     }
 
@@ -261,14 +261,14 @@ mod tests {
 
     #[test]
     fn a_procedural_shader_without_a_colour_at_its_own_origin_is_found() {
-        let breach = breach(&Paint::new(Spokes));
+        let breach = breach(&ShaderFactory::new(Spokes));
         assert_eq!(breach.promise, Promise::ReflectivityIsSound);
         assert_eq!(breach.found, "`ambient` is [NaN, NaN, NaN] at [4, 3, -2.5]");
     }
 
     #[test]
     fn a_shader_that_says_it_is_even_and_is_not_is_found() {
-        let breach = breach(&Paint::new(|_| Uneven));
+        let breach = breach(&ShaderFactory::new(|_| Uneven));
         assert_eq!(breach.promise, Promise::PacketsAgree);
         assert!(breach.found.starts_with("`uniform` is ["), "{}", breach.found);
     }
@@ -291,7 +291,7 @@ mod tests {
 
     #[test]
     fn a_shader_whose_normals_have_another_length_is_found() {
-        let breach = breach(&Paint::new(|_| Leaning));
+        let breach = breach(&ShaderFactory::new(|_| Leaning));
         assert_eq!(breach.promise, Promise::NormalIsUnit);
         assert!(breach.found.starts_with("`bend` is ["), "{}", breach.found);
     }

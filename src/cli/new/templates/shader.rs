@@ -12,7 +12,7 @@ const TABLE: Table = &[&RINGS as &dyn Row];
 inventory::submit! {
     Entity::shader("template", "rings across y, light and dark", &[TABLE], |args| {
         let rings = args.get(&RINGS);
-        Ok(Paint::new(move |anchor| Template { rings, anchor }))
+        Ok(ShaderFactory::new(move |anchor| Template { rings, anchor }))
     })
 }
 
