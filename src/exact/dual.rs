@@ -1,5 +1,6 @@
 //! Dual numbers: forward-mode automatic differentiation.
 
+use crate::noise;
 use crate::scalar::{Scalar, apart_if};
 use crate::spline::Spline;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -195,6 +196,11 @@ impl<N: Scalar> Scalar for Dual<N> {
 
     fn spline(self, spline: &Spline, order: usize) -> Self {
         self.chain(self.value.spline(spline, order), self.value.spline(spline, order + 1))
+    }
+
+    fn noise(at: [Self; 3], orders: [u8; 3]) -> Self {
+        let (values, slopes) = (at.map(|along| along.value), at.map(|along| along.slope));
+        Self { value: N::noise(values, orders), slope: noise::slope(values, slopes, orders) }
     }
 
     #[inline(always)]

@@ -160,6 +160,10 @@ impl Scalar for F64x8 {
         each!(a = self => a.spline(spline, order))
     }
 
+    fn noise([x, y, z]: [Self; 3], orders: [u8; 3]) -> Self {
+        each!(a = x, b = y, c = z => f64::noise([a, b, c], orders))
+    }
+
     #[inline(always)]
     fn step(self) -> Self {
         each!(a = self => a.step())

@@ -4,6 +4,7 @@
 //! Coefficients".
 
 use crate::dual::Dual;
+use crate::noise;
 use crate::scalar::{Scalar, apart_if};
 use crate::spline::Spline;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -236,6 +237,11 @@ impl<N: Scalar> Scalar for Jet<N> {
 
     fn spline(self, spline: &Spline, order: usize) -> Self {
         self.chain(self.value.spline(spline, order), self.dual().spline(spline, order + 1))
+    }
+
+    fn noise(at: [Self; 3], orders: [u8; 3]) -> Self {
+        let slope = noise::slope(at.map(Self::dual), at.map(Self::slope), orders);
+        Self::of(N::noise(at.map(|along| along.value), orders), slope)
     }
 
     #[inline(always)]

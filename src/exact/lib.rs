@@ -27,6 +27,7 @@ pub mod f64x8;
 pub mod formula;
 pub mod interval;
 pub mod jet;
+mod noise;
 pub mod polynomial;
 pub mod roots;
 pub mod scalar;

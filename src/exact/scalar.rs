@@ -4,6 +4,7 @@
 //! One formula evaluated with one type after the other gives values, derivatives and proven bounds. The functions are
 //! those of the `libm` crate, whose results do not depend on the machine.
 
+use crate::noise;
 use crate::spline::{Coefficient, Spline};
 use glam::DVec3;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -107,6 +108,9 @@ pub trait Scalar:
 
     /// Returns the value of a spline, or of its derivative of an order from 0.
     fn spline(self, spline: &Spline, order: usize) -> Self;
+
+    /// Returns the gradient noise (Perlin 2002) at a point, or its derivative of these orders along x, y and z.
+    fn noise(at: [Self; 3], orders: [u8; 3]) -> Self;
 
     /// Returns the step function, 1 above 0 and 0 below: the derivative of `max(0, x)`.
     fn step(self) -> Self;
@@ -234,6 +238,11 @@ impl Scalar for f64 {
 
     fn spline(self, spline: &Spline, order: usize) -> Self {
         of_cubic(self, spline, (spline.piece(self), order), |of| of.near)
+    }
+
+    fn noise(at: [Self; 3], orders: [u8; 3]) -> Self {
+        let corner = at.map(f64::floor);
+        noise::in_cell(corner, per_axis(|axis| at[axis] - corner[axis]), orders)
     }
 
     #[inline(always)]

@@ -2,7 +2,8 @@
 
 use super::{Affine, spread};
 use crate::interval::Interval;
-use crate::scalar::{Scalar, of_cubic};
+use crate::noise;
+use crate::scalar::{Scalar, of_cubic, per_axis};
 use crate::spline::Spline;
 use std::ops::Div;
 
@@ -131,6 +132,18 @@ impl Scalar for Affine {
             of_cubic(self, spline, (first, order), |of| Self::about(of.near, of.error))
         } else {
             self.by_range(|range| range.spline(spline, order))
+        }
+    }
+
+    fn noise(at: [Self; 3], orders: [u8; 3]) -> Self {
+        let ranges = at.map(|along| along.range());
+        let corner = ranges.map(|along| along.low.floor());
+        let whole = Interval::noise(ranges, orders);
+        let is_one = (0..3).all(|axis| ranges[axis].high < corner[axis] + 1.0);
+        if is_one {
+            noise::in_cell(corner, per_axis(|axis| at[axis].shifted(-corner[axis])), orders).or(whole)
+        } else {
+            whole.into()
         }
     }
 

@@ -2,7 +2,8 @@
 //! true hits that tests compare with.
 
 use super::{DoubleDouble, power_of_two, two_product};
-use crate::scalar::{Scalar, of_cubic};
+use crate::noise;
+use crate::scalar::{Scalar, of_cubic, per_axis};
 use crate::spline::Spline;
 
 /// π / 2 as an unevaluated sum; each part has the next 53 bits.
@@ -167,6 +168,12 @@ impl Scalar for DoubleDouble {
 
     fn spline(self, spline: &Spline, order: usize) -> Self {
         of_cubic(self, spline, (spline.piece(self.high), order), |of| Self::from(of.near) + of.rest.into())
+    }
+
+    fn noise(at: [Self; 3], orders: [u8; 3]) -> Self {
+        // A corner that is too far to be one number is a little off, and so is the cell.
+        let corner = at.map(|along| along.floor().high);
+        noise::in_cell(corner, per_axis(|axis| at[axis].shifted(-corner[axis])), orders)
     }
 
     fn step(self) -> Self {

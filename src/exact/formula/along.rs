@@ -27,7 +27,10 @@ impl Program {
                 Step::Scale(factor) if result == a => registers[result].scale(factor),
                 Step::Shift(by) if result == a => registers[result].shift(by),
                 Step::Number(number) => registers[result].set(number),
-                step => registers[result] = step.of::<_, true>(registers[a], registers[b], None),
+                step => {
+                    let c = || registers[usize::from(instruction.operands[2])];
+                    registers[result] = step.of::<_, true>(registers[a], registers[b], c, None);
+                }
             }
         }
         registers[usize::from(self.result)]
@@ -72,7 +75,7 @@ struct Products {
 }
 
 impl Products {
-    fn push(&mut self, step: Step, operands: [usize; 2]) -> usize {
+    fn push(&mut self, step: Step, operands: [usize; 3]) -> usize {
         self.list.push(Value { step, operands });
         self.list.len() - 1
     }
@@ -95,7 +98,7 @@ impl Products {
             let half = self.power(of, exponent / 2);
             [if exponent.is_multiple_of(2) { half } else { self.power(of, exponent - exponent / 2) }, half]
         });
-        let product = self.push(Step::Mul, parts);
+        let product = self.push(Step::Mul, [parts[0], parts[1], 0]);
         self.powers.push((of, exponent, product));
         product
     }

@@ -185,13 +185,13 @@ fn pruned(values: &Values, place: [Interval; 3]) -> (Values, Interval) {
         // Variables, which come first, and numbers have no operands.
         let operand =
             |which: usize| if value.step.operands() > which { same[value.operands[which]] } else { 0 };
-        let (first, second) = (operand(0), operand(1));
+        let (first, second, third) = (operand(0), operand(1), operand(2));
         let (mut step, mut own) = (value.step, index);
         let (a, b, bound) = match step {
             Step::Variable(axis) => (Interval::WHOLE, Interval::WHOLE, place[usize::from(axis)]),
             step => {
                 let (a, b) = (bounds[first], bounds[second]);
-                (a, b, step.of::<Interval, true>(a, b, None))
+                (a, b, step.of::<Interval, true>(a, b, || bounds[third], None))
             }
         };
         match step {
@@ -208,7 +208,7 @@ fn pruned(values: &Values, place: [Interval; 3]) -> (Values, Interval) {
         }
         same.push(own);
         bounds.push(bound);
-        steps.push(Value { step, operands: [first, second] });
+        steps.push(Value { step, operands: [first, second, third] });
     }
     let result = same[values.result];
     let value = bounds[result];

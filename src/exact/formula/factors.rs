@@ -113,9 +113,10 @@ fn written(steps: &[Step]) -> String {
     }
     let mut waiting: Vec<Part> = Vec::new();
     for step in steps {
-        let second = if step.operands() == 2 { waiting.pop() } else { None };
+        let third = if step.operands() > 2 { waiting.pop() } else { None };
+        let second = if step.operands() > 1 { waiting.pop() } else { None };
         let first = if step.operands() > 0 { waiting.pop() } else { None };
-        let (a, b) = (first.unwrap_or_default(), second.unwrap_or_default());
+        let [a, b, c] = [first, second, third].map(Option::unwrap_or_default);
         waiting.push(match step {
             Step::Variable(index) => (Field::VARIABLES[usize::from(*index)].to_owned(), 4),
             Step::Number(number) => (text::shortest(*number), if *number < 0.0 { 2 } else { 4 }),
@@ -129,7 +130,7 @@ fn written(steps: &[Step]) -> String {
             Step::Call(Function::Pow) => (format!("{}^{}", within(a, 4), within(b, 4)), 3),
             Step::Call(function) => {
                 let name = format!("{function:?}").to_lowercase();
-                let arguments = if step.operands() == 2 { format!("{}, {}", a.0, b.0) } else { a.0 };
+                let arguments = [a.0, b.0, c.0][..step.operands()].join(", ");
                 (format!("{name}({arguments})"), 4)
             }
         });

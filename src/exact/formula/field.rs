@@ -174,6 +174,7 @@ fn with_constants(steps: &[Step]) -> Vec<Step> {
             Step::Call(Function::Min | Function::Max | Function::Pow) => {
                 starts.pop();
             }
+            Step::Call(Function::Noise) => starts.truncate(starts.len().saturating_sub(2)),
             _ => {}
         }
         out.push(*step);

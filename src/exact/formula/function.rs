@@ -15,14 +15,16 @@ pub(super) struct FormulaFunction {
 pub(super) enum Meaning {
     /// An operation of one value, or of two, which may take further ones, one after the other.
     Operation(Function),
+    /// An operation of as many values as it names.
+    Fixed(Function),
     /// The formula of its arguments that this text is.
     Formula(&'static str),
 }
 
-use Meaning::{Formula, Operation};
+use Meaning::{Fixed, Formula, Operation};
 
 /// The functions of formulas.
-static FUNCTIONS: [FormulaFunction; 21] = [
+static FUNCTIONS: [FormulaFunction; 22] = [
     FormulaFunction { name: "sin", arguments: &["x"], meaning: Operation(Function::Sin) },
     FormulaFunction { name: "cos", arguments: &["x"], meaning: Operation(Function::Cos) },
     FormulaFunction { name: "tan", arguments: &["x"], meaning: Operation(Function::Tan) },
@@ -54,6 +56,7 @@ static FUNCTIONS: [FormulaFunction; 21] = [
     FormulaFunction { name: "sinh", arguments: &["x"], meaning: Formula("(exp(x) - exp(-x))/2") },
     FormulaFunction { name: "cosh", arguments: &["x"], meaning: Formula("(exp(x) + exp(-x))/2") },
     FormulaFunction { name: "tanh", arguments: &["x"], meaning: Formula("1 - 2/(exp(2*x) + 1)") },
+    FormulaFunction { name: "noise", arguments: &["x", "y", "z"], meaning: Fixed(Function::Noise) },
 ];
 
 /// Returns the names of the functions of formulas, each with the names of its arguments.

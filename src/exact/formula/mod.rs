@@ -112,8 +112,9 @@ impl Formula {
 
     fn new(text: String, variables: &'static [&'static str], steps: Vec<Step>) -> Self {
         let program = Program::new(&steps, variables.len());
-        // The derivative of a general power takes more than arithmetic.
-        let is_plain = program.registers <= FEW_REGISTERS && !steps.contains(&Step::Call(Function::Pow));
+        // The derivative of a general power takes more than arithmetic, and noise looks things up.
+        let is_long = |step: &Step| matches!(step, Step::Call(Function::Pow | Function::Noise));
+        let is_plain = program.registers <= FEW_REGISTERS && !steps.iter().any(is_long);
         Self { text, variables, steps, program, spline: None, is_plain }
     }
 
@@ -162,7 +163,8 @@ impl Formula {
     fn run_inline<N: Scalar, const MAY_CALL: bool>(&self, program: &Program, registers: &mut [N]) -> N {
         for &Instruction { step, operands, result } in &program.instructions {
             let (a, b) = (registers[usize::from(operands[0])], registers[usize::from(operands[1])]);
-            registers[usize::from(result)] = step.of::<N, MAY_CALL>(a, b, self.spline.as_deref());
+            let c = || registers[usize::from(operands[2])];
+            registers[usize::from(result)] = step.of::<N, MAY_CALL>(a, b, c, self.spline.as_deref());
         }
         registers[usize::from(program.result)]
     }

@@ -413,6 +413,7 @@ impl<'t> Parser<'t> {
         match function.meaning {
             Meaning::Operation(of) if count == 1 => self.steps.push(Step::Call(of)),
             Meaning::Operation(_) => {}
+            Meaning::Fixed(of) => self.steps.push(Step::Call(of)),
             Meaning::Formula(text) => {
                 let (steps, _) = parse(text, function.arguments, &|_| None, self.value)?;
                 let from = starts[0];

@@ -5,11 +5,11 @@ use super::variables::SURFACE;
 use std::collections::HashMap;
 use std::mem::{Discriminant, discriminant};
 
-/// An operation: reads up to two registers, and writes one.
+/// An operation: reads up to three registers, and writes one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Instruction {
     pub step: Step,
-    pub operands: [u8; 2],
+    pub operands: [u8; 3],
     pub result: u8,
 }
 
@@ -31,7 +31,7 @@ pub(super) const MOST_REGISTERS: usize = SURFACE.len() + MAX_DEPTH + 1;
 #[derive(Clone, Copy)]
 pub(super) struct Value {
     pub step: Step,
-    pub operands: [usize; 2],
+    pub operands: [usize; 3],
 }
 
 /// The values of a formula, each after those that it is made of, the variables first.
@@ -44,7 +44,7 @@ pub(super) struct Values {
 
 impl Value {
     /// Returns what values have in common that are the same number.
-    fn key(&self) -> (Discriminant<Step>, u64, [usize; 2]) {
+    fn key(&self) -> (Discriminant<Step>, u64, [usize; 3]) {
         let payload = match self.step {
             Step::Number(number) | Step::Scale(number) | Step::Shift(number) => number.to_bits(),
             Step::Variable(index) => index.into(),
@@ -78,7 +78,7 @@ impl Program {
         let mut places: Vec<usize> = (0..variables).collect();
         let mut instructions = Vec::with_capacity(values.len() - variables);
         for (index, value) in values.iter().enumerate().skip(variables) {
-            let mut operands = [0; 2];
+            let mut operands = [0; 3];
             for (operand, used) in operands.iter_mut().zip(value.used()) {
                 *operand = places[*used] as u8;
             }
@@ -111,7 +111,7 @@ impl Values {
 
 /// Returns the values of operations; if they are shared, each value once.
 fn values(steps: &[Step], variables: usize, are_shared: bool) -> Values {
-    let variable = |index: usize| Value { step: Step::Variable(index as u8), operands: [0; 2] };
+    let variable = |index: usize| Value { step: Step::Variable(index as u8), operands: [0; 3] };
     let mut values: Vec<_> = (0..variables).map(variable).collect();
     let (mut known, mut waiting) = (HashMap::new(), Vec::new());
     for step in steps {
@@ -119,7 +119,7 @@ fn values(steps: &[Step], variables: usize, are_shared: bool) -> Values {
             waiting.push(usize::from(index));
             continue;
         }
-        let mut operands = [0; 2];
+        let mut operands = [0; 3];
         let count = step.operands();
         for operand in operands[..count].iter_mut().rev() {
             *operand = waiting.pop().unwrap_or(0);

@@ -140,7 +140,7 @@ fn run(program: &Program, at: [Rational; 3]) -> Option<Rational> {
     let mut registers = at.to_vec();
     registers.resize(program.registers, Rational::from(0.0));
     for Instruction { step, operands, result } in &program.instructions {
-        let [a, b] = operands.map(|operand| &registers[usize::from(operand)]);
+        let [a, b, _] = operands.map(|operand| &registers[usize::from(operand)]);
         let value = match step {
             Step::Variable(_) => a.clone(),
             Step::Number(number) => Rational::from(*number),

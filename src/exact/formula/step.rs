@@ -1,6 +1,6 @@
 //! The operations of a formula.
 
-use crate::scalar::{Scalar, apart_if};
+use crate::scalar::{Scalar, apart, apart_if};
 use crate::spline::Spline;
 
 /// The size of a number, in bytes, from which each of its operations is a call.
@@ -36,15 +36,18 @@ impl Step {
             Self::Variable(_) | Self::Number(_) => 0,
             Self::Add | Self::Sub | Self::Mul | Self::Div => 2,
             Self::Call(Function::Min | Function::Max | Function::Pow) => 2,
+            Self::Call(Function::Noise) => 3,
             Self::Neg | Self::Powi(_) | Self::Scale(_) | Self::Shift(_) | Self::Spline | Self::Call(_) => 1,
         }
     }
 
-    /// Returns the estimated number of arithmetic operations: 8 for a `libm` function, 24 for a power.
+    /// Returns the estimated number of arithmetic operations: 8 for a `libm` function, 24 for a power,
+    /// 160 for noise.
     pub fn cost(self) -> u64 {
         match self {
             Self::Call(Function::Abs | Function::Floor | Function::Min | Function::Max) => 1,
             Self::Call(Function::Pow) => 24,
+            Self::Call(Function::Noise) => 160,
             Self::Call(_) => 8,
             Self::Spline => 12,
             Self::Powi(exponent) => u64::from(exponent.unsigned_abs().max(1)),
@@ -52,9 +55,16 @@ impl Step {
         }
     }
 
-    /// Applies the operation to one value or two. `MAY_CALL` tells whether operations of long numbers are calls.
+    /// Applies the operation to one value or two, or with a third one that `c` returns. `MAY_CALL` tells whether operations of
+    /// long numbers are calls.
     #[inline(always)]
-    pub fn of<N: Scalar, const MAY_CALL: bool>(self, a: N, b: N, spline: Option<&Spline>) -> N {
+    pub fn of<N: Scalar, const MAY_CALL: bool>(
+        self,
+        a: N,
+        b: N,
+        c: impl FnOnce() -> N,
+        spline: Option<&Spline>,
+    ) -> N {
         /// Calls an operation of a long number, such as one with derivatives in wide precision, which takes up to
         /// thousands of instructions.
         macro_rules! long {
@@ -89,11 +99,15 @@ impl Step {
             Self::Call(Function::Min) => long!(a.min(b)),
             Self::Call(Function::Max) => long!(a.max(b)),
             Self::Call(Function::Pow) => long!(a.pow(b)),
+            Self::Call(Function::Noise) => {
+                let at = [a, b, c()];
+                apart(move || N::noise(at, [0; 3]))
+            }
         }
     }
 }
 
-/// A function of one or two values.
+/// A function of up to three values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Function {
     Sin,
@@ -107,6 +121,7 @@ pub(super) enum Function {
     Min,
     Max,
     Pow,
+    Noise,
 }
 
 /// The deepest nesting that a formula may have, in values that wait for an operation.

@@ -1,6 +1,7 @@
 //! The functions of formulas over intervals.
 
 use super::{Float, Interval};
+use crate::noise;
 use crate::scalar::{Scalar, apart_if, of_cubic};
 use crate::spline::{Coefficient, Spline};
 
@@ -244,6 +245,10 @@ impl<F: Float> Scalar for Interval<F> {
             of_cubic(y, spline, (piece, order), Self::of_coefficient)
         };
         (first + 1..=last).fold(part(first), |all, piece| all.hull(part(piece)))
+    }
+
+    fn noise(at: [Self; 3], orders: [u8; 3]) -> Self {
+        noise::enclosed(at, orders)
     }
 
     #[inline(always)]

@@ -306,6 +306,13 @@ impl<C: Coefficient, const N: usize> Scalar for Polynomial<C, N> {
         self.map(|at| at.spline(spline, order))
     }
 
+    fn noise([x, y, z]: [Self; 3], orders: [u8; 3]) -> Self {
+        match (y.bounds(), z.bounds()) {
+            (Some(y), Some(z)) => x.map(|x| Interval::noise([x, y, z], orders)),
+            _ => Self::unknown(),
+        }
+    }
+
     fn step(self) -> Self {
         self.map(Scalar::step)
     }
