@@ -58,7 +58,7 @@ fn colour(formulas: Option<&Formulas>, own: Rgb, at: &SurfacePoint) -> Rgb {
 
 impl Shader for ByFormula {
     fn sees(&self) -> ShaderInputs {
-        ShaderInputs { uv: self.uses(3..5), normal: self.uses(5..8), face: false }
+        ShaderInputs { uv: self.uses(3..5), normal: self.uses(5..8), ..ShaderInputs::POSITION }
     }
 
     fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {

@@ -13,8 +13,12 @@ static REFLECTANCE: Pparm<Rgb> = Pparm::or(
 static SHININESS: Pparm<f64> =
     Pparm::or("shininess", "the exponent of the highlights of lights (larger is sharper, 0 is none)", 0.0)
         .must("0 or more", |exponent| *exponent >= 0.0);
+static ROUGHNESS: Pparm<f64> =
+    Pparm::or("roughness", "how rough the surface is, from 0, smooth, to 1; it takes several samples", 0.0)
+        .between(0.0, 1.0)
+        .not_dumped();
 
-const TABLE: Table = &[&REFLECTANCE, &SHININESS];
+const TABLE: Table = &[&REFLECTANCE, &SHININESS, &ROUGHNESS];
 
 inventory::submit! {
     Entity::material("metal", "a coloured mirror that reflects more of the light that grazes it", &[TABLE], |args| {
@@ -22,7 +26,7 @@ inventory::submit! {
         Ok(Material {
             specular: colour,
             shininess: args.get(&SHININESS),
-            interface: Some(AnyInterface::new(Metal { colour })),
+            interface: Some(AnyInterface::new(Metal { colour, roughness: args.get(&ROUGHNESS) })),
             ..Material::default()
         })
     })
@@ -32,6 +36,7 @@ inventory::submit! {
 #[derive(PartialEq)]
 struct Metal {
     colour: Rgb,
+    roughness: f64,
 }
 
 impl Interface for Metal {
@@ -39,5 +44,9 @@ impl Interface for Metal {
     fn cross(&self, dir: DVec3, normal: DVec3, _side: Side) -> Crossing {
         let grazing = Scalar::powi((1.0 + dir.dot(normal)).clamp(0.0, 1.0), 5);
         Crossing { reflected: self.colour + (Rgb::ONE - self.colour) * grazing, onward: None }
+    }
+
+    fn roughness(&self) -> f64 {
+        self.roughness
     }
 }

@@ -14,6 +14,7 @@ mod glass;
 mod inside;
 mod laws;
 mod left_out;
+mod materials;
 mod needs;
 mod packets;
 mod plan;

@@ -37,6 +37,8 @@ pub struct Plan<'m> {
     pub(crate) tree: Option<Bvh>,
     /// Whether any object that is needed is transparent, so that shadows may be partial.
     pub(crate) has_glass: bool,
+    /// Whether any object absorbs light inside.
+    pub(crate) has_media: bool,
     /// The objects that are small in the image, where the number of a pixel's samples depends on them.
     pub(crate) features: Option<Features>,
     /// What proves the colours of pixels, where that is wanted.
@@ -111,6 +113,7 @@ impl<'m> Plan<'m> {
         let mut unreached = needs.unreached.iter().peekable();
         let mut met = objects.iter().enumerate().filter(|(index, _)| unreached.next_if_eq(&index).is_none());
         let has_glass = met.any(|(_, object)| object.material.transparency != 0.0);
+        let has_media = objects.iter().any(|object| object.material.medium().is_some());
         let costly = depth.as_ref().and_then(|_| CostlyObjects::of(objects));
         let bounces = usize::MAX;
         Self {
@@ -120,6 +123,7 @@ impl<'m> Plan<'m> {
             bounded,
             tree,
             has_glass,
+            has_media,
             features,
             prover,
             depth,

@@ -276,6 +276,13 @@ one_word!(
     Datum::Formula(formula) => Self::new(formula.clone())
 );
 
+one_word!(
+    /// A formula of a surface.
+    SurfaceField, Type::Formula(SURFACE),
+    field => Datum::Formula(field.formula().clone()),
+    Datum::Formula(formula) => Self::new(formula.clone())
+);
+
 /// A formula of a surface for each of red, green and blue, written as three formulas, or as one where the three are equal.
 impl Value for [SurfaceField; 3] {
     const TYPE: Type = Type::Formula(SURFACE);

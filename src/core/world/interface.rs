@@ -1,6 +1,7 @@
 //! Interfaces: how light continues at a surface. A material may have one.
 
 use crate::geometry::ray::Side;
+use crate::world::material::Rgb;
 use glam::DVec3;
 use std::any::Any;
 use std::fmt;
@@ -20,6 +21,41 @@ pub trait Interface: Send + Sync {
     /// all is reflected. `true` is always correct.
     fn absorbs(&self) -> bool {
         true
+    }
+
+    /// Returns what absorbs light behind the surface, on its inside; `None` if all light passes. It is the same in every
+    /// call.
+    fn medium(&self) -> Option<Medium> {
+        None
+    }
+
+    /// Returns how rough the surface is: 0 if it is smooth, and at most 1. It is the same in every call. The rays of a rough
+    /// surface cross facets of it: [`cross`](Self::cross) is given the normal of one.
+    fn roughness(&self) -> f64 {
+        0.0
+    }
+}
+
+/// A clear medium that absorbs light by the length of the way through it (Beer's law).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Medium {
+    /// The logarithms of the fractions of light that are left after the length `at`.
+    logarithms: Rgb,
+    at: f64,
+}
+
+impl Medium {
+    /// Makes a medium that leaves these fractions of light, more than 0 and at most 1, after the length `at`, in world units;
+    /// `None` if it leaves all.
+    pub fn new(left: Rgb, at: f64) -> Option<Self> {
+        (left != Rgb::ONE).then(|| Self { logarithms: left.map(libm::log), at })
+    }
+
+    /// Returns the fraction of light that passes a way of this length, in world units.
+    pub fn passed(&self, length: f64) -> Rgb {
+        let lengths = length / self.at;
+        // On an endless way, all is lost of what any is lost of.
+        self.logarithms.map(|left| if left == 0.0 { 1.0 } else { libm::exp(left * lengths) })
     }
 }
 

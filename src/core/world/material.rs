@@ -1,6 +1,6 @@
 //! Colours, and how a surface reflects light.
 
-use crate::world::interface::AnyInterface;
+use crate::world::interface::{AnyInterface, Medium};
 use glam::DVec3;
 
 /// A colour or a reflectivity: red, green and blue. 1 is as bright as an image can show; there is no upper limit.
@@ -15,13 +15,32 @@ pub struct Material {
     pub diffuse: Rgb,
     /// The mirror reflectivity.
     pub specular: Rgb,
-    /// The exponent of the specular highlight; 0 for no highlight.
+    /// The exponent of the specular highlight; 0 for no highlight. Those of a transparent material with an interface are as
+    /// strong as the light itself; others are `specular` of it.
     pub shininess: f64,
     /// The fraction of light that passes through the surface, from 0 to 1.
     pub transparency: f64,
     /// How light continues at the surface; `None` if it is transmitted in a straight line, and reflected as `specular`
     /// says.
     pub interface: Option<AnyInterface>,
+}
+
+impl Material {
+    /// Tells whether lamps show in the surface as highlights, beside the light that it scatters: in glass they do, whatever
+    /// it transmits.
+    pub(crate) fn glints(&self) -> bool {
+        self.interface.is_some() && self.transparency != 0.0 && self.shininess != 0.0
+    }
+
+    /// Returns what absorbs light behind the surface, if anything does.
+    pub(crate) fn medium(&self) -> Option<Medium> {
+        self.interface.as_ref().and_then(|interface| interface.medium())
+    }
+
+    /// Returns how rough the surface is for the rays that continue from it, from 0 to 1.
+    pub(crate) fn roughness(&self) -> f64 {
+        self.interface.as_ref().map_or(0.0, |interface| interface.roughness())
+    }
 }
 
 /// A surface's reflectivities, per channel, where they are the same at every point, or bounds of them.

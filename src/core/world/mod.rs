@@ -35,7 +35,7 @@ pub use body::{AnyLight, AnyShader, Body, NamedBody, Part, ShaderFactory, Solid,
 pub use camera::{Camera, Origins, Projected};
 pub use emitter::{Emitter, Extent, LightSample};
 pub use hittable::{Bracketed, Certified, Facts, Hittable, Searched, Shape, Sides};
-pub use interface::{AnyInterface, Crossing, Interface};
+pub use interface::{AnyInterface, Crossing, Interface, Medium};
 pub use light::Light;
 pub use material::{Material, Rgb};
 pub use patch::Patch;

@@ -62,6 +62,11 @@ impl Sample {
         on_disc(self.draw(ON_LENS))
     }
 
+    /// Returns two numbers from 0 to 1, which choose a facet of a rough surface after this many rays of a path.
+    pub(crate) fn on_facet(&self, depth: u32) -> DVec2 {
+        self.draw(ON_FACETS - depth)
+    }
+
     /// Returns two numbers from 0 to 1, different for each purpose.
     fn draw(&self, purpose: u32) -> DVec2 {
         match self.sampler {
@@ -96,8 +101,11 @@ fn on_light(light: usize) -> u32 {
 /// The purpose of the numbers that choose a point on the camera's lens.
 const ON_LENS: u32 = u32::MAX;
 
+/// The purpose of the numbers that choose a facet of the first surface on a path; those after it count downward.
+const ON_FACETS: u32 = u32::MAX - 1;
+
 /// Returns the point of the unit disc that two numbers from 0 to 1 choose, uniformly by area.
-fn on_disc(numbers: DVec2) -> DVec2 {
+pub(crate) fn on_disc(numbers: DVec2) -> DVec2 {
     let (sin, cos) = libm::sincos(TAU * numbers.y);
     numbers.x.sqrt() * DVec2::new(cos, sin)
 }

@@ -1,5 +1,6 @@
 //! Shaders: the trait that a plugin implements for one point of a surface.
 
+use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::Side;
 use crate::world::certify::{Precise, ProofMethods};
 use crate::world::hittable::Hittable;
@@ -22,13 +23,16 @@ pub struct SurfacePoint {
     pub uv: Option<DVec2>,
     /// The index of the face, from 0; `None` where the shape has none, or the shader does not see it.
     pub face: Option<u32>,
+    /// The unit directions along the surface in which u and v grow; `None` where the shape has no u and v, or the shader does
+    /// not see these directions.
+    pub tangents: Option<[DVec3; 2]>,
 }
 
 impl SurfacePoint {
     /// Returns a point of which nothing but the position is known.
     #[inline(always)]
     pub fn at(position: DVec3) -> Self {
-        Self { position, normal: DVec3::ZERO, side: Side::Outside, uv: None, face: None }
+        Self { position, normal: DVec3::ZERO, side: Side::Outside, uv: None, face: None, tangents: None }
     }
 
     /// Returns a point of a shape with what a shader sees of it. `normal` is the outward one.
@@ -41,9 +45,31 @@ impl SurfacePoint {
     ) -> Self {
         let (uv, face) = (sees.uv.then(|| shape.uv(position)), sees.face.then(|| shape.face(position)));
         let (uv, face) = (uv.flatten(), face.flatten());
+        let tangents = if sees.tangents { tangents(shape, position, normal) } else { None };
         let (normal, side) = if sees.normal { (normal, side) } else { (DVec3::ZERO, Side::Outside) };
-        Self { position, normal, side, uv, face }
+        Self { position, normal, side, uv, face, tangents }
     }
+}
+
+/// How far apart the places are where u and v are compared, as a part of the size of a shape.
+const NEAR: f64 = 1e-6;
+
+/// Returns the unit directions along a surface in which u and v grow; `None` where it has no u and v, or they do not change.
+fn tangents(shape: &dyn Hittable, position: DVec3, normal: DVec3) -> Option<[DVec3; 2]> {
+    let size = shape.bounds().map_or(position.length(), |Aabb { low, high }| (high - low).length());
+    let (across, up) = normal.any_orthonormal_pair();
+    // What grows beyond 1 begins at 0 again.
+    let wrapped = |difference: DVec2| difference - difference.round();
+    let slopes = |dir: DVec3| {
+        let at = |part: f64| shape.uv(position + part * NEAR * size * dir);
+        Some(wrapped(at(1.0)? - at(-1.0)?))
+    };
+    let (right, above) = (slopes(across)?, slopes(up)?);
+    let [u, v] = [right.x * across + above.x * up, right.y * across + above.y * up];
+    // Along one of them, the other does not change.
+    let [along_u, along_v] = [v.cross(normal), normal.cross(u)];
+    let turned = |along: DVec3, grows: DVec3| (along.dot(grows).signum() * along).try_normalize();
+    Some([turned(along_u, u)?, turned(along_v, v)?])
 }
 
 /// The properties of a point that a shader needs beside its position. The others are not computed.
@@ -55,11 +81,13 @@ pub struct ShaderInputs {
     pub uv: bool,
     /// Whether it sees which face the point lies on.
     pub face: bool,
+    /// Whether it sees in which directions u and v grow.
+    pub tangents: bool,
 }
 
 impl ShaderInputs {
     /// The position alone.
-    pub const POSITION: Self = Self { normal: false, uv: false, face: false };
+    pub const POSITION: Self = Self { normal: false, uv: false, face: false, tangents: false };
     /// The position, the normal and the side.
     pub const NORMAL: Self = Self { normal: true, ..Self::POSITION };
     /// The position, and u and v.

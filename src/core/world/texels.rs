@@ -2,6 +2,7 @@
 
 use crate::world::display::Display;
 use crate::world::material::Rgb;
+use glam::DVec3;
 use image::{Rgb32FImage, RgbImage};
 use std::borrow::Cow;
 
@@ -46,10 +47,20 @@ impl Texels {
     /// the texel at the edge.
     #[inline]
     pub fn light(&self, column: u32, row: u32) -> Rgb {
+        self.texel(column, row, |byte| self.light[usize::from(byte)])
+    }
+
+    /// Returns a texel that stands for no light, as [`light`](Self::light) does: bytes from 0 to 1, whatever they would show.
+    pub fn numbers(&self, column: u32, row: u32) -> DVec3 {
+        self.texel(column, row, |byte| f64::from(byte) / 255.0)
+    }
+
+    #[inline]
+    fn texel(&self, column: u32, row: u32, of_byte: impl Fn(u8) -> f64) -> DVec3 {
         let [width, height] = self.size();
         let (column, row) = (column.min(width - 1), height - 1 - row.min(height - 1));
-        Rgb::from_array(match &self.pixels {
-            Pixels::Bytes(image) => image.get_pixel(column, row).0.map(|byte| self.light[usize::from(byte)]),
+        DVec3::from_array(match &self.pixels {
+            Pixels::Bytes(image) => image.get_pixel(column, row).0.map(of_byte),
             Pixels::Floats(image) => image.get_pixel(column, row).0.map(f64::from),
         })
     }

@@ -7,6 +7,7 @@ use crate::world::material::Rgb;
 use crate::world::sensor::Sensor;
 use crate::world::texels::Texels;
 use bytesize::ByteSize;
+use glam::DVec3;
 use image::metadata::Orientation;
 use image::{
     ColorType, DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, Rgb as Texel,
@@ -184,6 +185,12 @@ impl Texture {
     /// read is white.
     pub fn texel(&self, column: u32, row: u32) -> Rgb {
         self.load().map_or(Rgb::ONE, |texels| texels.light(column, row))
+    }
+
+    /// Returns a texel of an image that has no colours but other numbers, each from 0 to 1, as [`texel`](Self::texel) does; those
+    /// of a texture whose image cannot be read are 0.5, 0.5 and 1, which as a normal is straight.
+    pub fn numbers(&self, column: u32, row: u32) -> DVec3 {
+        self.load().map_or(DVec3::new(0.5, 0.5, 1.0), |texels| texels.numbers(column, row))
     }
 
     /// Bounds the light of a channel of any texel: 1, unless the file has colours above 1 and the rules of light show them.

@@ -117,7 +117,8 @@ pub fn paint(paint: &ShaderFactory, draw: &mut Draw) -> Result<(), Fault> {
             let uv = has_more.then(|| DVec2::new(draw.part(), draw.part()));
             let face = has_more.then_some(index as u32);
             let side = if index % 3 == 0 { Side::Inside } else { Side::Outside };
-            shader(&*made, &SurfacePoint { position, normal, side, uv, face })?;
+            let tangents = has_more.then(|| normal.any_orthonormal_pair().into());
+            shader(&*made, &SurfacePoint { position, normal, side, uv, face, tangents })?;
         }
     }
     Ok(())

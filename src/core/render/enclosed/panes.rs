@@ -89,9 +89,11 @@ impl<N: Number> Panes<N> {
                 }
                 true
             });
+            // What a medium behind the walls absorbs is not enclosed.
+            let absorbs = scene.model.objects[object].material.medium().is_some();
             let (at, place) = match all[..] {
                 [] => return Ok(()),
-                [(_, Hit::Certain(at), place)] => (start + at, place),
+                [(_, Hit::Certain(at), place)] if !absorbs => (start + at, place),
                 [(first, ..), ..] => {
                     return Err(all.iter().fold(
                         first,

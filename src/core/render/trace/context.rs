@@ -159,6 +159,8 @@ pub(super) struct ShadingScratch {
     /// The distances of the hits, in world units.
     pub distances: Vec<f64>,
     pub surface: Surface,
+    /// The highlights of lamps in glass.
+    pub glints: VectorList,
     /// The directions in which rays continue.
     pub dir: VectorList,
     /// 1 for each ray that continues, and 0 for the others.

@@ -185,8 +185,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             if before.depth as usize >= self.plan.bounces {
                 continue;
             }
+            let passed = surface.passed.get(lane).map_or(before.weight, |passed| before.weight * *passed);
             let open = |weight: Rgb, dir: DVec3, side: Side, kind: RayKind| {
-                let weight = before.weight * weight;
+                let weight = passed * weight;
                 (weight != Rgb::ZERO).then_some(OpenRay {
                     weight,
                     origin: surface.points.get(lane),

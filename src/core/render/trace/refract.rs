@@ -6,7 +6,7 @@ use crate::world::interface::{Crossing, Interface};
 use glam::DVec3;
 
 /// Returns the unit normal that faces a direction.
-fn facing(normal: DVec3, dir: DVec3) -> DVec3 {
+pub(super) fn facing(normal: DVec3, dir: DVec3) -> DVec3 {
     if normal.dot(dir) > 0.0 { -normal } else { normal }
 }
 

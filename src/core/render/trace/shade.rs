@@ -37,7 +37,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                     match &self.model.background {
                         None => lanes.iter().for_each(|lane| colours.set(usize::from(*lane), Rgb::ZERO)),
                         Some(background) => {
-                            see_background(&*background.value, group, &hits.far, lanes, colours)
+                            see_background(&*background.value, group, &hits.far, lanes, colours);
+                            self.absorb_endlessly(group, lanes, colours);
                         }
                     }
                     continue;
@@ -82,6 +83,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             travelled,
         };
         shape.packets().interact(cpu, group.rays(), distances, interaction);
+        self.pass_media(group, distances, surface);
         surface.see(object, count);
         surface.look = shader.uniform(material);
         surface.is_mirror = match surface.look {
@@ -111,6 +113,10 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             self.observer.see(Event::Surface { normal: surface.normals.get(0), ambient: colours.get(0) });
         }
         let is_free = self.plan.camera.rules == Rules::Free;
+        let glints = material.glints();
+        if glints {
+            self.glint(group, surface, &mut shading.glints);
+        }
         // Where a surface keeps no light of its own, lamps make no difference.
         if !is_free || material.transparency != 1.0 {
             self.illuminate(group, surface, colours);
@@ -123,18 +129,28 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let hit = Hit { index, object, distance: distances[0], point };
             self.observer.see(Event::Shaded { hit: &hit, travelled, colour: colours.get(0) });
         }
-        if is_free {
-            return self.branch(group, shading, colours);
+        let roughness = material.roughness();
+        if roughness != 0.0 {
+            self.draw_facets(group, surface, roughness);
         }
-        if let Some(interface) = &material.interface {
-            return self.add_split(&**interface, group, shading, colours);
+        match &material.interface {
+            _ if is_free => self.branch(group, shading, colours),
+            Some(interface) => self.add_split(&**interface, group, shading, colours),
+            None => {
+                if material.transparency != 0.0 {
+                    self.add_transmitted(group, shading, colours);
+                    self.keep_first_reflections(group);
+                }
+                if shading.surface.is_mirror {
+                    self.add_reflected(group, shading, colours);
+                }
+            }
         }
-        if material.transparency != 0.0 {
-            self.add_transmitted(group, shading, colours);
-            self.keep_first_reflections(group);
+        if glints {
+            (0..count).for_each(|lane| colours.set(lane, colours.get(lane) + shading.glints.get(lane)));
         }
-        if shading.surface.is_mirror {
-            self.add_reflected(group, shading, colours);
+        for (lane, passed) in shading.surface.passed.iter().enumerate() {
+            colours.set(lane, colours.get(lane) * *passed);
         }
     }
 

@@ -39,6 +39,8 @@ pub(super) struct Surface {
     pub specular: VectorList,
     /// Whether the specular reflectivity is not 0 at any point.
     pub is_mirror: bool,
+    /// The fraction of light that passes from each point to the start of its ray; empty if all does.
+    pub passed: Vec<Rgb>,
 }
 
 impl Surface {

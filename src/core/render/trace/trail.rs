@@ -4,6 +4,7 @@ use super::light::{Colours, LitPoints, Reflectivities};
 use crate::simd::cpu::Cpu;
 use crate::world::material::Rgb;
 use crate::world::packets::shader::{PacketShader, SurfacePoints};
+use glam::DVec2;
 use std::mem::take;
 
 /// For each current primary ray, a hash of the objects, tiles and lights on its path: through mirrors and glass, in
@@ -85,6 +86,11 @@ impl PathHashes {
                 }
             }
         }
+    }
+
+    /// Records which facet of a rough surface a descendant of a primary ray hits: no two are alike.
+    pub fn see_facet(&mut self, camera: u8, draw: DVec2) {
+        self.add(camera, draw.x.to_bits() ^ draw.y.to_bits().rotate_left(32));
     }
 
     #[inline]

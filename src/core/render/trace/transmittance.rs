@@ -53,7 +53,14 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.closest(group, Some(t_max), hits);
         parts.begin(&hits.hit_ids[..group.len]);
         while let Some((id, lanes)) = parts.next() {
-            let Some(index) = (id as usize).checked_sub(1) else { continue };
+            let Some(index) = (id as usize).checked_sub(1) else {
+                for lane in lanes.iter().map(|lane| usize::from(*lane)) {
+                    if let Some(passed) = self.passed(group, lane, t_max[lane], None) {
+                        tint.set(lane, tint.get(lane) * passed);
+                    }
+                }
+                continue;
+            };
             if self.model.objects[index].material.transparency == 0.0 {
                 lanes.iter().for_each(|lane| blocker[usize::from(*lane)] = id);
                 continue;
@@ -84,17 +91,20 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.refine(group, (near, far), index, distances);
         let object = &self.model.objects[index];
         let count = group.padded();
-        let (sides, cosines) = (resized(&mut group.sides, count), resized(&mut group.cosines, count));
+        resized(&mut group.sides, count);
+        resized(&mut group.cosines, count);
         for lane in 0..count {
             let ray = Ray { origin: group.origin.get(lane), dir: group.dir.get(lane) };
             let point = ray.at(distances[lane]);
             let normal = object.shape.normal(point);
             let side = Side::seen_along(ray.dir, normal);
-            sides[lane] = side.opposite();
-            cosines[lane] = ray.dir.dot(normal);
+            let passed = self.passed(group, lane, distances[lane], Some((index, side)));
+            let tint_here = object.tint(&object.surface_point(point, side)) * passed.unwrap_or(Rgb::ONE);
+            group.sides[lane] = side.opposite();
+            group.cosines[lane] = ray.dir.dot(normal);
             group.travelled[lane] += distances[lane];
             group.origin.set(lane, point);
-            tint.set(lane, tint.get(lane) * object.tint(&object.surface_point(point, side)));
+            tint.set(lane, tint.get(lane) * tint_here);
             t_max[lane] -= distances[lane];
         }
         group.errors = self.errors(&*object.shape, &group.travelled[..count], &group.cosines[..count]);

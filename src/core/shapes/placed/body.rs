@@ -57,7 +57,9 @@ impl PlacedShader {
     /// Takes a point from the world to the object's own coordinates.
     fn object_point(&self, at: &SurfacePoint) -> SurfacePoint {
         let normal = (self.normal_to_own * at.normal).normalize_or_zero();
-        SurfacePoint { position: self.placed.object_point(at.position), normal, ..*at }
+        let own = |tangent: DVec3| (self.placed.to_object_space * tangent).normalize_or_zero();
+        let tangents = at.tangents.map(|tangents| tangents.map(own));
+        SurfacePoint { position: self.placed.object_point(at.position), normal, tangents, ..*at }
     }
 }
 

@@ -5,8 +5,9 @@
 //! it, however deep. So in a furnace, where everything is as bright as the background, no ray need be followed at all.
 //!
 //! The upper bounds solve the inequalities of the [depth](super), for each channel. The lower one is the same for all
-//! surfaces: the darkest background, or less, so that `ambient + passed * low >= low` for each surface, where `passed` is
-//! the least that it passes on. It does not count on lamps, which may be in shadow everywhere.
+//! surfaces: the darkest background, or less, so that `left * (ambient + passed * low) >= low` for each surface, where
+//! `passed` is the least that it passes on, and `left` the least that is left of light on any way through a medium. It does
+//! not count on lamps, which may be in shadow everywhere.
 
 use super::sides::{SIDES, Sides};
 use super::solve::Scene;
@@ -66,7 +67,8 @@ fn least(model: &Model, darkest: Rgb) -> Option<Rgb> {
     if !model.lights.iter().all(|lamp| are_positive(&*lamp.value.light)) {
         return None;
     }
-    model.objects.iter().try_fold(darkest, |least, object| {
+    let left = model.objects.iter().fold(Rgb::ONE, |least, object| least.min(left(object)));
+    model.objects.iter().try_fold(left * darkest, |least, object| {
         let LookBounds { ambient, diffuse, specular } = look(object)?;
         if ![ambient, diffuse, specular].into_iter().all(is_positive) {
             return None;
@@ -80,12 +82,21 @@ fn least(model: &Model, darkest: Rgb) -> Option<Rgb> {
             None => tint[channel] + specular[channel].low,
         };
         let bound =
-            |channel: usize| match (1.0 - passed(channel), (1.0 - transparency) * ambient[channel].low) {
-                (lost, _) if lost <= 0.0 => f64::INFINITY,
-                (lost, own) => own / lost,
+            |channel: usize| {
+                let lost = 1.0 - left[channel] * passed(channel);
+                let own = left[channel] * (1.0 - transparency) * ambient[channel].low;
+                if lost <= 0.0 { f64::INFINITY } else { own / lost }
             };
         Some(least.min(Rgb::from_array(per_axis(bound))))
     })
+}
+
+/// Returns the least that is left of light on a way through an object.
+fn left(object: &Object) -> Rgb {
+    let Some(medium) = object.material.medium() else { return Rgb::ONE };
+    // A way through a box is no longer than its diagonal.
+    let longest = object.shape.bounds().map_or(f64::INFINITY, |Aabb { low, high }| (high - low).length());
+    (1.0 - 1e-9) * medium.passed((1.0 + 1e-9) * longest)
 }
 
 /// Encloses the look of an object, at all of its points.

@@ -60,7 +60,10 @@ impl Surface {
             .zip(&tints)
             .map(|((object, look), tint)| {
                 let own = look.map_or(f64::INFINITY, |look| own(model, object, &look, of, any_light_comes));
-                let own = gain(1.0 - object.material.transparency, own) * ROUNDING;
+                let mut own = gain(1.0 - object.material.transparency, own) * ROUNDING;
+                if object.material.glints() {
+                    own += glints(model, object, of, any_light_comes) * ROUNDING;
+                }
                 let (is_split, is_free) = (object.material.interface.is_some(), rules == Rules::Free);
                 Self {
                     own,
@@ -151,8 +154,25 @@ fn tint(object: &Object, look: Option<&Look>, of: Part) -> f64 {
 /// Bounds the light of an object's own surface; by the notes' rules, times the path length to the surface.
 fn own(model: &Model, object: &Object, look: &Look, of: Part, any_light_comes: bool) -> f64 {
     let highlight = if object.material.shininess == 0.0 { Rgb::ZERO } else { look.specular.abs() };
-    let diffuse = look.diffuse.abs();
-    let mut own = if of.light.is_some() { Rgb::ZERO } else { look.ambient.abs() };
+    let ambient = if of.light.is_some() { Rgb::ZERO } else { look.ambient.abs() };
+    scattered(model, object, ambient, [look.diffuse.abs(), highlight], of, any_light_comes)
+}
+
+/// Bounds the highlights of a surface that are no part of its own light, as [`own`] does.
+fn glints(model: &Model, object: &Object, of: Part, any_light_comes: bool) -> f64 {
+    scattered(model, object, Rgb::ZERO, [Rgb::ZERO, Rgb::ONE], of, any_light_comes)
+}
+
+/// Bounds ambient light and what an object makes of the light of lamps, given the largest of its reflectivities.
+fn scattered(
+    model: &Model,
+    object: &Object,
+    ambient: Rgb,
+    [diffuse, highlight]: [Rgb; 2],
+    of: Part,
+    any_light_comes: bool,
+) -> f64 {
+    let mut own = ambient;
     let lights = of.light.map_or(&model.lights[..], |only| std::slice::from_ref(&model.lights[only]));
     for light in lights {
         if highlight == Rgb::ZERO && diffuse == Rgb::ZERO {

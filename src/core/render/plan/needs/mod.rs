@@ -275,6 +275,9 @@ impl Scene<'_> {
         let (Some(sent), Some(look)) = (light.brightest(), look) else { return false };
         let shines = if object.material.shininess == 0.0 { Rgb::ZERO } else { look.specular };
         let is_matt_black = sent * look.diffuse == Rgb::ZERO && sent * shines == Rgb::ZERO;
+        if object.material.glints() && sent != Rgb::ZERO {
+            return false;
+        }
         // Where rays continue, shadow rays count toward the limit of rays, so that they may make a difference. Within
         // 1e-154 of a point, distances are 0, and 0 divided by them is no number.
         let is_plain = self.depth.is_none() && light.location().abs().max_element() > 1e-100;

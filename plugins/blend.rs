@@ -1,0 +1,88 @@
+//! Two materials blended by a formula: marble, wood and clouds are blends by a formula of `noise`.
+
+use std::sync::Arc;
+use tabray::prelude::*;
+
+static BY: Pparm<SurfaceField> =
+    Pparm::required("by", "how much of `altmaterial` shows at each point, from 0, none, to 1, nothing else");
+static ALTMATERIAL: Pparm<Arc<Material>> =
+    Pparm::required("altmaterial", "the material that is blended with the surface's own");
+
+const TABLE: Table = &[&BY, &ALTMATERIAL];
+
+inventory::submit! {
+    Entity::shader("blend", "two materials, blended by a formula", &[TABLE], |args| {
+        let (by, other) = (args.get(&BY), args.get(&ALTMATERIAL));
+        Ok(Paint::new(move |_| Blend { by: by.clone(), other: other.clone() }))
+    })
+}
+
+struct Blend {
+    by: SurfaceField,
+    other: Arc<Material>,
+}
+
+impl Blend {
+    fn uses(&self, mut variables: std::ops::Range<usize>) -> bool {
+        variables.any(|variable| self.by.uses(variable))
+    }
+
+    /// Returns the part of the other material at a point; what is no number counts as 0.
+    fn part(&self, at: &SurfacePoint) -> f64 {
+        let (DVec3 { x, y, z }, DVec2 { x: u, y: v }) = (at.position, at.uv.unwrap_or_default());
+        let part = self.by.at([x, y, z, u, v, at.normal.x, at.normal.y, at.normal.z]);
+        if part > 0.0 { part.min(1.0) } else { 0.0 }
+    }
+
+    fn blend(&self, own: Rgb, other: Rgb, at: &SurfacePoint) -> Rgb {
+        if own == other { own } else { own.lerp(other, self.part(at)) }
+    }
+}
+
+impl Shader for Blend {
+    fn sees(&self) -> ShaderInputs {
+        ShaderInputs { uv: self.uses(3..5), normal: self.uses(5..8), ..ShaderInputs::POSITION }
+    }
+
+    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.blend(material.ambient, self.other.ambient, at)
+    }
+
+    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.blend(material.diffuse, self.other.diffuse, at)
+    }
+
+    fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.blend(material.specular, self.other.specular, at)
+    }
+
+    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
+        let n = Interval::<F>::constant;
+        let normal = if self.uses(5..8) { at.normal? } else { [n(0.0); 3] };
+        let uv = if self.uses(3..5) { at.uv? } else { [Interval::constant(0.0); 2] };
+        if !self.by.is_enclosed() {
+            return None;
+        }
+        let ([x, y, z], [u, v], [nx, ny, nz]) = (at.position, uv.map(Interval::from_f64), normal);
+        let part = self.by.at([x, y, z, u, v, nx, ny, nz]).max(n(0.0)).min(n(1.0));
+        let blend = |own: Rgb, other: Rgb| {
+            per_axis(|channel| n(own[channel]) + part * (n(other[channel]) - n(own[channel])))
+        };
+        let (own, other) = (material, &*self.other);
+        Some(LookBounds {
+            ambient: blend(own.ambient, other.ambient),
+            diffuse: blend(own.diffuse, other.diffuse),
+            specular: blend(own.specular, other.specular),
+        })
+    }
+
+    fn brightest(&self, material: &Material) -> Option<Look> {
+        let [one, other] = [material, &*self.other];
+        let is_sound = one.diffuse.min(other.diffuse).min_element() >= 0.0;
+        is_sound.then(|| Look {
+            ambient: one.ambient.abs().max(other.ambient.abs()),
+            diffuse: one.diffuse.max(other.diffuse),
+            specular: one.specular.abs().max(other.specular.abs()),
+        })
+    }
+}

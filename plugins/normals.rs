@@ -1,0 +1,95 @@
+//! Normals bent by an image, a normal map: red is the part along u, green that along v, and blue that along the normal.
+
+use std::sync::Arc;
+use tabray::prelude::*;
+
+static TEXTURE: Pparm<Arc<Texture>> = Pparm::required(
+    "texture",
+    "the normal map, defined earlier in the scene: of each part of a normal, 0 stands for -1, and the greatest number for 1",
+);
+static REPEAT: Pparm<[i64; 2]> =
+    Pparm::or("repeat", "how often the image repeats along u and along v", [1, 1]).between(1.0, 1e6);
+static STRENGTH: Pparm<f64> =
+    Pparm::or("strength", "the factor of the slopes: 0 is flat, and a negative one turns hills into hollows", 1.0)
+        .between(-100.0, 100.0);
+static SHADER: Pparm<Option<Paint>> =
+    Pparm::or("shader", "the shader that gives the colours, in place of the material", None);
+
+const TABLE: Table = &[&TEXTURE, &REPEAT, &STRENGTH, &SHADER];
+
+inventory::submit! {
+    Entity::shader("normals", "bumps by an image of their normals", &[TABLE], |args| {
+        let (texture, strength) = (args.get(&TEXTURE), args.get(&STRENGTH));
+        let repeat = DVec2::from(args.get(&REPEAT).map(|count| count as f64));
+        let colours = args.get(&SHADER).unwrap_or_default();
+        let on = move |anchor| Normals { texture: texture.clone(), repeat, strength, colours: colours.on(anchor) };
+        Ok(Paint::new(on))
+    })
+    .known_as(&["normal_map", "normalmap"])
+}
+
+struct Normals {
+    texture: Arc<Texture>,
+    repeat: DVec2,
+    strength: f64,
+    colours: AnyShader,
+}
+
+impl Normals {
+    /// Returns the parts of the normal at u and v: those of the four nearest texels, blended.
+    fn parts(&self, uv: DVec2) -> DVec3 {
+        let size = self.texture.size().map(f64::from);
+        let place = (uv * self.repeat).map(|along| along - along.floor()) * DVec2::from(size) - 0.5;
+        let (corner, part) = (place.floor(), place - place.floor());
+        // The image goes on where it ends.
+        let wrapped = |at: f64, axis: usize| at.rem_euclid(size[axis].max(1.0)) as u32;
+        let texel = |right: f64, up: f64| {
+            self.texture.numbers(wrapped(corner.x + right, 0), wrapped(corner.y + up, 1))
+        };
+        let row = |up: f64| texel(0.0, up).lerp(texel(1.0, up), part.x);
+        2.0 * row(0.0).lerp(row(1.0), part.y) - 1.0
+    }
+}
+
+impl Shader for Normals {
+    fn sees(&self) -> ShaderInputs {
+        ShaderInputs { normal: true, uv: true, tangents: true, ..self.colours.sees() }
+    }
+
+    fn bends(&self) -> bool {
+        true
+    }
+
+    /// Where there are no u and v, the normal is straight.
+    fn bend(&self, at: &SurfacePoint) -> DVec3 {
+        let normal = self.colours.bend(at);
+        let (Some(uv), Some([along_u, along_v])) = (at.uv, at.tangents) else { return normal };
+        let DVec3 { x, y, z } = self.parts(uv);
+        let bent = self.strength * (x * along_u + y * along_v) + z.max(0.0) * normal;
+        bent.try_normalize().unwrap_or(normal)
+    }
+
+    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.colours.ambient(material, at)
+    }
+
+    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.colours.diffuse(material, at)
+    }
+
+    fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.colours.specular(material, at)
+    }
+
+    fn uniform(&self, material: &Material) -> Option<Look> {
+        self.colours.uniform(material)
+    }
+
+    fn tile(&self, at: &SurfacePoint) -> DVec2 {
+        self.colours.tile(at)
+    }
+
+    fn brightest(&self, material: &Material) -> Option<Look> {
+        self.colours.brightest(material)
+    }
+}
