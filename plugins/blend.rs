@@ -13,7 +13,7 @@ const TABLE: Table = &[&BY, &ALTMATERIAL];
 inventory::submit! {
     Entity::shader("blend", "two materials, blended by a formula", &[TABLE], |args| {
         let (by, other) = (args.get(&BY), args.get(&ALTMATERIAL));
-        Ok(Paint::new(move |_| Blend { by: by.clone(), other: other.clone() }))
+        Ok(ShaderFactory::new(move |_| Blend { by: by.clone(), other: other.clone() }))
     })
 }
 

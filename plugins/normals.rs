@@ -12,7 +12,7 @@ static REPEAT: Pparm<[i64; 2]> =
 static STRENGTH: Pparm<f64> =
     Pparm::or("strength", "the factor of the slopes: 0 is flat, and a negative one turns hills into hollows", 1.0)
         .between(-100.0, 100.0);
-static SHADER: Pparm<Option<Paint>> =
+static SHADER: Pparm<Option<ShaderFactory>> =
     Pparm::or("shader", "the shader that gives the colours, in place of the material", None);
 
 const TABLE: Table = &[&TEXTURE, &REPEAT, &STRENGTH, &SHADER];
@@ -23,7 +23,7 @@ inventory::submit! {
         let repeat = DVec2::from(args.get(&REPEAT).map(|count| count as f64));
         let colours = args.get(&SHADER).unwrap_or_default();
         let on = move |anchor| Normals { texture: texture.clone(), repeat, strength, colours: colours.on(anchor) };
-        Ok(Paint::new(on))
+        Ok(ShaderFactory::new(on))
     })
     .known_as(&["normal_map", "normalmap"])
 }

@@ -56,7 +56,7 @@ const NEAR: f64 = 1e-6;
 
 /// Returns the unit directions along a surface in which u and v grow; `None` where it has no u and v, or they do not change.
 fn tangents(shape: &dyn Hittable, position: DVec3, normal: DVec3) -> Option<[DVec3; 2]> {
-    let size = shape.bounds().map_or(position.length(), |Aabb { low, high }| (high - low).length());
+    let size = shape.facts().bounds.map_or(position.length(), |Aabb { low, high }| (high - low).length());
     let (across, up) = normal.any_orthonormal_pair();
     // What grows beyond 1 begins at 0 again.
     let wrapped = |difference: DVec2| difference - difference.round();

@@ -91,7 +91,7 @@ pub fn remark(plan: &Plan, part: [&Range<usize>; 2], levels: &Levels) -> Option<
 
 /// Says that a background lights the scene from one direction, where pixels have one sample.
 fn flat(model: &Model) -> Option<Remark> {
-    let Film { samples, adaptive, .. } = &model.camera.value;
+    let Sensor { samples, adaptive, .. } = &model.camera.value;
     let sky = model.lights.iter().find(|light| light.args.entity().kind() == Kind::Background)?;
     (*samples == 1 && adaptive.is_none()).then(|| Remark {
         message: format!("`{}` lights the scene, but each pixel has one sample, which sees a single direction", sky.args.name()),

@@ -2,7 +2,7 @@
 
 use super::context::Tracer;
 use super::ray_group::RayGroup;
-use super::scratch::LightDraws;
+use super::context::LightDraws;
 use crate::geometry::aabb::Aabb;
 use crate::render::observer::TraceObserver;
 use crate::world::emitter::{Emitter, LightSample};
