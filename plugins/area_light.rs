@@ -3,7 +3,7 @@
 use super::disc::Disc;
 use super::light;
 use std::f64::consts::PI;
-use std::sync::Arc;
+use tabray::exact::double_double::scaled;
 use tabray::prelude::*;
 use tabray::shapes::outline;
 
@@ -42,7 +42,7 @@ inventory::submit! {
             message: "is too small at its position: its corners coincide, or are too far away".to_owned(),
             help: "its sides must be longer than the rounding of its coordinates, about 1e-16 of their size",
         };
-        light.shape().map_or(Err(too_small), |_| Ok(Box::new(light) as _))
+        light.surface().map_or(Err(too_small), |_| Ok(Box::new(light) as _))
     })
     .known_as(&["arealight", "rectlight", "quad_light", "softbox", "emitter"])
     .without_falloff()
@@ -57,7 +57,7 @@ struct AreaLight {
 
 impl AreaLight {
     fn new(args: &Args) -> Result<Self, Refusal> {
-        let (middle, up) = (args.get(&light::LOCATION), args.get(&UP).normalize());
+        let (middle, up) = (args.get(&light::LOCATION), scaled(args.get(&UP)).normalize());
         let Some(facing) = (args.get(&TARGET) - middle).try_normalize() else {
             return Err(Refusal {
                 attribute: Some("target"),
@@ -78,16 +78,17 @@ impl AreaLight {
         })
     }
 
-    /// Returns the object as which it is seen; `None` if it has no area.
-    fn shape(&self) -> Option<Body> {
+    /// Returns its surface; `None` if it has no area.
+    fn surface(&self) -> Option<AnyShape> {
         let Patch { middle, half: [across, up], is_round } = self.patch;
         if is_round {
             let disc = Disc { radius: across.length() };
-            return Some(Body::implicit(disc, Frame::around(middle, self.patch.facing())));
+            return Some(Body::implicit(disc, Frame::around(middle, self.patch.facing())).shape);
         }
         let corners =
             vec![middle - across - up, middle + across - up, middle + across + up, middle - across + up];
-        outline::body(outline::polygon(corners, vec![[0, 1, 2], [0, 2, 3]]), true, self.accuracy).ok()
+        let polygon = outline::polygon(corners, vec![[0, 1, 2], [0, 2, 3]]);
+        outline::body(polygon, true, self.accuracy).ok().map(|body| body.shape)
     }
 }
 
@@ -117,10 +118,8 @@ impl Light for AreaLight {
         Some(self)
     }
 
-    fn body(&self) -> Option<Body> {
-        let material = Material { ambient: self.radiance, ..Material::default() };
-        let body = self.shape().filter(|_| self.is_visible)?;
-        Some(Body { material: Some(Arc::new(material)), ..body })
+    fn shape(&self) -> Option<AnyShape> {
+        self.surface().filter(|_| self.is_visible)
     }
 }
 

@@ -111,6 +111,8 @@ fn of_a_constructor(fault: &Fault) -> bool {
         "has a formula",
         "is too small at its position",
         "has its `target` at its `position`",
+        "has its `target` at its `location`",
+        "is a light that the notes' rules of light do not know",
         "looks along its `up`",
         "has texels as large as pixels",
     ];

@@ -11,6 +11,7 @@ mod accuracy;
 mod chart;
 mod choose;
 mod copy;
+mod emitted;
 mod falsify;
 #[cfg(feature = "fuzz")]
 mod fuzz;

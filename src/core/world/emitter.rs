@@ -6,9 +6,8 @@
 //! samples tends to the integral.
 
 use crate::world::material::Rgb;
-use crate::world::patch::Patch;
+use crate::world::patch::{Patch, on_disc};
 use glam::{DVec2, DVec3};
-use std::f64::consts::FRAC_PI_4;
 
 /// A light that is spread out.
 pub trait Emitter: Send + Sync {
@@ -47,19 +46,6 @@ pub enum Extent {
     Patch(Patch),
     /// Any points.
     Unknown,
-}
-
-/// Maps two numbers from 0 to 1 to the unit disc, with areas in proportion (Shirley and Chiu, "A Low Distortion Map Between
-/// Disk and Square", 1997).
-pub fn on_disc(numbers: DVec2) -> DVec2 {
-    let DVec2 { x, y } = 2.0 * numbers - 1.0;
-    let (radius, angle) = match x.abs() > y.abs() {
-        true => (x, FRAC_PI_4 * (y / x)),
-        false if y == 0.0 => return DVec2::ZERO,
-        false => (y, 2.0 * FRAC_PI_4 - FRAC_PI_4 * (x / y)),
-    };
-    let (sin, cos) = libm::sincos(angle);
-    radius * DVec2::new(cos, sin)
 }
 
 /// Chooses a direction in the half space of a unit normal by two numbers from 0 to 1, with a density of the cosine over pi.

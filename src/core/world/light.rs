@@ -1,7 +1,7 @@
 //! Lights: the trait that a plugin implements.
 
 use crate::geometry::aabb::Aabb;
-use crate::world::body::Body;
+use crate::world::any_shape::AnyShape;
 use crate::world::certify::Precise;
 use crate::world::emitter::Emitter;
 use crate::world::material::Rgb;
@@ -62,8 +62,8 @@ pub trait Light: Send + Sync {
         false
     }
 
-    /// Returns the object as which the light is seen, with its material; `None` for a light that is not seen itself.
-    fn body(&self) -> Option<Body> {
+    /// Returns the shape as which the light is seen, as bright as its emissivity; `None` for a light that is not seen itself.
+    fn shape(&self) -> Option<AnyShape> {
         None
     }
 }

@@ -1,8 +1,7 @@
 //! Flat patches that shine: rectangles and discs, and which of their points are seen.
 
-use crate::world::emitter::on_disc;
 use glam::{DVec2, DVec3};
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_4, PI};
 
 /// The points `middle + x half[0] + y half[1]` of a flat patch that shines on both sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,6 +54,19 @@ impl Patch {
     }
 }
 
+/// Maps two numbers from 0 to 1 to the unit disc, with areas in proportion (Shirley and Chiu, "A Low Distortion Map Between
+/// Disk and Square", 1997).
+pub fn on_disc(numbers: DVec2) -> DVec2 {
+    let DVec2 { x, y } = 2.0 * numbers - 1.0;
+    let (radius, angle) = match x.abs() > y.abs() {
+        true => (x, FRAC_PI_4 * (y / x)),
+        false if y == 0.0 => return DVec2::ZERO,
+        false => (y, 2.0 * FRAC_PI_4 - FRAC_PI_4 * (x / y)),
+    };
+    let (sin, cos) = libm::sincos(angle);
+    radius * DVec2::new(cos, sin)
+}
+
 /// A rectangle as seen from a point: the part of a unit sphere that it covers.
 ///
 /// From Ureña, Fajardo and King, "An Area-Preserving Parametrization for Spherical Rectangles", 2013.
@@ -85,7 +97,7 @@ impl SphericalRectangle {
             DVec2::new(between.dot(x_axis), between.dot(y_axis)),
         );
         let (from, to, plane) = (place - size, place + size, -height.abs());
-        if plane == 0.0 {
+        if plane == 0.0 || !(plane.is_finite() && from.is_finite() && to.is_finite()) {
             return None;
         }
         // The z of the unit normals of the planes through the point and each side.

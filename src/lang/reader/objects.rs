@@ -15,6 +15,7 @@ use tabray_core::scene::value::Datum;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_core::world::body::{Body, Warning};
 use tabray_core::world::lamp::Lamp;
+use tabray_core::world::material::Material;
 use tabray_core::world::rules::{Fading, Falloff, Rules};
 use tabray_core::world::sky_light::SkyLight;
 
@@ -84,7 +85,7 @@ impl Check<'_, '_> {
                         if lamp.emitter().is_some() && self.setting.camera.rules == Rules::Notes {
                             self.refused(&record.args(), only_free(None), source);
                         }
-                        self.objects.extend(lamp.body().into_iter().flat_map(|body| objects(record.clone(), body)));
+                        self.objects.extend(surface(&record, &lamp));
                         self.lights.push(Item { args: record, value: lamp });
                     }
                     Err(refusal) => self.refused(&record.args(), refusal, source),
@@ -153,6 +154,14 @@ impl Check<'_, '_> {
         let parsed = source.entity(self.registry, args.order, &self.places.get(args.order));
         self.refuse(parsed.as_deref(), args, refusal);
     }
+}
+
+/// Returns the object as which a light is seen, if it is.
+fn surface(record: &Record, lamp: &Lamp) -> Option<Object> {
+    let Body { shape, shader, .. } = Body::plain(lamp.shape()?);
+    let ambient = lamp.emissivity(lamp.location())?;
+    let material = Arc::new(Material { ambient, ..Material::default() });
+    Some(Object { args: record.clone(), material, shape, shader })
 }
 
 /// Returns why the notes' rules refuse a light.

@@ -12,6 +12,7 @@ use tabray_core::simd::cpu::Cpu;
 use tabray_core::simd::soa::{LANES, Vectors};
 use tabray_core::world::background::Background;
 use tabray_core::world::body::ShaderFactory;
+use tabray_core::world::emitter::{Emitter, LightSample};
 use tabray_core::world::interface::Crossing;
 use tabray_core::world::light_samples::{LightSamples, ShadingPoints};
 use tabray_core::world::material::{Look, Material, Rgb};
@@ -181,6 +182,9 @@ pub fn light(light: &dyn PacketLight, draw: &mut Draw) -> Result<(), Fault> {
             let found = format!("`brightest` is {limit}, and toward {toward} it emits {one}");
             return Err(Promise::LightIsFinite.fault(found));
         }
+        if light.emitter().is_some() {
+            continue;
+        }
         let all = |of: DVec3| Vectors::<LANES> { x: [of.x; LANES], y: [of.y; LANES], z: [of.z; LANES] };
         // The light is in front of each point, except for the point at its own position.
         let (points, normals) = (all(toward), all((location - toward).normalize_or_zero()));
@@ -208,7 +212,29 @@ pub fn light(light: &dyn PacketLight, draw: &mut Draw) -> Result<(), Fault> {
             }
         }
     }
+    for _ in 0..PLACES {
+        if let Some(emitter) = light.emitter() {
+            samples(light, emitter, location + draw.direction() * 10.0 * draw.part(), draw)?;
+        }
+    }
     Ok(())
+}
+
+/// Checks the samples of a light that is spread out, as a place sees them.
+fn samples(light: &dyn PacketLight, emitter: &dyn Emitter, at: DVec3, draw: &mut Draw) -> Result<(), Fault> {
+    let (normal, numbers) = (draw.direction(), DVec2::new(draw.part(), draw.part()));
+    let Some(sample) = emitter.sample(at, normal, numbers) else { return Ok(()) };
+    let LightSample { toward, distance, light: sent } = sample;
+    let cosine = if emitter.has_highlights() { 1.0 } else { toward.dot(normal).max(0.0) };
+    let is_bounded = light.brightest().is_none_or(|most| {
+        (cosine * sent).abs().cmple((1.0 + 1e-9) * most.abs()).all()
+    });
+    if toward.is_normalized() && distance >= 0.0 && sent.is_finite() && is_bounded {
+        return Ok(());
+    }
+    let most = light.brightest();
+    let found = format!("{at}, with the normal {normal}, sees it at {numbers} as {sample:?}; `brightest` is {most:?}");
+    Err(Promise::LightIsFinite.fault(found))
 }
 
 /// Draws points around a point, the point itself among them.

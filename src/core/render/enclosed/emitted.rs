@@ -76,8 +76,8 @@ pub(super) fn shine<N: Number>(
         let strength = power(dot(half, surface.normal) / dot(half, half).sqrt(), shininess);
         scattered = per_axis(|channel| scattered[channel] + surface.specular[channel] * strength);
     }
-    let passes =
-        passed(scene, &Path { line: Line { origin: surface.at, dir: toward }, leaves: Some(surface.place) });
+    let path = Path { line: Line { origin: surface.at, dir: toward }, leaves: Some(surface.place) };
+    let passes = passed(scene, &path, index);
     Some(per_axis(|channel| {
         let full = scattered[channel] * sent[channel] * weight;
         let lit = match &passes {

@@ -72,7 +72,7 @@ pub(super) fn shine<N: Number>(
         }
     }
     let path = Path { line: Line { origin: surface.at, dir: toward }, leaves: Some(surface.place) };
-    let passes = passed(scene, &path);
+    let passes = passed(scene, &path, index);
     if matches!(passes, Passes::Open) && !scene.bounds.passes_fractions {
         return None;
     }

@@ -5,6 +5,7 @@ use super::scene::{Colour, Path, Place, Scene};
 use super::surface::tint;
 use crate::geometry::sight::Line;
 use crate::world::shader::PointBounds;
+use std::ptr;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::per_axis;
 
@@ -22,8 +23,8 @@ pub(super) enum Passes<N> {
     Open,
 }
 
-/// Tells how much light passes along lines from t = 0 to t = 1.
-pub(super) fn passed<N: Number>(scene: &Scene, path: &Path<N>) -> Passes<N> {
+/// Tells how much of the light of this index passes along lines from t = 0 to t = 1, where they end on it.
+pub(super) fn passed<N: Number>(scene: &Scene, path: &Path<N>, light: usize) -> Passes<N> {
     let (objects, one) = (&scene.model.objects, N::of(1.0));
     let coarse = coarse(&path.line);
     let is_glass = |object: &usize| objects[*object].material.transparency != 0.0;
@@ -35,7 +36,13 @@ pub(super) fn passed<N: Number>(scene: &Scene, path: &Path<N>) -> Passes<N> {
             open.push(object);
         }
     }
-    for object in (0..objects.len()).filter(|object| !is_glass(object)) {
+    // The object as which a light is seen is flat, and not in its way.
+    let source = &scene.model.lights[light].args;
+    let is_source = |object: &usize| {
+        let body = &objects[*object].args;
+        ptr::eq(body.entity(), source.entity()) && body.order() == source.order()
+    };
+    for object in (0..objects.len()).filter(|object| !is_glass(object) && !is_source(object)) {
         scene.hits(path, &coarse, object, &mut |hit, _| {
             match hit {
                 Hit::Certain(at) if at.range().high < one && !panes.are_at(at.range()) => is_blocked = true,

@@ -1,0 +1,138 @@
+//! What `--max-error` promises where areas, the sun and the sky light a scene, on scenes made at random.
+//!
+//! `TABRAY_SCENES=100 cargo test --release --test slow emitted -- --nocapture` measures 100 scenes in place of 30, and prints
+//! a table.
+
+use crate::common::model_in;
+use image::{Rgb, Rgb32FImage};
+use rayon::prelude::*;
+use std::env;
+use std::fmt::Write;
+use std::path::Path;
+use tabray::render::trace::{Scratch, Tracer};
+use tabray::render::{Flaws, Plan};
+use tabray::simd::Cpu;
+use tabray::tools::threads::renderer_with;
+use tabray::world::film::Adaptive;
+use tabray::world::sample::{SCRAMBLE, Sampler};
+use tempfile::TempDir;
+
+const SIZE: [usize; 2] = [12, 9];
+
+/// The limit, in levels.
+const LIMIT: f64 = 2.0;
+
+/// Numbers from 0 to 1 that look random.
+struct Draw(u64);
+
+impl Draw {
+    fn part(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn between(&mut self, from: f64, to: f64) -> f64 {
+        from + (to - from) * self.part()
+    }
+}
+
+/// Writes a map with a few lamps.
+fn write_map(folder: &Path) {
+    let mut map = Rgb32FImage::from_pixel(96, 48, Rgb([0.15, 0.2, 0.35]));
+    for (x, y, light) in [(20, 12, 60.0), (21, 12, 60.0), (70, 8, 25.0), (50, 30, 4.0)] {
+        map.put_pixel(x, y, Rgb([light, 0.9 * light, 0.7 * light]));
+    }
+    map.save(folder.join("lamps.exr")).expect("a map");
+}
+
+/// Returns a scene: a floor, a wall, some bodies, and one to three of the lights.
+fn scene(seed: u64) -> String {
+    let mut draw = Draw(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x1234_5678);
+    (0..4).for_each(|_| drop(draw.part()));
+    let [width, height] = SIZE;
+    let mut text = format!(
+        "look_at eye {{ pixeldim {width} {height} position {:.3} {:.3} 6 target 0 0.6 0 angle 40 }}
+         material floor {{ diffuse 0.7 0.7 0.7 }} material shiny {{ diffuse 0.6 0.3 0.2 specular 0.1 shininess 30 }}
+         metal chrome {{ colour 0.8 0.8 0.8 }} glass clear {{ index 1.5 }}
+         plane floor {{ material floor normal 0 1 0 point 0 0 0 }}
+         plane wall {{ material floor normal 0 0 1 point 0 0 -3 }}\n",
+        draw.between(-2.0, 2.0),
+        draw.between(0.8, 4.0)
+    );
+    for (index, material) in ["shiny", "floor", "chrome", "clear"].iter().enumerate() {
+        let (x, z, size) = (draw.between(-2.0, 2.0), draw.between(-2.0, 2.0), draw.between(0.3, 0.8));
+        let body = match index % 2 {
+            0 => format!("sphere s{index} {{ material {material} center {x:.3} {size:.3} {z:.3} radius {size:.3} }}\n"),
+            _ => format!("box b{index} {{ material {material} center {x:.3} {size:.3} {z:.3} size 0.5 {:.3} 0.4 }}\n", 2.0 * size),
+        };
+        // Glass takes long.
+        if index < 3 || seed % 5 == 0 {
+            text += &body;
+        }
+    }
+    let kinds = 1 + (seed % 7) as u32;
+    if kinds & 1 != 0 {
+        let shape = if draw.part() < 0.5 { "radius 0.6" } else { "dimensions 1.4 0.8" };
+        let visible = if draw.part() < 0.5 { "yes" } else { "no" };
+        let (x, y) = (draw.between(-2.5, 2.5), draw.between(1.5, 3.5));
+        writeln!(text, "area_light a {{ location {x:.3} {y:.3} 1 target 0 0 0 {shape} visible {visible} emissivity 4 4 4 }}")
+            .expect("text");
+    }
+    if kinds & 2 != 0 {
+        let (x, angle) = (draw.between(-2.0, 2.0), draw.between(0.5, 20.0));
+        writeln!(text, "sun s {{ direction {x:.3} 1.5 1 angle {angle:.3} emissivity 0.6 0.6 0.5 }}").expect("text");
+    }
+    if kinds & 4 != 0 {
+        text += match seed % 3 {
+            0 => "background b { colour 0.5 0.5 0.6 lights yes }",
+            1 => "sky day { lights yes }",
+            _ => "texture t { filename lamps.exr } environment e { texture t lights yes }",
+        };
+    }
+    text
+}
+
+#[test]
+fn max_error_is_kept_under_spread_out_light() {
+    let folder = TempDir::new().expect("a folder");
+    write_map(folder.path());
+    let count = env::var("TABRAY_SCENES").map_or(30, |count| count.parse().expect("a number"));
+    let renderer = renderer_with(0).expect("threads");
+    let (mut kept, mut within, mut all, mut worst) = (0, 0, 0, 0.0_f64);
+    for seed in 0..count {
+        let model = model_in(folder.path(), &scene(seed));
+        let colours = |adaptive: Option<Adaptive>, samples: u32| {
+            let mut plan = Plan::new(&model);
+            plan.camera.samples = samples;
+            if adaptive.is_none() {
+                // Samples that the other image does not take.
+                plan.camera.scramble = SCRAMBLE;
+            }
+            plan.set_adaptive(adaptive);
+            let [width, height] = plan.camera.pixels;
+            let pixels: Vec<_> = (0..width * height).map(|pixel| [pixel % width, pixel / width]).collect();
+            let display = plan.camera.display();
+            let shown = |x: usize, y: usize| {
+                let (mut scratch, mut nobody) = (Scratch::default(), Flaws::default());
+                let mut tracer = Tracer::new(&plan, Cpu::best(), &mut scratch, &mut nobody);
+                display.shown(tracer.pixels(&[[x, y]]).get(0))
+            };
+            renderer.run(|| pixels.par_iter().map(|[x, y]| shown(*x, *y)).collect::<Vec<_>>())
+        };
+        let found = colours(Some(Adaptive { most: 4096, error: Some(LIMIT / 255.0) }), 4);
+        let whole = colours(None, Sampler::MOST);
+        let off: Vec<_> = found
+            .iter()
+            .zip(&whole)
+            .map(|(found, whole)| 255.0 * (*found - *whole).abs().max_element())
+            .collect();
+        let good = off.iter().filter(|off| **off <= LIMIT).count();
+        let most = off.iter().copied().fold(0.0, f64::max);
+        println!("{seed:3} {good:4} of {} within, {most:.2} levels at worst", off.len());
+        kept += u64::from(100 * good >= 99 * off.len());
+        (within, all, worst) = (within + good, all + off.len(), worst.max(most));
+    }
+    println!("kept in {kept} of {count} scenes, {within} of {all} pixels, {worst:.2} levels at worst");
+    assert!(30 * kept >= 29 * count, "kept in {kept} of {count} scenes");
+    assert!(1000 * within >= 995 * all, "{within} of {all} pixels");
+}
