@@ -49,7 +49,10 @@ pub fn small(path: &Path, accuracy: Option<Accuracy>) -> Model {
     let mut model = match scene::read(registry(), &name, path.parent().expect("a folder"), &bytes, accuracy) {
         Ok(loaded) => loaded.model,
         // With the notes' method come their rules, which refuse some lights.
-        Err(report) if accuracy == Some(Accuracy::Classic) && report.to_string().contains("rules of light do not") => {
+        Err(report)
+            if accuracy == Some(Accuracy::Classic)
+                && report.to_string().contains("rules of light do not") =>
+        {
             return small(path, Some(Accuracy::Exact));
         }
         Err(report) => panic!("{report}"),

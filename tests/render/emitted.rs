@@ -75,7 +75,9 @@ fn a_disc_lights_as_its_form_factor_says() {
     for (height, radius) in [(1.0, 0.5), (0.05, 2.0), (1.0, 1.0), (40.0, 1.0)] {
         let scene = at_origin(
             DVec3::Y,
-            &format!("area_light a {{ location 0 {height} 0 target 0 0 0 radius {radius} emissivity 2 2 2 }}"),
+            &format!(
+                "area_light a {{ location 0 {height} 0 target 0 0 0 radius {radius} emissivity 2 2 2 }}"
+            ),
         );
         let expected = 2.0 * 0.8 * radius * radius / (radius * radius + height * height);
         // The lamp is behind the viewer's back, and the floor does not hide it.
@@ -86,10 +88,14 @@ fn a_disc_lights_as_its_form_factor_says() {
 
 #[test]
 fn a_sun_adds_its_emissivity_to_what_faces_it() {
-    for (angle, direction) in [(0.0, DVec3::Y), (0.53, DVec3::new(1.0, 2.0, -0.5)), (60.0, DVec3::new(0.3, 1.0, 0.2))] {
+    for (angle, direction) in
+        [(0.0, DVec3::Y), (0.53, DVec3::new(1.0, 2.0, -0.5)), (60.0, DVec3::new(0.3, 1.0, 0.2))]
+    {
         let DVec3 { x, y, z } = direction;
-        let scene =
-            at_origin(DVec3::Y, &format!("sun s {{ direction {x} {y} {z} angle {angle} emissivity 1.5 1.5 1.5 }}"));
+        let scene = at_origin(
+            DVec3::Y,
+            &format!("sun s {{ direction {x} {y} {z} angle {angle} emissivity 1.5 1.5 1.5 }}"),
+        );
         // As a ball that is seen at this angle: radiance times pi times the square of the sine, times the cosine.
         let expected = 1.5 * 0.8 * direction.normalize().y;
         let found = seen(&model(&scene), 1024).x;
@@ -146,7 +152,10 @@ fn map() -> TempDir {
 fn an_environment_lights_as_the_sum_over_its_map_says() {
     let folder = map();
     let text = |normal: DVec3, lights: &str| {
-        at_origin(normal, &format!("texture t {{ filename lamp.exr }} environment e {{ texture t lights {lights} }}"))
+        at_origin(
+            normal,
+            &format!("texture t {{ filename lamp.exr }} environment e {{ texture t lights {lights} }}"),
+        )
     };
     let background = model_in(folder.path(), &text(DVec3::Y, "no")).background.expect("a background").value;
     for normal in [DVec3::Y, DVec3::NEG_Z, DVec3::new(0.6, 0.2, 0.4).normalize()] {

@@ -62,8 +62,13 @@ fn scene(seed: u64) -> String {
     for (index, material) in ["shiny", "floor", "chrome", "clear"].iter().enumerate() {
         let (x, z, size) = (draw.between(-2.0, 2.0), draw.between(-2.0, 2.0), draw.between(0.3, 0.8));
         let body = match index % 2 {
-            0 => format!("sphere s{index} {{ material {material} center {x:.3} {size:.3} {z:.3} radius {size:.3} }}\n"),
-            _ => format!("box b{index} {{ material {material} center {x:.3} {size:.3} {z:.3} size 0.5 {:.3} 0.4 }}\n", 2.0 * size),
+            0 => format!(
+                "sphere s{index} {{ material {material} center {x:.3} {size:.3} {z:.3} radius {size:.3} }}\n"
+            ),
+            _ => format!(
+                "box b{index} {{ material {material} center {x:.3} {size:.3} {z:.3} size 0.5 {:.3} 0.4 }}\n",
+                2.0 * size
+            ),
         };
         // Glass takes long.
         if index < 3 || seed % 5 == 0 {
@@ -80,7 +85,8 @@ fn scene(seed: u64) -> String {
     }
     if kinds & 2 != 0 {
         let (x, angle) = (draw.between(-2.0, 2.0), draw.between(0.5, 20.0));
-        writeln!(text, "sun s {{ direction {x:.3} 1.5 1 angle {angle:.3} emissivity 0.6 0.6 0.5 }}").expect("text");
+        writeln!(text, "sun s {{ direction {x:.3} 1.5 1 angle {angle:.3} emissivity 0.6 0.6 0.5 }}")
+            .expect("text");
     }
     if kinds & 4 != 0 {
         text += match seed % 3 {

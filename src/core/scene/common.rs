@@ -83,8 +83,7 @@ pub(super) static AT: Pparm<f64> =
 
 /// Whether a background lights surfaces.
 pub(super) static LIGHTS: Pparm<bool> =
-    Pparm::or("lights", "whether its light falls on surfaces, by the free rules", false)
-        .not_dumped();
+    Pparm::or("lights", "whether its light falls on surfaces, by the free rules", false).not_dumped();
 
 /// The attribute that every background has after its own.
 pub(super) const BACKGROUND: Table = &[&LIGHTS as &dyn Row];

@@ -226,14 +226,15 @@ fn samples(light: &dyn PacketLight, emitter: &dyn Emitter, at: DVec3, draw: &mut
     let Some(sample) = emitter.sample(at, normal, numbers) else { return Ok(()) };
     let LightSample { toward, distance, light: sent } = sample;
     let cosine = if emitter.has_highlights() { 1.0 } else { toward.dot(normal).max(0.0) };
-    let is_bounded = light.brightest().is_none_or(|most| {
-        (cosine * sent).abs().cmple((1.0 + 1e-9) * most.abs()).all()
-    });
+    let is_bounded =
+        light.brightest().is_none_or(|most| (cosine * sent).abs().cmple((1.0 + 1e-9) * most.abs()).all());
     if toward.is_normalized() && distance >= 0.0 && sent.is_finite() && is_bounded {
         return Ok(());
     }
     let most = light.brightest();
-    let found = format!("{at}, with the normal {normal}, sees it at {numbers} as {sample:?}; `brightest` is {most:?}");
+    let found = format!(
+        "{at}, with the normal {normal}, sees it at {numbers} as {sample:?}; `brightest` is {most:?}"
+    );
     Err(Promise::LightIsFinite.fault(found))
 }
 

@@ -94,7 +94,10 @@ fn flat(model: &Model) -> Option<Remark> {
     let Sensor { samples, adaptive, .. } = &model.camera.value;
     let sky = model.lights.iter().find(|light| light.args.entity().kind() == Kind::Background)?;
     (*samples == 1 && adaptive.is_none()).then(|| Remark {
-        message: format!("`{}` lights the scene, but each pixel has one sample, which sees a single direction", sky.args.name()),
+        message: format!(
+            "`{}` lights the scene, but each pixel has one sample, which sees a single direction",
+            sky.args.name()
+        ),
         help: "take more: `samples 64` in the camera, `--samples 64` or `--max-error 2`".to_owned(),
     })
 }
@@ -206,7 +209,11 @@ fn black(plan: &Plan, survey: &Survey, brightest: u8) -> Remark {
                 why.join(", ")
             )
         } else {
-            let away = if lamp.near.is_finite() { format!("is {} away, and ", units(lamp.near)) } else { String::new() };
+            let away = if lamp.near.is_finite() {
+                format!("is {} away, and ", units(lamp.near))
+            } else {
+                String::new()
+            };
             format!("{name} {away}{rules}adds up to {} levels", level(lamp.most))
         });
     }

@@ -102,7 +102,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let shading = ShadingPoints { points, normals, lights, rules, slack: self.slack() };
         let mut faced = match emitter {
             None => light.sample(cpu, &shading, samples),
-            Some(emitter) => self.sample_emitter((emitter, index), group, &shading, draws, samples, &mut source),
+            Some(emitter) => {
+                self.sample_emitter((emitter, index), group, &shading, draws, samples, &mut source)
+            }
         };
         if surface.is_bent {
             faced.any_shines = surface.hide_from_behind(toward.view(count), shines, t_max);

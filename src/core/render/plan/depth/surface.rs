@@ -185,7 +185,9 @@ fn scattered(
         own += match (light.value.emitter(), model.camera.value.rules) {
             (Some(emitter), _) if !emitter.has_highlights() => sent.abs() * diffuse,
             (Some(_), _) => sent.abs() * (diffuse + highlight),
-            (None, Rules::Free) => sent.abs() * light.value.fading.factor(clearance()) * (diffuse + highlight),
+            (None, Rules::Free) => {
+                sent.abs() * light.value.fading.factor(clearance()) * (diffuse + highlight)
+            }
             (None, Rules::Notes) => {
                 let scattered = match clearance() {
                     _ if diffuse == Rgb::ZERO => Rgb::ZERO,
