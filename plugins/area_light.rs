@@ -49,7 +49,7 @@ inventory::submit! {
 }
 
 struct AreaLight {
-    patch: Patch,
+    panel: Panel,
     radiance: Rgb,
     is_visible: bool,
     accuracy: Accuracy,
@@ -71,7 +71,7 @@ impl AreaLight {
         let size = radius.map_or(0.5 * args.get(&DIMENSIONS).unwrap_or(DVec2::ONE), DVec2::splat);
         let half = [size.x * across, size.y * facing.cross(across)];
         Ok(Self {
-            patch: Patch { middle, half, is_round: radius.is_some() },
+            panel: Panel { middle, half, is_round: radius.is_some() },
             radiance: args.get(&light::EMISSIVITY),
             is_visible: args.get(&VISIBLE),
             accuracy: args.accuracy(),
@@ -80,10 +80,10 @@ impl AreaLight {
 
     /// Returns its surface; `None` if it has no area.
     fn surface(&self) -> Option<AnyShape> {
-        let Patch { middle, half: [across, up], is_round } = self.patch;
+        let Panel { middle, half: [across, up], is_round } = self.panel;
         if is_round {
             let disc = Disc { radius: across.length() };
-            return Some(Body::implicit(disc, Frame::around(middle, self.patch.facing())).shape);
+            return Some(Body::implicit(disc, Frame::around(middle, self.panel.facing())).shape);
         }
         let corners =
             vec![middle - across - up, middle + across - up, middle + across + up, middle - across + up];
@@ -94,7 +94,7 @@ impl AreaLight {
 
 impl Light for AreaLight {
     fn location(&self) -> DVec3 {
-        self.patch.middle
+        self.panel.middle
     }
 
     fn emissivity(&self, _toward: DVec3) -> Option<Rgb> {
@@ -111,7 +111,7 @@ impl Light for AreaLight {
     }
 
     fn size(&self) -> f64 {
-        self.patch.radius()
+        self.panel.radius()
     }
 
     fn emitter(&self) -> Option<&dyn Emitter> {
@@ -125,7 +125,7 @@ impl Light for AreaLight {
 
 impl Emitter for AreaLight {
     fn sample(&self, at: DVec3, _normal: DVec3, numbers: DVec2) -> Option<LightSample> {
-        let (toward, solid_angle) = self.patch.sample(at, numbers)?;
+        let (toward, solid_angle) = self.panel.sample(at, numbers)?;
         // Its own surface is not in its way, however flat the ray meets it.
         let distance = toward.length() * (1.0 - 1e-9);
         let light = solid_angle / PI * self.radiance;
@@ -133,7 +133,7 @@ impl Emitter for AreaLight {
     }
 
     fn extent(&self) -> Extent {
-        Extent::Patch(self.patch)
+        Extent::Panel(self.panel)
     }
 
     /// Mirrors show it if it is seen.

@@ -23,29 +23,33 @@ struct Checker {
 }
 
 impl Checker {
-    /// Returns the material of the square at a point; without u and v, the surface's own.
+    /// Returns the colour of the square at a point, or the mean over the patch around it; without u and v, the surface's own.
     #[inline]
-    fn material<'m>(&'m self, own: &'m Material, at: &SurfacePoint) -> &'m Material {
+    fn colour(&self, own: Rgb, other: Rgb, at: &SurfacePoint) -> Rgb {
+        if let Some([low, high]) = at.patch.and_then(|patch| patch.uv) {
+            let (low, high) = (low * self.squares, high * self.squares);
+            return own.lerp(other, odd_part(0.5 * (low + high), high - low));
+        }
         let square = self.tile(at);
-        if (square.x + square.y).rem_euclid(2.0) == 0.0 { own } else { &self.other }
+        if (square.x + square.y).rem_euclid(2.0) == 0.0 { own } else { other }
     }
 }
 
 impl Shader for Checker {
     fn sees(&self) -> ShaderInputs {
-        ShaderInputs::UV
+        ShaderInputs { patch: true, ..ShaderInputs::UV }
     }
 
     fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.material(material, at).ambient
+        self.colour(material.ambient, self.other.ambient, at)
     }
 
     fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.material(material, at).diffuse
+        self.colour(material.diffuse, self.other.diffuse, at)
     }
 
     fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.material(material, at).specular
+        self.colour(material.specular, self.other.specular, at)
     }
 
     #[inline]

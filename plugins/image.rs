@@ -48,6 +48,13 @@ impl Image {
     }
 
     fn colour(&self, at: &SurfacePoint) -> Rgb {
+        if let Some([low, high]) = at.patch.and_then(|patch| patch.uv) {
+            let size = self.size();
+            let (low, high) = (low * size, high * size);
+            if !self.smooth || (high - low).max_element() > 1.0 {
+                return self.mean(low, high);
+            }
+        }
         let place = self.place(at);
         if !self.smooth {
             return self.texel(place.floor());
@@ -57,6 +64,27 @@ impl Image {
             self.texel(corner + DVec2::new(0.0, y)).lerp(self.texel(corner + DVec2::new(1.0, y)), part.x)
         };
         row(0.0).lerp(row(1.0), part.y)
+    }
+
+    /// Returns the mean of a rectangle, given by its corners among the texels of all repetitions.
+    fn mean(&self, low: DVec2, high: DVec2) -> Rgb {
+        let (size, whole) = (DVec2::from(self.texture.size().map(f64::from)), self.size());
+        let (low, high) = (low.clamp(DVec2::ZERO, whole), high.clamp(DVec2::ZERO, whole));
+        // Two runs of texels in one repetition, and their parts of the whole: what reaches beyond the end begins again.
+        let runs = |axis: usize| {
+            let (size, width) = (size[axis], high[axis] - low[axis]);
+            if width >= size {
+                return [(0.0, size, 1.0), (0.0, 0.0, 0.0)];
+            }
+            let from = low[axis] - size * (low[axis] / size).floor();
+            let over = (from + width - size).max(0.0);
+            let part = if over > 0.0 { over / width } else { 0.0 };
+            [(from, from + width - over, 1.0 - part), (0.0, over, part)]
+        };
+        let all = runs(0).into_iter().flat_map(|x| runs(1).map(|y| (x, y)));
+        all.filter(|(x, y)| x.2 * y.2 > 0.0)
+            .map(|(x, y)| x.2 * y.2 * self.texture.mean(DVec2::new(x.0, y.0), DVec2::new(x.1, y.1)))
+            .sum()
     }
 
     /// Encloses the colours at points with such u and v.
@@ -86,7 +114,7 @@ impl Image {
 
 impl Shader for Image {
     fn sees(&self) -> ShaderInputs {
-        ShaderInputs::UV
+        ShaderInputs { patch: true, ..ShaderInputs::UV }
     }
 
     fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {

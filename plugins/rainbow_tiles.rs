@@ -28,12 +28,18 @@ struct RainbowTiles<const OF_THE_NOTES: bool> {
 }
 
 impl<const OF_THE_NOTES: bool> Shader for RainbowTiles<OF_THE_NOTES> {
+    fn sees(&self) -> ShaderInputs {
+        ShaderInputs::PATCH
+    }
+
     #[inline]
     fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        if self.grid.is_odd(DVec2::new(at.position.x, at.position.z)) {
-            material.ambient
-        } else {
-            self.hues.colour::<OF_THE_NOTES>((at.position - self.anchor.origin).truncate())
+        let along = DVec2::new(at.position.x, at.position.z);
+        let hue = || self.hues.colour::<OF_THE_NOTES>((at.position - self.anchor.origin).truncate());
+        match &at.patch {
+            Some(patch) => hue().lerp(material.ambient, self.grid.odd_part(along, [0, 2], patch)),
+            None if self.grid.is_odd(along) => material.ambient,
+            None => hue(),
         }
     }
 

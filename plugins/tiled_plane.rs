@@ -62,28 +62,42 @@ impl Tiles {
         DVec2::new(tile(0), tile(1))
     }
 
-    /// Returns the material of the tile at a point.
+    /// Returns the colour of the tile at a point, or the mean over the patch around it.
     #[inline]
-    fn material<'m>(&'m self, own: &'m Material, at: DVec3) -> &'m Material {
-        let tile = self.tile_at(at);
-        if (tile.x + tile.y).rem_euclid(2.0) == 0.0 { &self.other } else { own }
+    fn colour(&self, own: Rgb, other: Rgb, at: &SurfacePoint) -> Rgb {
+        if let Some(patch) = &at.patch {
+            let (from, offset) =
+                self.origin.map_or((at.position, OFFSET), |origin| (at.position - origin, 0.0));
+            let middle = DVec2::from(self.sides.map(|side| side.dot(from) + offset)) / self.dimensions;
+            let widths = DVec2::from(self.sides.map(|side| patch.extent(side))) / self.dimensions;
+            return other.lerp(own, odd_part(middle, widths));
+        }
+        let tile = self.tile_at(at.position);
+        if (tile.x + tile.y).rem_euclid(2.0) == 0.0 { other } else { own }
     }
 }
 
 impl Shader for Tiles {
+    fn sees(&self) -> ShaderInputs {
+        ShaderInputs::PATCH
+    }
+
     #[inline]
     fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.material(material, at.position).ambient
+        self.colour(material.ambient, self.other.ambient, at)
     }
 
     #[inline]
     fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.material(material, at.position).diffuse
+        self.colour(material.diffuse, self.other.diffuse, at)
     }
 
     #[inline]
     fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        if self.mirrors { self.material(material, at.position).specular } else { material.specular }
+        if !self.mirrors {
+            return material.specular;
+        }
+        self.colour(material.specular, self.other.specular, at)
     }
 
     fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {

@@ -70,11 +70,19 @@ impl<const ON_FLOOR: bool> Tiles<ON_FLOOR> {
 }
 
 impl<const ON_FLOOR: bool> Shader for Tiles<ON_FLOOR> {
+    fn sees(&self) -> ShaderInputs {
+        ShaderInputs::PATCH
+    }
+
     #[inline]
     fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
         let Rgb { x: red, y: green, z: blue } = material.ambient;
-        let is_odd = self.grid.is_odd(self.along(at.position));
-        if is_odd { Rgb::new(0.0, green, blue) } else { Rgb::new(red, green, 0.0) }
+        let (odd, even) = (Rgb::new(0.0, green, blue), Rgb::new(red, green, 0.0));
+        let along = self.along(at.position);
+        if let Some(patch) = &at.patch {
+            return even.lerp(odd, self.grid.odd_part(along, self.axes, patch));
+        }
+        if self.grid.is_odd(along) { odd } else { even }
     }
 
     fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
@@ -123,6 +131,12 @@ impl Grid {
     pub fn is_odd(&self, along: DVec2) -> bool {
         let tile = self.tile(along);
         (tile.x + tile.y).rem_euclid(2.0) != 0.0
+    }
+
+    /// Returns the part of a patch around a point that is odd, given the two axes along which tiles lie.
+    pub fn odd_part(&self, along: DVec2, axes: [usize; 2], patch: &Patch) -> f64 {
+        let widths = DVec2::from(axes.map(|axis| patch.extent(DVec3::AXES[axis])));
+        odd_part(self.per_unit * along + 1000.0, self.per_unit * widths)
     }
 
     /// Returns the tile on which a point lies.

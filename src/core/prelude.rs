@@ -23,7 +23,8 @@ pub use crate::world::hittable::{Bracketed, Certified, Facts, Hittable, Shape, S
 pub use crate::world::interface::{AnyInterface, Crossing, Interface, Medium};
 pub use crate::world::light::Light;
 pub use crate::world::material::{Look, Material, Rgb};
-pub use crate::world::patch::Patch;
+pub use crate::world::panel::Panel;
+pub use crate::world::patch::{Patch, odd_part};
 pub use crate::world::pinhole::Pinhole;
 pub use crate::world::rules::Rules;
 pub use crate::world::sample::Sampler;

@@ -155,6 +155,7 @@ impl<'p, 'm> Prover<'p, 'm> {
             lights: &plan.needs.lights,
             depth: plan.depth.as_ref(),
             bounds: &self.bounds,
+            window: camera.window(),
             meets_uncertified: Cell::new(false),
         };
         let mut sum = Some([Interval::constant(0.0); 3]);

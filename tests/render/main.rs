@@ -18,6 +18,7 @@ mod left_out;
 mod materials;
 mod needs;
 mod packets;
+mod patches;
 mod plan;
 mod ray_budget;
 mod readme;

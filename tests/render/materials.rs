@@ -106,7 +106,7 @@ fn trees_in_glass_that_absorbs_and_glints_end_near_their_whole() {
         let model = model(&text);
         let [mut ended, mut whole] = [Plan::new(&model), Plan::new(&model)];
         whole.depth = whole.depth.map(Depth::uncut);
-        [&mut ended, &mut whole].map(|plan| plan.camera.pixels = [4, 3]);
+        (ended.camera.pixels, whole.camera.pixels) = ([4, 3], [4, 3]);
         let display = ended.camera.display();
         for pixel in (0..12).map(|pixel| [pixel % 4, pixel / 4]) {
             let colour = |plan: &Plan, budget: u32| trace::within_budgets(plan, &[pixel], &[budget], &mut ())[0];

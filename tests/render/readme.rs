@@ -15,13 +15,13 @@ fn readme() -> String {
 
 #[test]
 fn the_readmes_scene_is_one() {
-    assert_eq!(model(&block_with(&readme(), "camera eye\n")).objects.len(), 2);
+    assert_eq!(model(&block_with(&readme(), "look_at eye\n")).objects.len(), 2);
 }
 
 #[test]
 fn the_readmes_mistake_is_told_as_it_says() {
     let folder = folder();
-    let scene = block_with(&readme(), "camera eye\n").replace("radius", "raduis");
+    let scene = block_with(&readme(), "look_at eye\n").replace("radius", "raduis");
     fs::write(folder.path().join("ball.ray"), scene).expect("room for a file");
     let (status, _, err) = outcome(tabray(&folder).args(["render", "ball.ray"]));
     assert_eq!((status, err), (2, block_with(&readme(), "raduis")));

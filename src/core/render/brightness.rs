@@ -48,7 +48,8 @@ impl<'m> Brightness<'m> {
     pub fn within(&self, camera: &Sensor, middle: [f64; 2], half: f64) -> [Rgb; 2] {
         let Self { model, depth, lights, bounds } = self;
         let meets_uncertified = Cell::new(false);
-        let scene = Scene { model, lights, depth: Some(depth), bounds, meets_uncertified };
+        let window = camera.window();
+        let scene = Scene { model, lights, depth: Some(depth), bounds, window, meets_uncertified };
         let Some(lines) = lines(camera, middle, half) else {
             let most = Rgb::splat(self.most(camera));
             return [-most, most];

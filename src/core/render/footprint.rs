@@ -132,7 +132,8 @@ impl PixelProver {
         error: f64,
     ) -> Proof {
         let Self { bounds, lights } = self;
-        let scene = Scene { model, lights, depth, bounds, meets_uncertified: Cell::new(false) };
+        let (window, meets_uncertified) = (camera.window(), Cell::new(false));
+        let scene = Scene { model, lights, depth, bounds, window, meets_uncertified };
         let display = &camera.display();
         let footprint = |middle: [f64; 2], cuts: u32| {
             let lines = lines(camera, middle, power_of_two(-(cuts as i32) - 1));

@@ -6,7 +6,7 @@
 //! samples tends to the integral.
 
 use crate::world::material::Rgb;
-use crate::world::patch::{Patch, on_disc};
+use crate::world::panel::{Panel, on_disc};
 use glam::{DVec2, DVec3};
 
 /// A light that is spread out.
@@ -42,8 +42,8 @@ pub struct LightSample {
 /// [`enclose`](crate::world::light::Light::enclose) returns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Extent {
-    /// Those of a flat patch.
-    Patch(Patch),
+    /// Those of a flat panel.
+    Panel(Panel),
     /// Any points.
     Unknown,
 }

@@ -17,6 +17,7 @@ pub mod light;
 pub mod light_samples;
 pub mod material;
 pub mod packets;
+pub mod panel;
 pub mod patch;
 pub mod pinhole;
 pub mod rules;
@@ -25,6 +26,7 @@ pub mod sensor;
 pub mod shader;
 pub mod sky_light;
 pub mod solid;
+mod sums;
 pub mod texels;
 pub mod texture;
 
@@ -38,6 +40,7 @@ pub use hittable::{Bracketed, Certified, Facts, Hittable, Searched, Shape, Sides
 pub use interface::{AnyInterface, Crossing, Interface, Medium};
 pub use light::Light;
 pub use material::{Material, Rgb};
+pub use panel::Panel;
 pub use patch::Patch;
 pub use rules::Rules;
 pub use sensor::{AnyCamera, Sensor};

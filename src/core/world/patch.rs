@@ -1,163 +1,102 @@
-//! Flat patches that shine: rectangles and discs, and which of their points are seen.
+//! The part of a surface that a sample shows, over which shaders take the mean of their pattern.
+//!
+//! By the free rules, a sample of an image in which all pixels have as many stands for a part of its pixel, and so for a patch
+//! of the surface that its ray hits. Far away, a patch is larger than the squares of a chequered floor; the mean over it is what
+//! many samples would show.
 
+use crate::world::hittable::Hittable;
 use glam::{DVec2, DVec3};
-use std::f64::consts::{FRAC_PI_4, PI};
 
-/// The points `middle + x half[0] + y half[1]` of a flat patch that shines on both sides.
+/// The window through which a sample looks: its width in world units, at the start of its ray and for each unit of the way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    /// The width at the start.
+    pub start: f64,
+    /// The width that is added for each unit of the way.
+    pub spread: f64,
+}
+
+/// The least cosine of the angle at which a patch is seen; at smaller ones, patches are as long as at this.
+pub(crate) const LEAST_COSINE: f64 = 1e-6;
+
+/// A part of a surface around a point: a parallelogram that touches the surface there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch {
-    /// The middle, in world coordinates.
-    pub middle: DVec3,
-    /// From the middle to the middles of two sides, or to the rim, in world units; perpendicular to each other, and of the
-    /// same length if it `is_round`.
-    pub half: [DVec3; 2],
-    /// Whether x and y are within the unit circle; otherwise, both are from -1 to 1.
-    pub is_round: bool,
+    /// Its sides, in world units.
+    pub sides: [DVec3; 2],
+    /// The least and the greatest u and v; `None` where the shape has none, or the shader does not see them. They may lie
+    /// beyond the ends of the surface.
+    pub uv: Option<[DVec2; 2]>,
 }
 
 impl Patch {
-    /// Returns the unit vector that it faces on one of its sides.
-    pub fn facing(&self) -> DVec3 {
-        self.half[0].cross(self.half[1]).normalize()
+    /// Returns the patch that a ray shows through a window of this width, given its unit direction and the unit normal.
+    pub(crate) fn seen(dir: DVec3, normal: DVec3, width: f64) -> Self {
+        let cosine = dir.dot(normal);
+        let along = (dir - cosine * normal).try_normalize().unwrap_or_else(|| normal.any_orthonormal_vector());
+        let across = normal.cross(along);
+        Self { sides: [width / cosine.abs().max(LEAST_COSINE) * along, width * across], uv: None }
     }
 
-    /// Returns its area, in square world units.
-    pub fn area(&self) -> f64 {
-        let area = self.half[0].length() * self.half[1].length();
-        if self.is_round { PI * area } else { 4.0 * area }
-    }
-
-    /// Returns the radius of the smallest ball around it, in world units.
-    pub fn radius(&self) -> f64 {
-        let [one, other] = self.half.map(|half| half.length_squared());
-        if self.is_round { one.sqrt() } else { (one + other).sqrt() }
-    }
-
-    /// Chooses a point as seen from a place by two numbers from 0 to 1: by solid angle, or from afar, where that is nearly
-    /// the same, by area. Near a disc, it is chosen in the square around it; `None` beside it.
-    ///
-    /// Returns the vector to the point, in world units, and the reciprocal of the density per unit of solid angle, which is at
-    /// most 2 pi.
-    pub fn sample(&self, at: DVec3, numbers: DVec2) -> Option<(DVec3, f64)> {
-        let (between, half) = (self.middle - at, self.half);
-        let far = if self.is_round { 2.0 } else { 32.0 } * self.radius();
-        if between.length() > far {
-            let place = if self.is_round { on_disc(numbers) } else { 2.0 * numbers - 1.0 };
-            let toward = between + place.x * half[0] + place.y * half[1];
-            let leaving = toward.normalize().dot(self.facing()).abs();
-            return Some((toward, self.area() * leaving / toward.length_squared()));
+    /// Finds u and v at the corners of the patch around a point of a shape, where they are these in the middle.
+    pub(crate) fn find_uv(&mut self, shape: &dyn Hittable, middle: DVec3, uv: DVec2) {
+        let [one, other] = self.sides.map(|side| 0.5 * side);
+        let mut ends = [uv; 2];
+        for corner in [one + other, one - other, other - one, -one - other] {
+            let Some(at) = shape.uv(middle + corner) else { return };
+            // What grows beyond 1 begins at 0 again.
+            let off = at - uv;
+            let at = uv + (off - off.round());
+            ends = [ends[0].min(at), ends[1].max(at)];
         }
-        let seen = SphericalRectangle::new(between, half)?;
-        let toward = seen.place(numbers);
-        let is_beside = self.is_round && (toward - between).length_squared() > half[0].length_squared();
-        (!is_beside).then_some((toward, seen.solid_angle))
+        self.uv = Some(ends);
+    }
+
+    /// Returns how far the patch reaches along a unit vector, from one end to the other.
+    pub fn extent(&self, along: DVec3) -> f64 {
+        self.sides[0].dot(along).abs() + self.sides[1].dot(along).abs()
     }
 }
 
-/// Maps two numbers from 0 to 1 to the unit disc, with areas in proportion (Shirley and Chiu, "A Low Distortion Map Between
-/// Disk and Square", 1997).
-pub fn on_disc(numbers: DVec2) -> DVec2 {
-    let DVec2 { x, y } = 2.0 * numbers - 1.0;
-    let (radius, angle) = match x.abs() > y.abs() {
-        true => (x, FRAC_PI_4 * (y / x)),
-        false if y == 0.0 => return DVec2::ZERO,
-        false => (y, 2.0 * FRAC_PI_4 - FRAC_PI_4 * (x / y)),
-    };
-    let (sin, cos) = libm::sincos(angle);
-    radius * DVec2::new(cos, sin)
+/// Returns the part that odd squares have of a rectangle with this middle and these widths, where space is tiled with squares
+/// of side 1 and the one from 0 to 1 is even.
+pub fn odd_part(middle: DVec2, widths: DVec2) -> f64 {
+    0.5 - 0.5 * balance(middle.x, widths.x) * balance(middle.y, widths.y)
 }
 
-/// A rectangle as seen from a point: the part of a unit sphere that it covers.
-///
-/// From Ureña, Fajardo and King, "An Area-Preserving Parametrization for Spherical Rectangles", 2013.
-struct SphericalRectangle {
-    /// The unit vectors along the sides, and toward the rectangle's plane, reversed.
-    axes: [DVec3; 3],
-    /// The coordinates of the sides and of the plane, in world units from the point.
-    from: DVec2,
-    to: DVec2,
-    plane: f64,
-    /// What the choice of a place needs, in the paper's words.
-    b: [f64; 2],
-    k: f64,
-    /// The solid angle that the rectangle covers, in steradians.
-    solid_angle: f64,
-}
-
-impl SphericalRectangle {
-    /// Looks at a rectangle from a point, `between` which and its middle there is this vector; `None` if the point lies in its
-    /// plane.
-    fn new(between: DVec3, half: [DVec3; 2]) -> Option<Self> {
-        let [x_axis, y_axis] = half.map(DVec3::normalize);
-        let z_axis = x_axis.cross(y_axis);
-        let height = between.dot(z_axis);
-        let z_axis = if height > 0.0 { -z_axis } else { z_axis };
-        let (size, place) = (
-            DVec2::new(half[0].length(), half[1].length()),
-            DVec2::new(between.dot(x_axis), between.dot(y_axis)),
-        );
-        let (from, to, plane) = (place - size, place + size, -height.abs());
-        if plane == 0.0 || !(plane.is_finite() && from.is_finite() && to.is_finite()) {
-            return None;
-        }
-        // The z of the unit normals of the planes through the point and each side.
-        let inward = |side: f64| side / (plane * plane + side * side).sqrt();
-        let [low, right, high, left] = [-inward(from.y), inward(to.x), inward(to.y), -inward(from.x)];
-        let angle = |one: f64, other: f64| libm::acos((-one * other).clamp(-1.0, 1.0));
-        let [g0, g1, g2, g3] = [angle(low, right), angle(right, high), angle(high, left), angle(left, low)];
-        let k = 2.0 * PI - g2 - g3;
-        Some(Self {
-            axes: [x_axis, y_axis, z_axis],
-            from,
-            to,
-            plane,
-            b: [low, high],
-            k,
-            solid_angle: (g0 + g1 - k).max(0.0),
-        })
+/// Returns the mean of a wave over an interval: 1 from 0 to 1, -1 from 1 to 2, and so on.
+fn balance(middle: f64, width: f64) -> f64 {
+    let (from, to) = (middle - 0.5 * width, middle + 0.5 * width);
+    let sign = |at: f64| if at.rem_euclid(2.0) < 1.0 { 1.0 } else { -1.0 };
+    if from.floor() == to.floor() {
+        return sign(middle);
     }
-
-    /// Chooses a point by two numbers from 0 to 1, with the same density everywhere as seen from the point; returns the
-    /// vector to it, in world units.
-    fn place(&self, numbers: DVec2) -> DVec3 {
-        let ([low, high], [x_axis, y_axis, z_axis]) = (self.b, self.axes);
-        let (sin, cos) = libm::sincos(numbers.x * self.solid_angle + self.k);
-        let along = (cos * low - high) / sin;
-        let u = (1.0 / (along * along + low * low).sqrt()).copysign(along).clamp(-1.0, 1.0);
-        let x = -(u * self.plane) / (1.0 - u * u).max(f64::MIN_POSITIVE).sqrt();
-        let x = x.clamp(self.from.x, self.to.x);
-        let distance = (x * x + self.plane * self.plane).sqrt();
-        let height = |y: f64| y / (distance * distance + y * y).sqrt();
-        let [low, high] = [height(self.from.y), height(self.to.y)];
-        let part = low + numbers.y * (high - low);
-        let rest = 1.0 - part * part;
-        let y = if rest > 1e-12 { part * distance / rest.sqrt() } else { self.to.y };
-        x * x_axis + y.clamp(self.from.y, self.to.y) * y_axis + self.plane * z_axis
-    }
+    // The integral from 0 rises to 1 and falls back to 0.
+    let integral = |at: f64| 1.0 - (at.rem_euclid(2.0) - 1.0).abs();
+    ((integral(to) - integral(from)) / width).clamp(-1.0, 1.0)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
-    #[test]
-    fn a_spherical_rectangle_has_its_solid_angle_and_even_samples() {
-        // A face of a cube around the point covers a sixth of all directions.
-        let half = [DVec3::X, DVec3::Y];
-        let seen = SphericalRectangle::new(DVec3::NEG_Z, half).expect("a face");
-        assert!((seen.solid_angle - 4.0 * PI / 6.0).abs() < 1e-12, "{}", seen.solid_angle);
-        // The mean of a direction over it is that of the integral of the cosine: the form factor, times pi.
-        let count = 256;
-        let mut sum = 0.0;
-        for index in 0..count * count {
-            let place = |part: i32| (f64::from(part) + 0.5) / f64::from(count);
-            let toward = seen.place(DVec2::new(place(index % count), place(index / count)));
-            assert!(toward.x.abs() <= 1.0 && toward.y.abs() <= 1.0 && (toward.z + 1.0).abs() < 1e-12);
-            sum += -toward.normalize().z;
+    proptest! {
+        #[test]
+        fn the_part_of_odd_squares_is_that_of_many_samples(
+            x in -9.0..9.0_f64, y in -9.0..9.0_f64, width in 0.0..5.0_f64, height in 0.0..5.0_f64,
+        ) {
+            let count = 400;
+            let along = |middle: f64, width: f64| {
+                move |place: i32| middle + width * ((f64::from(place) + 0.5) / f64::from(count) - 0.5)
+            };
+            let (across, up) = (along(x, width), along(y, height));
+            let odds = |at: &dyn Fn(i32) -> f64| (0..count).filter(|place| at(*place).floor().rem_euclid(2.0) != 0.0).count();
+            let (right, above) = (odds(&across) as f64, odds(&up) as f64);
+            let n = f64::from(count);
+            let expected = (right * (n - above) + above * (n - right)) / (n * n);
+            let found = odd_part(DVec2::new(x, y), DVec2::new(width, height));
+            prop_assert!((found - expected).abs() < 0.02, "{found} {expected}");
         }
-        let cosine = sum / f64::from(count * count) * seen.solid_angle;
-        let root = 2.0_f64.sqrt();
-        let expected = 4.0 / root * (1.0 / root).atan();
-        assert!((cosine - expected).abs() < 1e-5, "{cosine}, {expected}");
     }
 }

@@ -7,6 +7,7 @@ use crate::simd::cpu::{Cpu, kernels};
 use crate::world::accuracy::Accuracy;
 use crate::world::camera::{Origins, PacketCamera, Places, Projected};
 use crate::world::display::{Display, Tone, Transfer};
+use crate::world::patch::Window;
 use crate::world::pinhole::Pinhole;
 use crate::world::rules::Rules;
 use crate::world::sample::{self, Sample, Sampler};
@@ -88,6 +89,23 @@ impl Sensor {
     /// Returns the z, in world units, beyond which planes are cut off, if they are.
     pub fn planes_end_at(&self) -> Option<f64> {
         self.camera.planes_end_at().filter(|_| self.rules == Rules::Notes)
+    }
+
+    /// Returns the window through which each sample looks; `None` where samples show points: by the notes' rules, and where the
+    /// number of samples depends on the pixel.
+    pub fn window(&self) -> Option<Window> {
+        if self.rules == Rules::Notes || self.adaptive.is_some() {
+            return None;
+        }
+        let [x, y] = self.pixels.map(|side| 0.5 * (side as f64 - 1.0));
+        let (middle, next) = (self.ray(x, y), [self.ray(x + 1.0, y), self.ray(x, y + 1.0)]);
+        let part = 1.0 / f64::from(self.samples).sqrt();
+        let widest = |of: fn(&Ray) -> DVec3| {
+            let apart = next.each_ref().map(|next| (of(next) - of(&middle)).length());
+            part * apart[0].max(apart[1])
+        };
+        let window = Window { start: widest(|ray| ray.origin), spread: widest(|ray| ray.dir) };
+        (window.start.is_finite() && window.spread.is_finite()).then_some(window)
     }
 
     /// Returns how light is shown in the image.

@@ -4,6 +4,7 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::Side;
 use crate::world::certify::{Precise, ProofMethods};
 use crate::world::hittable::Hittable;
+use crate::world::patch::Patch;
 use crate::world::material::{Look, Material, Rgb};
 use glam::{DVec2, DVec3};
 use tabray_exact::interval::{Float, Interval};
@@ -26,13 +27,16 @@ pub struct SurfacePoint {
     /// The unit directions along the surface in which u and v grow; `None` where the shape has no u and v, or the shader does
     /// not see these directions.
     pub tangents: Option<[DVec3; 2]>,
+    /// The part of the surface around the point over which the shader takes the mean of its pattern; `None` where the pattern
+    /// shows as it is at the point, or the shader does not see the patch.
+    pub patch: Option<Patch>,
 }
 
 impl SurfacePoint {
     /// Returns a point of which nothing but the position is known.
     #[inline(always)]
     pub fn at(position: DVec3) -> Self {
-        Self { position, normal: DVec3::ZERO, side: Side::Outside, uv: None, face: None, tangents: None }
+        Self { position, normal: DVec3::ZERO, side: Side::Outside, uv: None, face: None, tangents: None, patch: None }
     }
 
     /// Returns a point of a shape with what a shader sees of it. `normal` is the outward one.
@@ -47,7 +51,7 @@ impl SurfacePoint {
         let (uv, face) = (uv.flatten(), face.flatten());
         let tangents = if sees.tangents { tangents(shape, position, normal) } else { None };
         let (normal, side) = if sees.normal { (normal, side) } else { (DVec3::ZERO, Side::Outside) };
-        Self { position, normal, side, uv, face, tangents }
+        Self { position, normal, side, uv, face, tangents, patch: None }
     }
 }
 
@@ -83,11 +87,13 @@ pub struct ShaderInputs {
     pub face: bool,
     /// Whether it sees in which directions u and v grow.
     pub tangents: bool,
+    /// Whether it sees the patch around the point.
+    pub patch: bool,
 }
 
 impl ShaderInputs {
     /// The position alone.
-    pub const POSITION: Self = Self { normal: false, uv: false, face: false, tangents: false };
+    pub const POSITION: Self = Self { normal: false, uv: false, face: false, tangents: false, patch: false };
     /// The position, the normal and the side.
     pub const NORMAL: Self = Self { normal: true, ..Self::POSITION };
     /// The position, and u and v.
@@ -95,10 +101,13 @@ impl ShaderInputs {
     /// The position and the face.
     pub const FACE: Self = Self { face: true, ..Self::POSITION };
 
-    /// Tells whether the position is all that is seen.
+    /// The position, and the patch around it.
+    pub const PATCH: Self = Self { patch: true, ..Self::POSITION };
+
+    /// Tells whether the position is all that is seen, where there are no patches.
     #[inline(always)]
     pub(crate) fn is_position(self) -> bool {
-        self == Self::POSITION
+        Self { patch: false, ..self } == Self::POSITION
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::world::display::Display;
 use crate::world::material::Rgb;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use image::{Rgb32FImage, RgbImage};
 use std::borrow::Cow;
 
@@ -63,6 +63,26 @@ impl Texels {
             Pixels::Bytes(image) => image.get_pixel(column, row).0.map(of_byte),
             Pixels::Floats(image) => image.get_pixel(column, row).0.map(f64::from),
         })
+    }
+
+    /// Returns the mean light of a small rectangle, given by its corners in texels.
+    pub(super) fn mean_of_few(&self, low: DVec2, high: DVec2) -> Rgb {
+        let cells = |from: f64, to: f64| {
+            let cells = from.floor() as u32..=(to.ceil() as u32).max(from.floor() as u32 + 1) - 1;
+            // What has no width is where it begins.
+            let part = move |cell: u32| {
+                let at = f64::from(cell);
+                if to > from { (to.min(at + 1.0) - from.max(at)) / (to - from) } else { 1.0 }
+            };
+            cells.map(move |cell| (cell, part(cell)))
+        };
+        let row = |(row, height): (u32, f64)| {
+            let texel = |(column, width): (u32, f64)| width * height * self.light(column, row);
+            cells(low.x, high.x).map(texel).sum::<Rgb>()
+        };
+        // One texel is its own mean, to the last bit.
+        let is_one = low.floor() == high.floor();
+        if is_one { self.light(low.x as u32, low.y as u32) } else { cells(low.y, high.y).map(row).sum() }
     }
 
     /// Bounds the light of a channel of any texel.

@@ -5,9 +5,10 @@ use crate::text;
 use crate::world::display::Display;
 use crate::world::material::Rgb;
 use crate::world::sensor::Sensor;
+use crate::world::sums::Sums;
 use crate::world::texels::Texels;
 use bytesize::ByteSize;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use image::metadata::Orientation;
 use image::{
     ColorType, DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, Rgb as Texel,
@@ -39,6 +40,8 @@ pub struct Texture {
 #[derive(Debug)]
 struct Picture {
     texels: Texels,
+    /// The sums over texels, made when the first mean is asked for.
+    sums: OnceLock<Sums>,
     remarks: Vec<&'static str>,
 }
 
@@ -156,7 +159,7 @@ impl Texture {
             true => Texels::of_light(image.into_rgb32f()),
             false => Texels::of_bytes(image.into_rgb8(), display),
         };
-        Ok(Picture { texels, remarks })
+        Ok(Picture { texels, sums: OnceLock::new(), remarks })
     }
 
     /// Returns what is not shown as the image has it, phrased to follow the texture's name.
@@ -185,6 +188,19 @@ impl Texture {
     /// read is white.
     pub fn texel(&self, column: u32, row: u32) -> Rgb {
         self.load().map_or(Rgb::ONE, |texels| texels.light(column, row))
+    }
+
+    /// Returns the mean light of a rectangle, given by its lower left and its upper right corner in texels. Beyond an edge of the
+    /// image, texels are those at the edge.
+    pub fn mean(&self, low: DVec2, high: DVec2) -> Rgb {
+        let Ok(texels) = self.load() else { return Rgb::ONE };
+        let Some(Ok(picture)) = self.picture.get() else { return Rgb::ONE };
+        let size = DVec2::from(texels.size().map(f64::from));
+        let (low, high) = (low.clamp(DVec2::ZERO, size), high.clamp(DVec2::ZERO, size));
+        if (high.floor() - low.floor()).max_element() < MOST_TEXELS as f64 {
+            return texels.mean_of_few(low, high);
+        }
+        picture.sums.get_or_init(|| Sums::of(texels)).mean(low, high).min(Rgb::splat(texels.brightest()))
     }
 
     /// Returns a texel of an image that has no colours but other numbers, each from 0 to 1, as [`texel`](Self::texel) does; those

@@ -19,6 +19,7 @@ use tabray_core::world::material::{Look, Material, Rgb};
 use tabray_core::world::packets::light::PacketLight;
 use tabray_core::world::packets::shader::{PacketShader, SurfacePoints};
 use tabray_core::world::rules::Rules;
+use tabray_core::world::patch::Patch;
 use tabray_core::world::shader::{Anchor, SurfacePoint};
 use tabray_exact::interval::Interval;
 use tabray_lang::dump;
@@ -118,8 +119,11 @@ pub fn paint(paint: &ShaderFactory, draw: &mut Draw) -> Result<(), Fault> {
             let uv = has_more.then(|| DVec2::new(draw.part(), draw.part()));
             let face = has_more.then_some(index as u32);
             let side = if index % 3 == 0 { Side::Inside } else { Side::Outside };
+            let ends = uv.map(|uv| [uv - draw.part(), uv + draw.part()]);
+            let sides = [draw.part() * draw.direction(), draw.part() * draw.direction()];
+            let patch = (index % 3 == 1).then_some(Patch { sides, uv: ends });
             let tangents = has_more.then(|| normal.any_orthonormal_pair().into());
-            shader(&*made, &SurfacePoint { position, normal, side, uv, face, tangents })?;
+            shader(&*made, &SurfacePoint { position, normal, side, uv, face, tangents, patch })?;
         }
     }
     Ok(())

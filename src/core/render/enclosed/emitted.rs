@@ -7,14 +7,14 @@ use super::scene::{Colour, Path, Scene};
 use super::surface::Surface;
 use crate::geometry::sight::Line;
 use crate::world::emitter::{Emitter, Extent};
-use crate::world::patch::Patch;
+use crate::world::panel::Panel;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{constants, dot, per_axis};
 
 /// Encloses what a light that is spread out adds to the colour of points; `None` where it is open. `dir` is the unit vector
 /// along the rays that see the points.
 ///
-/// The mean over a patch is enclosed by what its points add; the sum of what a sky sends, or a sample, by nothing and the most
+/// The mean over a panel is enclosed by what its points add; the sum of what a sky sends, or a sample, by nothing and the most
 /// that there may be.
 pub(super) fn shine<N: Number>(
     scene: &Scene,
@@ -50,10 +50,10 @@ pub(super) fn shine<N: Number>(
         let low = if is_positive { 0.0 } else { -most };
         N::enclosing(Interval::from_f64(Interval { low, high: most }))
     });
-    let (LightPoints::All, Extent::Patch(patch)) = (seen, emitter.extent()) else {
+    let (LightPoints::All, Extent::Panel(panel)) = (seen, emitter.extent()) else {
         return Some(any);
     };
-    let Patch { middle, half, .. } = patch;
+    let Panel { middle, half, .. } = panel;
     let n = N::constant;
     let [x, y] = [0, 1].map(N::on_light);
     let toward =
@@ -61,7 +61,7 @@ pub(super) fn shine<N: Number>(
     let square = dot(toward, toward);
     let distance = square.sqrt();
     // The rounding of its area and its direction is below what colours are compared to.
-    let facing = constants::<N>(patch.facing());
+    let facing = constants::<N>(panel.facing());
     let leaving = (dot(toward, facing) / distance).abs();
     let cosine = dot(toward, surface.normal) / distance;
     let above = surface.unbent.map_or(cosine, |unbent| cosine.min(dot(toward, unbent))).range();
@@ -69,7 +69,7 @@ pub(super) fn shine<N: Number>(
     if above.high <= zero {
         return Some(black);
     }
-    let weight = n(patch.area()) * leaving / (N::enclosing(Interval::pi()) * square);
+    let weight = n(panel.area()) * leaving / (N::enclosing(Interval::pi()) * square);
     let mut scattered = per_axis(|channel| surface.diffuse[channel] * cosine);
     if has_highlight {
         let half = per_axis(|axis| toward[axis] / distance - dir[axis]);
@@ -89,7 +89,7 @@ pub(super) fn shine<N: Number>(
         let lit = if above.low > zero { lit } else { lit.hull(black[channel]) };
         let mean = lit.mean_over_light();
         let width = |of: N| of.mean().coarse().width();
-        // Near a patch, its points say less than all that there may be.
+        // Near a panel, its points say less than all that there may be.
         if width(mean) <= width(any[channel]) { mean } else { any[channel] }
     }))
 }

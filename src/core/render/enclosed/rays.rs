@@ -140,7 +140,8 @@ impl<'s> Tracer<'s> {
             return None;
         }
         let mut any = None;
-        for surface in Surface::facing(self.scene, &ray.path.line, t, place)? {
+        let window = self.scene.window.filter(|_| ray.depth == 0);
+        for surface in Surface::facing(self.scene, (&ray.path.line, ray.length), t, place, window)? {
             let shaded = self.shaded(ray, t, &surface)?;
             any = Some(any.map_or(shaded, |any| hull(any, shaded)));
         }

@@ -5,6 +5,7 @@ use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::sight::Line;
 use crate::render::plan::depth::{self, Depth};
 use crate::scene::model::{Model, Object};
+use crate::world::patch::Window;
 use std::cell::Cell;
 use tabray_exact::interval::{Float, Interval};
 
@@ -64,6 +65,8 @@ pub struct Scene<'a> {
     pub depth: Option<&'a Depth>,
     /// The bounds of the model.
     pub bounds: &'a SceneBounds,
+    /// The window through which samples look, if they show patches of surfaces.
+    pub window: Option<Window>,
     /// Whether a ray may have met a shape without an equation first.
     pub meets_uncertified: Cell<bool>,
 }

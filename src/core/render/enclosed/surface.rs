@@ -3,10 +3,14 @@
 use super::number::{Endpoint, Number, ranges};
 use super::scene::{Colour, Place, Scene};
 use crate::geometry::sight::Line;
+use crate::world::patch::{LEAST_COSINE, Window};
 use crate::world::rules;
 use crate::world::shader::PointBounds;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{dot, per_axis};
+
+/// More than the rounding errors of a mean over a patch, as a part of what it is taken of.
+const MEAN_ROUNDING: f64 = 1e-7;
 
 /// The points that lines hit, and how they look there.
 pub(super) struct Surface<N> {
@@ -23,8 +27,14 @@ pub(super) struct Surface<N> {
 
 impl<N: Number> Surface<N> {
     /// Returns the points at t of lines, once for each way that the normals may face; `None` where these or the look are
-    /// open.
-    pub fn facing(scene: &Scene, line: &Line<N>, t: N, place: Place) -> Option<Vec<Self>> {
+    /// open. Through a window, a shader's look is a mean over the points around: all of their looks enclose it.
+    pub fn facing(
+        scene: &Scene,
+        (line, length_of_dir): (&Line<N>, N),
+        t: N,
+        place: Place,
+        window: Option<Window>,
+    ) -> Option<Vec<Self>> {
         let object = &scene.model.objects[place.object];
         // What a shader bends normals to is not enclosed.
         if object.shader.bends() {
@@ -45,15 +55,30 @@ impl<N: Number> Surface<N> {
         } else {
             Interval::point(N::of(-1.0))
         };
+        let window = window.filter(|_| object.shader.sees().patch);
+        let reach = window.map(|Window { start, spread }| {
+            let width = (t * length_of_dir).coarse() * Interval::point(spread) + Interval::point(start);
+            let cosine = (dot(outward, line.dir) / length_of_dir).abs().coarse().low;
+            (1.0 + 1e-9) * width.high / cosine.max(LEAST_COSINE)
+        });
         let shaded = |own: [N; 3], is_turned: bool| {
             // What is mirrored is mirrored by the shading normal, too.
             let normal = N::shading_normal(shape, at, place.part, own)?;
             let unbent = (normal != own).then_some(own);
             let outward = if is_turned { per_axis(|axis| -normal[axis]) } else { normal };
-            let (at_ranges, outward) = (ranges(at), Some(ranges(outward)));
+            let (mut at_ranges, outward) = (ranges(at), Some(ranges(outward)));
+            if let Some(reach) = reach {
+                let around = Interval { low: N::of(-reach), high: N::of(reach) };
+                at_ranges = at_ranges.map(|along| along + around);
+            }
             let point = PointBounds::seen(shape, object.shader.sees(), place.part, at_ranges, outward);
             let look = N::End::look(object, &point)?;
-            let enclosing = |of: [Interval<N::End>; 3]| per_axis(|channel| N::enclosing(of[channel]));
+            let rounding = |of: Interval<N::End>| {
+                let error = if reach.is_some() { MEAN_ROUNDING * of.coarse().magnitude() } else { 0.0 };
+                of + Interval { low: N::of(-error), high: N::of(error) }
+            };
+            let enclosing =
+                |of: [Interval<N::End>; 3]| per_axis(|channel| N::enclosing(rounding(of[channel])));
             let (ambient, diffuse) = (enclosing(look.ambient), enclosing(look.diffuse));
             Some(Self { place, at, normal, unbent, ambient, diffuse, specular: enclosing(look.specular) })
         };

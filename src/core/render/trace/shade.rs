@@ -84,7 +84,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         };
         shape.packets().interact(cpu, group.rays(), distances, interaction);
         self.pass_media(group, distances, surface);
-        surface.see(object, count);
+        let window = if self.depth == 0 && shader.sees().patch { self.plan.camera.window() } else { None };
+        surface.see(object, count, window.map(|window| (group.dir.view(count), distances, window)));
         surface.look = shader.uniform(material);
         surface.is_mirror = match surface.look {
             Some(look) => {

@@ -8,6 +8,7 @@ use crate::simd::soa::View;
 use crate::world::coincidence;
 use crate::world::material::{Look, Rgb};
 use crate::world::packets::shader::SurfacePoints;
+use crate::world::patch::{Patch, Window};
 use crate::world::shader::SurfacePoint;
 use glam::DVec3;
 
@@ -50,18 +51,33 @@ impl Surface {
     }
 
     /// Finds what the object's shader sees of the points beside their positions, and lets it bend the normals.
-    pub fn see(&mut self, Object { shape, shader, .. }: &Object, count: usize) {
+    /// `patches` has the directions of the rays, the distances of the points, and the window through which samples look, where
+    /// they show patches.
+    pub fn see(
+        &mut self,
+        Object { shape, shader, .. }: &Object,
+        count: usize,
+        patches: Option<(View, &[f64], Window)>,
+    ) {
         self.seen.clear();
         let (bends, sees) = (shader.bends(), shader.sees());
         self.is_bent = bends || shape.is_smooth();
-        if sees.is_position() && !bends {
+        if sees.is_position() && !bends && patches.is_none() {
             return;
         }
         let is_two_sided = shape.is_two_sided();
         for (lane, side) in self.sides[..count].iter().enumerate() {
             let (position, normal) = (self.points.get(lane), self.normals.get(lane));
             let normal = if is_two_sided && *side == Side::Inside { -normal } else { normal };
-            self.seen.push(SurfacePoint::seen(&**shape, sees, position, normal, *side));
+            let mut point = SurfacePoint::seen(&**shape, sees, position, normal, *side);
+            if let Some((dir, distances, Window { start, spread })) = patches {
+                let normals = if shape.is_smooth() { &self.unbent } else { &self.normals };
+                let width = start + spread * distances[lane];
+                let mut patch = Patch::seen(dir.get(lane), normals.get(lane), width);
+                point.uv.into_iter().for_each(|uv| patch.find_uv(&**shape, position, uv));
+                point.patch = Some(patch);
+            }
+            self.seen.push(point);
         }
         if bends {
             if !shape.is_smooth() {

@@ -6,6 +6,7 @@ use crate::world::body::{AnyShader, Body};
 use crate::world::certify::Precise;
 use crate::world::hittable::{ByPackets, Shape};
 use crate::world::material::{Look, Material, Rgb};
+use crate::world::patch::Patch;
 use crate::world::packets::shader::{EncloseLook, PacketShader};
 use crate::world::shader::{LookBounds, Plain, PointBounds, Shader, ShaderInputs, SurfacePoint};
 use glam::{DMat3, DVec2, DVec3};
@@ -59,7 +60,9 @@ impl PlacedShader {
         let normal = (self.normal_to_own * at.normal).normalize_or_zero();
         let own = |tangent: DVec3| (self.placed.to_object_space * tangent).normalize_or_zero();
         let tangents = at.tangents.map(|tangents| tangents.map(own));
-        SurfacePoint { position: self.placed.object_point(at.position), normal, tangents, ..*at }
+        let sides = |patch: Patch| patch.sides.map(|side| self.placed.to_object_space * side);
+        let patch = at.patch.map(|patch| Patch { sides: sides(patch), ..patch });
+        SurfacePoint { position: self.placed.object_point(at.position), normal, tangents, patch, ..*at }
     }
 }
 

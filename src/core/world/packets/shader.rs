@@ -70,11 +70,11 @@ impl<T: Shader> PacketShader for T {
     }
 }
 
-/// Runs a statement for each point. For a shader that sees positions alone, the loop is over positions.
+/// Runs a statement for each point. Where a shader sees positions alone, the loop is over positions.
 macro_rules! each {
-    ($shader:expr, $points:expr, $lane:ident, $at:ident, $body:block) => {
+    ($points:expr, $lane:ident, $at:ident, $body:block) => {
         let count = $points.positions.len();
-        if $shader.sees().is_position() {
+        if $points.seen.is_empty() {
             let positions = $points.positions.first(count);
             for $lane in 0..count {
                 let $at = &SurfacePoint::at(positions.get($lane));
@@ -94,7 +94,7 @@ kernels! {
     ) => ambients, speculars -> bool {
         let (count, mut any) = (points.positions.len(), 0);
         let (mut ambients, mut speculars) = (ambients.first(count), speculars.first(count));
-        each!(shader, points, lane, at, {
+        each!(points, lane, at, {
             let specular = shader.specular(material, at);
             ambients.set(lane, shader.ambient(material, at));
             speculars.set(lane, specular);
@@ -107,7 +107,7 @@ kernels! {
     fn diffuses[T: Shader](shader: &T, material: &Material, points: SurfacePoints) => out -> bool {
         let (count, mut any) = (points.positions.len(), 0);
         let mut out = out.first(count);
-        each!(shader, points, lane, at, {
+        each!(points, lane, at, {
             let diffuse = shader.diffuse(material, at);
             out.set(lane, diffuse);
             any |= is_any(diffuse);
@@ -118,7 +118,7 @@ kernels! {
     /// Writes the tiles at points of a surface.
     fn tiles[T: Shader](shader: &T, points: SurfacePoints, out: &mut [u64]) {
         let points = SurfacePoints { positions: points.positions.first(out.len()), ..points };
-        each!(shader, points, lane, at, {
+        each!(points, lane, at, {
             let tile = shader.tile(at);
             // So that minus zero is zero.
             let [column, row] = [(tile.x + 0.0).to_bits(), (tile.y + 0.0).to_bits()];
