@@ -5,7 +5,7 @@ use crate::process::failure::{Failure, print, report, status};
 use crate::process::messages;
 use std::path::{Path, PathBuf};
 use tabray_lang::editor::{self, Text, formatted, problem};
-use tabray_lang::reader::{Fault, Report};
+use tabray_lang::reader::Report;
 use tabray_lang::registry::Registry;
 
 /// Format scenes
@@ -56,8 +56,7 @@ fn one(registry: &Registry, path: &Path, only_check: bool) -> Result<bool, Failu
     let view = editor::read(registry, &name, Text::new(body));
     let Some(new) = formatted(&view) else {
         let mut report = Report::new(&name, body.to_owned(), view.syntax);
-        if let Some((place, message)) = problem(&view) {
-            let fault = Fault::error(Some(place), message);
+        if let Some(fault) = problem(&view) {
             report.add(fault.help("only a scene without syntax errors can be formatted"));
         }
         return Err(Failure::Scene(report));

@@ -372,7 +372,7 @@ fn fmt_leaves_a_scene_whose_form_has_errors() {
     fs::write(&path, text).expect("room");
     let (status, _, err) = outcome(tabray(&folder).args(["fmt", "a.ray", "none.ray"]));
     assert_eq!(status, 2);
-    assert!(err.contains("a.ray:1:1") && err.contains("missing `}` for this `camera`"), "{err}");
+    assert!(err.contains("a.ray:2:16") && err.contains("missing `}` for camera `eye`"), "{err}");
     assert!(err.contains("cannot read `none.ray`"), "{err}");
     assert_eq!(fs::read_to_string(&path).expect("a file"), text);
     let mut input = tabray(&folder);

@@ -258,7 +258,7 @@ impl<'r> Server<'r> {
 
     fn format(&self, request: &TextRequest) -> Result<Value, String> {
         let Some(new) = editor::formatted(&request.view) else {
-            let what = editor::problem(&request.view).map_or_else(String::new, |(_, message)| message);
+            let what = editor::problem(&request.view).map_or_else(String::new, |fault| fault.message);
             return Err(format!("a scene with syntax errors cannot be formatted: {what}"));
         };
         // What is the same at the beginning and at the end stays, and the cursor with it.

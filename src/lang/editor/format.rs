@@ -2,10 +2,12 @@
 //! the comments, and what stands on one line stay.
 
 use super::format_toml;
-use super::view::{Attribute, Break, Entity, Item, Repeat, View, Word};
-use crate::reader::toml_error;
+use super::view::{Attribute, Entity, Item, Repeat, View, Word};
+use crate::reader::tokens::{Token, TokenForm};
+use crate::reader::{Fault, Report, toml_error};
 use crate::syntax::Syntax;
 use std::fmt::Write;
+use std::mem::replace;
 use std::ops::Range;
 
 /// The widths of the widest type or name, and of the widest attribute with its values, to which others are aligned.
@@ -15,12 +17,14 @@ const WIDEST_CELL: usize = 48;
 /// The most values of a row in which all stand equally far apart.
 const SHORT_ROW: usize = 4;
 
-/// Returns a reason why a text cannot be formatted, with its place.
-pub fn problem(view: &View) -> Option<Break> {
+/// Returns a fault for which a text cannot be formatted.
+pub fn problem(view: &View) -> Option<Fault> {
     view.breaks.first().cloned().or_else(|| match view.syntax {
         Syntax::Notes => None,
         // The events of a text in TOML do not show what is wrong within a key or a value.
-        Syntax::Toml => toml_error(view.text.as_str()),
+        Syntax::Toml => {
+            toml_error(view.text.as_str()).map(|(place, message)| Fault::error(Some(place), message))
+        }
     })
 }
 
@@ -86,18 +90,18 @@ impl Writer<'_> {
 
     /// Writes the comments up to the next word, and keeps one of the blank lines before it.
     fn gap(&mut self, to: usize, indent: usize) {
-        let gap = self.view.slice(self.at..to.max(self.at)).to_owned();
-        let mut newlines = 0;
-        let mut rest = gap.as_str();
-        while let Some(first) = rest.chars().next() {
-            if first == '#' {
-                let length = rest.find('\n').unwrap_or(rest.len());
-                self.comment(rest[..length].trim_end(), newlines, indent);
-                (newlines, rest) = (0, &rest[length..]);
+        let text = self.view.text.as_str();
+        let (mut newlines, nowhere) = (0, &mut Report::default());
+        while self.at < to
+            && let Some(token) = Token::at(text, self.at, nowhere)
+        {
+            let raw = self.view.slice(token.start..token.end.min(to));
+            if token.form == TokenForm::Comment {
+                self.comment(raw.trim_end(), replace(&mut newlines, 0), indent);
             } else {
-                newlines += usize::from(first == '\n');
-                rest = &rest[first.len_utf8()..];
+                newlines += raw.matches('\n').count();
             }
+            self.at = token.end;
         }
         self.blank(newlines);
         self.at = to.max(self.at);

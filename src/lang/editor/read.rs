@@ -3,7 +3,7 @@
 use super::text::Text;
 use super::view::View;
 use super::{notes, toml};
-use crate::reader::is_older;
+use crate::reader::{Fault, is_older};
 use crate::registry::Registry;
 use crate::syntax::Syntax;
 
@@ -17,7 +17,8 @@ pub fn read(registry: &Registry, name: &str, text: Text) -> View {
     let read = match syntax {
         Syntax::Notes if is_older(registry, text.as_str()) => {
             let message = "this is an older scene of numbers, which is not in the language of scenes";
-            (Vec::new(), vec![(0..text.as_str().find('\n').unwrap_or(0), message.to_owned())])
+            let line = 0..text.as_str().find('\n').unwrap_or(0);
+            (Vec::new(), vec![Fault::error(Some(line), message)])
         }
         Syntax::Notes => notes::read(registry, text.as_str()),
         Syntax::Toml => toml::read(registry, text.as_str()),

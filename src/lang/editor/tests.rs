@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::dump;
-use crate::reader;
+use crate::reader::tokens::Token;
+use crate::reader::{self, Report};
 use crate::registry::Registry;
 use crate::syntax::Syntax;
 use rand_pcg::Pcg64Mcg;
@@ -138,6 +139,91 @@ fn a_form_is_that_of_the_scenes() {
         assert_eq!(formatted(&view(Path::new("a.toml"), wrong)), None, "{wrong:?}");
     }
     assert!(formatted(&view(Path::new("a.toml"), "a = 1\na = 2")).is_some(), "its form has no errors");
+}
+
+/// Adds the places of the words and braces of items in the notes' syntax.
+fn places(items: &[view::Item], found: &mut Vec<Range<usize>>) {
+    let keyword = |place: &Range<usize>, keyword: &str| place.start..place.start + keyword.len();
+    let braces = |body: &Range<usize>| [body.start - 1..body.start, body.end..body.end + 1];
+    for item in items {
+        match item {
+            view::Item::Entity(entity) => {
+                found.extend(braces(&entity.body));
+                found.extend([entity.kind].into_iter().chain(entity.name).map(view::Word::place));
+                for attribute in &entity.attributes {
+                    found.extend(
+                        [&[attribute.name], &attribute.values[..]].concat().iter().map(|word| word.place()),
+                    );
+                }
+            }
+            view::Item::Let(number) => {
+                found.push(keyword(&number.place, "let"));
+                found.extend([number.name, number.value].into_iter().flatten().map(view::Word::place));
+            }
+            view::Item::Include(include) => {
+                found.push(keyword(&include.place, "include"));
+                found.extend(include.files.iter().map(|file| file.place()));
+            }
+            view::Item::Repeat(repeat) => {
+                found.push(keyword(&repeat.place, "repeat"));
+                found.extend(braces(&repeat.body));
+                found.extend([repeat.name, repeat.count].into_iter().flatten().map(view::Word::place));
+                places(&repeat.items, found);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_view_holds_each_word_and_brace_of_a_sound_scene() {
+    let mut scenes = scenes();
+    let values = "1 ".repeat(5000);
+    scenes
+        .push((PathBuf::from("many.ray"), format!("sphere ball {{ radius {values}}} # more than are right")));
+    let mut views = 0;
+    for (path, text) in scenes {
+        let view = view(&path, &text);
+        if view.syntax == Syntax::Toml || !view.breaks.is_empty() {
+            continue;
+        }
+        views += 1;
+        let (mut found, mut wanted, mut at) = (Vec::new(), Vec::new(), 0);
+        places(&view.items, &mut found);
+        found.sort_unstable_by_key(|place| place.start);
+        while let Some(token) = Token::at(&text, at, &mut Report::default()) {
+            at = token.end;
+            wanted.extend((!token.is_trivia()).then(|| token.place()));
+        }
+        assert_eq!(found, wanted, "{}", path.display());
+    }
+    assert!(views > 100, "{views} views");
+}
+
+#[test]
+fn a_view_ends_values_where_the_reader_does() {
+    let text = "place ring { object ball  rotation 90 0 0 translation 6 1 -2 }\nunion both { objects ball ring material grey }\n";
+    let form = formatted(&view(Path::new("a.ray"), text)).expect("a sound form");
+    assert!(
+        form.contains(" rotation 90 0 0  translation 6 1 -2 ") && form.contains(" ball ring  material grey "),
+        "{form}"
+    );
+}
+
+#[test]
+fn a_stray_word_leaves_what_is_repeated_its_brace() {
+    let scene =
+        "camera eye { pixeldim 8 6  worlddim 8 6  viewpoint 4 3 6 }\nmaterial red { ambient 9 0 0 }\n";
+    let text = format!(
+        "{scene}repeat i 2 {{ sphere ball {{ material red  center 4 3 0  radius 1 }} stray }}\n\
+         sphere other {{ material red  center 4 3 0  radius 1 }}"
+    );
+    let view = view(Path::new("a.ray"), &text);
+    assert_eq!(
+        view.breaks.iter().map(|fault| fault.message.as_str()).collect::<Vec<_>>(),
+        ["stray word `stray`"]
+    );
+    assert!(view.entity("other").is_some());
+    assert_eq!(meaning(Path::new("a.ray"), &text), Err(vec!["stray word `stray`".to_owned()]));
 }
 
 /// The open files of a test.

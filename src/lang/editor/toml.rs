@@ -1,8 +1,8 @@
 //! Reads a text in TOML as far as possible.
 
-use super::notes::attribute;
-use super::view::{Attribute, Break, Entity, Form, Include, Item, Let, Repeat, Word};
+use super::view::{Attribute, Entity, Form, Include, Item, Let, Repeat, Word};
 use crate::reader::keyword::Keyword;
+use crate::reader::{Fault, find_attribute};
 use crate::registry::Registry;
 use std::mem::take;
 use std::ops::Range;
@@ -20,7 +20,7 @@ const MOST_PARTS: usize = 128;
 const NEAR: usize = 64;
 
 /// Returns the events of a text, and its syntax errors.
-pub fn events(text: &str) -> (Vec<Event>, Vec<Break>) {
+pub fn events(text: &str) -> (Vec<Event>, Vec<Fault>) {
     let tokens = Source::new(text).lex().into_vec();
     let (mut events, mut errors) = (Vec::new(), Vec::<ParseError>::new());
     {
@@ -29,15 +29,16 @@ pub fn events(text: &str) -> (Vec<Event>, Vec<Break>) {
         parse_document(&tokens, &mut guard, &mut errors);
     }
     let place = |error: &ParseError| error.unexpected().or(error.context()).map_or(0..0, range);
-    (events, errors.iter().map(|error| (place(error), error.description().to_owned())).collect())
+    let fault = |error: &ParseError| Fault::error(Some(place(error)), error.description());
+    (events, errors.iter().map(fault).collect())
 }
 
 fn range(span: Span) -> Range<usize> {
     span.start()..span.end().max(span.start())
 }
 
-/// Parses a text into items, and returns the places where it is not in the form of a scene.
-pub fn read(registry: &Registry, text: &str) -> (Vec<Item>, Vec<Break>) {
+/// Parses a text into items, and returns where it is not in the form of a scene.
+pub fn read(registry: &Registry, text: &str) -> (Vec<Item>, Vec<Fault>) {
     let (events, breaks) = events(text);
     let mut reader = Reader { registry, text, items: Vec::new(), path: Path::new() };
     reader.all(&events);
@@ -331,7 +332,7 @@ fn value(
             entity.body.end = entity.body.end.max(place.end);
             entity.attributes.push(Attribute {
                 name: *key,
-                known: entity.known.and_then(|entity| attribute(entity, says(text, *key))),
+                known: entity.known.and_then(|entity| find_attribute(entity, says(text, *key))),
                 values_from: leaf.from,
                 values: leaf.values,
                 end: place.end,

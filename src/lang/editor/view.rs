@@ -3,7 +3,7 @@
 use super::named::Names;
 use super::text::Text;
 pub use super::word::{Form, Word};
-use crate::reader::tokens;
+use crate::reader::{Fault, tokens};
 use crate::syntax::Syntax;
 use std::borrow::Cow;
 use std::ops::Range;
@@ -104,9 +104,6 @@ pub struct Repeat {
     pub body: Range<usize>,
 }
 
-/// A place at which a text is not as a scene is written, and why.
-pub type Break = (Range<usize>, String);
-
 /// The items of a text.
 #[derive(Debug)]
 pub struct View {
@@ -116,15 +113,15 @@ pub struct View {
     pub syntax: Syntax,
     /// What it says, in the order of the text.
     pub items: Vec<Item>,
-    /// The places where the text is not in the form of a scene; empty if there are none.
-    pub breaks: Vec<Break>,
+    /// Where the text is not in the form of a scene; empty if it is.
+    pub breaks: Vec<Fault>,
     /// The names, once they are found.
     pub(super) names: OnceLock<Names>,
 }
 
 impl View {
     /// Makes the view of a text from what was read of it.
-    pub fn new(text: Text, syntax: Syntax, (items, breaks): (Vec<Item>, Vec<Break>)) -> Self {
+    pub fn new(text: Text, syntax: Syntax, (items, breaks): (Vec<Item>, Vec<Fault>)) -> Self {
         Self { text, syntax, items, breaks, names: OnceLock::new() }
     }
 

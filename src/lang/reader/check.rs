@@ -10,6 +10,7 @@ use super::notes;
 use super::parsed::{Parsed, Word};
 use super::quick::Quick;
 use super::report::Report;
+use super::statements::Parser;
 use crate::registry::Registry;
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -36,7 +37,7 @@ use tabray_core::world::texture::Texture;
 /// The entities of a scene: parsed while they are checked, or all of them parsed before.
 pub enum Source<'s, 'a> {
     /// A text in the notes' syntax, and its parser.
-    Text(&'a str, Box<notes::Parser<'a, 's>>),
+    Text(&'a str, Box<Parser<'a, 's>>),
     /// Entities in their order.
     List(&'s [Parsed<'a>]),
 }
@@ -52,7 +53,7 @@ impl<'a> Source<'_, 'a> {
         match self {
             Self::Text(text, parser) => {
                 let mut parsed = notes::again(registry, text, place.as_ref()?.start)?;
-                parser.sets.put(&mut parsed, registry, None);
+                parser.rounds.sets.put(&mut parsed, registry, None);
                 Some(Cow::Owned(parsed))
             }
             Self::List(parsed) => parsed.get(order).map(Cow::Borrowed),

@@ -1,4 +1,4 @@
-//! Finds attributes by their names, and guesses which attribute a misspelt word was meant to be.
+//! Finds attributes by their names, tells them from values, and guesses which one a misspelt word was meant to be.
 
 use crate::registry::Registry;
 use std::collections::HashMap;
@@ -140,4 +140,46 @@ pub fn near_attribute(
         }
     };
     near.and_then(|name| find_attribute(entity, name))
+}
+
+/// Tells whether a word is a value, rather than the next attribute: there are some `already`, and in a text that is being
+/// written it may be on a line below them.
+pub fn is_value(
+    table: Option<&Table>,
+    attribute: Option<&KnownAttribute>,
+    (already, is_below): (usize, bool),
+    word: &str,
+    guesses: &mut Guesses,
+) -> bool {
+    let max = attribute.map_or(1, |attribute| attribute.max);
+    match attribute.map(|attribute| attribute.value_type) {
+        // Of several formulas, the later ones may be left out.
+        Some(Type::Formula(_)) if already > 0 && !looks_like_number(word) => {
+            let is_attribute =
+                table.is_some_and(|table| table.find(word).is_some() || table.near(word, guesses).is_some());
+            already < max && !is_attribute
+        }
+        // A name may look like anything, even like a number or an attribute: `material material`.
+        // The names of a list end where the next attribute begins, however many there are.
+        Some(Type::Name(_)) if max > 1 => table.is_none_or(|table| table.find(word).is_none()),
+        Some(Type::Word | Type::File | Type::Name(_) | Type::Choice(_) | Type::Formula(_) | Type::Truth) => {
+            let is_attribute = || table.is_some_and(|table| table.find(word).is_some());
+            already < max && !(is_below && is_attribute())
+        }
+        _ if looks_like_number(word) => true,
+        _ => {
+            let Some(table) = table else { return already < max };
+            already < max && table.find(word).is_none() && table.near(word, guesses).is_none()
+        }
+    }
+}
+
+/// Tells whether a word begins as a number does.
+pub fn looks_like_number(word: &str) -> bool {
+    let is_digit = |word: &str| word.starts_with(|c: char| c.is_ascii_digit() || c == '.');
+    is_digit(word) || {
+        let unsigned = word.trim_start_matches(['+', '-']);
+        is_digit(unsigned)
+            || ["nan", "inf", "infinity"].iter().any(|number| unsigned.eq_ignore_ascii_case(number))
+    }
 }

@@ -1,12 +1,11 @@
 //! What a scene in TOML says, in the order of its text: entities, and numbers, files and rounds, from which more entities
 //! follow.
 
-use super::fault::{Fault, Severity};
+use super::fault::Severity;
 use super::guesses::Tables;
-use super::parsed::{Form, Parsed, Word};
+use super::parsed::{Parsed, Word};
 use super::report::Report;
 use super::rounds::Rounds;
-use super::sets::Sets;
 use super::sources::Sources;
 use crate::registry::Registry;
 use std::collections::{HashMap, HashSet};
@@ -55,7 +54,6 @@ pub struct Lister<'a, 'r, 't> {
     parse: Parse<'r, 'a, 't>,
     report: &'r mut Report<'t>,
     rounds: Rounds<'a>,
-    sets: Sets<'a>,
     tables: Tables,
     entities: Vec<Parsed<'a>>,
 }
@@ -67,10 +65,7 @@ pub fn entities<'a, 't>(
     parse: Parse<'_, 'a, 't>,
     report: &mut Report<'t>,
 ) -> Vec<Parsed<'a>> {
-    let sets = match &sources.options {
-        Some(options) => Sets::of(&sources.text, options.clone(), report),
-        None => Sets::default(),
-    };
+    let sets = sources.sets(report);
     let all = parse(sources.own.clone(), report);
     let mut names = HashMap::new();
     for statement in &all {
@@ -83,8 +78,7 @@ pub fn entities<'a, 't>(
         sources,
         parse,
         report,
-        rounds: Rounds::of_names(names),
-        sets,
+        rounds: Rounds::of_names(names, sets),
         tables: Tables::default(),
         entities: Vec::with_capacity(all.len()),
     };
@@ -95,54 +89,30 @@ pub fn entities<'a, 't>(
             statement => lister.statement(&statement),
         }
     }
-    lister.sets.report_unmatched(lister.report);
+    lister.rounds.sets.report_unmatched(lister.report);
     lister.entities
 }
 
 impl<'a> Lister<'a, '_, '_> {
     fn entity(&mut self, mut entity: Parsed<'a>) {
-        let is_used = self.rounds.is_used();
-        entity.name = self.rounds.renamed(entity.name);
-        if let Some(table) = self.tables.named(self.registry, &entity.kind.text) {
-            let (table, rounds, report) = (&self.tables[table], &mut self.rounds, &mut *self.report);
-            entity.change(|attribute, word| {
-                if word.form != Form::Text && !is_used {
-                    return word;
-                }
-                let value_type = table.find(attribute).map(|attribute| table[attribute].value_type);
-                rounds.word(word, value_type, report)
-            });
-        }
-        if !self.sets.is_empty() {
-            self.sets.apply(&mut entity, self.registry, &mut self.rounds.numbers, self.report);
-        }
+        let table = self.tables.named(self.registry, &entity.kind.text).map(|table| &self.tables[table]);
+        self.rounds.entity(&mut entity, table, self.registry, self.report);
         self.entities.push(entity);
     }
 
     fn statement(&mut self, statement: &Statement<'a>) {
         match statement {
             Statement::Entity(entity) => self.entity(entity.clone()),
-            Statement::Let { name, value } => {
-                let set = self.sets.number(&name.text);
-                let value = self.rounds.numbers.number(set.as_ref().unwrap_or(value), self.report);
-                self.rounds.numbers.define(name, value, self.report);
-            }
+            Statement::Let { name, value } => self.rounds.define(name, value, self.report),
             Statement::Include { file } => self.include(file),
             Statement::Repeat { name, count, body, .. } => self.repeat(name, count, body),
         }
     }
 
     fn include(&mut self, file: &Word<'a>) {
-        match self.sources.included(file.place.as_ref().map_or(0, |place| place.start)) {
-            Some(Ok(range)) => {
-                for statement in (self.parse)(range, self.report) {
-                    self.statement(&statement);
-                }
-            }
-            Some(Err(fault)) => self.report.add(fault.clone()),
-            None => {
-                let fault = Fault::error(file.place.clone(), "a file cannot be included here");
-                self.report.add(fault.help("an `include` stands before the first table"));
+        if let Some(range) = self.sources.file(file, "before the first table", self.report) {
+            for statement in (self.parse)(range, self.report) {
+                self.statement(&statement);
             }
         }
     }

@@ -18,18 +18,18 @@ mod located;
 mod machine;
 mod missing;
 mod names;
-mod notes;
+pub(crate) mod notes;
 mod numbers;
 mod objects;
 mod older;
-mod parsed;
+pub(crate) mod parsed;
 mod parts;
 mod quick;
-mod report;
+pub(crate) mod report;
 mod rounds;
 mod sets;
 mod sources;
-mod statements;
+pub(crate) mod statements;
 mod textures;
 pub(crate) mod tokens;
 mod toml;
@@ -40,9 +40,9 @@ mod values;
 
 pub use check::ReadOptions;
 pub use fault::{Fault, Place, Places, Severity};
+pub(crate) use guesses::find_attribute;
 pub(crate) use located::Located;
 pub use machine::Message;
-pub(crate) use notes::looks_like_number;
 pub(crate) use older::is_older;
 pub use parsed::Parsed;
 pub use toml_faults::toml_error;
@@ -168,7 +168,7 @@ fn read_text(
     }
     // A sound text is parsed and checked at one go.
     let mut errors = report.clone();
-    let Some(parser) = notes::parser(registry, &sources, &mut errors) else {
+    let Some(parser) = statements::parser(registry, &sources, &mut errors) else {
         return Err(errors.into_owned());
     };
     let all = checked(&mut report, Source::Text(&sources.text, Box::new(parser)));
@@ -182,7 +182,7 @@ fn read_text(
     if report.has_enough() {
         return Err(report.into_owned());
     }
-    let Some(parser) = notes::parser(registry, &sources, &mut nowhere) else {
+    let Some(parser) = statements::parser(registry, &sources, &mut nowhere) else {
         return Err(report.into_owned());
     };
     finish(checked(&mut report, Source::Text(&sources.text, Box::new(parser.reading_on()))), registry, report)

@@ -1,133 +1,106 @@
-//! The notes' scene language: `entity-type name { attribute values ... }`, one word after another.
+//! The grammar of the notes' scene language: `entity-type name { attribute values ... }`, one word after another. The reader,
+//! `fmt` and editors know a text by it alone.
 
 use super::fault::Fault;
-use super::guesses::{Guesses, KnownAttribute, Table, Tables};
+use super::guesses::{Tables, is_value, looks_like_number};
 use super::keyword::Keyword;
 use super::parsed::{Form, Parsed, Word};
 use super::report::Report;
-use super::rounds::Rounds;
-use super::sets::Sets;
-use super::sources::Sources;
 use super::tokens::{Token, TokenForm, Tokens};
 use crate::registry::Registry;
-use crate::syntax::Syntax;
 use std::borrow::Cow;
 use std::ops::Range;
 use tabray_core::scene::kind::Kind;
 use tabray_core::scene::value::Type;
 
-/// Begins to parse the entities of a text. Returns `None`, and reports why, if no part of it is an entity.
-pub fn parser<'a, 'r>(
-    registry: &'r Registry,
-    sources: &'a Sources<'_>,
-    report: &'r mut Report<'a>,
-) -> Option<Parser<'a, 'r>> {
-    let text = &sources.text[..sources.own.end];
-    let first = Tokens::of(text, &mut Report::default()).ahead[0];
-    if let Some(first) = first
-        && !looks_like_a_scene(registry, text)
-    {
-        let mut tokens = Tokens::of(text, report);
-        while tokens.ahead[0].is_some() {
-            tokens.step(report);
-        }
-        report.add(
-            Fault::error(Some(first.place()), "this is not a scene")
-                .label("expected an entity type")
-                .help(registry.first_steps(Syntax::Notes)),
-        );
-        return None;
-    }
-    let sets = match &sources.options {
-        Some(options) => Sets::of(&sources.text, options.clone(), report),
-        None => Sets::default(),
-    };
-    let mut parser = Parser::new(registry, text, 0, report);
-    (parser.rounds, parser.sets, parser.sources) = (Rounds::of(text), sets, Some(sources));
-    Some(parser)
-}
-
 /// Parses the entity that begins at a byte of a text once more; what is wrong with it is reported already.
 pub fn again<'a>(registry: &Registry, text: &'a str, at: usize) -> Option<Parsed<'a>> {
     let mut nowhere = Report::default();
     let mut entity = None;
-    Parser::new(registry, text, at, &mut nowhere).entity(&mut entity);
+    Grammar::new(registry, text, at, &mut nowhere).entity(&mut entity);
     entity
-}
-
-/// Tells whether any part of a text is an entity.
-fn looks_like_a_scene(registry: &Registry, text: &str) -> bool {
-    let mut nowhere = Report::default();
-    let parser = Parser::new(registry, text, 0, &mut nowhere);
-    parser.begins_entity() || parser.keyword().is_some() || has_entities(registry, text).is_some()
 }
 
 /// Returns the place of the type of the first whole entity in a text, if it has one.
 pub fn has_entities(registry: &Registry, text: &str) -> Option<Range<usize>> {
     let mut nowhere = Report::default();
-    let mut parser = Parser::new(registry, text, 0, &mut nowhere);
-    while let Some(token) = parser.token() {
-        if parser.is_entity_type() && parser.has_form() {
+    let mut grammar = Grammar::new(registry, text, 0, &mut nowhere);
+    while let Some(token) = grammar.token() {
+        if grammar.is_entity_type() && grammar.has_form() {
             return Some(token.place());
         }
-        parser.step();
+        grammar.step();
     }
     None
 }
 
-/// The parser of a scene in the notes' syntax.
-pub struct Parser<'a, 'r> {
-    pub(super) registry: &'r Registry,
-    pub(super) tokens: Tokens<'a>,
-    pub(super) report: &'r mut Report<'a>,
-    tables: Tables,
-    /// Where the text comes from; `None` where one entity is parsed again.
-    pub(super) sources: Option<&'a Sources<'a>>,
-    /// What the scene repeats, and its numbers.
-    pub(super) rounds: Rounds<'a>,
-    /// The values that are set beside the text.
-    pub(super) sets: Sets<'a>,
-    /// The rests of the texts that include this one.
-    pub(super) outer: Vec<Tokens<'a>>,
-    /// Whether everything has been read.
-    pub(super) is_over: bool,
-    /// Whether a syntax error is a reason to stop.
-    pub(super) stops: bool,
-    /// The place of the token read last.
-    before: Range<usize>,
-    /// The entity read last: the place of its first word, and that of its end.
-    last: Option<(Range<usize>, Range<usize>)>,
+/// A part of a scene. What is wrong with it is reported.
+pub enum Node<'a> {
+    /// An entity.
+    Entity,
+    /// What stands in place of an entity.
+    Statement(Statement<'a>),
+    /// The brace that ends what is repeated.
+    Close(Token),
+    /// Words that belong to nothing.
+    Stray,
 }
 
-impl<'a, 'r> Parser<'a, 'r> {
-    fn new(registry: &'r Registry, text: &'a str, at: usize, report: &'r mut Report<'a>) -> Self {
+/// A keyword and what follows it.
+pub struct Statement<'a> {
+    pub keyword: Keyword,
+    pub first: Token,
+    /// The words after it: a file, a name and a value, or a name and a count. One that is missing is reported.
+    pub words: [Option<Word<'a>>; 2],
+    /// The brace before what is repeated.
+    pub open: Option<Token>,
+}
+
+/// The parser of a text in the notes' syntax, which gives one part of it after another.
+pub struct Grammar<'a, 'r> {
+    pub registry: &'r Registry,
+    pub tokens: Tokens<'a>,
+    pub report: &'r mut Report<'a>,
+    pub tables: Tables,
+    /// Whether the text is being written: then a line break ends values before an attribute, and an entity ends what is
+    /// half written before it; and all values are kept.
+    is_draft: bool,
+    /// The place of the token read last.
+    pub before: Range<usize>,
+    /// The entity read last: the place of its first word, and that of its end.
+    last: Option<(Range<usize>, Range<usize>)>,
+    /// The range between the braces of the entity read last.
+    pub body: Range<usize>,
+    /// The table of the entity read last.
+    pub table: Option<usize>,
+}
+
+impl<'a, 'r> Grammar<'a, 'r> {
+    /// Begins at a byte of a text.
+    pub fn new(registry: &'r Registry, text: &'a str, at: usize, report: &'r mut Report<'a>) -> Self {
         Self {
             registry,
             tokens: Tokens::from(text, at, report),
             report,
             tables: Tables::default(),
-            sources: None,
-            rounds: Rounds::default(),
-            sets: Sets::default(),
-            outer: Vec::new(),
-            is_over: false,
-            stops: true,
+            is_draft: false,
             before: 0..0,
             last: None,
+            body: 0..0,
+            table: None,
         }
     }
 
-    /// Goes on after a syntax error.
-    pub fn reading_on(mut self) -> Self {
-        self.stops = false;
-        self
+    /// Begins with a text that is being written.
+    pub fn of_draft(registry: &'r Registry, text: &'a str, report: &'r mut Report<'a>) -> Self {
+        Self { is_draft: true, ..Self::new(registry, text, 0, report) }
     }
 
-    pub(super) fn token(&self) -> Option<Token> {
+    pub fn token(&self) -> Option<Token> {
         self.tokens.ahead[0]
     }
 
-    pub(super) fn step(&mut self) -> Option<Token> {
+    fn step(&mut self) -> Option<Token> {
         let token = self.tokens.step(self.report);
         if let Some(token) = &token {
             self.before = token.place();
@@ -135,8 +108,13 @@ impl<'a, 'r> Parser<'a, 'r> {
         token
     }
 
+    /// Goes on at another byte of the text.
+    pub fn go_to(&mut self, at: usize) {
+        self.tokens = Tokens::from(self.tokens.text, at, self.report);
+    }
+
     /// Returns the keyword that follows, if there is one.
-    pub(super) fn keyword(&self) -> Option<Keyword> {
+    fn keyword(&self) -> Option<Keyword> {
         let token = self.token().filter(|token| token.form == TokenForm::Word)?;
         Keyword::of(self.tokens.raw(token))
     }
@@ -145,11 +123,11 @@ impl<'a, 'r> Parser<'a, 'r> {
         self.tokens.text(token)
     }
 
-    pub(super) fn is(&self, ahead: usize, form: TokenForm) -> bool {
+    fn is(&self, ahead: usize, form: TokenForm) -> bool {
         self.tokens.ahead[ahead].is_some_and(|token| token.form == form)
     }
 
-    pub(super) fn is_word(&self, ahead: usize) -> bool {
+    fn is_word(&self, ahead: usize) -> bool {
         self.tokens.ahead[ahead].is_some_and(|token| !token.is_brace())
     }
 
@@ -159,24 +137,68 @@ impl<'a, 'r> Parser<'a, 'r> {
 
     /// Tells whether a word, a name and an opening brace follow.
     fn has_form(&self) -> bool {
-        self.is_word(0)
+        self.is(2, TokenForm::Open)
+            && self.is_word(0)
             && self.is_word(1)
-            && self.is(2, TokenForm::Open)
             && self.token().is_some_and(|token| !looks_like_number(&self.text(token)))
     }
 
     /// Tells whether an entity begins here, even if its name or its brace is missing.
-    pub(super) fn begins_entity(&self) -> bool {
+    fn begins_entity(&self) -> bool {
         self.has_form()
             || (self.is_word(0) && self.is(1, TokenForm::Open))
             || (self.is_entity_type() && self.is_word(1))
     }
 
+    /// Tells whether any part of the text that begins here is an entity.
+    pub fn looks_like_a_scene(&self) -> bool {
+        self.begins_entity()
+            || self.keyword().is_some()
+            || has_entities(self.registry, self.tokens.text).is_some()
+    }
+
+    /// Reads the next part, an entity in the memory of another one if there is one. In what `is_repeated`, a brace is the
+    /// end of it.
+    pub fn next(&mut self, is_repeated: bool, memory: &mut Option<Parsed<'a>>) -> Option<Node<'a>> {
+        if let Some(keyword) = self.keyword() {
+            self.statement(keyword).map(Node::Statement)
+        } else if is_repeated && self.is(0, TokenForm::Close) {
+            self.step().map(Node::Close)
+        } else if self.begins_entity() {
+            self.entity(memory).map(|()| Node::Entity)
+        } else {
+            self.stray(is_repeated).map(|()| Node::Stray)
+        }
+    }
+
+    /// Reads a keyword and what follows it.
+    fn statement(&mut self, keyword: Keyword) -> Option<Statement<'a>> {
+        let first = self.step()?;
+        let mut words = [None, None];
+        let count = if keyword == Keyword::Include { 1 } else { 2 };
+        for word in &mut words[..count] {
+            let is_next = self.is_draft && keyword != Keyword::Repeat && self.has_form();
+            let token = self.token().filter(|token| !token.is_brace() && !is_next);
+            let Some(token) = token else { break };
+            *word = Some(self.tokens.word(token));
+            self.step();
+        }
+        let is_whole = words[count - 1].is_some();
+        let repeats = is_whole && keyword == Keyword::Repeat && self.is(0, TokenForm::Open);
+        let open = if repeats { self.step() } else { None };
+        if !is_whole || keyword == Keyword::Repeat && open.is_none() {
+            let message = format!("this `{}` is incomplete", self.tokens.raw(first));
+            self.report.add(Fault::error(Some(first.place()), message).help(keyword.usage()));
+        }
+        Some(Statement { keyword, first, words, open })
+    }
+
     /// Skips words that belong to no entity.
-    pub(super) fn stray(&mut self) {
-        let Some(first) = self.step() else { return };
+    fn stray(&mut self, is_repeated: bool) -> Option<()> {
+        let first = self.step()?;
         let (mut last, mut count) = (first, 1);
         while last.form != TokenForm::Close
+            && !(is_repeated && self.is(0, TokenForm::Close))
             && !self.begins_entity()
             && self.keyword().is_none()
             && let Some(next) = self.step()
@@ -196,17 +218,20 @@ impl<'a, 'r> Parser<'a, 'r> {
         }
         self.report
             .add(fault.help("every word of a scene must be part of an entity, `TYPE NAME { ATTRIBUTES }`"));
+        Some(())
     }
 
     /// Parses an entity, in the memory of another one if there is one.
-    pub(super) fn entity(&mut self, memory: &mut Option<Parsed<'a>>) -> Option<()> {
+    fn entity(&mut self, memory: &mut Option<Parsed<'a>>) -> Option<()> {
         let first = self.step()?;
         let (kind, kind_at) = (self.tokens.word(first), first.place());
+        self.table = self.tables.named(self.registry, &kind.text);
+        // The type alone is written, before another entity.
+        let is_alone = self.is_draft && self.table.is_some() && self.is_entity_type() && self.is_word(1);
         let name = match self.token() {
-            Some(name) if !name.is_brace() => {
-                let name = self.tokens.word(name);
+            Some(name) if !name.is_brace() && !is_alone => {
                 self.step();
-                if self.rounds.is_open() { self.rounds.renamed(name) } else { name }
+                self.tokens.word(name)
             }
             _ => {
                 self.report.add(
@@ -218,7 +243,7 @@ impl<'a, 'r> Parser<'a, 'r> {
         };
         if self.is(0, TokenForm::Open) {
             self.step();
-        } else {
+        } else if !is_alone {
             let after = name.place.clone().unwrap_or_default();
             self.report.add(
                 Fault::error(Some(after), format!("missing `{{` after {} `{}`", kind.text, name.text))
@@ -226,7 +251,6 @@ impl<'a, 'r> Parser<'a, 'r> {
                     .help(format!("attributes go in braces: `{} {} {{ ... }}`", kind.text, name.text)),
             );
         }
-        let known = self.tables.named(self.registry, &kind.text);
         let entity = match memory {
             Some(entity) => {
                 entity.begin_again(kind, name);
@@ -234,7 +258,8 @@ impl<'a, 'r> Parser<'a, 'r> {
             }
             None => memory.insert(Parsed::begin(kind, name)),
         };
-        while !self.report.has_enough() && self.body_goes_on(entity) {
+        self.body = self.before.end..self.before.end;
+        while !is_alone && !self.report.has_enough() && self.body_goes_on(entity) {
             if self.is(0, TokenForm::Open) {
                 let brace = self.step().map(Token::place);
                 self.report.add(
@@ -243,11 +268,8 @@ impl<'a, 'r> Parser<'a, 'r> {
                         .also(Some(kind_at.clone()), "inside this entity"),
                 );
             } else {
-                self.attribute(known, entity);
+                self.attribute(entity);
             }
-        }
-        if !self.sets.is_empty() {
-            self.sets.apply(entity, self.registry, &mut self.rounds.numbers, self.report);
         }
         entity.place = Some(first.start..self.before.end);
         self.last = Some((kind_at, self.before.clone()));
@@ -256,6 +278,7 @@ impl<'a, 'r> Parser<'a, 'r> {
 
     /// Tells whether another attribute of the entity follows; if not, skips the closing brace.
     fn body_goes_on(&mut self, entity: &Parsed<'a>) -> bool {
+        self.body.end = self.token().map_or(self.tokens.text.len(), |token| token.start);
         if self.is(0, TokenForm::Close) {
             self.step();
             return false;
@@ -281,34 +304,35 @@ impl<'a, 'r> Parser<'a, 'r> {
     }
 
     /// Reads an attribute and its values, however many there are and whatever their form.
-    fn attribute(&mut self, table: Option<usize>, entity: &mut Parsed<'a>) {
+    fn attribute(&mut self, entity: &mut Parsed<'a>) {
         let Some(name) = self.step().map(|name| self.tokens.word(name)) else { return };
+        let table = self.table.map(|table| &self.tables[table]);
         let known = table.and_then(|table| {
-            let table = &self.tables[table];
             let found = table.find_next(&name.text, entity.count());
-            found.or_else(|| table.near(&name.text, self.report.guesses()))
+            let found = found.or_else(|| table.near(&name.text, self.report.guesses()))?;
+            Some(&table[found])
         });
+        let value_type = known.map(|known| known.value_type);
         let mut count = 0;
-        while let Some(token) = self.token()
+        while let Some(token) = self.tokens.ahead[0]
             && !token.is_brace()
             && !self.has_form()
             && (token.form() == Form::Text || {
-                let (table, word) = (table.map(|table| &self.tables[table]), self.tokens.raw(token));
-                let known = table.zip(known).map(|(table, known)| &table[known]);
-                is_value(table, known, count, word, self.report.guesses())
+                let word = self.tokens.raw(token);
+                let is_below = self.is_draft && self.tokens.text[self.before.end..token.start].contains('\n');
+                is_value(table, known, (count, is_below), word, self.report.guesses())
             })
         {
             let word = self.tokens.word(token);
-            let value_type = || table.zip(known).map(|(table, known)| self.tables[table][known].value_type);
-            entity.value(if word.form == Form::Text || self.rounds.is_used() {
-                self.rounds.word(word, value_type(), self.report)
+            if self.is_draft {
+                entity.keep(word)
             } else {
-                word
-            });
+                entity.value(word)
+            }
             count += 1;
-            self.step();
+            self.tokens.step(self.report);
+            self.before = token.place();
         }
-        let value_type = known.and_then(|known| table.map(|table| self.tables[table][known].value_type));
         if let (0, Some(Type::Name(kind)), true) = (count, value_type, self.is(0, TokenForm::Open)) {
             self.nested_entity(kind, &name, entity);
         }
@@ -344,43 +368,4 @@ impl<'a, 'r> Parser<'a, 'r> {
         );
         entity.value(Word::at("", Form::Faulty, place));
     }
-}
-
-/// Tells whether a word is a value, rather than the next attribute.
-fn is_value(
-    table: Option<&Table>,
-    attribute: Option<&KnownAttribute>,
-    already: usize,
-    word: &str,
-    guesses: &mut Guesses,
-) -> bool {
-    let max = attribute.map_or(1, |attribute| attribute.max);
-    match attribute.map(|attribute| attribute.value_type) {
-        // Of several formulas, the later ones may be left out.
-        Some(Type::Formula(_)) if already > 0 && !looks_like_number(word) => {
-            let is_attribute =
-                table.is_some_and(|table| table.find(word).is_some() || table.near(word, guesses).is_some());
-            already < max && !is_attribute
-        }
-        // A name may look like anything, even like a number or an attribute: `material material`.
-        // The names of a list end where the next attribute begins, however many there are.
-        Some(Type::Name(_)) if max > 1 => table.is_none_or(|table| table.find(word).is_none()),
-        Some(Type::Word | Type::File | Type::Name(_) | Type::Choice(_) | Type::Formula(_) | Type::Truth) => {
-            already < max
-        }
-        _ if looks_like_number(word) => true,
-        _ => {
-            let Some(table) = table else { return already < max };
-            already < max && table.find(word).is_none() && table.near(word, guesses).is_none()
-        }
-    }
-}
-
-/// Tells whether a word begins as a number does.
-pub fn looks_like_number(word: &str) -> bool {
-    let is_digit = |word: &str| word.starts_with(|c: char| c.is_ascii_digit() || c == '.');
-    let unsigned = || word.trim_start_matches(['+', '-']);
-    is_digit(word)
-        || is_digit(unsigned())
-        || ["nan", "inf", "infinity"].iter().any(|number| unsigned().eq_ignore_ascii_case(number))
 }

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 /// A word of a scene and its place.
 #[derive(Clone, Debug)]
-pub(super) struct Word<'a> {
+pub(crate) struct Word<'a> {
     pub text: Cow<'a, str>,
     pub form: Form,
     pub place: Place,
@@ -17,7 +17,7 @@ pub(super) struct Word<'a> {
 
 /// What the syntax says about a word's type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Form {
+pub(crate) enum Form {
     /// Unknown: a word of the notes' syntax may be a number or a name.
     Any,
     /// A number, as TOML writes it.
@@ -53,38 +53,38 @@ impl<'a> Word<'a> {
 }
 
 /// The maximum number of values that are kept for an attribute. No attribute takes as many (`every_table_keeps_its_own_rules`).
-pub(super) const MAX_VALUES: usize = 1000;
+pub(crate) const MAX_VALUES: usize = 1000;
 
 /// What the values of attributes are, for messages about others.
-pub(super) const VALUES: &str = "values are numbers, quoted words, or several of them in brackets";
+pub(crate) const VALUES: &str = "values are numbers, quoted words, or several of them in brackets";
 
 /// The maximum number of attributes that are kept for an entity. No type has as many.
-pub(super) const MAX_ATTRIBUTES: usize = 1000;
+pub(crate) const MAX_ATTRIBUTES: usize = 1000;
 
 /// An entity as parsed, not yet checked.
 #[derive(Clone, Debug)]
 pub struct Parsed<'a> {
-    pub(super) kind: Word<'a>,
-    pub(super) name: Word<'a>,
+    pub(crate) kind: Word<'a>,
+    pub(crate) name: Word<'a>,
     /// The names of the attributes, each with the number of all values up to its own last one.
     attributes: Vec<(Word<'a>, usize)>,
     /// The values of all attributes.
     values: Vec<Word<'a>>,
     /// The range from the entity's type to its end.
-    pub(super) place: Place,
+    pub(crate) place: Place,
     /// Whether some of the entity's text could not be parsed. Then missing attributes are not reported.
-    pub(super) is_damaged: bool,
+    pub(crate) is_damaged: bool,
 }
 
 impl<'a> Parsed<'a> {
     /// Begins an entity without attributes.
-    pub(super) fn begin(kind: Word<'a>, name: Word<'a>) -> Self {
+    pub(crate) fn begin(kind: Word<'a>, name: Word<'a>) -> Self {
         let (attributes, values) = (Vec::new(), Vec::new());
         Self { kind, name, attributes, values, place: None, is_damaged: false }
     }
 
     /// Begins another entity in the same memory.
-    pub(super) fn begin_again(&mut self, kind: Word<'a>, name: Word<'a>) {
+    pub(crate) fn begin_again(&mut self, kind: Word<'a>, name: Word<'a>) {
         self.attributes.clear();
         self.values.clear();
         let (attributes, values) = (take(&mut self.attributes), take(&mut self.values));
@@ -92,14 +92,19 @@ impl<'a> Parsed<'a> {
     }
 
     /// Adds a value of the attribute that [`add`](Self::add) adds next. Beyond [`MAX_VALUES`] it is not kept.
-    pub(super) fn value(&mut self, value: Word<'a>) {
+    pub(crate) fn value(&mut self, value: Word<'a>) {
         if self.values.len() - self.attributes.last().map_or(0, |(_, end)| *end) < MAX_VALUES {
-            self.values.push(value);
+            self.keep(value);
         }
     }
 
+    /// Adds a value, however many there are.
+    pub(crate) fn keep(&mut self, value: Word<'a>) {
+        self.values.push(value);
+    }
+
     /// Adds an attribute with the values added since the one before; beyond [`MAX_ATTRIBUTES`] reports it instead.
-    pub(super) fn add(&mut self, name: Word<'a>, report: &mut Report<'_>) {
+    pub(crate) fn add(&mut self, name: Word<'a>, report: &mut Report<'_>) {
         match self.attributes.len() {
             MAX_ATTRIBUTES.. => {
                 self.drop_values();
@@ -114,12 +119,12 @@ impl<'a> Parsed<'a> {
     }
 
     /// Drops the values added since the last attribute.
-    pub(super) fn drop_values(&mut self) {
+    pub(crate) fn drop_values(&mut self) {
         self.values.truncate(self.attributes.last().map_or(0, |(_, end)| *end));
     }
 
     /// Replaces the values of an attribute, under any of its names, or adds the attribute.
-    pub(super) fn replace(&mut self, name: Word<'a>, values: Vec<Word<'a>>, is_same: impl Fn(&str) -> bool) {
+    pub(crate) fn replace(&mut self, name: Word<'a>, values: Vec<Word<'a>>, is_same: impl Fn(&str) -> bool) {
         let old = self.clone();
         self.attributes.clear();
         self.values.clear();
@@ -131,8 +136,13 @@ impl<'a> Parsed<'a> {
         self.attributes.push((name, self.values.len()));
     }
 
+    /// Tells whether any value is in quotes.
+    pub(crate) fn has_quotes(&self) -> bool {
+        self.values.iter().any(|value| value.form == Form::Text)
+    }
+
     /// Changes the values of all attributes.
-    pub(super) fn change(&mut self, mut change: impl FnMut(&str, Word<'a>) -> Word<'a>) {
+    pub(crate) fn change(&mut self, mut change: impl FnMut(&str, Word<'a>) -> Word<'a>) {
         let mut start = 0;
         for (name, end) in &self.attributes {
             for value in &mut self.values[start..*end] {
@@ -144,25 +154,25 @@ impl<'a> Parsed<'a> {
     }
 
     /// Gives back memory that the entity does not need.
-    pub(super) fn shrink(&mut self) {
+    pub(crate) fn shrink(&mut self) {
         self.attributes.shrink_to_fit();
         self.values.shrink_to_fit();
     }
 
     /// Returns the attributes, each with its values.
-    pub(super) fn attributes(&self) -> impl DoubleEndedIterator<Item = (&Word<'a>, &[Word<'a>])> {
+    pub(crate) fn attributes(&self) -> impl DoubleEndedIterator<Item = (&Word<'a>, &[Word<'a>])> {
         let indexed = self.attributes.iter().enumerate();
         indexed.map(|(index, (name, _))| (name, self.values_of(index)))
     }
 
     /// Returns the values of the attribute of this index.
-    pub(super) fn values_of(&self, index: usize) -> &[Word<'a>] {
+    pub(crate) fn values_of(&self, index: usize) -> &[Word<'a>] {
         let start = index.checked_sub(1).map_or(0, |before| self.attributes[before].1);
         &self.values[start..self.attributes[index].1]
     }
 
     /// Returns the number of attributes.
-    pub(super) fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.attributes.len()
     }
 }

@@ -180,7 +180,7 @@ impl<'t> Report<'t> {
 
     /// Tells whether there are so many errors that reading on is of no use. From then on the report is marked as cut
     /// short.
-    pub(super) fn has_enough(&mut self) -> bool {
+    pub(crate) fn has_enough(&mut self) -> bool {
         self.notes.is_cut_short |= self.count(Severity::Error) >= MAX_ERRORS;
         self.notes.is_cut_short
     }

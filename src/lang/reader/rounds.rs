@@ -1,9 +1,12 @@
-//! What a scene repeats: the rounds of its `repeat`s, and the names in them.
+//! What a scene repeats: the rounds of its `repeat`s, and the names and numbers in them.
 
 use super::fault::{Fault, Place};
+use super::guesses::Table;
 use super::numbers::Numbers;
-use super::parsed::Word;
+use super::parsed::{Parsed, Word};
 use super::report::Report;
+use super::sets::Sets;
+use crate::registry::Registry;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use tabray_core::scene::choice::Choices;
@@ -21,7 +24,9 @@ const DEEPEST: usize = 32;
 #[derive(Default)]
 pub struct Rounds<'a> {
     /// The numbers of the scene, and of the rounds.
-    pub numbers: Numbers<'a>,
+    numbers: Numbers<'a>,
+    /// The values that are set beside the text.
+    pub sets: Sets<'a>,
     open: Vec<Round>,
     /// How many rounds and repeated entities there were, and the length of their texts, in bytes.
     count: usize,
@@ -48,13 +53,13 @@ struct Round {
 
 impl<'a> Rounds<'a> {
     /// Begins with a text in the notes' syntax.
-    pub fn of(text: &'a str) -> Self {
-        Self { numbers: Numbers::of(text), ..Self::default() }
+    pub fn of(text: &'a str, sets: Sets<'a>) -> Self {
+        Self { numbers: Numbers::of(text), sets, ..Self::default() }
     }
 
     /// Begins with a text in which these numbers are defined.
-    pub fn of_names(names: HashMap<String, Place>) -> Self {
-        Self { numbers: Numbers::of_names(names), ..Self::default() }
+    pub fn of_names(names: HashMap<String, Place>, sets: Sets<'a>) -> Self {
+        Self { numbers: Numbers::of_names(names), sets, ..Self::default() }
     }
 
     /// Tells whether a `repeat` is under way.
@@ -63,10 +68,36 @@ impl<'a> Rounds<'a> {
         !self.open.is_empty()
     }
 
-    /// Tells whether words that are not in quotes may mean something else than they say.
-    #[inline]
-    pub fn is_used(&self) -> bool {
-        self.is_open() || self.numbers.len() > 0
+    /// Gives an entity the name of this round, and numbers in place of formulas and of what is set.
+    pub fn entity(
+        &mut self,
+        entity: &mut Parsed<'a>,
+        table: Option<&Table>,
+        registry: &Registry,
+        report: &mut Report<'_>,
+    ) {
+        if self.is_open() {
+            self.rename(&mut entity.name);
+        }
+        // Words that are not in quotes mean what they say, unless they may be names of this round or of numbers.
+        if let Some(table) = table
+            && (self.is_open() || self.numbers.len() > 0 || entity.has_quotes())
+        {
+            entity.change(|name, word| {
+                let known = table.find(name).or_else(|| table.near(name, report.guesses()));
+                self.word(word, known.map(|known| table[known].value_type), report)
+            });
+        }
+        if !self.sets.is_empty() {
+            self.sets.apply(entity, registry, &mut self.numbers, report);
+        }
+    }
+
+    /// Names a number, of which another value may be set.
+    pub fn define(&mut self, name: &Word<'a>, value: &Word<'a>, report: &mut Report<'_>) {
+        let set = self.sets.number(&name.text);
+        let value = self.numbers.number(set.as_ref().unwrap_or(value), report);
+        self.numbers.define(name, value, report);
     }
 
     /// Returns the place of the name of the innermost `repeat`.
@@ -151,14 +182,10 @@ impl<'a> Rounds<'a> {
         is_there
     }
 
-    /// Returns the name of an entity, with the number of its round.
-    pub fn renamed(&mut self, name: Word<'a>) -> Word<'a> {
-        if self.open.is_empty() {
-            return name;
-        }
+    /// Adds the number of its round to the name of an entity.
+    fn rename(&mut self, name: &mut Word<'a>) {
         self.count += 1;
-        let text = name.text.to_string() + &self.suffix(self.open.len());
-        Word { text: text.into(), ..name }
+        *name.text.to_mut() += &self.suffix(self.open.len());
     }
 
     fn suffix(&self, depth: usize) -> String {
@@ -167,7 +194,7 @@ impl<'a> Rounds<'a> {
 
     /// Returns a word of an attribute's values with numbers in place of formulas, and the name of the entity of this
     /// round in place of that in the body.
-    pub fn word(&mut self, word: Word<'a>, value_type: Option<Type>, report: &mut Report<'_>) -> Word<'a> {
+    fn word(&mut self, word: Word<'a>, value_type: Option<Type>, report: &mut Report<'_>) -> Word<'a> {
         if let Some(Type::Name(_) | Type::Choice(Choices { kind: Some(_), .. })) = value_type {
             let depth = self.open.iter().rposition(|round| round.entities.contains(&*word.text));
             return match depth {

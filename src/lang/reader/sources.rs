@@ -3,9 +3,10 @@
 
 use super::encoding;
 use super::fault::Fault;
+use super::parsed::Word;
 use super::parts::Part;
 use super::report::Report;
-use super::sets::OPTION;
+use super::sets::{OPTION, Sets};
 use super::tokens::{Token, TokenForm, Tokens};
 use crate::syntax::Syntax;
 use std::borrow::Cow;
@@ -36,7 +37,7 @@ pub struct Sources<'t> {
     /// The range of the scene's own text.
     pub own: Range<usize>,
     /// The range of the options that set values.
-    pub options: Option<Range<usize>>,
+    options: Option<Range<usize>>,
     /// The files that are included, whether they exist or not.
     pub files: Vec<PathBuf>,
 }
@@ -122,10 +123,25 @@ impl<'t> Sources<'t> {
         report
     }
 
-    /// Returns the range of the file that an `include` includes, or why it cannot; `None` if none can stand there.
-    pub fn included(&self, place: usize) -> Option<Result<Range<usize>, &Fault>> {
-        let part = self.includes.get(&place)?.as_ref();
-        Some(part.map(|part| self.parts[*part].range.clone()))
+    /// Returns the range of the file that an `include` names, or reports why there is none; `stands` is where an `include`
+    /// can stand.
+    pub fn file(&self, file: &Word<'_>, stands: &str, report: &mut Report<'_>) -> Option<Range<usize>> {
+        let place = file.place.as_ref().map_or(0, |place| place.start);
+        match self.includes.get(&place) {
+            Some(Ok(part)) => return Some(self.parts[*part].range.clone()),
+            Some(Err(fault)) => report.add(fault.clone()),
+            None => {
+                let fault = Fault::error(file.place.clone(), "a file cannot be included here");
+                report.add(fault.help(format!("an `include` stands {stands}")));
+            }
+        }
+        None
+    }
+
+    /// Returns the values that the options set.
+    pub fn sets(&self, report: &mut Report<'_>) -> Sets<'_> {
+        let options = self.options.as_ref();
+        options.map_or_else(Sets::default, |options| Sets::of(&self.text, options.clone(), report))
     }
 
     /// Adds a text, and returns its range.

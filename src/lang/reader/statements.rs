@@ -1,13 +1,15 @@
-//! What a scene in the notes' syntax says beside its entities: `let`, `repeat` and `include`.
+//! Reads a scene in the notes' syntax: entities, and what `let`, `repeat` and `include` say beside them.
 
 use super::fault::{Fault, Severity};
 use super::keyword::Keyword;
-use super::notes::{Parser, parser};
+use super::notes::{Grammar, Node, Statement};
 use super::parsed::{Parsed, Word};
 use super::report::Report;
+use super::rounds::Rounds;
 use super::sources::Sources;
 use super::tokens::{Token, TokenForm, Tokens};
 use crate::registry::Registry;
+use crate::syntax::Syntax;
 use std::collections::HashSet;
 use std::mem::replace;
 
@@ -19,124 +21,150 @@ pub fn parse<'a>(registry: &Registry, sources: &'a Sources<'_>, report: &mut Rep
     }
 }
 
+/// Begins to parse the entities of a text. Returns `None`, and reports why, if no part of it is an entity.
+pub fn parser<'a, 'r>(
+    registry: &'r Registry,
+    sources: &'a Sources<'_>,
+    report: &'r mut Report<'a>,
+) -> Option<Parser<'a, 'r>> {
+    let text = &sources.text[..sources.own.end];
+    let mut nowhere = Report::default();
+    let begin = Grammar::new(registry, text, 0, &mut nowhere);
+    if let Some(first) = begin.token()
+        && !begin.looks_like_a_scene()
+    {
+        let mut tokens = Tokens::of(text, report);
+        while tokens.ahead[0].is_some() {
+            tokens.step(report);
+        }
+        report.add(
+            Fault::error(Some(first.place()), "this is not a scene")
+                .label("expected an entity type")
+                .help(registry.first_steps(Syntax::Notes)),
+        );
+        return None;
+    }
+    let rounds = Rounds::of(text, sources.sets(report));
+    let grammar = Grammar::new(registry, text, 0, report);
+    Some(Parser { grammar, sources, rounds, outer: Vec::new(), is_over: false, stops: true })
+}
+
+/// The reader of a scene in the notes' syntax.
+pub struct Parser<'a, 'r> {
+    grammar: Grammar<'a, 'r>,
+    sources: &'a Sources<'a>,
+    /// What the scene repeats, and its numbers.
+    pub rounds: Rounds<'a>,
+    /// The rests of the texts that include this one.
+    outer: Vec<Tokens<'a>>,
+    /// Whether everything has been read.
+    is_over: bool,
+    /// Whether a syntax error is a reason to stop.
+    stops: bool,
+}
+
 impl<'a> Parser<'a, '_> {
+    /// Goes on after a syntax error.
+    pub fn reading_on(mut self) -> Self {
+        self.stops = false;
+        self
+    }
+
     /// Parses the next entities, in the memory of others, until there are as many as asked for or no more. After a syntax
     /// error there are no more, except where parsing goes on so that one run finds the faults that follow.
     pub fn entities(&mut self, parsed: &mut [Option<Parsed<'a>>]) -> usize {
         let mut count = 0;
-        while count < parsed.len() && (self.token().is_some() || self.leave()) && !self.report.has_enough() {
-            if self.stops && self.report.is_fatal() {
+        while count < parsed.len()
+            && (self.grammar.token().is_some() || self.leave())
+            && !self.grammar.report.has_enough()
+        {
+            if self.stops && self.grammar.report.is_fatal() {
                 return 0;
             }
-            if let Some(keyword) = self.keyword() {
-                self.statement(keyword);
-            } else if self.rounds.is_open() && self.is(0, TokenForm::Close) {
-                self.end_of_round();
-            } else if !self.begins_entity() {
-                self.stray();
-            } else if self.entity(&mut parsed[count]).is_some() {
-                count += 1;
+            match self.grammar.next(self.rounds.is_open(), &mut parsed[count]) {
+                Some(Node::Entity) => {
+                    let grammar = &mut self.grammar;
+                    if let Some(entity) = &mut parsed[count] {
+                        let table = grammar.table.map(|table| &grammar.tables[table]);
+                        self.rounds.entity(entity, table, grammar.registry, grammar.report);
+                        count += 1;
+                    }
+                }
+                Some(Node::Statement(statement)) => self.statement(statement),
+                Some(Node::Close(close)) => self.end_of_round(close),
+                Some(Node::Stray) | None => {}
             }
         }
         count
     }
 
     /// Does what a keyword says.
-    fn statement(&mut self, keyword: Keyword) {
-        let Some(first) = self.step() else { return };
-        let [one, two] = match (keyword, self.next_word()) {
-            (_, None) => return self.incomplete(first, keyword),
-            (Keyword::Include, Some(file)) => return self.include(file),
-            (_, Some(name)) => match self.next_word() {
-                Some(value) => [name, value],
-                None => return self.incomplete(first, keyword),
-            },
-        };
-        match keyword {
-            Keyword::Let => {
-                let value = self.sets.number(&one.text).unwrap_or(two);
-                let value = self.rounds.numbers.number(&value, self.report);
-                self.rounds.numbers.define(&one, value, self.report);
+    fn statement(&mut self, statement: Statement<'a>) {
+        match (statement.keyword, statement.words, statement.open) {
+            (Keyword::Include, [Some(file), _], _) => self.include(&file),
+            (Keyword::Let, [Some(name), Some(value)], _) => {
+                self.rounds.define(&name, &value, self.grammar.report);
             }
-            _ if !self.is(0, TokenForm::Open) => self.incomplete(first, keyword),
-            _ => self.repeat(&one, &two),
+            (Keyword::Repeat, [Some(name), Some(count)], Some(open)) => self.repeat(&name, &count, open),
+            // What is incomplete is reported.
+            _ => {}
         }
     }
 
-    /// Reads the next word, if it is not a brace.
-    fn next_word(&mut self) -> Option<Word<'a>> {
-        let token = self.token().filter(|_| self.is_word(0))?;
-        self.step();
-        Some(self.tokens.word(token))
-    }
-
-    fn incomplete(&mut self, first: Token, keyword: Keyword) {
-        let message = format!("this `{}` is incomplete", self.tokens.raw(first));
-        self.report.add(Fault::error(Some(first.place()), message).help(keyword.usage()));
-    }
-
     /// Goes on with the file that an `include` names.
-    fn include(&mut self, file: Word<'a>) {
-        let Some(sources) = self.sources else { return };
-        let place = file.place.as_ref().map_or(0, |place| place.start);
-        match sources.included(place) {
-            Some(Ok(range)) => {
-                let inner = Tokens::from(&sources.text[..range.end], range.start, self.report);
-                self.outer.push(replace(&mut self.tokens, inner));
-            }
-            Some(Err(fault)) => self.report.add(fault.clone()),
-            None => {
-                let fault = Fault::error(file.place, "a file cannot be included here");
-                self.report.add(fault.help("an `include` stands outside of all braces"));
-            }
+    fn include(&mut self, file: &Word<'a>) {
+        let grammar = &mut self.grammar;
+        if let Some(range) = self.sources.file(file, "outside of all braces", grammar.report) {
+            let inner = Tokens::from(&self.sources.text[..range.end], range.start, grammar.report);
+            self.outer.push(replace(&mut grammar.tokens, inner));
         }
     }
 
     /// Goes on after the end of an included file; returns whether there is more to read.
     fn leave(&mut self) -> bool {
         while self.rounds.is_open() {
-            self.report.add(
+            self.grammar.report.add(
                 Fault::error(self.rounds.innermost(), "missing `}` for this `repeat`")
                     .help(Keyword::Repeat.usage()),
             );
             self.rounds.end();
         }
         while let Some(outer) = self.outer.pop() {
-            self.tokens = outer;
-            if self.token().is_some() {
+            self.grammar.tokens = outer;
+            if self.grammar.token().is_some() {
                 return true;
             }
         }
         if !replace(&mut self.is_over, true) {
-            self.sets.report_unmatched(self.report);
+            self.rounds.sets.report_unmatched(self.grammar.report);
         }
         false
     }
 
-    /// Begins to repeat the entities between the braces that follow.
-    fn repeat(&mut self, name: &Word<'a>, count: &Word<'a>) {
-        let Some(open) = self.step() else { return };
-        let (entities, close) = body(self.tokens.text, open.end);
-        let errors = self.report.count(Severity::Error);
-        if !self.rounds.begin(name, count, (open.end, entities), errors, self.report) {
+    /// Begins to repeat the entities after a brace.
+    fn repeat(&mut self, name: &Word<'a>, count: &Word<'a>, open: Token) {
+        let grammar = &mut self.grammar;
+        let (entities, close) = body(grammar.tokens.text, open.end);
+        let errors = grammar.report.count(Severity::Error);
+        if !self.rounds.begin(name, count, (open.end, entities), errors, grammar.report) {
             self.rounds.end();
-            self.tokens = Tokens::from(self.tokens.text, close, self.report);
+            grammar.go_to(close);
         }
     }
 
     /// Begins the next round of a `repeat` after the brace that ends its body, or goes on after the brace.
-    fn end_of_round(&mut self) {
-        let Some(close) = self.step() else { return };
-        let errors = self.report.count(Severity::Error);
-        if let Some(start) = self.rounds.next(close.start, errors, self.report) {
-            self.tokens = Tokens::from(self.tokens.text, start, self.report);
+    fn end_of_round(&mut self, close: Token) {
+        let grammar = &mut self.grammar;
+        let errors = grammar.report.count(Severity::Error);
+        if let Some(start) = self.rounds.next(close.start, errors, grammar.report) {
+            grammar.go_to(start);
         }
     }
 }
 
 /// Returns the names of the entities of a `repeat`, without those of others in it, and the position after its closing
 /// brace, in bytes.
-fn body(text: &str, start: usize) -> (HashSet<String>, usize) {
+pub fn body(text: &str, start: usize) -> (HashSet<String>, usize) {
     let nowhere = &mut Report::default();
     let mut tokens = Tokens::from(text, start, nowhere);
     let (mut depth, mut entities) = (0, HashSet::new());

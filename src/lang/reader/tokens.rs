@@ -1,4 +1,4 @@
-//! The words and braces of a scene in the notes' syntax.
+//! The tokens of a scene in the notes' syntax: words, braces, and what is between them. Every byte is in one of them.
 
 use super::fault::Fault;
 use super::parsed::{Form, Word};
@@ -6,7 +6,7 @@ use super::report::Report;
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// A word or a brace, and its place.
+/// A part of a text, and its place.
 #[derive(Clone, Copy)]
 pub struct Token {
     pub form: TokenForm,
@@ -23,9 +23,42 @@ pub enum TokenForm {
     Unclosed,
     Open,
     Close,
+    /// White space.
+    Space,
+    /// A comment, up to the end of its line.
+    Comment,
 }
 
 impl Token {
+    /// Reads the token that begins at a byte of a text. A `#` at the beginning of a word begins a comment, and a `"` a word
+    /// in quotes.
+    #[inline]
+    pub fn at(text: &str, start: usize, report: &mut Report<'_>) -> Option<Self> {
+        let bytes = text.as_bytes();
+        let (form, end) = match *bytes.get(start)? {
+            b'#' => {
+                let end = text[start..].find('\n').map_or(bytes.len(), |length| start + length);
+                (TokenForm::Comment, end)
+            }
+            b'"' => {
+                let (is_closed, length) = quoted(&text[start..], start, report);
+                (if is_closed { TokenForm::Quoted } else { TokenForm::Unclosed }, start + length)
+            }
+            b'{' => (TokenForm::Open, start + 1),
+            b'}' => (TokenForm::Close, start + 1),
+            _ => match space_end(text, start) {
+                end if end > start => (TokenForm::Space, end),
+                _ => (TokenForm::Word, word_end(text, start)),
+            },
+        };
+        Some(Self { form, start, end })
+    }
+
+    /// Tells whether it only separates others.
+    pub fn is_trivia(self) -> bool {
+        matches!(self.form, TokenForm::Space | TokenForm::Comment)
+    }
+
     pub fn is_brace(self) -> bool {
         matches!(self.form, TokenForm::Open | TokenForm::Close)
     }
@@ -81,7 +114,24 @@ fn word_end(text: &str, mut at: usize) -> usize {
     at
 }
 
-/// The tokens of a text, with enough lookahead to recognise the beginning of an entity.
+/// Returns the end of the white space at a byte of a text.
+#[inline]
+fn space_end(text: &str, mut at: usize) -> usize {
+    let bytes = text.as_bytes();
+    while let Some(byte) = bytes.get(at) {
+        match CLASSES[usize::from(*byte)] {
+            Class::Space => at += 1,
+            Class::Wide => match text[at..].chars().next() {
+                Some(letter) if letter.is_whitespace() => at += letter.len_utf8(),
+                _ => break,
+            },
+            Class::Letter | Class::Brace => break,
+        }
+    }
+    at
+}
+
+/// The words and braces of a text, with enough lookahead to recognise the beginning of an entity.
 pub struct Tokens<'a> {
     pub text: &'a str,
     at: usize,
@@ -109,37 +159,14 @@ impl<'a> Tokens<'a> {
         first
     }
 
-    /// Reads the token after the lookahead. A `#` at the beginning of a word begins a comment, and a `"` a word in
-    /// quotes.
+    /// Reads the token after the lookahead.
     fn read(&mut self, report: &mut Report<'_>) -> Option<Token> {
-        let bytes = self.text.as_bytes();
         loop {
-            let start = self.at;
-            let (form, end) = match *bytes.get(start)? {
-                b'#' => {
-                    self.at = self.text[start..].find('\n').map_or(bytes.len(), |length| start + length);
-                    continue;
-                }
-                b'"' => {
-                    let (is_closed, length) = quoted(&self.text[start..], start, report);
-                    (if is_closed { TokenForm::Quoted } else { TokenForm::Unclosed }, start + length)
-                }
-                b'{' => (TokenForm::Open, start + 1),
-                b'}' => (TokenForm::Close, start + 1),
-                byte => match CLASSES[usize::from(byte)] {
-                    Class::Space => {
-                        self.at += 1;
-                        continue;
-                    }
-                    Class::Wide if self.text[start..].starts_with(char::is_whitespace) => {
-                        self.at += self.text[start..].chars().next().map_or(1, char::len_utf8);
-                        continue;
-                    }
-                    _ => (TokenForm::Word, word_end(self.text, start)),
-                },
-            };
-            self.at = end;
-            return Some(Token { form, start, end });
+            let token = Token::at(self.text, self.at, report)?;
+            self.at = token.end;
+            if !token.is_trivia() {
+                return Some(token);
+            }
         }
     }
 
@@ -232,4 +259,25 @@ pub fn unescaped(text: &str) -> Cow<'_, str> {
     }
     word += rest;
     Cow::Owned(word)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(crate::properties())]
+
+        #[test]
+        fn tokens_hold_every_byte_once(text in "[ab#\"\\\\{} \t\n\r\u{a0}\u{2003}\u{e9}\u{1f600}]{0,40}") {
+            let (mut at, mut last) = (0, TokenForm::Word);
+            while let Some(token) = Token::at(&text, at, &mut Report::default()) {
+                prop_assert!(token.start == at && token.end > at && text.is_char_boundary(token.end));
+                prop_assert!(!(last == TokenForm::Space && token.form == TokenForm::Space));
+                (at, last) = (token.end, token.form);
+            }
+            prop_assert_eq!(at, text.len());
+        }
+    }
 }
