@@ -5,7 +5,7 @@ use tabray::render::Plan;
 use tabray::render::trace;
 use tabray::scene::Model;
 use tabray::tools::colours::{Prover, Verdict};
-use tabray::world::film::Adaptive;
+use tabray::world::sensor::Adaptive;
 
 /// Returns a floor of tiles to the horizon.
 fn floor(rules: &str, shape: &str) -> Model {

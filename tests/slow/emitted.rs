@@ -13,7 +13,7 @@ use tabray::render::trace::{Scratch, Tracer};
 use tabray::render::{Flaws, Plan};
 use tabray::simd::Cpu;
 use tabray::tools::threads::renderer_with;
-use tabray::world::film::Adaptive;
+use tabray::world::sensor::Adaptive;
 use tabray::world::sample::{SCRAMBLE, Sampler};
 use tempfile::TempDir;
 

@@ -4,16 +4,11 @@
 //! which stands still while other programs run.
 
 use super::places::{self, Pixels};
-use crate::bench::clock;
+use super::traced::{self, Group, Rays};
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
-use std::hint::black_box;
-use std::mem::replace;
-use std::sync::{Mutex, PoisonError};
 use tabray_core::geometry::ray_packet::PACKET_SIZE;
-use tabray_core::parallel;
 use tabray_core::render::flaws::Flaws;
-use tabray_core::render::observer::{Count, DynObserver, RayKind, TraceObserver};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::renderer::Renderer;
 use tabray_core::render::trace::{Scratch, Tracer};
@@ -25,9 +20,6 @@ const MORE: usize = 64;
 
 /// About the CPU time that the first packets of a choice may take, in seconds.
 const FIRST: f64 = 0.02;
-
-/// The time of a packet in seconds below which it matters that scratch space is used for the first time.
-const SHORT: f64 = 1e-3;
 
 /// The number of standard errors by which the time of an image may be off.
 const DEVIATIONS: f64 = 3.0;
@@ -93,40 +85,6 @@ struct Packet {
     rays: Rays,
     /// How many times it has been looked at.
     looked: f64,
-}
-
-/// Rays that are counted.
-#[derive(Clone, Copy, Default)]
-struct Rays {
-    all: u64,
-    primary: u64,
-    /// The samples of pixels that take different numbers of them, without probes.
-    samples: u64,
-    /// Whether a pixel has used up its ray budget.
-    is_cut: bool,
-}
-
-impl TraceObserver for Rays {
-    const SEES: bool = false;
-
-    fn count(&mut self, count: Count) {
-        match count {
-            Count::Rays(kind, rays) => {
-                self.all += rays as u64;
-                self.primary += if kind == RayKind::Primary { rays as u64 } else { 0 };
-            }
-            Count::Sampled(samples) => self.samples += u64::from(samples),
-            Count::Cut(_) => self.is_cut = true,
-            _ => {}
-        }
-    }
-}
-
-/// The scratch space of a thread, and whether it has been used.
-#[derive(Default)]
-struct Warmed {
-    scratch: Scratch,
-    is_warm: bool,
 }
 
 impl Timing {
@@ -320,24 +278,9 @@ impl Counted {
 
 /// Traces packets on all threads of a renderer, and returns them in their order.
 fn traced(plan: &Plan, threads: &Renderer, packets: &[Pixels]) -> Vec<Packet> {
-    let traced = Mutex::new(vec![Packet::default(); packets.len()]);
-    let one = |state: &mut Warmed, index: usize| {
-        let pixels = &packets[index];
-        let mut trace = || {
-            let mut rays = Rays::default();
-            let mut observer = DynObserver::<false>(&mut rays);
-            let start = clock::now();
-            black_box(Tracer::new(plan, Cpu::best(), &mut state.scratch, &mut observer).pixels(pixels));
-            let seconds = (clock::now() - start).as_secs_f64();
-            Packet { pixels: pixels.len(), seconds, rays, looked: 0.0 }
-        };
-        let first = trace();
-        let is_first = !replace(&mut state.is_warm, true);
-        let packet = if is_first && first.seconds < SHORT { trace() } else { first };
-        traced.lock().unwrap_or_else(PoisonError::into_inner)[index] = packet;
-    };
-    threads.run(|| parallel::for_each_in_order(packets.len(), &one));
-    traced.into_inner().unwrap_or_else(PoisonError::into_inner)
+    let packet =
+        |Group { colours, rays, seconds }| Packet { pixels: colours.len(), seconds, rays, looked: 0.0 };
+    traced::groups(threads, plan, packets).into_iter().map(packet).collect()
 }
 
 /// Returns the relative standard error of the ratio of the sums of two numbers of packets.

@@ -39,6 +39,7 @@ mod small;
 mod study;
 mod times;
 mod timings;
+mod traced;
 mod verdict;
 
 pub use candidate::Load;

@@ -2,14 +2,10 @@
 
 use super::cost::Timing;
 use super::pictures::ADAPTIVE;
-use std::ops::Range;
-use tabray_core::parallel;
-use tabray_core::render::observer::{Count, DynObserver, TraceObserver};
+use super::traced;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::renderer::Renderer;
-use tabray_core::render::trace::{Scratch, Tracer};
 use tabray_core::scene::model::Model;
-use tabray_core::simd::cpu::Cpu;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::Sampler;
 use tabray_core::world::sensor::Adaptive;
@@ -70,35 +66,10 @@ pub(super) fn set(plan: &mut Plan, [least, most]: [u32; 2]) {
     plan.set_adaptive(Some(Adaptive { most, error: None }));
 }
 
-/// Counts samples.
-#[derive(Default)]
-struct Samples(u64);
-
-impl TraceObserver for Samples {
-    const SEES: bool = false;
-
-    fn count(&mut self, count: Count) {
-        if let Count::Sampled(samples) = count {
-            self.0 += u64::from(samples);
-        }
-    }
-}
-
-/// Returns the colours of pixels and the mean of their numbers of samples.
+/// Returns the colours of pixels as they are shown, and the mean of their numbers of samples.
 pub(super) fn colours(threads: &Renderer, plan: &Plan, pixels: &[[usize; 2]]) -> (Vec<Rgb>, f64) {
-    // Pixels that lie far apart share no probes.
-    let part = |range: Range<usize>| -> Vec<_> {
-        let mut scratch = Scratch::default();
-        let one = |pixel: &[usize; 2]| {
-            let mut samples = Samples::default();
-            let mut observer = DynObserver::<false>(&mut samples);
-            let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut observer);
-            let colour = plan.camera.display().shown(tracer.pixels(&[*pixel]).get(0));
-            (colour, samples.0)
-        };
-        pixels[range].iter().map(one).collect()
-    };
-    let all = threads.run(|| parallel::map_ranges(pixels.len(), 8, &part));
-    let samples = all.iter().map(|(_, samples)| *samples).sum::<u64>() as f64;
-    (all.iter().map(|(colour, _)| *colour).collect(), samples / pixels.len().max(1) as f64)
+    let display = plan.camera.display();
+    let (colours, samples) = traced::apart(threads, plan, pixels);
+    let shown = colours.into_iter().map(|colour| display.shown(colour)).collect();
+    (shown, samples as f64 / pixels.len().max(1) as f64)
 }

@@ -10,25 +10,23 @@ use super::places::{Pixels, spread, tiles};
 use super::progress::Progress;
 use super::study::Study;
 use super::times::Times;
+use super::traced;
 use glam::DVec2;
-use std::hint::black_box;
-use std::ops::{ControlFlow, Range};
+use std::ops::ControlFlow;
 use tabray_core::geometry::ray_packet::PACKET_SIZE;
 use tabray_core::parallel;
-use tabray_core::render::flaws::Flaws;
 use tabray_core::render::observer::{Event, TraceObserver};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::renderer::Renderer;
-use tabray_core::render::trace::{self, Scratch, Tracer};
+use tabray_core::render::trace;
 use tabray_core::scene::model::Model;
-use tabray_core::simd::cpu::Cpu;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::{Sample, Sampler};
 use tabray_core::world::sensor::Adaptive;
 
 /// The number of samples per pixel of an image that counts as true. It serves as a reference for up to a quarter as
 /// many samples.
-pub(super) const TRUE_SAMPLES: u32 = 1024;
+const TRUE_SAMPLES: u32 = 1024;
 
 /// The numbers of samples that are compared, beside the scene's own.
 const SAMPLES: [u32; 8] = [1, 2, 4, 8, 16, 24, 32, 64];
@@ -43,7 +41,7 @@ const BOUNCES: [usize; 8] = [0, 1, 2, 3, 4, 6, 8, 12];
 const FEWEST: usize = 256;
 
 /// The maximum number of object tests for the true colours of one panel of samples: about 0.1 µs each, so 5 s.
-pub(super) const TRUE_TESTS: usize = 50_000_000;
+const TRUE_TESTS: usize = 50_000_000;
 
 /// The approximate number of tests in a timed piece of work with one sample per pixel, and the minimum number of tiles.
 const TIMED_TESTS: usize = 25_000;
@@ -84,30 +82,58 @@ fn one_ray(model: &Model) -> Plan<'_> {
     plan
 }
 
+/// Images of the same pixels, with one ray through the centre of each, that are compared with one of them.
+struct Compared<'s> {
+    study: &'s Study,
+    plans: Vec<Plan<'s>>,
+    right: usize,
+    tests: f64,
+    pixels: Pixels,
+}
+
+impl<'s> Compared<'s> {
+    fn new(study: &'s Study, plans: Vec<Plan<'s>>, right: usize) -> Self {
+        let model = &study.candidates[study.default].model;
+        let tests = tests(&Plan::new(model), &study.threads);
+        let pixels = spread(model.camera.value.pixels, (METHOD_TESTS as f64 / tests) as usize);
+        Self { study, plans, right, tests, pixels }
+    }
+
+    fn differences(&self, progress: &mut dyn Progress) -> ControlFlow<(), Vec<Difference>> {
+        let mut colours = Vec::new();
+        for plan in &self.plans {
+            colours.push(traced::apart(&self.study.threads, plan, &self.pixels).0);
+            progress.done(METHOD_TESTS / 10)?;
+        }
+        let (right, display) = (&colours[self.right], self.plans[self.right].camera.display());
+        ControlFlow::Continue(colours.iter().map(|colours| difference(&display, colours, right)).collect())
+    }
+
+    fn times(&self, progress: &mut dyn Progress) -> ControlFlow<(), Vec<Times>> {
+        let timed = timed(self.plans[self.right].camera.pixels, self.tests);
+        let work = |choice: usize| traced::tiles(&self.plans[choice], &timed);
+        self.study.thread.run(|| clock::rounds(self.plans.len(), count(&timed), work, progress))
+    }
+
+    /// Says how many pixels were compared.
+    fn note(&self) -> String {
+        let [width, height] = self.plans[self.right].camera.pixels;
+        format!("{} of {} pixels", self.pixels.len(), width * height)
+    }
+}
+
 /// Compares the methods of finding hits on an image with one ray through the centre of each pixel.
 pub fn methods(study: &Study, progress: &mut dyn Progress) -> ControlFlow<(), Panel> {
-    let tests = tests(&Plan::new(&study.candidates[study.default].model), &study.threads);
-    let own = study.candidates[study.default].model.camera.value.pixels;
-    let pixels = spread(own, (METHOD_TESTS as f64 / tests) as usize);
-    let timed = timed(own, tests);
-    let plans: Vec<_> = study.candidates.iter().map(|candidate| one_ray(&candidate.model)).collect();
-    let mut colours = Vec::new();
-    for plan in &plans {
-        colours.push(each(&study.threads, &pixels, |x, y| trace::pixel(plan, x, y)));
-        progress.done(METHOD_TESTS / 10)?;
-    }
-    let (right, display) = (&colours[study.strict], plans[study.strict].camera.display());
-    let differences: Vec<_> = colours.iter().map(|colours| difference(&display, colours, right)).collect();
-    let work = |choice: usize| render(&plans[choice], &timed);
-    let times = study.thread.run(|| clock::rounds(plans.len(), count(&timed), work, progress));
-    let points =
-        study.candidates.iter().zip(differences).zip(times?).map(|((candidate, off), times)| Point {
-            is_default: candidate.is_default,
-            ..point(candidate.name.clone(), candidate.family, times, off, (pixels.len(), 1))
-        });
+    let plans = study.candidates.iter().map(|candidate| one_ray(&candidate.model)).collect();
+    let compared = Compared::new(study, plans, study.strict);
+    let measured = compared.differences(progress)?.into_iter().zip(compared.times(progress)?);
+    let points = study.candidates.iter().zip(measured).map(|(candidate, (off, times))| Point {
+        is_default: candidate.is_default,
+        ..point(candidate.name.clone(), candidate.family, times, off, (compared.pixels.len(), 1))
+    });
     ControlFlow::Continue(Panel {
         title: "the image, by method".to_owned(),
-        note: format!("{} of {} pixels, against strict", pixels.len(), own[0] * own[1]),
+        note: format!("{}, against strict", compared.note()),
         subject: Subject::Methods,
         points: points.collect(),
     })
@@ -121,37 +147,26 @@ pub fn goes_on(model: &Model) -> bool {
 /// Compares how often rays are reflected and transmitted, on an image with one ray through the centre of each pixel;
 /// returns `None` where that makes no difference.
 pub fn bounces(study: &Study, progress: &mut dyn Progress) -> ControlFlow<(), Option<Panel>> {
-    let model = &study.candidates[study.default].model;
-    let tests = tests(&Plan::new(model), &study.threads);
-    let own = model.camera.value.pixels;
-    let pixels = spread(own, (METHOD_TESTS as f64 / tests) as usize);
-    let timed = timed(own, tests);
     let plan = |bounces: usize| {
-        let mut plan = one_ray(model);
+        let mut plan = one_ray(&study.candidates[study.default].model);
         plan.bounces = bounces;
         plan
     };
-    let plans: Vec<_> = BOUNCES.into_iter().chain([usize::MAX]).map(plan).collect();
-    let mut colours = Vec::new();
-    for plan in &plans {
-        colours.push(each(&study.threads, &pixels, |x, y| trace::pixel(plan, x, y)));
-        progress.done(METHOD_TESTS / 10)?;
-    }
-    let (right, display) = (&colours[plans.len() - 1], model.camera.value.display());
-    let differences: Vec<_> = colours.iter().map(|colours| difference(&display, colours, right)).collect();
+    let plans = BOUNCES.into_iter().chain([usize::MAX]).map(plan).collect();
+    let compared = Compared::new(study, plans, BOUNCES.len());
+    let differences = compared.differences(progress)?;
     if differences.iter().all(|off| off.rmse == 0.0) {
         return ControlFlow::Continue(None);
     }
-    let work = |choice: usize| render(&plans[choice], &timed);
-    let times = study.thread.run(|| clock::rounds(plans.len(), count(&timed), work, progress));
-    let points = plans.iter().zip(differences).zip(times?).map(|((plan, off), times)| {
+    let measured = differences.into_iter().zip(compared.times(progress)?);
+    let points = compared.plans.iter().zip(measured).map(|(plan, (off, times))| {
         let is_default = plan.bounces == usize::MAX;
         let name = if is_default { "all".to_owned() } else { plan.bounces.to_string() };
-        Point { is_default, ..point(name, Family::Own, times, off, (pixels.len(), 1)) }
+        Point { is_default, ..point(name, Family::Own, times, off, (compared.pixels.len(), 1)) }
     });
     ControlFlow::Continue(Some(Panel {
         title: "reflections and transmissions on a path, at most".to_owned(),
-        note: format!("{} of {} pixels, against all that can be seen", pixels.len(), own[0] * own[1]),
+        note: format!("{}, against all that can be seen", compared.note()),
         subject: Subject::Bounces,
         points: points.collect(),
     }))
@@ -183,7 +198,10 @@ pub fn samples(
     for (samples, sampler, adaptive) in &choices {
         (plan.camera.samples, plan.camera.sampler) = (*samples, *sampler);
         plan.set_adaptive(*adaptive);
-        let colours = each(threads, &pixels, |x, y| colour(&plan, [x, y], seen));
+        let colours = match seen {
+            SampledEffect::Picture => traced::apart(threads, &plan, &pixels).0,
+            SampledEffect::Shadows => each(threads, &pixels, |x, y| shadowed(&plan, [x, y])),
+        };
         differences.push(difference(&plan.camera.display(), &colours, &right));
         progress.done(TRUE_TESTS / 40 / choices.len())?;
     }
@@ -193,7 +211,7 @@ pub fn samples(
             let (samples, sampler, adaptive) = choices[choice];
             (plan.camera.samples, plan.camera.sampler) = (samples, sampler);
             plan.set_adaptive(adaptive);
-            render(&plan, &timed);
+            traced::tiles(&plan, &timed);
         };
         clock::rounds(choices.len(), count(&timed), work, progress)
     });
@@ -280,34 +298,9 @@ fn count(tiles: &[Pixels]) -> usize {
     tiles.iter().map(Vec::len).sum()
 }
 
-/// Traces tiles as a render does, on this thread.
-fn render(plan: &Plan, tiles: &[Pixels]) {
-    let (mut scratch, mut nobody) = (Scratch::default(), Flaws::default());
-    for tile in tiles {
-        black_box(Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody).pixels(tile));
-    }
-}
-
-/// Returns the colours of pixels as they are shown, traced in packets on all threads of a renderer.
-pub(super) fn shown_colours(threads: &Renderer, plan: &Plan, pixels: &[[usize; 2]]) -> Vec<Rgb> {
-    let at_once = (4 * PACKET_SIZE / plan.camera.samples as usize).max(1);
-    let packets: Vec<_> = pixels.chunks(at_once).collect();
-    let display = plan.camera.display();
-    let part = |range: Range<usize>| {
-        let (mut scratch, mut nobody, mut shades) = (Scratch::default(), Flaws::default(), Vec::new());
-        for pixels in &packets[range] {
-            let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody);
-            let colours = tracer.pixels(pixels);
-            shades.extend((0..pixels.len()).map(|pixel| display.shown(colours.get(pixel))));
-        }
-        shades
-    };
-    threads.run(|| parallel::map_ranges(packets.len(), 2, &part))
-}
-
 /// Returns the true colours: with so many samples that more make no difference, and other ones than those that are
 /// compared. Where time does not suffice, they are those of the first pixels only, which are spread as evenly.
-pub(super) fn truth(
+fn truth(
     plan: &Plan,
     threads: &Renderer,
     pixels: &Pixels,
@@ -332,18 +325,16 @@ pub(super) fn truth(
     ControlFlow::Continue(colours)
 }
 
-/// Returns a pixel's colour with the camera's samples.
-fn colour(plan: &Plan, [x, y]: [usize; 2], seen: SampledEffect) -> Rgb {
-    if seen == SampledEffect::Picture {
-        return trace::pixel(plan, x, y);
-    }
+/// Returns a pixel's colour with the camera's samples, all of them through its centre.
+fn shadowed(plan: &Plan, [x, y]: [usize; 2]) -> Rgb {
     let camera = &plan.camera;
     if camera.samples == 1 {
         return trace::colour(plan, &camera.sight(x as f64, y as f64), None);
     }
     let pixel = (y * camera.pixels[0] + x) as u32;
     let sample = |index| Sample { sampler: camera.sampler, index, pixel };
-    let colours = (0..camera.samples).map(|index| colour_of(plan, [x, y], sample(index), seen));
+    let colours =
+        (0..camera.samples).map(|index| colour_of(plan, [x, y], sample(index), SampledEffect::Shadows));
     colours.sum::<Rgb>() / f64::from(camera.samples)
 }
 
@@ -358,7 +349,7 @@ fn colour_of(plan: &Plan, [x, y]: [usize; 2], sample: Sample, seen: SampledEffec
 }
 
 /// Maps these pixels on all threads of a renderer.
-pub(super) fn each<T: Send>(
+fn each<T: Send>(
     threads: &Renderer,
     pixels: &[[usize; 2]],
     work: impl Fn(usize, usize) -> T + Sync + Send,
@@ -367,7 +358,7 @@ pub(super) fn each<T: Send>(
 }
 
 /// Returns the mean number of object tests for one ray through a pixel and all rays that follow from it.
-pub(super) fn tests(plan: &Plan, threads: &Renderer) -> f64 {
+fn tests(plan: &Plan, threads: &Renderer) -> f64 {
     struct Tests(usize);
     impl TraceObserver for Tests {
         const SEES: bool = true;

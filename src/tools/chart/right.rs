@@ -1,7 +1,7 @@
 //! The colours of pixels, and the right ones that these are compared with.
 
-use super::pictures::shown_colours;
 use super::progress::Progress;
+use super::traced;
 use std::io;
 use std::ops::ControlFlow;
 use tabray_core::render::plan::Plan;
@@ -27,7 +27,7 @@ impl Colours<'_> {
     /// Computes the pixels with a number of samples.
     pub fn of(&mut self, plan: &mut Plan, samples: u32) -> io::Result<Vec<Rgb>> {
         plan.camera.samples = samples;
-        let colours = shown_colours(self.threads, plan, self.pixels);
+        let colours = traced::shown(self.threads, plan, self.pixels);
         match self.progress.done(self.pixels.len() * samples as usize / 10) {
             ControlFlow::Continue(()) => Ok(colours),
             ControlFlow::Break(()) => Err(io::ErrorKind::Interrupted.into()),

@@ -1,9 +1,9 @@
 //! The times of renders of a scene, by accuracy and number of samples.
 
 use super::cost::{Counted, Estimated, Timing};
-use super::pictures::shown_colours;
 use super::places::spread;
 use super::progress::Progress;
+use super::traced;
 use crate::bench::clock;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -51,7 +51,7 @@ impl Timings {
     pub fn new(model: &Model, threads: &Renderer, beginning: f64) -> Self {
         let (size, mut plan) = (model.camera.value.pixels, plan(model));
         plan.camera.samples = 1;
-        let writing = writing(&shown_colours(threads, &plan, &spread(size, 256)), size);
+        let writing = writing(&traced::shown(threads, &plan, &spread(size, 256)), size);
         let cores = threads.run(rayon::current_num_threads);
         let overhead = Overhead { beginning, writing, cores };
         let pixels = (size[0] * size[1]) as f64;

@@ -1,0 +1,117 @@
+//! Some pixels of an image, traced in groups as a render traces them: their colours, and what they cost.
+
+use super::places::Pixels;
+use crate::bench::clock;
+use std::hint::black_box;
+use std::mem::replace;
+use std::sync::{Mutex, PoisonError};
+use tabray_core::geometry::ray_packet::PACKET_SIZE;
+use tabray_core::parallel;
+use tabray_core::render::flaws::Flaws;
+use tabray_core::render::observer::{Count, DynObserver, RayKind, TraceObserver};
+use tabray_core::render::plan::Plan;
+use tabray_core::render::renderer::Renderer;
+use tabray_core::render::trace::{Scratch, Tracer};
+use tabray_core::simd::cpu::Cpu;
+use tabray_core::world::material::Rgb;
+
+/// The time of a group in seconds below which it matters that scratch space is used for the first time.
+const SHORT: f64 = 1e-3;
+
+/// A group of pixels that were traced together.
+#[derive(Clone, Default)]
+pub(super) struct Group {
+    /// The colours, before they are clamped to what an image can show.
+    pub colours: Vec<Rgb>,
+    pub rays: Rays,
+    /// The CPU time, in seconds.
+    pub seconds: f64,
+}
+
+/// Rays that are counted.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Rays {
+    pub all: u64,
+    pub primary: u64,
+    /// The samples of pixels that take different numbers of them, without probes.
+    pub samples: u64,
+    /// Whether a pixel has used up its ray budget.
+    pub is_cut: bool,
+}
+
+impl TraceObserver for Rays {
+    const SEES: bool = false;
+
+    fn count(&mut self, count: Count) {
+        match count {
+            Count::Rays(kind, rays) => {
+                self.all += rays as u64;
+                self.primary += if kind == RayKind::Primary { rays as u64 } else { 0 };
+            }
+            Count::Sampled(samples) => self.samples += u64::from(samples),
+            Count::Cut(_) => self.is_cut = true,
+            _ => {}
+        }
+    }
+}
+
+/// The scratch space of a thread, and whether it has been used.
+#[derive(Default)]
+struct Warmed {
+    scratch: Scratch,
+    is_warm: bool,
+}
+
+/// Traces groups of pixels on all threads of a renderer, and returns them in their order.
+pub(super) fn groups(
+    threads: &Renderer,
+    plan: &Plan,
+    pixels: &[impl AsRef<[[usize; 2]]> + Sync],
+) -> Vec<Group> {
+    let traced = Mutex::new(vec![Group::default(); pixels.len()]);
+    let one = |state: &mut Warmed, index: usize| {
+        let mut trace = || group(plan, pixels[index].as_ref(), &mut state.scratch);
+        let first = trace();
+        let is_first = !replace(&mut state.is_warm, true);
+        let group = if is_first && first.seconds < SHORT { trace() } else { first };
+        traced.lock().unwrap_or_else(PoisonError::into_inner)[index] = group;
+    };
+    threads.run(|| parallel::for_each_in_order(pixels.len(), &one));
+    traced.into_inner().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn group(plan: &Plan, pixels: &[[usize; 2]], scratch: &mut Scratch) -> Group {
+    let mut rays = Rays::default();
+    let mut observer = DynObserver::<false>(&mut rays);
+    let start = clock::now();
+    let mut tracer = Tracer::new(plan, Cpu::best(), scratch, &mut observer);
+    let view = tracer.pixels(pixels);
+    let seconds = (clock::now() - start).as_secs_f64();
+    let colours = (0..pixels.len()).map(|pixel| view.get(pixel)).collect();
+    Group { colours, rays, seconds }
+}
+
+/// Traces pixels that may lie far apart, and returns each with its colour, before it is clamped, and the number of samples
+/// where pixels differ in that.
+pub(super) fn apart(threads: &Renderer, plan: &Plan, pixels: &[[usize; 2]]) -> (Vec<Rgb>, u64) {
+    // Pixels that take as many samples as they need share probes only with those beside them.
+    let is_fixed = plan.camera.adaptive.is_none();
+    let at_once = if is_fixed { (4 * PACKET_SIZE / plan.camera.samples as usize).max(1) } else { 1 };
+    let groups = groups(threads, plan, &pixels.chunks(at_once).collect::<Vec<_>>());
+    let samples = groups.iter().map(|group| group.rays.samples).sum();
+    (groups.into_iter().flat_map(|group| group.colours).collect(), samples)
+}
+
+/// Returns the colours of pixels that may lie far apart, as they are shown.
+pub(super) fn shown(threads: &Renderer, plan: &Plan, pixels: &[[usize; 2]]) -> Vec<Rgb> {
+    let display = plan.camera.display();
+    apart(threads, plan, pixels).0.into_iter().map(|colour| display.shown(colour)).collect()
+}
+
+/// Traces tiles on this thread, to be timed.
+pub(super) fn tiles(plan: &Plan, tiles: &[Pixels]) {
+    let (mut scratch, mut nobody) = (Scratch::default(), Flaws::default());
+    for tile in tiles {
+        black_box(Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody).pixels(tile));
+    }
+}
