@@ -10,6 +10,7 @@ use imports::{Import, Tree};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -181,7 +182,7 @@ fn manifests() -> Vec<toml::Table> {
         toml::from_str::<toml::Table>(&text).expect("a manifest in TOML")
     };
     let all = read(".");
-    let members = all["workspace"]["members"].as_array().expect("members");
+    let members = all["workspace"]["default-members"].as_array().expect("default-members");
     members.iter().map(|member| read(member.as_str().expect("a folder"))).collect()
 }
 
@@ -249,6 +250,22 @@ fn imports_from_above_are_found() {
         "/// As [`A`](crate::high::a::A).\n// crate::high::a::A\nconst B: &str = \"crate::high::a::A\";",
     ] {
         assert!(wrong(low).is_empty(), "{low}");
+    }
+}
+
+#[test]
+fn packages_by_themselves_are_in_no_workspace() {
+    for folder in ["docs/example-plugin", "tests/fuzz", "tests/wasm"] {
+        let manifest = root().join(folder).join("Cargo.toml");
+        let mut cargo = Command::new(env!("CARGO"));
+        cargo.args(["locate-project", "--workspace", "--message-format", "plain", "--manifest-path"]);
+        let found = cargo.arg(&manifest).output().expect("cargo runs");
+        let said = String::from_utf8_lossy(&found.stderr);
+        assert_eq!(
+            String::from_utf8_lossy(&found.stdout).trim_end(),
+            manifest.display().to_string(),
+            "{said}"
+        );
     }
 }
 

@@ -79,7 +79,7 @@ fn with_package(more: Files) -> Files {
     // libraries.
     let manifest = files.get_mut(Path::new("Cargo.toml")).expect("a manifest");
     let text = String::from_utf8_lossy(manifest);
-    let text = text.replace("members = [\".\", ", "members = [\".\", \"docs/example-plugin\", ");
+    let text = text.replace("members = [", "members = [\"docs/example-plugin\", ");
     *manifest = text.replace("exclude = [\"docs/example-plugin\", ", "exclude = [").into_bytes();
     files.extend(more);
     files
