@@ -30,7 +30,9 @@ struct Cylinder {
 }
 
 impl Implicit for Cylinder {
-    const IS_CUT: bool = true;
+    fn is_cut(&self) -> bool {
+        true
+    }
 
     fn uv(&self, at: DVec3) -> Option<DVec2> {
         Some(uv::on_height(at, self.height))

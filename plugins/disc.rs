@@ -24,7 +24,9 @@ pub struct Disc {
 }
 
 impl Implicit for Disc {
-    const IS_CUT: bool = true;
+    fn is_cut(&self) -> bool {
+        true
+    }
 
     fn value<N: Scalar>(&self, [_, y, _]: [N; 3]) -> N {
         y

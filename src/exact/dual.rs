@@ -123,6 +123,13 @@ impl<N: Scalar> Scalar for Dual<N> {
         self.chain(self.value.ln(), N::constant(1.0) / self.value)
     }
 
+    fn atan2(self, x: Self) -> Self {
+        let (one, other) = (x.value * self.slope, self.value * x.slope);
+        let turns = (one - other) / (x.value.powi(2) + self.value.powi(2));
+        // Without bounds where the angle jumps.
+        Self { value: self.value.atan2(x.value), slope: turns + self.value.kink() * (-x.value).step() }
+    }
+
     #[inline(always)]
     fn sqrt(self) -> Self {
         apart_if!(N::IS_LONG, {

@@ -114,6 +114,10 @@ impl Scalar for F64x8 {
         each!(a = self => libm::log(a))
     }
 
+    fn atan2(self, x: Self) -> Self {
+        each!(a = self, b = x => libm::atan2(a, b))
+    }
+
     #[inline(always)]
     fn sqrt(self) -> Self {
         each!(a = self => Scalar::sqrt(a))

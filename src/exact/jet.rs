@@ -159,6 +159,13 @@ impl<N: Scalar> Scalar for Jet<N> {
         self.chain(self.value.ln(), Dual::constant(1.0) / self.dual())
     }
 
+    fn atan2(self, x: Self) -> Self {
+        let (y, at) = (self.dual(), x.dual());
+        let (one, other) = (at * self.slope(), y * x.slope());
+        let turns = (one - other) / (at.powi(2) + y.powi(2));
+        Self::of(self.value.atan2(x.value), turns + y.kink() * (-at).step())
+    }
+
     #[inline(always)]
     fn sqrt(self) -> Self {
         apart_if!(N::IS_LONG, {

@@ -69,6 +69,9 @@ pub trait Scalar:
     fn exp(self) -> Self;
     /// Returns the natural logarithm.
     fn ln(self) -> Self;
+    /// Returns the angle, in radians from -π to π, from the positive x axis to the point with this y and another number as x. It
+    /// jumps where y is 0 and x is below 0.
+    fn atan2(self, x: Self) -> Self;
     /// Returns the square root; 0 below 0.
     fn sqrt(self) -> Self;
     /// Returns the absolute value.
@@ -190,6 +193,10 @@ impl Scalar for f64 {
 
     fn ln(self) -> Self {
         libm::log(self)
+    }
+
+    fn atan2(self, x: Self) -> Self {
+        libm::atan2(self, x)
     }
 
     #[inline(always)]

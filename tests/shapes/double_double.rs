@@ -99,6 +99,13 @@ fn exponentials_and_logarithms_agree() {
 }
 
 #[test]
+fn angles_agree() {
+    for range in [(-1.0, 1.0), (-1e-9, 1e-9), (1.0, 1e200), (-1e200, -1.0)] {
+        agrees_of_two(range, Scalar::atan2, |y, x| y.atan2(x));
+    }
+}
+
+#[test]
 fn powers_agree() {
     agrees_of_two((1e-3, 20.0), Scalar::pow, |base, exponent| base.powf(exponent));
     for exponent in [-3, -1, 0, 1, 2, 5, 30] {
@@ -237,6 +244,7 @@ fn wide_intervals_hold_the_right_results() {
         holds(wide.sin(), &big.sin(), 40.0, "sin");
         holds(wide.cos(), &big.cos(), 40.0, "cos");
         holds(wide.tan(), &big.tan(), 40.0, "tan");
+        holds(y.atan2(x), &big_b.atan2(&big_a), 80.0, "angle");
         let power = (exactly(q) * big.ln()).exp();
         // The error of the logarithm is multiplied by the exponent.
         holds(wide.pow(Wide::point(q)), &power, 1000.0, "power");

@@ -1,5 +1,5 @@
-//! The conditions on a formula in x, y and z under which its surface can be hit: on the whole surface within its box,
-//! the formula and its slope are bounded. Interval arithmetic proves that on smaller and smaller parts of the box.
+//! What is asked of a formula in x, y and z in a box: whether it is anywhere 0, whether it may have an inside, and how it is
+//! said with fewer operations. Interval arithmetic answers on smaller and smaller parts of the box.
 
 use crate::world::body::Warning;
 use glam::DVec3;
@@ -8,7 +8,7 @@ use tabray_exact::dual::Dual;
 use tabray_exact::formula::field::Field;
 use tabray_exact::interval::Interval;
 
-/// The number of formula operations that a check may take, a function counted as eight: some tenths of a second.
+/// The number of formula operations that a question may take, a function counted as eight: some tenths of a second.
 const OPERATIONS: u64 = 40_000_000;
 
 /// The number of times that the box is halved before a part counts as a point: 18 times along each axis.
@@ -17,56 +17,25 @@ const HALVINGS: u32 = 54;
 /// The largest number of parts in which a change of sign is looked for.
 const PARTS: u64 = 1 << 14;
 
-/// The reason why a formula makes no surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum NoField {
-    /// The formula has no bounds, or is not defined.
-    Unbounded {
-        /// A point near which the formula is unbounded or not defined.
-        near: DVec3,
-    },
-    /// The slope has no bounds where the formula may be 0.
-    Steep {
-        /// A point near which the slope is unbounded.
-        near: DVec3,
-    },
-    /// The formula is nowhere 0.
-    Nowhere,
-    /// Bounds take too many operations.
-    Bends,
+/// A formula that is 0 where another one is.
+pub struct Reduced {
+    /// The formula: the numerator of a quotient of polynomials, without the powers of its factors.
+    pub formula: Field,
+    /// The denominator that was left out, if there was one.
+    pub denominator: Option<Field>,
+    /// What was left out of the formula, or what could not be: where a squared factor is 0, the formula does not change its
+    /// sign.
+    pub warnings: Vec<Warning>,
 }
 
-impl NoField {
-    /// Returns the error of the formula and its correction, for messages: "has a formula ...".
-    pub fn message(self) -> (String, &'static str) {
-        let place = |DVec3 { x, y, z }: DVec3| format!("near x = {x:.4}, y = {y:.4}, z = {z:.4}");
-        match self {
-            Self::Unbounded { near } => (
-                format!("that is unbounded or not defined {}", place(near)),
-                "the formula has to be finite wherever it may be 0 in its box",
-            ),
-            Self::Steep { near } => (
-                format!("whose slope is unbounded {}", place(near)),
-                "where the formula is 0 in its box it must not jump, and a root or a power with a fraction must not \
-                 be of something that is 0 there: write a cone as `x^2 + z^2 - y^2`, not as `sqrt(x^2 + z^2) - y`",
-            ),
-            Self::Nowhere => (
-                "that is nowhere 0 in its box".to_owned(),
-                "the surface is where the formula is 0: change the formula, or the box",
-            ),
-            Self::Bends => (
-                "that bends too often in its box to be bounded".to_owned(),
-                "give a smaller box, or a formula with fewer waves",
-            ),
-        }
-    }
-}
-
-/// Returns a formula without the powers of its factors, with a warning for what was left out, or of what could not be: where a
-/// squared factor is 0, the formula does not change its sign.
-pub fn reduced(field: Field) -> (Field, Vec<Warning>) {
+/// Reduces a formula to one that is found more quickly and more surely.
+pub fn reduced(field: Field) -> Reduced {
     let mut warnings = Vec::new();
-    let (reduced, names) = field.without_powers().unwrap_or((field, Vec::new()));
+    let (field, denominator) = match field.quotient() {
+        Some([numerator, denominator]) => (numerator, Some(denominator)),
+        None => (field, None),
+    };
+    let (formula, names) = field.without_powers().unwrap_or((field, Vec::new()));
     for name in names {
         warnings.push(Warning {
             attribute: "formula",
@@ -74,7 +43,7 @@ pub fn reduced(field: Field) -> (Field, Vec<Warning>) {
             help: "the surface is the same without the power, and is drawn without it".to_owned(),
         });
     }
-    if reduced.has_repeated_factor() {
+    if formula.has_repeated_factor() {
         warnings.push(Warning {
             attribute: "formula",
             message: "has a formula that touches 0 without a change of sign on a part of its surface".to_owned(),
@@ -83,18 +52,15 @@ pub fn reduced(field: Field) -> (Field, Vec<Warning>) {
                 .to_owned(),
         });
     }
-    (reduced, warnings)
+    Reduced { formula, denominator, warnings }
 }
 
 /// A part of the box, and the number of halvings that made it.
 type Part = ([DVec3; 2], u32);
 
-/// Proves that a formula and its slope are bounded on its surface in a box, and that there may be such a surface.
-///
-/// # Errors
-/// The reason why the formula makes no surface.
-pub fn check(field: &Field, corners: [DVec3; 2]) -> Result<(), NoField> {
-    let (mut left, mut smooth) = (OPERATIONS, Vec::new());
+/// Tells whether a formula and its slope are certainly bounded on its surface in a box.
+pub fn is_regular(field: &Field, corners: [DVec3; 2]) -> bool {
+    let mut left = OPERATIONS;
     let mut waiting: Vec<Part> = match field.cells() {
         Some(cells) => cells.places().map(|place| (corners_of(place), 0)).collect(),
         None => vec![(corners, 0)],
@@ -103,24 +69,18 @@ pub fn check(field: &Field, corners: [DVec3; 2]) -> Result<(), NoField> {
         let ([low, high], halvings) = part;
         let at = [0, 1, 2].map(|axis| Interval { low: low[axis], high: high[axis] });
         // The value, and a slope along each axis, of which each takes several times as long.
-        left = left.checked_sub(16 * field.cost(at).max(1)).ok_or(NoField::Bends)?;
+        let Some(after) = left.checked_sub(16 * field.cost(at).max(1)) else { return false };
+        left = after;
         let value = field.at(at);
-        if !value.has_zero() {
-            continue;
-        }
-        if value.is_bounded() && (0..3).all(|axis| slope(field, at, axis).is_bounded()) {
-            smooth.push(part);
-        } else if halvings < HALVINGS {
+        let is_regular = || value.is_bounded() && (0..3).all(|axis| slope(field, at, axis).is_bounded());
+        if value.has_zero() && !is_regular() {
+            if halvings == HALVINGS {
+                return false;
+            }
             waiting.extend(halves(part));
-        } else {
-            let near = 0.5 * (low + high);
-            return Err(match value.is_bounded() {
-                true => NoField::Steep { near },
-                false => NoField::Unbounded { near },
-            });
         }
     }
-    if is_nowhere(field, smooth) { Err(NoField::Nowhere) } else { Ok(()) }
+    true
 }
 
 fn corners_of([x, y, z]: [Interval; 3]) -> [DVec3; 2] {
@@ -160,9 +120,15 @@ pub fn is_outside(field: &Field, [low, high]: [DVec3; 2]) -> bool {
     true
 }
 
-/// Tells whether a formula is certainly nowhere 0 in these parts.
-fn is_nowhere(field: &Field, parts: Vec<Part>) -> bool {
-    let (mut signs, mut parts, mut left) = ([false; 2], VecDeque::from(parts), parts_of(field));
+/// Encloses a formula in a box.
+pub fn bounds(field: &Field, [low, high]: [DVec3; 2]) -> Interval {
+    field.at([0, 1, 2].map(|axis| Interval { low: low[axis], high: high[axis] }))
+}
+
+/// Tells whether a formula is certainly nowhere 0 in a box.
+pub fn is_nowhere(field: &Field, corners: [DVec3; 2]) -> bool {
+    let (mut signs, mut left) = ([false; 2], parts_of(field));
+    let mut parts = VecDeque::from([(corners, 0)]);
     while let Some(part) = parts.pop_front() {
         let ([low, high], _) = part;
         let at = [0, 1, 2].map(|axis| Interval { low: low[axis], high: high[axis] });

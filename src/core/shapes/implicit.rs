@@ -153,7 +153,7 @@ impl<T: Implicit> Searched for ImplicitShape<T> {
         for _ in 0..MOST_CUT {
             let root = method.first_root(&line, outer.clone(), line.closest, &left, shortest(&outer));
             match root {
-                Some(root) if T::IS_CUT && !line.kept(root).0 => {
+                Some(root) if self.formula.is_cut() && !line.kept(root).0 => {
                     // A method may find the root where it starts again, unless it knows that the line leaves there.
                     let rises = taylor::FunctionOnLine::at(&line, Dual::variable(root)).slope > 0.0;
                     left.origin_side = Some(if rises { Side::Outside } else { Side::Inside });
@@ -262,7 +262,7 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         // The function does not cross 0 from the start to the root, and so has the sign there that it starts with.
         let is_first = if rises { start.high < 0.0 } else { start.low > 0.0 };
         let is_kept =
-            !T::IS_CUT || self.shape.formula.inside_trim(self.on_line(Interval { low, high })).low >= 0.0;
+            !self.shape.formula.is_cut() || self.shape.formula.inside_trim(self.on_line(Interval { low, high })).low >= 0.0;
         if is_first && is_kept {
             let near = (self.closest + low - rounding).max(0.0);
             Bracket { near, far: self.closest + high + rounding }
@@ -302,7 +302,7 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
     fn first_hit(&self, range: &RayRange) -> FirstRoot {
         let stretch = self.stretch();
         let pieces = if self.is_lost(1.0) { FEW_PIECES } else { taylor::MAX_PIECES };
-        if !T::IS_CUT {
+        if !self.shape.formula.is_cut() {
             return self.first_root(&stretch, range, pieces);
         }
         let (mut range, mut all_certain) = (*range, true);
@@ -358,6 +358,15 @@ impl<T: Implicit> taylor::FunctionOnLine for FormulaOnRay<'_, T> {
 
     fn at<N: Scalar>(&self, t: N) -> N {
         self.shape.formula.value(self.on_line(t))
+    }
+
+    fn is_broken(&self, piece: Interval) -> bool {
+        self.shape.formula.field().is_some_and(|field| field.jumps_past_0(self.on_line(piece)))
+    }
+
+    fn is_left_out(&self, piece: Interval) -> bool {
+        let formula = &self.shape.formula;
+        formula.is_cut() && formula.inside_trim(self.on_line(piece)).high < 0.0
     }
 
     fn degree(&self) -> Option<usize> {

@@ -102,6 +102,10 @@ impl Scalar for Affine {
         self.chain(at.ln(), one / at, -(one / range.powi(2)))
     }
 
+    fn atan2(self, x: Self) -> Self {
+        self.range().atan2(x.range()).into()
+    }
+
     fn sqrt(self) -> Self {
         let range = self.range();
         // Where the slope is no longer nearly the same, the line is a worse bound than the range.

@@ -130,6 +130,14 @@ impl Scalar for DoubleDouble {
         (ratio * series).scaled(1).without(-doublings, &LN_2)
     }
 
+    /// Turns the point by the angle that `f64` tells: what is left is so small that it is its own tangent.
+    fn atan2(self, x: Self) -> Self {
+        let angle = Self::from(libm::atan2(self.high, x.high));
+        let (sin, cos) = angle.sin_cos();
+        let left = (self * cos - x * sin) / (x * cos + self * sin);
+        if left.high.is_finite() { angle + left } else { angle }
+    }
+
     fn sqrt(self) -> Self {
         self.sqrt()
     }

@@ -172,7 +172,8 @@ fn widened(place: [Interval; 3], margin: [f64; 3]) -> [Interval; 3] {
 
 /// Tells whether an operation may be one of several, depending on the place.
 pub(super) fn is_choice(step: Step) -> bool {
-    matches!(step, Step::Call(Function::Min | Function::Max | Function::Abs | Function::Floor))
+    use Function::{Abs, Floor, Heaviside, Max, Min};
+    matches!(step, Step::Call(Min | Max | Abs | Floor | Heaviside))
 }
 
 /// Returns the values of a formula that matter in a box, and bounds of the formula there.
@@ -201,6 +202,8 @@ fn pruned(values: &Values, place: [Interval; 3]) -> (Values, Interval) {
             Step::Call(Function::Max) if b.high <= a.low => own = first,
             Step::Call(Function::Abs) if a.low >= 0.0 => own = first,
             Step::Call(Function::Abs) if a.high <= 0.0 => step = Step::Neg,
+            Step::Call(Function::Heaviside) if a.low > 0.0 => step = Step::Number(1.0),
+            Step::Call(Function::Heaviside) if a.high < 0.0 => step = Step::Number(0.0),
             Step::Call(Function::Floor) => {
                 step = a.certain_floor().map_or(step, Step::Number);
             }

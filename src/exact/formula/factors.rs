@@ -39,6 +39,12 @@ impl Field {
         Some((Self::new(Arc::new(formula))?, names))
     }
 
+    /// Tells whether the formula is a polynomial, of a degree that one along a line may have.
+    pub fn is_polynomial(&self) -> bool {
+        let [origin, dir] = LINES[0].map(|of| of.map(Rational::from));
+        self.exactly_along(&origin, &dir).is_some()
+    }
+
     /// Tells whether the formula is a polynomial that has a factor more than once, as three lines tell that meet every factor,
     /// unless they meet one in as few places as no line in a million does.
     pub fn has_repeated_factor(&self) -> bool {
@@ -95,7 +101,7 @@ fn has_variable(steps: &[Step]) -> bool {
 }
 
 /// Returns where the operations of the last operand start.
-fn start_of_last(steps: &[Step]) -> usize {
+pub(super) fn start_of_last(steps: &[Step]) -> usize {
     let (mut at, mut missing) = (steps.len(), 1);
     while missing > 0 && at > 0 {
         at -= 1;

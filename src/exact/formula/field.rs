@@ -171,7 +171,7 @@ fn with_constants(steps: &[Step]) -> Vec<Step> {
                 out.extend(quick);
                 continue;
             }
-            Step::Call(Function::Min | Function::Max | Function::Pow) => {
+            Step::Call(Function::Min | Function::Max | Function::Pow | Function::Atan2) => {
                 starts.pop();
             }
             Step::Call(Function::Noise) => starts.truncate(starts.len().saturating_sub(2)),

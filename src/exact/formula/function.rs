@@ -24,7 +24,7 @@ pub(super) enum Meaning {
 use Meaning::{Fixed, Formula, Operation};
 
 /// The functions of formulas.
-static FUNCTIONS: [FormulaFunction; 22] = [
+static FUNCTIONS: [FormulaFunction; 39] = [
     FormulaFunction { name: "sin", arguments: &["x"], meaning: Operation(Function::Sin) },
     FormulaFunction { name: "cos", arguments: &["x"], meaning: Operation(Function::Cos) },
     FormulaFunction { name: "tan", arguments: &["x"], meaning: Operation(Function::Tan) },
@@ -57,6 +57,23 @@ static FUNCTIONS: [FormulaFunction; 22] = [
     FormulaFunction { name: "cosh", arguments: &["x"], meaning: Formula("(exp(x) + exp(-x))/2") },
     FormulaFunction { name: "tanh", arguments: &["x"], meaning: Formula("1 - 2/(exp(2*x) + 1)") },
     FormulaFunction { name: "noise", arguments: &["x", "y", "z"], meaning: Fixed(Function::Noise) },
+    FormulaFunction { name: "heaviside", arguments: &["x"], meaning: Fixed(Function::Heaviside) },
+    FormulaFunction { name: "atan2", arguments: &["y", "x"], meaning: Fixed(Function::Atan2) },
+    FormulaFunction { name: "trunc", arguments: &["x"], meaning: Formula("floor(abs(x))*sign(x)") },
+    FormulaFunction { name: "sign", arguments: &["x"], meaning: Formula("2*heaviside(x) - 1") },
+    FormulaFunction { name: "step", arguments: &["edge", "x"], meaning: Formula("heaviside(x - edge)") },
+    FormulaFunction { name: "log", arguments: &["x"], meaning: Formula("ln(x)") },
+    FormulaFunction { name: "log2", arguments: &["x"], meaning: Formula("ln(x)/ln(2)") },
+    FormulaFunction { name: "log10", arguments: &["x"], meaning: Formula("ln(x)/ln(10)") },
+    FormulaFunction { name: "cbrt", arguments: &["x"], meaning: Formula("abs(x)^(1/3)*sign(x)") },
+    FormulaFunction { name: "asin", arguments: &["x"], meaning: Formula("atan2(x, sqrt(1 - x^2))") },
+    FormulaFunction { name: "acos", arguments: &["x"], meaning: Formula("atan2(sqrt(1 - x^2), x)") },
+    FormulaFunction { name: "atan", arguments: &["x"], meaning: Formula("atan2(x, 1)") },
+    FormulaFunction { name: "asinh", arguments: &["x"], meaning: Formula("2*atanh(x/(1 + sqrt(1 + x^2)))") },
+    FormulaFunction { name: "acosh", arguments: &["x"], meaning: Formula("ln(x + sqrt(x^2 - 1))") },
+    FormulaFunction { name: "atanh", arguments: &["x"], meaning: Formula("ln((1 + x)/(1 - x))/2") },
+    FormulaFunction { name: "smin", arguments: &["a", "b", "k"], meaning: Formula("min(a, b) - max(k - abs(a - b), 0)^2/(4*k)") },
+    FormulaFunction { name: "smax", arguments: &["a", "b", "k"], meaning: Formula("max(a, b) + max(k - abs(a - b), 0)^2/(4*k)") },
 ];
 
 /// Returns the names of the functions of formulas, each with the names of its arguments.
@@ -72,7 +89,7 @@ pub(super) fn find(name: &str) -> Option<&'static FormulaFunction> {
 impl FormulaFunction {
     /// Tells whether the function takes more arguments than it names: the smallest of many.
     pub fn takes_more(&self) -> bool {
-        matches!(self.meaning, Operation(_)) && self.arguments.len() > 1
+        matches!(self.meaning, Operation(Function::Min | Function::Max))
     }
 
     /// Tells whether no number of a scene can have its name. The names of functions that came later may be those of numbers.

@@ -2,11 +2,13 @@
 
 mod along;
 pub mod cells;
+mod domain;
 mod factors;
 pub mod field;
 mod function;
 mod parser;
 mod program;
+mod quotient;
 pub mod rational;
 mod spline;
 mod step;
@@ -214,6 +216,11 @@ mod tests {
             ("mod(y, 3) + mod(-y, 3)", 4.0, 3.0),
             ("clamp(y, 1, 3) + mix(2, 4, 0.25) + smoothstep(0, 8, y)", 4.0, 6.0),
             ("hypot(3, y) - tanh(0) + cosh(0) + sinh(0)", 4.0, 6.0),
+            ("sign(y) + sign(-y) + trunc(-y) + step(2, y)", 2.5, -1.0),
+            ("log2(y) + log10(100) + log(1) + cbrt(-y)", 8.0, 3.0),
+            ("4*atan(y)/pi + 4*atan2(y, -y)/pi + 2*asin(y)/pi + acos(y)", 1.0, 5.0),
+            ("asinh(sinh(y)) + acosh(cosh(y)) - 2*atanh(tanh(y))", 0.0, 0.0),
+            ("smin(y, 1, 2) + smax(y, 1, 2)", 1.0, 2.0),
         ] {
             assert_eq!(value(text, y), expected, "{text}");
         }

@@ -377,7 +377,6 @@ impl<'t> Parser<'t> {
             _ if product.iter().all(|letter| self.variables.contains(letter)) => {
                 format!("write a product as `{}`", product.join("*"))
             }
-            "log" => "`ln(x)` is the natural logarithm, and `ln(x)/ln(10)` that of base 10".to_owned(),
             "e" => "write `exp(1)` for the number e".to_owned(),
             _ => return FormulaFault { unknown: Some(word.to_owned()), ..fault },
         };

@@ -35,7 +35,7 @@ impl Step {
         match self {
             Self::Variable(_) | Self::Number(_) => 0,
             Self::Add | Self::Sub | Self::Mul | Self::Div => 2,
-            Self::Call(Function::Min | Function::Max | Function::Pow) => 2,
+            Self::Call(Function::Min | Function::Max | Function::Pow | Function::Atan2) => 2,
             Self::Call(Function::Noise) => 3,
             Self::Neg | Self::Powi(_) | Self::Scale(_) | Self::Shift(_) | Self::Spline | Self::Call(_) => 1,
         }
@@ -45,8 +45,10 @@ impl Step {
     /// 160 for noise.
     pub fn cost(self) -> u64 {
         match self {
-            Self::Call(Function::Abs | Function::Floor | Function::Min | Function::Max) => 1,
-            Self::Call(Function::Pow) => 24,
+            Self::Call(
+                Function::Abs | Function::Floor | Function::Heaviside | Function::Min | Function::Max,
+            ) => 1,
+            Self::Call(Function::Pow | Function::Atan2) => 24,
             Self::Call(Function::Noise) => 160,
             Self::Call(_) => 8,
             Self::Spline => 12,
@@ -103,6 +105,8 @@ impl Step {
                 let at = [a, b, c()];
                 apart(move || N::noise(at, [0; 3]))
             }
+            Self::Call(Function::Heaviside) => long!(a.step()),
+            Self::Call(Function::Atan2) => long!(a.atan2(b)),
         }
     }
 }
@@ -122,6 +126,9 @@ pub(super) enum Function {
     Max,
     Pow,
     Noise,
+    /// 1 from 0 upward, and 0 below.
+    Heaviside,
+    Atan2,
 }
 
 /// The deepest nesting that a formula may have, in values that wait for an operation.

@@ -54,6 +54,8 @@ pub trait Float:
     fn exp(self) -> Self;
     /// Returns the natural logarithm of a number that is not negative; that of 0 is negative infinity.
     fn ln(self) -> Self;
+    /// Returns the angle in radians, from -π to π, from the positive x axis to the point with this y.
+    fn atan2(self, x: Self) -> Self;
     /// Returns the greatest integer that is not greater than the number.
     fn floor(self) -> Self;
     /// Returns the absolute value.
@@ -161,6 +163,10 @@ impl Float for f64 {
         libm::log(self)
     }
 
+    fn atan2(self, x: Self) -> Self {
+        libm::atan2(self, x)
+    }
+
     #[inline(always)]
     fn floor(self) -> Self {
         f64::floor(self)
@@ -262,6 +268,10 @@ impl Float for f256 {
 
     fn ln(self) -> Self {
         if self.eq_zero() { f256::NEG_INFINITY } else { f256::ln(&self) }
+    }
+
+    fn atan2(self, x: Self) -> Self {
+        f256::atan2(&self, &x)
     }
 
     fn floor(self) -> Self {

@@ -283,6 +283,15 @@ impl Float for Fraction {
         if self.is_whole() { Self::whole(result) } else { Self::rounded(result, f256::ONE + result.abs()) }
     }
 
+    fn atan2(self, x: Self) -> Self {
+        // A relative error of a coordinate is at most an absolute one of the angle.
+        let angle = Float::atan2(self.value(), x.value());
+        match self.is_whole() && x.is_whole() {
+            true => Self::whole(angle),
+            false => Self::rounded(angle, f256::from(1024.0)),
+        }
+    }
+
     fn floor(self) -> Self {
         if self.is_whole() {
             return Self::whole(Float::floor(self.numerator));

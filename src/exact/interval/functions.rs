@@ -86,23 +86,6 @@ impl<F: Float> Interval<F> {
 }
 
 impl Interval {
-    /// Encloses the angles at the origin, in radians from -π to π, from the positive x axis to the points of a box whose y
-    /// coordinates the interval contains.
-    pub fn atan2(self, x: Self) -> Self {
-        let half_turn = Self::pi();
-        // The angle jumps from -π to π where y is 0 and x is negative.
-        if !(self.low > 0.0 || self.high < 0.0 || x.low > 0.0) {
-            return Self { low: -half_turn.high, high: half_turn.high };
-        }
-        // Lines of one angle are straight, so that the least and the greatest angle are those of corners.
-        let angles =
-            [(self.low, x.low), (self.low, x.high), (self.high, x.low), (self.high, x.high)].map(|(y, x)| {
-                let angle = libm::atan2(y, x);
-                Self { low: angle, high: angle }
-            });
-        angles.into_iter().reduce(Self::hull).map_or(Self::whole(), Self::around_angle)
-    }
-
     /// Encloses the arc cosines, in radians, of those of the numbers that lie from -1 to 1.
     pub fn acos(self) -> Self {
         let [least, most] = [self.high, self.low].map(|cosine| libm::acos(cosine.clamp(-1.0, 1.0)));
@@ -110,8 +93,11 @@ impl Interval {
         Self { low: low.max(0.0), high }
     }
 
-    /// Widens angles that `libm` has returned: by more than 2 ulps, by which its documentation says that they are off at
-    /// most.
+}
+
+impl<F: Float> Interval<F> {
+    /// Widens computed angles by twice the bound of other functions: the documentation of `libm` says that they are off by 2
+    /// ulps at most.
     fn around_angle(self) -> Self {
         let Self { low, high } = Self::around(self.low, self.high);
         Self::around(low, high)
@@ -176,6 +162,18 @@ impl<F: Float> Scalar for Interval<F> {
         } else {
             Self::whole()
         }
+    }
+
+    fn atan2(self, x: Self) -> Self {
+        let (half_turn, zero) = (Self::pi(), F::of(0.0));
+        // The angle jumps from -π to π where y is 0 and x is negative.
+        if !(self.low > zero || self.high < zero || x.low > zero) {
+            return Self { low: -half_turn.high, high: half_turn.high };
+        }
+        // Lines of one angle are straight, so that the least and the greatest angle are those of corners.
+        let angles = [(self.low, x.low), (self.low, x.high), (self.high, x.low), (self.high, x.high)]
+            .map(|(y, x)| Self::point(y.atan2(x)));
+        angles.into_iter().reduce(Self::hull).map_or(Self::whole(), Self::around_angle)
     }
 
     #[inline(always)]

@@ -260,6 +260,10 @@ impl<C: Coefficient, const N: usize> Scalar for Polynomial<C, N> {
         self.map(Scalar::ln)
     }
 
+    fn atan2(self, x: Self) -> Self {
+        x.bounds().map_or(Self::unknown(), |x| self.map(|y| y.atan2(x)))
+    }
+
     fn sqrt(self) -> Self {
         self.map(Scalar::sqrt)
     }

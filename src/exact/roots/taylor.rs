@@ -41,6 +41,17 @@ pub trait FunctionOnLine {
         value.has_zero().then_some(second)
     }
 
+    /// Tells whether no root on a piece counts: where the function is not defined, or the surface is cut off.
+    fn is_left_out(&self, _piece: Interval) -> bool {
+        false
+    }
+
+    /// Tells whether the function certainly has no root on a piece on which it jumps, or has a pole. By default, the ends of a
+    /// jump past 0 count as connected.
+    fn is_broken(&self, _piece: Interval) -> bool {
+        false
+    }
+
     /// Returns the degree of the function, if it is a polynomial, less than [`MOST`]: that isolates roots with fewer operations.
     fn degree(&self) -> Option<usize> {
         None
@@ -266,6 +277,9 @@ impl<L: FunctionOnLine> Search<'_, L> {
         if L::VALUES_FIRST && !self.line.at(piece).has_zero() {
             return Judgement::Free;
         }
+        if self.line.is_left_out(piece) {
+            return Judgement::Free;
+        }
         let Some(curvature) = self.line.curvature(piece) else { return Judgement::Free };
         let middle = low + 0.5 * (high - low);
         let half = (middle - low).max(high - middle).next_up();
@@ -277,14 +291,16 @@ impl<L: FunctionOnLine> Search<'_, L> {
             (value + (slope + Interval::constant(0.5) * bend) * around, slope + bend)
         } else {
             let over = self.line.at(Dual::variable(piece));
-            if !over.value.has_zero() {
+            if !over.value.has_zero() || !over.slope.is_bounded() && self.line.is_broken(piece) {
                 return Judgement::Free;
             }
             // At a jump, the bounds of a place are as wide as those of the piece: shorter pieces would not help.
             if value.has_zero() && over.value.is_bounded() && 2.0 * value.width() >= over.value.width() {
                 return self.undecided(low, high);
             }
-            (value + over.slope * around, over.slope)
+            // From one side of a pole to the other, a function that only rises falls.
+            let slopes = if over.value.is_bounded() { over.slope } else { Interval::WHOLE };
+            (value + over.slope * around, slopes)
         };
         if !values.has_zero() {
             return Judgement::Free;
@@ -347,8 +363,13 @@ impl<L: FunctionOnLine> Search<'_, L> {
         if !over.has_zero() {
             return Judgement::Free;
         }
-        self.is_certain = false;
         let is_short = high - low <= self.shortest;
+        let jumps = || !self.line.at(Dual::variable(piece)).slope.is_bounded();
+        let is_broken = is_short && (!over.is_bounded() || jumps());
+        if is_broken && self.line.is_broken(piece) {
+            return Judgement::Free;
+        }
+        self.is_certain = false;
         // A line that leaves the surface starts on it.
         if is_short && self.range.origin_side.is_some() && low == self.start {
             return Judgement::Free;
@@ -363,8 +384,7 @@ impl<L: FunctionOnLine> Search<'_, L> {
         if is_short && over.is_bounded() && crosses {
             return Judgement::Root(self.newton(low, high, rises, piece.middle()));
         }
-        let jumps = || !self.line.at(Dual::variable(piece)).slope.is_bounded();
-        if is_short && (!over.is_bounded() || jumps()) {
+        if is_broken {
             return Judgement::Free;
         }
         self.undecided(low, high)

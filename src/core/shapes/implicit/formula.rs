@@ -34,8 +34,11 @@ pub trait Implicit: Send + Sync {
         None
     }
 
-    /// Whether more than the box cuts the surface. If not, [`inside_trim`](Self::inside_trim) is not called.
-    const IS_CUT: bool = false;
+    /// Tells whether more than the box cuts the surface. If not, [`inside_trim`](Self::inside_trim) is not called.
+    #[inline]
+    fn is_cut(&self) -> bool {
+        false
+    }
 
     /// Returns a number that is not below 0 where the surface is kept, and below 0 where it is cut off.
     fn inside_trim<N: Scalar>(&self, _at: [N; 3]) -> N {

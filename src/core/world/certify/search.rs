@@ -175,6 +175,13 @@ impl<F: Float> Search<'_, F> {
         self.shape.bend(at).second
     }
 
+    /// Tells whether a piece has no hit although the slope has no bounds: the surface is cut off there, as where its formula is
+    /// not defined, or the formula jumps past 0.
+    fn is_broken(&self, piece: Interval<F>) -> bool {
+        let jumps = |field: &Field| field.jumps_past_0(self.line.at(piece));
+        self.shape.field().is_some_and(jumps) || is_kept(self.shape, self.line, piece) == Some(false)
+    }
+
     /// Judges a piece by the mean value theorem of first and then of second order.
     fn judge(&self, piece: Interval<F>) -> Judgement<F> {
         let Dual { value, slope } = self.slope(piece);
@@ -182,8 +189,8 @@ impl<F: Float> Search<'_, F> {
             return Judgement::Free;
         }
         // Then no mean value theorem helps.
-        if !slope.is_bounded() {
-            return Judgement::Jump;
+        if !(slope.is_bounded() && value.is_bounded()) {
+            return if self.is_broken(piece) { Judgement::Free } else { Judgement::Jump };
         }
         let middle = Interval::point(piece.middle());
         let around = piece - middle;

@@ -58,6 +58,23 @@ fn pieces_that_rounding_hides_are_not_all_judged() {
     assert_eq!(line.0.get(), MAX_UNDECIDED);
 }
 
+/// Rises to a pole at half of π, and from there to a root at π.
+struct Tangent;
+
+impl FunctionOnLine for Tangent {
+    fn at<N: Scalar>(&self, t: N) -> N {
+        t.tan()
+    }
+}
+
+#[test]
+fn a_pole_hides_no_root_beside_it() {
+    for start in [0.5, 1.0, 1.5, 1.6] {
+        let root = first(&Tangent, start..3.5, None).expect("a root");
+        assert!((root - std::f64::consts::PI).abs() < 1e-14, "{root}");
+    }
+}
+
 #[test]
 fn kinks_and_jumps_are_met_and_poles_are_not() {
     let kink = first(&Broken, 0.3..9.0, None).expect("a kink");

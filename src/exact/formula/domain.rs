@@ -1,0 +1,185 @@
+//! Where a formula in x, y and z is defined, and where it jumps.
+
+use super::Formula;
+use super::field::Field;
+use super::program::{Instruction, MOST_REGISTERS};
+use super::step::{Function, Step};
+use super::variables::SPACE;
+use crate::interval::{Float, Interval};
+use crate::scalar::Scalar;
+use std::sync::Arc;
+
+/// The largest number of jumps in a box on whose sides a formula is evaluated, each on two.
+const MOST_JUMPS: u32 = 4;
+
+impl Field {
+    /// Returns a formula that is below 0 where this one is not defined: where a square root, a logarithm or the base of a power
+    /// with a fraction is below 0. `None` where it is defined in the whole box of these corners.
+    pub fn domain(&self, corners: [[f64; 3]; 2]) -> Option<Self> {
+        let [low, high] = corners;
+        let within = [0, 1, 2].map(|axis| Interval { low: low[axis], high: high[axis] });
+        let steps = &self.formula().steps;
+        let mut starts: Vec<usize> = Vec::new();
+        let (mut conditions, mut of_all): (Vec<&[Step]>, Vec<Step>) = (Vec::new(), Vec::new());
+        for (index, step) in steps.iter().enumerate() {
+            // Where the operation's operands start, and where the first of them ends.
+            let (mut first, mut end) = (index, index);
+            for _ in 0..step.operands() {
+                (first, end) = (starts.pop().unwrap_or(0), first);
+            }
+            if matches!(step, Step::Call(Function::Sqrt | Function::Ln | Function::Pow)) {
+                conditions.push(&steps[first..end]);
+            }
+            starts.push(first);
+        }
+        for (index, condition) in conditions.iter().enumerate() {
+            // What cannot be below 0 may be by rounding.
+            let may_be_below = self.with(condition.to_vec()).at(within).low < -f64::MIN_POSITIVE;
+            if !may_be_below || conditions[..index].contains(condition) {
+                continue;
+            }
+            let is_first = of_all.is_empty();
+            of_all.extend_from_slice(condition);
+            if !is_first {
+                of_all.push(Step::Call(Function::Min));
+            }
+        }
+        (!of_all.is_empty()).then(|| self.with(of_all))
+    }
+
+    /// Returns a field of other operations.
+    fn with(&self, steps: Vec<Step>) -> Self {
+        let formula = Formula::new(self.formula().to_string(), SPACE, steps);
+        Self::new(Arc::new(formula)).unwrap_or_else(|| self.clone())
+    }
+
+    /// Tells whether the formula jumps or has a pole in a box, and is certainly not 0 on any side of it there.
+    pub fn jumps_past_0<F: Float>(&self, at: [Interval<F>; 3]) -> bool {
+        let mut jumps = 0;
+        let first = self.beside(at, 0, &mut jumps);
+        if jumps == 0 || jumps > MOST_JUMPS || first.has_zero() {
+            return false;
+        }
+        (1..1 << jumps).all(|sides| !self.beside(at, sides, &mut 0).has_zero())
+    }
+
+    /// Encloses the formula on one side of each jump and pole in a box: above it where a bit of `sides` is set, below it else.
+    /// Counts them, and what jumps more than once as too many.
+    fn beside<F: Float>(&self, at: [Interval<F>; 3], sides: u32, jumps: &mut u32) -> Interval<F> {
+        let program = self.program();
+        let mut registers = [at[0]; MOST_REGISTERS];
+        registers[..3].copy_from_slice(&at);
+        for &Instruction { step, operands, result } in &program.instructions {
+            let (a, b) = (registers[usize::from(operands[0])], registers[usize::from(operands[1])]);
+            let c = || registers[usize::from(operands[2])];
+            let mut value = step.of::<_, true>(a, b, c, None);
+            let (zero, is_above) = (F::of(0.0), *jumps < MOST_JUMPS && sides >> *jumps & 1 == 1);
+            match step {
+                Step::Call(Function::Floor | Function::Heaviside) if value.low != value.high => {
+                    let is_single = value.high - value.low == F::of(1.0);
+                    value = Interval::point(if is_above { value.high } else { value.low });
+                    *jumps += if is_single { 1 } else { MOST_JUMPS + 1 };
+                }
+                // Below 0, they are not defined.
+                Step::Call(Function::Ln | Function::Pow) if a.low < zero && a.high >= zero => {
+                    let end = Interval::point(a.high);
+                    value = match step {
+                        Step::Call(Function::Ln) => Interval { low: -F::INFINITY, high: end.ln().high },
+                        _ => Interval { low: zero, ..a }.pow(b),
+                    };
+                    *jumps += 1;
+                }
+                // Beside a pole, a quotient is far from 0.
+                Step::Div if b.has_zero() && !a.has_zero() => {
+                    value = a / if is_above { Interval { low: zero, ..b } } else { Interval { high: zero, ..b } };
+                    *jumps += 1;
+                }
+                Step::Powi(exponent @ ..0) if exponent % 2 != 0 && a.has_zero() => {
+                    let end = Interval::point(if is_above { a.high } else { a.low }).powi(exponent);
+                    value = match is_above {
+                        true => Interval { low: end.low, high: F::INFINITY },
+                        false => Interval { low: -F::INFINITY, high: end.high },
+                    };
+                    *jumps += 1;
+                }
+                Step::Call(Function::Tan) if !value.is_bounded() => {
+                    let [before, after] = [a.low, a.high].map(|end| Interval::point(end).tan());
+                    let is_single = a.width() < F::of(1.5) && before.low > zero && after.high < zero;
+                    value = match is_above {
+                        true => Interval { low: before.low, high: F::INFINITY },
+                        false => Interval { low: -F::INFINITY, high: after.high },
+                    };
+                    *jumps += if is_single { 1 } else { MOST_JUMPS + 1 };
+                }
+                Step::Call(Function::Atan2) if a.has_zero() && b.high < zero => {
+                    let height = Interval { low: zero, high: if is_above { a.high } else { -a.low } };
+                    let angle = Interval::pi() - height.atan2(-b);
+                    value = if is_above { angle } else { -angle };
+                    *jumps += 1;
+                }
+                _ => {}
+            }
+            registers[usize::from(result)] = value;
+        }
+        registers[usize::from(program.result)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BOX: [[f64; 3]; 2] = [[-2.0; 3], [2.0; 3]];
+
+    fn field(text: &str) -> Field {
+        let formula = Formula::parse_in(text, SPACE).unwrap_or_else(|fault| panic!("{text}: {fault:?}"));
+        Field::new(Arc::new(formula)).expect("its variables are x, y and z")
+    }
+
+    #[test]
+    fn a_domain_is_below_0_where_a_formula_is_not_defined() {
+        for (text, at, expected) in [
+            ("z - sqrt(1 - x^2 - y^2)", [1.0, 1.0, 0.0], -1.0),
+            ("ln(x) + sqrt(y)", [1.5, 0.5, 0.0], 0.5),
+            ("ln(x) + sqrt(y)", [-1.5, 0.5, 0.0], -1.5),
+            ("sqrt(x - sqrt(y)) - z", [1.0, 1.0, 0.0], 0.0),
+            ("x^(1/3) - y", [-1.0, 1.0, 0.0], -1.0),
+        ] {
+            let domain = field(text).domain(BOX).unwrap_or_else(|| panic!("{text} is not defined everywhere"));
+            assert_eq!(domain.at(at), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_defined_everywhere_has_no_domain() {
+        for text in ["x + y^3", "sqrt(x^2 + z^2) - y", "abs(x)^0.6 + |y|^0.6 - 1", "sqrt(x + 2) - ln(exp(y))"] {
+            assert_eq!(field(text).domain(BOX), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_jump_past_0_is_told_from_a_root_beside_it() {
+        let near = |x: f64| [x - 1e-9, x + 1e-9];
+        for (text, [low, high], expected) in [
+            ("floor(x) - 0.5", near(1.0), true),
+            ("floor(x) - 0.5", near(0.5), false),
+            ("(x - floor(x) - 0.5)^2 - 0.1", near(1.0), true),
+            ("x - 2*floor(x) + 1", near(1.0), false),
+            ("floor(9*x) - 1.5 - 1e9*x", [0.0, 1.0], false),
+            ("heaviside(x - 1) - 0.5", near(1.0), true),
+            ("atan2(x - 1, -1) - y", near(1.0), true),
+            ("sin(y)/(x - 1) - 3", near(1.0), true),
+            ("(x - 1)/(x - 1) - 1", near(1.0), false),
+            ("z - (x - 1)^-3", near(1.0), true),
+            ("ln(x - 1) - z", near(1.0), true),
+            ("(x - 1)^0.5 - z", near(1.0), true),
+            ("ln(x) - z", near(1.0), false),
+            ("tan(x) + z", near(1.0), false),
+            ("tan(x) + z", near(std::f64::consts::FRAC_PI_2), true),
+            ("atan2(x - 1, 1)", near(1.0), false),
+        ] {
+            let at = [Interval { low, high }, Interval::constant(0.3), Interval::constant(0.3)];
+            assert_eq!(field(text).jumps_past_0(at), expected, "{text}");
+        }
+    }
+}

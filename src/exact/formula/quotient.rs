@@ -1,0 +1,200 @@
+//! Formulas that are quotients of polynomials: such a one is 0 where its numerator is.
+
+use super::Formula;
+use super::field::Field;
+use super::step::Step;
+use super::variables::SPACE;
+use std::sync::Arc;
+
+/// The largest number of operations of a numerator.
+const MOST_STEPS: usize = 1 << 12;
+
+/// Operations, as a numerator, and the factors of its denominator, each once, with its power.
+#[derive(Clone, Default)]
+struct Quotient {
+    above: Vec<Step>,
+    below: Vec<(Vec<Step>, i32)>,
+}
+
+impl Field {
+    /// Returns the numerator and the denominator of a quotient of polynomials that have no factor in common, as lines tell that
+    /// meet every factor: the numerator is 0 where the formula is, and on curves beside that at most. `None` where the formula
+    /// is no such quotient, or has no denominator.
+    pub fn quotient(&self) -> Option<[Self; 2]> {
+        let steps = &self.formula().steps;
+        if !steps.contains(&Step::Div) && !steps.iter().any(|step| matches!(step, Step::Powi(..0))) {
+            return None;
+        }
+        let Quotient { above, below } = Quotient::of(steps)?;
+        if below.is_empty() {
+            return None;
+        }
+        let with = |steps: Vec<Step>| {
+            Self::new(Arc::new(Formula::new(self.formula().to_string(), SPACE, steps)))
+        };
+        let (mut product, mut denominator) = (above.clone(), vec![Step::Number(1.0)]);
+        for (factor, power) in &below {
+            times(&mut product, factor);
+            denominator.extend(factor);
+            denominator.extend([Step::Powi(*power), Step::Mul]);
+        }
+        let product = with(product)?;
+        let is_reduced = product.is_polynomial() && !product.has_repeated_factor();
+        if is_reduced { Some([with(above)?, with(denominator)?]) } else { None }
+    }
+}
+
+impl Quotient {
+    /// Takes operations apart; `None` where they are others than those of quotients.
+    fn of(steps: &[Step]) -> Option<Self> {
+        let mut waiting: Vec<Self> = Vec::new();
+        for step in steps {
+            let second = if step.operands() == 2 { waiting.pop() } else { None };
+            let second = second.unwrap_or_default();
+            let mut first = if step.operands() > 0 { waiting.pop()? } else { Self::default() };
+            match step {
+                Step::Variable(_) | Step::Number(_) | Step::Neg | Step::Scale(_) => first.above.push(*step),
+                Step::Shift(number) => first = first.plus(Self::number(*number), Step::Add),
+                Step::Add | Step::Sub => first = first.plus(second, *step),
+                Step::Mul => first = first.times(second),
+                Step::Div => first = first.times(second.inverse()?),
+                Step::Powi(exponent) if *exponent < 0 => {
+                    first = first.inverse()?.power(exponent.checked_neg()?)?;
+                }
+                Step::Powi(exponent) => first = first.power(*exponent)?,
+                Step::Spline | Step::Call(_) => return None,
+            }
+            if first.above.len() > MOST_STEPS {
+                return None;
+            }
+            waiting.push(first);
+        }
+        waiting.pop()
+    }
+
+    fn number(number: f64) -> Self {
+        Self { above: vec![Step::Number(number)], below: Vec::new() }
+    }
+
+    fn times(mut self, other: Self) -> Self {
+        times(&mut self.above, &other.above);
+        for (factor, power) in other.below {
+            *self.power_of(&factor) += power;
+        }
+        self
+    }
+
+    /// Returns the power of a factor of the denominator.
+    fn power_of(&mut self, factor: &[Step]) -> &mut i32 {
+        let known = self.below.iter().position(|(known, _)| known == factor).unwrap_or(self.below.len());
+        if known == self.below.len() {
+            self.below.push((factor.to_vec(), 0));
+        }
+        &mut self.below[known].1
+    }
+
+    fn power(mut self, exponent: i32) -> Option<Self> {
+        self.above.push(Step::Powi(exponent));
+        for (_, power) in &mut self.below {
+            *power = power.checked_mul(exponent)?;
+        }
+        self.below.retain(|(_, power)| *power != 0);
+        Some(self)
+    }
+
+    /// Brings both to one denominator, and adds or subtracts.
+    fn plus(mut self, mut other: Self, step: Step) -> Self {
+        for (factor, _) in self.below.clone().iter().chain(&other.below.clone()) {
+            let (own, its) = (*self.power_of(factor), *other.power_of(factor));
+            for (of, missing) in [(&mut self, its - own), (&mut other, own - its)] {
+                if missing > 0 {
+                    of.above.extend(factor);
+                    of.above.extend([Step::Powi(missing), Step::Mul]);
+                    *of.power_of(factor) += missing;
+                }
+            }
+        }
+        self.above.extend(other.above);
+        self.above.push(step);
+        self
+    }
+
+    /// Returns 1 divided by the quotient. A constant factor of what comes below stays above.
+    fn inverse(self) -> Option<Self> {
+        let mut inverse = Self::number(1.0);
+        for (factor, power) in &self.below {
+            inverse.above.extend(factor);
+            inverse.above.extend([Step::Powi(*power), Step::Mul]);
+        }
+        inverse.divide_by(&self.above, 1)?;
+        Some(inverse)
+    }
+
+    /// Divides by a power of a product.
+    fn divide_by(&mut self, steps: &[Step], power: i32) -> Option<()> {
+        let (last, operands) = steps.split_last()?;
+        if !steps.iter().any(|step| matches!(step, Step::Variable(_))) {
+            self.above.extend(steps);
+            self.above.extend([Step::Powi(power), Step::Div]);
+            return Some(());
+        }
+        match last {
+            Step::Mul => {
+                let (one, other) = operands.split_at(super::factors::start_of_last(operands));
+                self.divide_by(one, power)?;
+                self.divide_by(other, power)
+            }
+            Step::Neg => {
+                if power % 2 != 0 {
+                    self.above.push(Step::Neg);
+                }
+                self.divide_by(operands, power)
+            }
+            Step::Powi(exponent) if *exponent > 0 => self.divide_by(operands, power.checked_mul(*exponent)?),
+            _ => {
+                *self.power_of(steps) += power;
+                Some(())
+            }
+        }
+    }
+}
+
+/// Multiplies operations by others.
+fn times(steps: &mut Vec<Step>, by: &[Step]) {
+    steps.extend(by);
+    steps.push(Step::Mul);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn field(text: &str) -> Field {
+        let formula = Formula::parse_in(text, SPACE).unwrap_or_else(|fault| panic!("{text}: {fault:?}"));
+        Field::new(Arc::new(formula)).expect("its variables are x, y and z")
+    }
+
+    #[test]
+    fn a_quotient_of_polynomials_has_the_zeros_of_its_numerator() {
+        for (text, expected) in [
+            ("1/x + 1/y + 1/z - 3", "y*z + x*z + x*y - 3*x*y*z"),
+            ("(y/(2*z) - x)^3 - (x/(4*z))^2", "(y/2 - x*z)^3 - z*(x/4)^2"),
+            ("(x - y)/(1 + z^2) - 1", "x - y - (1 + z^2)"),
+            ("x^-2 - y/(-(z*x)^3)", "x*z^3 + y"),
+            ("1/(1/x + 1/y) - 1", "x*y - (x + y)"),
+        ] {
+            let [numerator, _] = field(text).quotient().expect(text);
+            let expected = field(expected);
+            let ratio = |at: [f64; 3]| numerator.at(at) / expected.at(at);
+            let (one, other) = (ratio([0.3, 0.7, -1.1]), ratio([1.7, -0.4, 0.6]));
+            assert!((one - other).abs() < 1e-12 * one.abs(), "{text}: {one} is not {other}");
+        }
+    }
+
+    #[test]
+    fn what_would_add_a_surface_is_left_as_it_is() {
+        for text in ["(x^2 - y^2)/(x - y)", "x + y/2", "sin(x)/y", "x/(x*y)", "z + x/x"] {
+            assert_eq!(field(text).quotient(), None, "{text}");
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! Surfaces whose formulas are not defined everywhere, jump, or have slopes without bounds, beside their hits in closed form.
+
+use crate::common::model;
+use crate::oracle::rays::Random;
+use glam::DVec3;
+use tabray::geometry::{MISS, Ray, RayRange};
+use tabray::scene::Model;
+
+/// Half the length of an edge of the box.
+const SIZE: f64 = 2.0;
+
+/// How near a hit may be to the edge of a surface for rounding to decide whether it counts.
+const NEAR: f64 = 1e-9;
+
+fn surface(formula: &str) -> Model {
+    model(&format!(
+        "camera eye {{ pixeldim 16 12 worlddim 8 6 viewpoint 4 3 6 }}
+        material gold {{ ambient 1 1 0 }}
+        implicit it {{ material gold formula \"{formula}\" box -2 -2 -2 2 2 2 }}"
+    ))
+}
+
+/// The distances at which a ray crosses a surface, each with a number that is below 0 where the surface ends.
+type Crossings = fn(&Ray) -> Vec<(f64, f64)>;
+
+/// Asserts that random rays hit the surface of a formula first where its crossings say.
+#[track_caller]
+fn agrees(formula: &str, crossings: Crossings) {
+    let (model, mut random, mut hits) = (surface(formula), Random::new(3), 0);
+    let shape = &*model.objects[0].shape;
+    for _ in 0..4000 {
+        let mut point = |size: f64| DVec3::from([(); 3].map(|()| random.between(-size, size)));
+        let (from, to) = (point(5.0), point(SIZE));
+        let ray = Ray { origin: from, dir: (to - from).normalize() };
+        let mut nearest = MISS;
+        let mut is_near = false;
+        for (t, inside) in crossings(&ray) {
+            let inside = inside.min(SIZE - ray.at(t).abs().max_element());
+            if t > 0.0 && inside > NEAR {
+                nearest = nearest.min(t);
+            } else {
+                is_near |= t > -NEAR && inside > -NEAR;
+            }
+        }
+        if is_near {
+            continue;
+        }
+        let found = shape.distance(&ray, &RayRange::ALL);
+        let is_right = found == nearest || (found - nearest).abs() < 1e-9 * (1.0 + nearest);
+        assert!(is_right, "{formula}: {found}, not {nearest}, along {ray:?}");
+        hits += usize::from(nearest < MISS);
+    }
+    assert!(hits > 200, "{formula}: {hits} hits");
+}
+
+/// Returns where `a t^2 + 2 b t + c` is 0.
+fn quadratic(a: f64, b: f64, c: f64) -> Vec<f64> {
+    let root = (b * b - a * c).sqrt();
+    if root.is_nan() { Vec::new() } else { vec![(-b - root) / a, (-b + root) / a] }
+}
+
+fn sphere(ray: &Ray, center: DVec3, square: f64) -> Vec<f64> {
+    let from = ray.origin - center;
+    quadratic(1.0, from.dot(ray.dir), from.length_squared() - square)
+}
+
+/// Returns where a function of the distance changes its sign, by small steps and bisection, unless it jumps there.
+fn by_steps(value: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+    let step = |k: i32| {
+        let [mut low, mut high] = [1e-3 * f64::from(k), 1e-3 * f64::from(k + 1)];
+        let falls = value(low) > 0.0;
+        if falls == (value(high) > 0.0) || (value(low) - value(high)).abs() > 3.0 {
+            return None;
+        }
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if falls == (value(middle) > 0.0) { low = middle } else { high = middle }
+        }
+        Some((low, 1.0))
+    };
+    (0..12_000).filter_map(step).collect()
+}
+
+#[test]
+fn a_cone_by_its_root_has_one_half_and_a_tip() {
+    agrees("sqrt(x^2 + z^2) - y", |ray| {
+        let signs = DVec3::new(1.0, -1.0, 1.0);
+        let [a, b, c] = [(ray.dir, ray.dir), (ray.origin, ray.dir), (ray.origin, ray.origin)]
+            .map(|(one, other)| one.dot(signs * other));
+        quadratic(a, b, c).into_iter().map(|t| (t, ray.at(t).y)).collect()
+    });
+}
+
+#[test]
+fn where_a_root_is_not_defined_there_is_no_surface() {
+    agrees("z - sqrt(1 - x^2 - y^2)", |ray| {
+        sphere(ray, DVec3::ZERO, 1.0).into_iter().map(|t| (t, ray.at(t).z)).collect()
+    });
+    agrees("ln(x) - ln(y)*2", |ray| {
+        let (from, dir) = (ray.origin, ray.dir);
+        let roots = quadratic(dir.y * dir.y, from.y * dir.y - 0.5 * dir.x, from.y * from.y - from.x);
+        roots.into_iter().map(|t| (t, ray.at(t).y)).collect()
+    });
+}
+
+#[test]
+fn a_jump_is_no_surface() {
+    agrees("y - 0.3*floor(3*x)", |ray| {
+        let step = |k: i32| {
+            let t = (0.3 * f64::from(k) - ray.origin.y) / ray.dir.y;
+            let beyond = 3.0 * ray.at(t).x - f64::from(k);
+            (t, beyond.min(1.0 - beyond))
+        };
+        (-6..6).map(step).collect()
+    });
+    agrees("atan2(z, x) - y", |ray| by_steps(|t| ray.at(t).z.atan2(ray.at(t).x) - ray.at(t).y));
+}
+
+#[test]
+fn what_fractions_repeat_is_seen_as_often_as_it_is_there() {
+    agrees("(fract(x) - 0.5)^2 + (mod(y, 1) - 0.5)^2 + (z - floor(z) - 0.5)^2 - 0.1", |ray| {
+        let centers = (0..64).map(|index| DVec3::from([index / 16, index / 4 % 4, index % 4].map(f64::from)) - 1.5);
+        centers.flat_map(|center| sphere(ray, center, 0.1)).map(|t| (t, 1.0)).collect()
+    });
+}
+
+#[test]
+fn a_pole_is_no_surface() {
+    agrees("1/x - y", |ray| {
+        let (from, dir) = (ray.origin, ray.dir);
+        let half = 0.5 * (from.x * dir.y + from.y * dir.x);
+        quadratic(dir.x * dir.y, half, from.x * from.y - 1.0).into_iter().map(|t| (t, 1.0)).collect()
+    });
+    agrees("tan(x) - y", |ray| by_steps(|t| ray.at(t).x.sin() - ray.at(t).y * ray.at(t).x.cos()));
+}
+
+#[test]
+fn a_slope_without_bounds_is_no_hindrance() {
+    agrees("cbrt(x) - y", |ray| by_steps(|t| ray.at(t).x - ray.at(t).y.powi(3)));
+}
