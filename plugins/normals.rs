@@ -9,9 +9,12 @@ static TEXTURE: Pparm<Arc<Texture>> = Pparm::required(
 );
 static REPEAT: Pparm<[i64; 2]> =
     Pparm::or("repeat", "how often the image repeats along u and along v", [1, 1]).between(1.0, 1e6);
-static STRENGTH: Pparm<f64> =
-    Pparm::or("strength", "the factor of the slopes: 0 is flat, and a negative one turns hills into hollows", 1.0)
-        .between(-100.0, 100.0);
+static STRENGTH: Pparm<f64> = Pparm::or(
+    "strength",
+    "the factor of the slopes: 0 is flat, and a negative one turns hills into hollows",
+    1.0,
+)
+.between(-100.0, 100.0);
 static SHADER: Pparm<Option<ShaderFactory>> =
     Pparm::or("shader", "the shader that gives the colours, in place of the material", None);
 

@@ -109,7 +109,8 @@ fn trees_in_glass_that_absorbs_and_glints_end_near_their_whole() {
         (ended.camera.pixels, whole.camera.pixels) = ([4, 3], [4, 3]);
         let display = ended.camera.display();
         for pixel in (0..12).map(|pixel| [pixel % 4, pixel / 4]) {
-            let colour = |plan: &Plan, budget: u32| trace::within_budgets(plan, &[pixel], &[budget], &mut ())[0];
+            let colour =
+                |plan: &Plan, budget: u32| trace::within_budgets(plan, &[pixel], &[budget], &mut ())[0];
             let ((one, missing), (other, _)) = (colour(&ended, MAX_RAYS as u32), colour(&whole, 100_000));
             let off = 255.0 * (display.shown(one) - display.shown(other)).abs().max_element();
             assert!(off <= 0.5 || missing > 0.0, "{name}, {pixel:?}: {off} levels");

@@ -45,7 +45,10 @@ fn one_sample_of_a_floor_shows_what_many_do() {
 
 #[test]
 fn a_pattern_that_is_near_shows_as_it_is() {
-    let scene = floor("free", "tiled_plane f { material light altmaterial dark normal 0 1 0 point 0 0 0 xdir 1 0 0 dimensions 40 40 origin 20 0 20 }");
+    let scene = floor(
+        "free",
+        "tiled_plane f { material light altmaterial dark normal 0 1 0 point 0 0 0 xdir 1 0 0 dimensions 40 40 origin 20 0 20 }",
+    );
     let plan = Plan::new(&scene);
     // Looking down, all that is seen is within one tile.
     for x in 0..48 {

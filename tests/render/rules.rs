@@ -94,7 +94,14 @@ fn scene() -> impl Strategy<Value = String> {
 fn enclosed<N: Number<End = f64>>(plan: &Plan, line: &Line<N>) -> Option<[Interval; 3]> {
     let (bounds, lights) = (SceneBounds::of(plan.model), &plan.needs.lights);
     let (depth, meets_uncertified) = (plan.depth.as_ref(), Cell::new(false));
-    let scene = Scene { model: plan.model, lights, depth, bounds: &bounds, window: plan.camera.window(), meets_uncertified };
+    let scene = Scene {
+        model: plan.model,
+        lights,
+        depth,
+        bounds: &bounds,
+        window: plan.camera.window(),
+        meets_uncertified,
+    };
     let colour = Tracer::new(&scene, LIMITS, LightPoints::Middle).primary(line)?;
     let colour = colour.map(|channel| channel.range());
     colour.iter().all(|channel| channel.width() < ROUNDING).then_some(colour)

@@ -40,7 +40,7 @@ impl Panel {
     /// most 2 pi.
     pub fn sample(&self, at: DVec3, numbers: DVec2) -> Option<(DVec3, f64)> {
         let (between, half) = (self.middle - at, self.half);
-        let far = if self.is_round { 2.0 } else { 32.0 } * self.radius();
+        let far = if self.is_round { 4.0 } else { 32.0 } * self.radius();
         if between.length() > far {
             let place = if self.is_round { on_disc(numbers) } else { 2.0 * numbers - 1.0 };
             let toward = between + place.x * half[0] + place.y * half[1];

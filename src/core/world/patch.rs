@@ -33,7 +33,8 @@ impl Patch {
     /// Returns the patch that a ray shows through a window of this width, given its unit direction and the unit normal.
     pub(crate) fn seen(dir: DVec3, normal: DVec3, width: f64) -> Self {
         let cosine = dir.dot(normal);
-        let along = (dir - cosine * normal).try_normalize().unwrap_or_else(|| normal.any_orthonormal_vector());
+        let along =
+            (dir - cosine * normal).try_normalize().unwrap_or_else(|| normal.any_orthonormal_vector());
         let across = normal.cross(along);
         Self { sides: [width / cosine.abs().max(LEAST_COSINE) * along, width * across], uv: None }
     }

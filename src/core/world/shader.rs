@@ -4,8 +4,8 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::Side;
 use crate::world::certify::{Precise, ProofMethods};
 use crate::world::hittable::Hittable;
-use crate::world::patch::Patch;
 use crate::world::material::{Look, Material, Rgb};
+use crate::world::patch::Patch;
 use glam::{DVec2, DVec3};
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{Scalar, per_axis};
@@ -36,7 +36,15 @@ impl SurfacePoint {
     /// Returns a point of which nothing but the position is known.
     #[inline(always)]
     pub fn at(position: DVec3) -> Self {
-        Self { position, normal: DVec3::ZERO, side: Side::Outside, uv: None, face: None, tangents: None, patch: None }
+        Self {
+            position,
+            normal: DVec3::ZERO,
+            side: Side::Outside,
+            uv: None,
+            face: None,
+            tangents: None,
+            patch: None,
+        }
     }
 
     /// Returns a point of a shape with what a shader sees of it. `normal` is the outward one.

@@ -38,7 +38,8 @@ impl Sums {
         let high = high.max(low + THINNEST).min(size);
         let low = low.min(high - THINNEST);
         let corner = |x: f64, y: f64| self.up_to(x, y);
-        let sum = corner(high.x, high.y) - corner(low.x, high.y) - corner(high.x, low.y) + corner(low.x, low.y);
+        let sum =
+            corner(high.x, high.y) - corner(low.x, high.y) - corner(high.x, low.y) + corner(low.x, low.y);
         (sum / (high - low).element_product()).max(Rgb::ZERO)
     }
 

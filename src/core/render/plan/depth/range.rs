@@ -81,12 +81,11 @@ fn least(model: &Model, darkest: Rgb) -> Option<Rgb> {
             Some(_) => tint[channel].min(1.0),
             None => tint[channel] + specular[channel].low,
         };
-        let bound =
-            |channel: usize| {
-                let lost = 1.0 - left[channel] * passed(channel);
-                let own = left[channel] * (1.0 - transparency) * ambient[channel].low;
-                if lost <= 0.0 { f64::INFINITY } else { own / lost }
-            };
+        let bound = |channel: usize| {
+            let lost = 1.0 - left[channel] * passed(channel);
+            let own = left[channel] * (1.0 - transparency) * ambient[channel].low;
+            if lost <= 0.0 { f64::INFINITY } else { own / lost }
+        };
         Some(least.min(Rgb::from_array(per_axis(bound))))
     })
 }
