@@ -110,9 +110,14 @@ impl Renderer {
             let mut bytes = [[0; 3]; TILE * TILE];
             let mut add = |tile: usize, pixels: &[[usize; 2]], colours: View| {
                 to_bytes(self.cpu, &display, colours, &mut bytes[..pixels.len()]);
-                let mut strip = locked(strip);
-                for ([x, y], bytes) in pixels.iter().zip(&bytes) {
-                    strip.pixels[(height - 1 - y - top) * width + x - left] = *bytes;
+                let (mut strip, mut rest) = (locked(strip), &bytes[..]);
+                let from = left + TILE * tile;
+                let columns = from..band.columns.end.min(from + TILE);
+                for (run, y) in tiles::runs(columns, height - rows.end..height - top) {
+                    let (bytes, others) = rest.split_at(run.len());
+                    strip.pixels[(height - 1 - y - top) * width + run.start - left..][..run.len()]
+                        .copy_from_slice(bytes);
+                    rest = others;
                 }
                 strip.tiles[tile] = true;
             };

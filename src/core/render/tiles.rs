@@ -15,7 +15,7 @@ pub const TOGETHER: usize = 8;
 
 /// Lists the pixels of a tile as runs of up to eight pixels, each by its columns and its row. The runs go through
 /// blocks of 8 x 8 pixels, so that pixels that follow each other are close together.
-fn runs(columns: Range<usize>, rows: Range<usize>) -> impl Iterator<Item = (Range<usize>, usize)> {
+pub(crate) fn runs(columns: Range<usize>, rows: Range<usize>) -> impl Iterator<Item = (Range<usize>, usize)> {
     const SIDE: usize = 8;
     rows.clone().step_by(SIDE).flat_map(move |low| {
         let (columns, end) = (columns.clone(), rows.end.min(low + SIDE));
