@@ -4,7 +4,7 @@ use super::light::{LightPoints, power};
 use super::number::{Endpoint, Number, ranges};
 use super::panes::{Passes, passed};
 use super::scene::{Colour, Path, Scene};
-use super::surface::Surface;
+use super::surface::{Surface, is_black};
 use crate::geometry::sight::Line;
 use crate::world::emitter::{Emitter, Extent};
 use crate::world::panel::Panel;
@@ -25,7 +25,10 @@ pub(super) fn shine<N: Number>(
 ) -> Option<Colour<N>> {
     let light = &scene.model.lights[index].value;
     let shininess = scene.model.objects[surface.place.object].material.shininess;
-    let has_highlight = shininess != 0.0 && emitter.has_highlights();
+    let has_highlight = shininess != 0.0 && emitter.has_highlights() && !is_black(&surface.specular);
+    if is_black(&surface.diffuse) && !has_highlight {
+        return Some([N::constant(0.0); 3]);
+    }
     if !scene.bounds.passes_fractions {
         return None;
     }

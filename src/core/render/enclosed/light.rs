@@ -1,6 +1,5 @@
 //! The light that reaches the points of a surface.
 
-use super::emitted;
 use super::number::{Endpoint, Number, ranges};
 use super::panes::{Passes, passed};
 use super::scene::{Colour, Path, Scene};
@@ -40,9 +39,6 @@ pub(super) fn shine<N: Number>(
     let has_glint = shininess != 0.0 && !is_black(&surface.specular);
     if is_black(&surface.diffuse) && !has_glint {
         return Some(black);
-    }
-    if let Some(emitter) = light.emitter() {
-        return emitted::shine(scene, (index, seen), emitter, surface, dir);
     }
     let toward = toward(&**light, (index, seen), surface.at)?;
     let distance = dot(toward, toward).sqrt();

@@ -1,5 +1,6 @@
 //! The colours that rays return.
 
+use super::emitted;
 use super::light::{self, LightPoints};
 use super::number::{Hit, Number};
 use super::scene::{Colour, Path, Place, Scene};
@@ -154,7 +155,11 @@ impl<'s> Tracer<'s> {
         let toward = per_axis(|axis| dir[axis] / ray.length);
         let mut colour = surface.ambient;
         for index in self.scene.lights {
-            let added = light::shine(self.scene, (*index, self.lights), surface, toward)?;
+            let seen = (*index, self.lights);
+            let added = match self.scene.model.lights[*index].value.emitter() {
+                None => light::shine(self.scene, seen, surface, toward)?,
+                Some(emitter) => emitted::shine(self.scene, seen, emitter, surface, toward)?,
+            };
             colour = per_axis(|channel| colour[channel] + added[channel]);
         }
         let rules = self.rules();
