@@ -1,7 +1,6 @@
 //! Dual numbers: forward-mode automatic differentiation.
 
-use crate::noise;
-use crate::scalar::{Scalar, apart_if};
+use crate::scalar::{Scalar, apart_if, noise_slope};
 use crate::spline::Spline;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -207,7 +206,7 @@ impl<N: Scalar> Scalar for Dual<N> {
 
     fn noise(at: [Self; 3], orders: [u8; 3]) -> Self {
         let (values, slopes) = (at.map(|along| along.value), at.map(|along| along.slope));
-        Self { value: N::noise(values, orders), slope: noise::slope(values, slopes, orders) }
+        Self { value: N::noise(values, orders), slope: noise_slope(values, slopes, orders) }
     }
 
     #[inline(always)]

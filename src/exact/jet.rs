@@ -4,8 +4,7 @@
 //! Coefficients".
 
 use crate::dual::Dual;
-use crate::noise;
-use crate::scalar::{Scalar, apart_if};
+use crate::scalar::{Scalar, apart_if, noise_slope};
 use crate::spline::Spline;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -247,7 +246,7 @@ impl<N: Scalar> Scalar for Jet<N> {
     }
 
     fn noise(at: [Self; 3], orders: [u8; 3]) -> Self {
-        let slope = noise::slope(at.map(Self::dual), at.map(Self::slope), orders);
+        let slope = noise_slope(at.map(Self::dual), at.map(Self::slope), orders);
         Self::of(N::noise(at.map(|along| along.value), orders), slope)
     }
 

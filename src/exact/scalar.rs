@@ -4,7 +4,7 @@
 //! One formula evaluated with one type after the other gives values, derivatives and proven bounds. The functions are
 //! those of the `libm` crate, whose results do not depend on the machine.
 
-use crate::noise;
+use crate::noise::{self, Curve};
 use crate::spline::{Coefficient, Spline};
 use glam::DVec3;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -149,6 +149,41 @@ pub(crate) fn of_cubic<N: Scalar>(
     ((c3 * t + c2) * t + c1) * t + c0
 }
 
+/// Returns a polynomial of one coordinate, by its coefficients.
+fn curve<N: Scalar>(of: &Curve, t: N) -> N {
+    of.iter().rev().skip(1).fold(N::constant(of[of.len() - 1]), |sum, term| (sum * t).shifted(*term))
+}
+
+/// Returns the noise, or its derivative of these orders, in the cell whose lowest corner is given, where `t` has the coordinates
+/// from that corner, from 0 to 1.
+pub(crate) fn of_noise<N: Scalar>(corner: [f64; 3], t: [N; 3], orders: [u8; 3]) -> N {
+    let along = |axis: usize| noise::curves(orders[axis]).map(|pair| pair.map(|of| curve(&of, t[axis])));
+    let along = [along(0), along(1), along(2)];
+    let mut sum = N::constant(0.0);
+    for index in 0..8 {
+        let at = [index & 1, index >> 1 & 1, index >> 2];
+        let gradient = noise::gradient([0, 1, 2].map(|axis| corner[axis] + at[axis] as f64));
+        for (axis, slope) in gradient.into_iter().enumerate().filter(|(_, slope)| *slope != 0.0) {
+            // The rise along this axis, and the weights along the others.
+            let factor = |of: usize| along[of][usize::from(of == axis)][at[of]];
+            let product = factor(0) * factor(1) * factor(2);
+            sum = if slope > 0.0 { sum + product } else { sum - product };
+        }
+    }
+    sum
+}
+
+/// Returns the derivative of the noise, or of its derivative of these orders, along the slopes of coordinates.
+pub(crate) fn noise_slope<N: Scalar>(at: [N; 3], slopes: [N; 3], orders: [u8; 3]) -> N {
+    let mut sum = N::constant(0.0);
+    for axis in (0..3).filter(|axis| !slopes[*axis].is_zero()) {
+        let mut more = orders;
+        more[axis] += 1;
+        sum = sum + N::noise(at, more) * slopes[axis];
+    }
+    sum
+}
+
 /// Returns a vector of constants.
 #[inline(always)]
 pub fn constants<N: Scalar>(of: DVec3) -> [N; 3] {
@@ -249,7 +284,7 @@ impl Scalar for f64 {
 
     fn noise(at: [Self; 3], orders: [u8; 3]) -> Self {
         let corner = at.map(f64::floor);
-        noise::in_cell(corner, per_axis(|axis| at[axis] - corner[axis]), orders)
+        of_noise(corner, per_axis(|axis| at[axis] - corner[axis]), orders)
     }
 
     #[inline(always)]

@@ -1,7 +1,6 @@
 //! Interfaces: how light continues at a surface. A material may have one.
 
 use crate::geometry::ray::Side;
-use crate::world::material::Rgb;
 use glam::DVec3;
 use std::any::Any;
 use std::fmt;
@@ -40,19 +39,19 @@ pub trait Interface: Send + Sync {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Medium {
     /// The logarithms of the fractions of light that are left after the length `at`.
-    logarithms: Rgb,
+    logarithms: DVec3,
     at: f64,
 }
 
 impl Medium {
     /// Makes a medium that leaves these fractions of light, more than 0 and at most 1, after the length `at`, in world units;
     /// `None` if it leaves all.
-    pub fn new(left: Rgb, at: f64) -> Option<Self> {
-        (left != Rgb::ONE).then(|| Self { logarithms: left.map(libm::log), at })
+    pub fn new(left: DVec3, at: f64) -> Option<Self> {
+        (left != DVec3::ONE).then(|| Self { logarithms: left.map(libm::log), at })
     }
 
     /// Returns the fraction of light that passes a way of this length, in world units.
-    pub fn passed(&self, length: f64) -> Rgb {
+    pub fn passed(&self, length: f64) -> DVec3 {
         let lengths = length / self.at;
         // On an endless way, all is lost of what any is lost of.
         self.logarithms.map(|left| if left == 0.0 { 1.0 } else { libm::exp(left * lengths) })

@@ -2,8 +2,7 @@
 
 use super::{Affine, spread};
 use crate::interval::Interval;
-use crate::noise;
-use crate::scalar::{Scalar, of_cubic, per_axis};
+use crate::scalar::{Scalar, of_cubic, of_noise, per_axis};
 use crate::spline::Spline;
 use std::ops::Div;
 
@@ -145,7 +144,7 @@ impl Scalar for Affine {
         let whole = Interval::noise(ranges, orders);
         let is_one = (0..3).all(|axis| ranges[axis].high < corner[axis] + 1.0);
         if is_one {
-            noise::in_cell(corner, per_axis(|axis| at[axis].shifted(-corner[axis])), orders).or(whole)
+            of_noise(corner, per_axis(|axis| at[axis].shifted(-corner[axis])), orders).or(whole)
         } else {
             whole.into()
         }

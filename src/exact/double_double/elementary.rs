@@ -2,8 +2,7 @@
 //! true hits that tests compare with.
 
 use super::{DoubleDouble, power_of_two, two_product};
-use crate::noise;
-use crate::scalar::{Scalar, of_cubic, per_axis};
+use crate::scalar::{Scalar, of_cubic, of_noise, per_axis};
 use crate::spline::Spline;
 
 /// π / 2 as an unevaluated sum; each part has the next 53 bits.
@@ -181,7 +180,7 @@ impl Scalar for DoubleDouble {
     fn noise(at: [Self; 3], orders: [u8; 3]) -> Self {
         // A corner that is too far to be one number is a little off, and so is the cell.
         let corner = at.map(|along| along.floor().high);
-        noise::in_cell(corner, per_axis(|axis| at[axis].shifted(-corner[axis])), orders)
+        of_noise(corner, per_axis(|axis| at[axis].shifted(-corner[axis])), orders)
     }
 
     fn step(self) -> Self {

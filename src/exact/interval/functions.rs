@@ -1,7 +1,6 @@
 //! The functions of formulas over intervals.
 
 use super::{Float, Interval};
-use crate::noise;
 use crate::scalar::{Scalar, apart_if, of_cubic};
 use crate::spline::{Coefficient, Spline};
 
@@ -246,7 +245,7 @@ impl<F: Float> Scalar for Interval<F> {
     }
 
     fn noise(at: [Self; 3], orders: [u8; 3]) -> Self {
-        noise::enclosed(at, orders)
+        super::noise::enclosed(at, orders)
     }
 
     #[inline(always)]

@@ -5,6 +5,7 @@
 mod float;
 mod fraction;
 mod functions;
+mod noise;
 
 use crate::scalar::{Scalar, apart_if};
 use f256::f256;
