@@ -126,7 +126,7 @@ impl<N: Scalar> Scalar for Dual<N> {
         let (one, other) = (x.value * self.slope, self.value * x.slope);
         let turns = (one - other) / (x.value.powi(2) + self.value.powi(2));
         // Without bounds where the angle jumps.
-        Self { value: self.value.atan2(x.value), slope: turns + self.value.kink() * (-x.value).step() }
+        Self { value: self.value.atan2(x.value), slope: turns + self.value.d_step() * (-x.value).step() }
     }
 
     #[inline(always)]

@@ -162,7 +162,7 @@ impl<N: Scalar> Scalar for Jet<N> {
         let (y, at) = (self.dual(), x.dual());
         let (one, other) = (at * self.slope(), y * x.slope());
         let turns = (one - other) / (at.powi(2) + y.powi(2));
-        Self::of(self.value.atan2(x.value), turns + y.kink() * (-at).step())
+        Self::of(self.value.atan2(x.value), turns + y.d_step() * (-at).step())
     }
 
     #[inline(always)]
