@@ -119,7 +119,8 @@ fn a_jump_is_no_surface() {
 #[test]
 fn what_fractions_repeat_is_seen_as_often_as_it_is_there() {
     agrees("(fract(x) - 0.5)^2 + (mod(y, 1) - 0.5)^2 + (z - floor(z) - 0.5)^2 - 0.1", |ray| {
-        let centers = (0..64).map(|index| DVec3::from([index / 16, index / 4 % 4, index % 4].map(f64::from)) - 1.5);
+        let centers =
+            (0..64).map(|index| DVec3::from([index / 16, index / 4 % 4, index % 4].map(f64::from)) - 1.5);
         centers.flat_map(|center| sphere(ray, center, 0.1)).map(|t| (t, 1.0)).collect()
     });
 }

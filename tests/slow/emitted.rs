@@ -13,8 +13,8 @@ use tabray::render::trace::{Scratch, Tracer};
 use tabray::render::{Flaws, Plan};
 use tabray::simd::Cpu;
 use tabray::tools::threads::renderer_with;
-use tabray::world::sensor::Adaptive;
 use tabray::world::sample::{SCRAMBLE, Sampler};
+use tabray::world::sensor::Adaptive;
 use tempfile::TempDir;
 
 const SIZE: [usize; 2] = [12, 9];

@@ -261,8 +261,8 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         let Some((low, high, rises)) = taylor::bracket(self, root, width) else { return Bracket::UNKNOWN };
         // The function does not cross 0 from the start to the root, and so has the sign there that it starts with.
         let is_first = if rises { start.high < 0.0 } else { start.low > 0.0 };
-        let is_kept =
-            !self.shape.formula.is_cut() || self.shape.formula.inside_trim(self.on_line(Interval { low, high })).low >= 0.0;
+        let is_kept = !self.shape.formula.is_cut()
+            || self.shape.formula.inside_trim(self.on_line(Interval { low, high })).low >= 0.0;
         if is_first && is_kept {
             let near = (self.closest + low - rounding).max(0.0);
             Bracket { near, far: self.closest + high + rounding }

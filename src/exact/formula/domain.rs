@@ -91,7 +91,8 @@ impl Field {
                 }
                 // Beside a pole, a quotient is far from 0.
                 Step::Div if b.has_zero() && !a.has_zero() => {
-                    value = a / if is_above { Interval { low: zero, ..b } } else { Interval { high: zero, ..b } };
+                    value =
+                        a / if is_above { Interval { low: zero, ..b } } else { Interval { high: zero, ..b } };
                     *jumps += 1;
                 }
                 Step::Powi(exponent @ ..0) if exponent % 2 != 0 && a.has_zero() => {
@@ -145,14 +146,16 @@ mod tests {
             ("sqrt(x - sqrt(y)) - z", [1.0, 1.0, 0.0], 0.0),
             ("x^(1/3) - y", [-1.0, 1.0, 0.0], -1.0),
         ] {
-            let domain = field(text).domain(BOX).unwrap_or_else(|| panic!("{text} is not defined everywhere"));
+            let domain =
+                field(text).domain(BOX).unwrap_or_else(|| panic!("{text} is not defined everywhere"));
             assert_eq!(domain.at(at), expected, "{text}");
         }
     }
 
     #[test]
     fn what_is_defined_everywhere_has_no_domain() {
-        for text in ["x + y^3", "sqrt(x^2 + z^2) - y", "abs(x)^0.6 + |y|^0.6 - 1", "sqrt(x + 2) - ln(exp(y))"] {
+        for text in ["x + y^3", "sqrt(x^2 + z^2) - y", "abs(x)^0.6 + |y|^0.6 - 1", "sqrt(x + 2) - ln(exp(y))"]
+        {
             assert_eq!(field(text).domain(BOX), None, "{text}");
         }
     }

@@ -72,8 +72,16 @@ static FUNCTIONS: [FormulaFunction; 39] = [
     FormulaFunction { name: "asinh", arguments: &["x"], meaning: Formula("2*atanh(x/(1 + sqrt(1 + x^2)))") },
     FormulaFunction { name: "acosh", arguments: &["x"], meaning: Formula("ln(x + sqrt(x^2 - 1))") },
     FormulaFunction { name: "atanh", arguments: &["x"], meaning: Formula("ln((1 + x)/(1 - x))/2") },
-    FormulaFunction { name: "smin", arguments: &["a", "b", "k"], meaning: Formula("min(a, b) - max(k - abs(a - b), 0)^2/(4*k)") },
-    FormulaFunction { name: "smax", arguments: &["a", "b", "k"], meaning: Formula("max(a, b) + max(k - abs(a - b), 0)^2/(4*k)") },
+    FormulaFunction {
+        name: "smin",
+        arguments: &["a", "b", "k"],
+        meaning: Formula("min(a, b) - max(k - abs(a - b), 0)^2/(4*k)"),
+    },
+    FormulaFunction {
+        name: "smax",
+        arguments: &["a", "b", "k"],
+        meaning: Formula("max(a, b) + max(k - abs(a - b), 0)^2/(4*k)"),
+    },
 ];
 
 /// Returns the names of the functions of formulas, each with the names of its arguments.

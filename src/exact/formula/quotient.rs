@@ -29,9 +29,8 @@ impl Field {
         if below.is_empty() {
             return None;
         }
-        let with = |steps: Vec<Step>| {
-            Self::new(Arc::new(Formula::new(self.formula().to_string(), SPACE, steps)))
-        };
+        let with =
+            |steps: Vec<Step>| Self::new(Arc::new(Formula::new(self.formula().to_string(), SPACE, steps)));
         let (mut product, mut denominator) = (above.clone(), vec![Step::Number(1.0)]);
         for (factor, power) in &below {
             times(&mut product, factor);

@@ -91,7 +91,6 @@ impl Interval {
         let Self { low, high } = Self { low: least, high: most }.around_angle();
         Self { low: low.max(0.0), high }
     }
-
 }
 
 impl<F: Float> Interval<F> {

@@ -1,8 +1,8 @@
 //! The light of what is spread out, as the points of a surface see it.
 
+use super::context::LightDraws;
 use super::context::Tracer;
 use super::ray_group::RayGroup;
-use super::context::LightDraws;
 use crate::geometry::aabb::Aabb;
 use crate::render::observer::TraceObserver;
 use crate::world::emitter::{Emitter, LightSample};

@@ -94,7 +94,8 @@ fn least(model: &Model, darkest: Rgb) -> Option<Rgb> {
 fn left(object: &Object) -> Rgb {
     let Some(medium) = object.material.medium() else { return Rgb::ONE };
     // A way through a box is no longer than its diagonal.
-    let longest = object.shape.facts().bounds.map_or(f64::INFINITY, |Aabb { low, high }| (high - low).length());
+    let longest =
+        object.shape.facts().bounds.map_or(f64::INFINITY, |Aabb { low, high }| (high - low).length());
     (1.0 - 1e-9) * medium.passed((1.0 + 1e-9) * longest)
 }
 
