@@ -35,7 +35,7 @@ impl Blend {
     }
 
     fn blend(&self, own: Rgb, other: Rgb, at: &SurfacePoint) -> Rgb {
-        if own == other { own } else { own.lerp(other, self.part(at)) }
+        if own == other { own } else { between(own, other, self.part(at)) }
     }
 }
 

@@ -28,7 +28,7 @@ impl Checker {
     fn colour(&self, own: Rgb, other: Rgb, at: &SurfacePoint) -> Rgb {
         if let Some([low, high]) = at.patch.and_then(|patch| patch.uv) {
             let (low, high) = (low * self.squares, high * self.squares);
-            return own.lerp(other, odd_part(0.5 * (low + high), high - low));
+            return between(own, other, odd_part(0.5 * (low + high), high - low));
         }
         let square = self.tile(at);
         if (square.x + square.y).rem_euclid(2.0) == 0.0 { own } else { other }

@@ -82,9 +82,12 @@ impl Image {
             [(from, from + width - over, 1.0 - part), (0.0, over, part)]
         };
         let all = runs(0).into_iter().flat_map(|x| runs(1).map(|y| (x, y)));
-        all.filter(|(x, y)| x.2 * y.2 > 0.0)
-            .map(|(x, y)| x.2 * y.2 * self.texture.mean(DVec2::new(x.0, y.0), DVec2::new(x.1, y.1)))
-            .sum()
+        let (mut sum, mut most) = (Rgb::ZERO, Rgb::ZERO);
+        for (x, y) in all.filter(|(x, y)| x.2 * y.2 > 0.0) {
+            let mean = self.texture.mean(DVec2::new(x.0, y.0), DVec2::new(x.1, y.1));
+            (sum, most) = (sum + x.2 * y.2 * mean, most.max(mean));
+        }
+        sum.min(most)
     }
 
     /// Encloses the colours at points with such u and v.

@@ -37,7 +37,7 @@ impl<const OF_THE_NOTES: bool> Shader for RainbowTiles<OF_THE_NOTES> {
         let along = DVec2::new(at.position.x, at.position.z);
         let hue = || self.hues.colour::<OF_THE_NOTES>((at.position - self.anchor.origin).truncate());
         match &at.patch {
-            Some(patch) => hue().lerp(material.ambient, self.grid.odd_part(along, [0, 2], patch)),
+            Some(patch) => between(hue(), material.ambient, self.grid.odd_part(along, [0, 2], patch)),
             None if self.grid.is_odd(along) => material.ambient,
             None => hue(),
         }

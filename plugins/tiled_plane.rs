@@ -70,7 +70,7 @@ impl Tiles {
                 self.origin.map_or((at.position, OFFSET), |origin| (at.position - origin, 0.0));
             let middle = DVec2::from(self.sides.map(|side| side.dot(from) + offset)) / self.dimensions;
             let widths = DVec2::from(self.sides.map(|side| patch.extent(side))) / self.dimensions;
-            return other.lerp(own, odd_part(middle, widths));
+            return between(other, own, odd_part(middle, widths));
         }
         let tile = self.tile_at(at.position);
         if (tile.x + tile.y).rem_euclid(2.0) == 0.0 { other } else { own }

@@ -80,7 +80,7 @@ impl<const ON_FLOOR: bool> Shader for Tiles<ON_FLOOR> {
         let (odd, even) = (Rgb::new(0.0, green, blue), Rgb::new(red, green, 0.0));
         let along = self.along(at.position);
         if let Some(patch) = &at.patch {
-            return even.lerp(odd, self.grid.odd_part(along, self.axes, patch));
+            return between(even, odd, self.grid.odd_part(along, self.axes, patch));
         }
         if self.grid.is_odd(along) { odd } else { even }
     }

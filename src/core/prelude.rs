@@ -24,7 +24,7 @@ pub use crate::world::interface::{AnyInterface, Crossing, Interface, Medium};
 pub use crate::world::light::Light;
 pub use crate::world::material::{Look, Material, Rgb};
 pub use crate::world::panel::Panel;
-pub use crate::world::patch::{Patch, odd_part};
+pub use crate::world::patch::{Patch, between, odd_part};
 pub use crate::world::pinhole::Pinhole;
 pub use crate::world::rules::Rules;
 pub use crate::world::sample::Sampler;

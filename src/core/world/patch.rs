@@ -5,6 +5,7 @@
 //! many samples would show.
 
 use crate::world::hittable::Hittable;
+use crate::world::material::Rgb;
 use glam::{DVec2, DVec3};
 
 /// The window through which a sample looks: its width in world units, at the start of its ray and for each unit of the way.
@@ -63,6 +64,11 @@ impl Patch {
 /// of side 1 and the one from 0 to 1 is even.
 pub fn odd_part(middle: DVec2, widths: DVec2) -> f64 {
     0.5 - 0.5 * balance(middle.x, widths.x) * balance(middle.y, widths.y)
+}
+
+/// Returns a colour between two others, or one of them: whatever rounding does, no channel lies beyond both.
+pub fn between(one: Rgb, other: Rgb, part: f64) -> Rgb {
+    one.lerp(other, part).clamp(one.min(other), one.max(other))
 }
 
 /// Returns the mean of a wave over an interval: 1 from 0 to 1, -1 from 1 to 2, and so on.

@@ -14,6 +14,8 @@ const THINNEST: f64 = 1.0 / 64.0;
 pub(super) struct Sums {
     size: [u32; 2],
     sums: Vec<Rgb>,
+    /// The light of the brightest channel.
+    brightest: f64,
 }
 
 impl Sums {
@@ -29,7 +31,7 @@ impl Sums {
                 sums[at] = sums[at - wide] + sum;
             }
         }
-        Self { size, sums }
+        Self { size, sums, brightest: texels.brightest() }
     }
 
     /// Returns the mean over a rectangle within the image, given by its corners in texels.
@@ -40,7 +42,7 @@ impl Sums {
         let corner = |x: f64, y: f64| self.up_to(x, y);
         let sum =
             corner(high.x, high.y) - corner(low.x, high.y) - corner(high.x, low.y) + corner(low.x, low.y);
-        (sum / (high - low).element_product()).max(Rgb::ZERO)
+        (sum / (high - low).element_product()).clamp(Rgb::ZERO, Rgb::splat(self.brightest))
     }
 
     /// Returns the sum over all to the left of a point and below it, with parts of texels.

@@ -76,13 +76,17 @@ impl Texels {
             };
             cells.map(move |cell| (cell, part(cell)))
         };
-        let row = |(row, height): (u32, f64)| {
-            let texel = |(column, width): (u32, f64)| width * height * self.light(column, row);
-            cells(low.x, high.x).map(texel).sum::<Rgb>()
-        };
-        // One texel is its own mean, to the last bit.
+        let (mut sum, mut most) = (Rgb::ZERO, Rgb::ZERO);
+        for (row, height) in cells(low.y, high.y) {
+            for (column, width) in cells(low.x, high.x) {
+                let texel = self.light(column, row);
+                sum += width * height * texel;
+                most = most.max(texel);
+            }
+        }
+        // One texel is its own mean, to the last bit, and no mean is brighter than all texels.
         let is_one = low.floor() == high.floor();
-        if is_one { self.light(low.x as u32, low.y as u32) } else { cells(low.y, high.y).map(row).sum() }
+        if is_one { self.light(low.x as u32, low.y as u32) } else { sum.min(most) }
     }
 
     /// Bounds the light of a channel of any texel.

@@ -200,7 +200,7 @@ impl Texture {
         if (high.floor() - low.floor()).max_element() < MOST_TEXELS as f64 {
             return texels.mean_of_few(low, high);
         }
-        picture.sums.get_or_init(|| Sums::of(texels)).mean(low, high).min(Rgb::splat(texels.brightest()))
+        picture.sums.get_or_init(|| Sums::of(texels)).mean(low, high)
     }
 
     /// Returns a texel of an image that has no colours but other numbers, each from 0 to 1, as [`texel`](Self::texel) does; those
