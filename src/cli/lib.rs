@@ -80,7 +80,7 @@ struct Cli {
 enum Command {
     Render(Box<render::Args>),
     Merge(merge::Args),
-    Sensor(film::Args),
+    Film(film::Args),
     Farm(farm::Args),
     Dump(dump::Args),
     Convert(convert::Args),
@@ -163,7 +163,7 @@ fn chosen() -> ExitCode {
         Ok(registry) => match cli.command {
             Some(Command::Render(args)) => render::run(registry, *args),
             Some(Command::Merge(args)) => merge::run(&args),
-            Some(Command::Sensor(args)) => film::run(&args),
+            Some(Command::Film(args)) => film::run(&args),
             Some(Command::Farm(args)) => farm::run(&args),
             Some(Command::Dump(args)) => dump::run(registry, args),
             Some(Command::Convert(args)) => convert::run(registry, args),

@@ -166,7 +166,6 @@ fn body(entity: &'static Entity) -> Schema {
     }
     Schema {
         additional_properties: Some(AdditionalProperties::Allowed(false)),
-        min_properties: Some(usize::from(!properties.is_empty())),
         properties: Some(properties),
         required: Some(required),
         all_of,

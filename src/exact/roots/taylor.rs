@@ -296,7 +296,10 @@ impl<L: FunctionOnLine> Search<'_, L> {
             }
             // At a jump, the bounds of a place are as wide as those of the piece: shorter pieces would not help.
             if value.has_zero() && over.value.is_bounded() && 2.0 * value.width() >= over.value.width() {
-                return self.undecided(low, high);
+                // Beside a jump past 0 there may be roots, however.
+                let jumps = self.line.is_broken(Interval::constant(middle));
+                let halves = Judgement::Open { left: (low, middle), right: (middle, high) };
+                return if jumps { halves } else { self.undecided(low, high) };
             }
             // From one side of a pole to the other, a function that only rises falls.
             let slopes = if over.value.is_bounded() { over.slope } else { Interval::WHOLE };
@@ -309,7 +312,7 @@ impl<L: FunctionOnLine> Search<'_, L> {
             return self.judge_monotone(low, high, slopes.low > 0.0, middle - value.low / slope.low);
         }
         // The bounds are little more than rounding error: shorter pieces would not help.
-        if value.has_zero() && values.magnitude() <= HIDDEN * value.magnitude() {
+        if value.is_bounded() && value.has_zero() && values.magnitude() <= HIDDEN * value.magnitude() {
             return self.undecided(low, high);
         }
         // Right of the midpoint, |value| is above `away + slope u + curvature u²/2`, and left of it above its mirror
@@ -394,6 +397,9 @@ impl<L: FunctionOnLine> Search<'_, L> {
     fn undecided(&mut self, low: f64, high: f64) -> Judgement {
         // A line that leaves the surface starts on it.
         if self.range.origin_side.is_some() && low == self.start {
+            return Judgement::Free;
+        }
+        if self.line.is_broken(Interval { low, high }) {
             return Judgement::Free;
         }
         self.is_certain = false;
