@@ -3,7 +3,7 @@
 
 use crate::common::program::{folder, outcome, scene, tabray};
 use crate::common::{model, scenes, small};
-use tabray::render::{Plan, TraceObserver, to_byte, trace};
+use tabray::render::{Plan, TraceObserver, trace};
 use tabray::scene::Model;
 use tabray::simd::Cpu;
 use tabray::tools::threads::renderer_with;
@@ -41,11 +41,11 @@ fn a_picture_depends_neither_on_instructions_nor_on_threads_nor_on_tiles() {
         for accuracy in [Accuracy::Exact, Accuracy::Classic, Accuracy::Draft, Accuracy::Strict] {
             let model = small(&path, Some(accuracy));
             let plan = Plan::new(&model);
-            let [width, height] = plan.camera.pixels;
+            let ([width, height], display) = (plan.camera.pixels, plan.camera.display());
             let alone = renderers[0].1.run(|| {
                 let pixels = (0..height).rev().flat_map(|y| (0..width).map(move |x| (x, y)));
-                let pixels = pixels.flat_map(|(x, y)| trace::pixel(&plan, x, y).to_array());
-                pixels.map(to_byte).collect::<Vec<_>>()
+                let pixels = pixels.flat_map(|(x, y)| display.bytes(trace::pixel(&plan, x, y)));
+                pixels.collect::<Vec<_>>()
             });
             for (name, renderer) in &renderers {
                 let picture = renderer.picture(&plan);
