@@ -1,6 +1,6 @@
 //! What scenes have that were written as other programs read them: brackets, commas, `=`, `;`, curly quotes, comments
-//! after `//`, colours as `#8080ff`. Where a scene has errors, each of these is reported once, with what would be right, and the scene is read
-//! again without them, so that none of the errors that follow from them is reported.
+//! after `//`, colours as `#8080ff`. Where a scene has errors, each of these is reported once, with what would be
+//! right, and the scene is read again without them, so that none of the errors that follow from them is reported.
 
 use super::fault::{Fault, Severity};
 use super::report::Report;
@@ -92,6 +92,11 @@ impl ForeignSyntax {
     }
 }
 
+/// Tells whether the first word of a text is followed by the brace that begins an entity, as its name is.
+fn is_followed_by_a_brace(text: &str) -> bool {
+    text.split_whitespace().nth(1).is_some_and(|word| word.starts_with('{'))
+}
+
 impl Cleaned {
     /// Replaces all that scenes do not have. A text is only looked through for what its bytes allow.
     fn all(&mut self) {
@@ -133,6 +138,8 @@ impl Cleaned {
             let (length, is_foreign) = match letter {
                 '#' if may_begin => (line, false),
                 '"' if may_begin => (rest[1..line.max(1)].find('"').map_or(1, |end| end + 2), false),
+                // An entity may have such a name.
+                '/' if may_begin && is_followed_by_a_brace(rest) => (1, false),
                 '/' if may_begin && rest.starts_with("//") => (line, true),
                 '/' if may_begin && rest.starts_with("/*") => {
                     (rest.find("*/").map_or(rest.len(), |end| end + 2), true)
@@ -386,6 +393,7 @@ mod tests {
             "sphere (left) { material wall,red radius 1 } # (1, 2); #ff0000",
             "profile \"2 + sin(y)\" text \"“a” = (1, 2);\"",
             "radius 2 #fff comment",
+            "sphere /* { radius 2 }\nsphere //a\n{ radius 2 }",
             "texture \"//host/a.png\" name a//b # see // and /* */",
         ] {
             assert_eq!(cleaned(text), text);
