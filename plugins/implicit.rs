@@ -1,5 +1,6 @@
 //! A surface by its formula: the points where it is 0.
 
+use std::sync::OnceLock;
 use tabray::prelude::*;
 use tabray::shapes::field::{self, Reduced};
 
@@ -26,8 +27,8 @@ inventory::submit! {
         let [x, y, z, x2, y2, z2] = args.get(&BOX);
         let corners = [DVec3::new(x, y, z), DVec3::new(x2, y2, z2)];
         let Reduced { formula, denominator, warnings } = field::reduced(args.get(&FORMULA));
-        let formula = formula.within(corners.map(|corner| corner.to_array()));
-        let domain = formula.domain(corners.map(|corner| corner.to_array()));
+        let ends = corners.map(|corner| corner.to_array());
+        let (formula, domain) = (formula.clone().within(ends), formula.domain(ends));
         let refusal = |what: &str, help| Refusal {
             attribute: Some("formula"),
             message: format!("has a formula that is {what} in its box"),
@@ -47,7 +48,7 @@ inventory::submit! {
             ));
         }
         let is_negated = denominator.is_some_and(|denominator| field::bounds(&denominator, corners).low <= 0.0);
-        let surface = Surface { formula, domain, is_negated, corners };
+        let surface = Surface { formula, domain, is_negated, corners, why_not_closed: OnceLock::new() };
         Ok(Body { warnings, ..Body::implicit(surface, Frame::at(args.get(&CENTER))) })
     })
     .known_as(&["isosurface", "sdf"])
@@ -61,6 +62,24 @@ struct Surface {
     /// Whether the scene's formula divides by what may be 0 or less in the box.
     is_negated: bool,
     corners: [DVec3; 2],
+    /// Found when it is first asked for, as that may take tenths of a second.
+    why_not_closed: OnceLock<Option<&'static str>>,
+}
+
+impl Surface {
+    fn find_why_not_closed(&self) -> Option<&'static str> {
+        if self.domain.is_some() {
+            Some("its formula is not defined everywhere in its box")
+        } else if self.is_negated {
+            Some("its formula divides by what may be 0 or less in its box")
+        } else if !field::is_outside(&self.formula, self.corners) {
+            Some("its box may cut its surface")
+        } else if !field::is_regular(&self.formula, self.corners) {
+            Some("its formula may jump where it would have to be 0")
+        } else {
+            None
+        }
+    }
 }
 
 impl Implicit for Surface {
@@ -83,17 +102,7 @@ impl Implicit for Surface {
     }
 
     fn why_not_closed(&self) -> Option<&'static str> {
-        if self.domain.is_some() {
-            Some("its formula is not defined everywhere in its box")
-        } else if self.is_negated {
-            Some("its formula divides by what may be 0 or less in its box")
-        } else if !field::is_outside(&self.formula, self.corners) {
-            Some("its box may cut its surface")
-        } else if !field::is_regular(&self.formula, self.corners) {
-            Some("its formula may jump where it would have to be 0")
-        } else {
-            None
-        }
+        *self.why_not_closed.get_or_init(|| self.find_why_not_closed())
     }
 
     fn bounds(&self) -> [DVec3; 2] {

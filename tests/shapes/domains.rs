@@ -82,6 +82,16 @@ fn by_steps(value: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
 }
 
 #[test]
+fn a_root_of_squares_that_are_written_as_products_has_an_inside() {
+    let scene = "camera eye { pixeldim 16 12 worlddim 8 6 viewpoint 4 3 6 }
+        material gold { ambient 1 1 0 }
+        implicit ball { material gold formula \"sqrt(x*x + y*y + z*z) - 1\" box -2 -2 -2 2 2 2 }
+        sphere other { material gold center 1 0 0 radius 0.5 }
+        difference left { objects ball other }";
+    assert_eq!(model(scene).objects.len(), 1);
+}
+
+#[test]
 fn a_cone_by_its_root_has_one_half_and_a_tip() {
     agrees("sqrt(x^2 + z^2) - y", |ray| {
         let signs = DVec3::new(1.0, -1.0, 1.0);

@@ -146,13 +146,7 @@ fn written(steps: &[Step]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::formula::variables::SPACE;
-
-    fn field(text: &str) -> Field {
-        let formula = Formula::parse_in(text, SPACE).unwrap_or_else(|fault| panic!("{text}: {fault:?}"));
-        Field::new(Arc::new(formula)).expect("its variables are x, y and z")
-    }
+    use crate::formula::tests::field;
 
     #[test]
     fn powers_of_factors_are_left_out() {
@@ -176,6 +170,13 @@ mod tests {
         }
         for text in ["x^2 + y^2 - 1", "x*y*z", "2*(x - 1)*(y - 1)", "-x"] {
             assert_eq!(field(text).without_powers(), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn numbers_of_a_million_digits_are_not_computed() {
+        for text in ["x + ((3^999)^999)^999", "(x + 3)*((7^999)^999)^999"] {
+            assert!(!field(text).is_polynomial(), "{text}");
         }
     }
 

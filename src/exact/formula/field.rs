@@ -141,7 +141,8 @@ fn with_roots(steps: &[Step]) -> Vec<Step> {
     out
 }
 
-/// Returns the same operations, where those with a constant take one step and no derivatives of the constant.
+/// Returns the same operations, where those with a constant take one step and no derivatives of the constant, and products of
+/// the same are squares.
 fn with_constants(steps: &[Step]) -> Vec<Step> {
     let (mut out, mut starts) = (Vec::with_capacity(steps.len()), Vec::new());
     for step in steps {
@@ -151,6 +152,12 @@ fn with_constants(steps: &[Step]) -> Vec<Step> {
                 let second = starts.pop().unwrap_or(0);
                 let first = starts.last().copied().unwrap_or(0);
                 let last = out.len() - 1;
+                // Bounds of a square are not below 0.
+                if *step == Step::Mul && out[first..second] == out[second..] {
+                    out.truncate(second);
+                    out.push(Step::Powi(2));
+                    continue;
+                }
                 let constant =
                     |step: &Step| if let Step::Number(number) = *step { Some(number) } else { None };
                 let right = if second == last { constant(&out[last]) } else { None };

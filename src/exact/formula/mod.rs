@@ -181,9 +181,16 @@ impl fmt::Display for Formula {
 
 #[cfg(test)]
 mod tests {
+    use super::field::Field;
     use super::variables::SPACE;
     use super::*;
     use std::f64::consts::PI;
+
+    /// Parses a formula in x, y and z.
+    pub(super) fn field(text: &str) -> Field {
+        let formula = Formula::parse_in(text, SPACE).unwrap_or_else(|fault| panic!("{text}: {fault:?}"));
+        Field::new(Arc::new(formula)).expect("its variables are x, y and z")
+    }
 
     fn value(text: &str, y: f64) -> f64 {
         Formula::parse(text).unwrap_or_else(|fault| panic!("{text}: {fault:?}")).at(y)

@@ -10,11 +10,14 @@ use crate::interval::Fraction;
 use crate::polynomial::MOST;
 use crate::roots::whole::{Dyadic, Whole};
 use dashu_int::IBig;
-use dashu_int::ops::Abs;
+use dashu_int::ops::{Abs, BitTest};
 
 /// The largest power of two by which numbers are scaled to add them, or to make them whole: a number of 1e-300 to the 12th
 /// power is smaller, and not worth the time.
 const MOST_BITS: i64 = 1 << 14;
+
+/// The most digits of a number, in bits: coefficients of polynomials of degree 40 have some thousands.
+const MOST_DIGITS: usize = 1 << 16;
 
 /// A polynomial whose coefficients are these whole numbers times a power of two, divided by a positive number.
 #[derive(Clone, Debug)]
@@ -82,7 +85,14 @@ impl Rational {
             true => self.denominator.clone(),
             false => &self.denominator * &other.denominator,
         };
-        Some(Self { numerators, exponent, denominator })
+        Self { numerators, exponent, denominator }.not_too_long()
+    }
+
+    /// Returns the polynomial, unless a number of it has too many digits.
+    fn not_too_long(self) -> Option<Self> {
+        let numbers = self.numerators.iter().chain([&self.denominator]);
+        let is_short = numbers.into_iter().all(|number| number.bit_len() <= MOST_DIGITS);
+        (is_short && self.exponent.abs() <= 4 * MOST_BITS).then_some(self)
     }
 
     fn times(&self, other: &Self) -> Option<Self> {
@@ -98,7 +108,7 @@ impl Rational {
         }
         let denominator = &self.denominator * &other.denominator;
         let exponent = self.exponent + other.exponent;
-        (exponent.abs() <= 4 * MOST_BITS).then_some(Self { numerators, exponent, denominator })
+        Self { numerators, exponent, denominator }.not_too_long()
     }
 
     fn over(&self, other: &Self) -> Option<Self> {
