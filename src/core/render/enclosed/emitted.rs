@@ -2,7 +2,7 @@
 
 use super::light::{LightPoints, power};
 use super::number::{Endpoint, Number, ranges};
-use super::panes::{Passes, passed};
+use super::panes::passed;
 use super::scene::{Colour, Path, Scene};
 use super::surface::{Surface, is_black};
 use crate::geometry::sight::Line;
@@ -80,17 +80,10 @@ pub(super) fn shine<N: Number>(
         scattered = per_axis(|channel| scattered[channel] + surface.specular[channel] * strength);
     }
     let path = Path { line: Line { origin: surface.at, dir: toward }, leaves: Some(surface.place) };
-    let passes = passed(scene, &path, index);
+    let full = per_axis(|channel| scattered[channel] * sent[channel] * weight);
+    let lit = passed(scene, &path, index).lit(scene, &full, above)?;
     Some(per_axis(|channel| {
-        let full = scattered[channel] * sent[channel] * weight;
-        let lit = match &passes {
-            Passes::Nothing => black[channel],
-            Passes::All => full,
-            Passes::Part(fraction) => full * fraction[channel],
-            Passes::Open => full.hull(black[channel]),
-        };
-        let lit = if above.low > zero { lit } else { lit.hull(black[channel]) };
-        let mean = lit.mean_over_light();
+        let mean = lit[channel].mean_over_light();
         let width = |of: N| of.mean().coarse().width();
         // Near a panel, its points say less than all that there may be.
         if width(mean) <= width(any[channel]) { mean } else { any[channel] }

@@ -1,7 +1,7 @@
 //! The light that reaches the points of a surface.
 
 use super::number::{Endpoint, Number, ranges};
-use super::panes::{Passes, passed};
+use super::panes::passed;
 use super::scene::{Colour, Path, Scene};
 use super::surface::{Surface, is_black};
 use crate::geometry::sight::Line;
@@ -68,21 +68,9 @@ pub(super) fn shine<N: Number>(
         }
     }
     let path = Path { line: Line { origin: surface.at, dir: toward }, leaves: Some(surface.place) };
-    let passes = passed(scene, &path, index);
-    if matches!(passes, Passes::Open) && !scene.bounds.passes_fractions {
-        return None;
-    }
-    Some(per_axis(|channel| {
-        let full = scattered[channel] * sent[channel];
-        let lit = match &passes {
-            Passes::Nothing => black[channel],
-            Passes::All => full,
-            Passes::Part(fraction) => full * fraction[channel],
-            Passes::Open => full.hull(black[channel]),
-        };
-        let lit = if above.low > zero { lit } else { lit.hull(black[channel]) };
-        lit.mean_over_light()
-    }))
+    let full = per_axis(|channel| scattered[channel] * sent[channel]);
+    let lit = passed(scene, &path, index).lit(scene, &full, above)?;
+    Some(lit.map(N::mean_over_light))
 }
 
 /// Encloses the vectors from points to a light: to its own point, or to those seen of the disc around it that faces the

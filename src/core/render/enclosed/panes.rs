@@ -23,6 +23,27 @@ pub(super) enum Passes<N> {
     Open,
 }
 
+impl<N: Number> Passes<N> {
+    /// Encloses what reaches points of the light that they would get, and which comes from above the surface for the part of
+    /// them whose cosines are above 0; `None` where that is open.
+    pub fn lit(&self, scene: &Scene, full: &Colour<N>, cosines: Interval<N::End>) -> Option<Colour<N>> {
+        if matches!(self, Self::Open) && !scene.bounds.passes_fractions {
+            return None;
+        }
+        let (zero, black) = (N::of(0.0), N::constant(0.0));
+        Some(per_axis(|channel| {
+            let full = full[channel];
+            let lit = match self {
+                Self::Nothing => black,
+                Self::All => full,
+                Self::Part(fraction) => full * fraction[channel],
+                Self::Open => full.hull(black),
+            };
+            if cosines.low > zero { lit } else { lit.hull(black) }
+        }))
+    }
+}
+
 /// Tells how much of the light of this index passes along lines from t = 0 to t = 1, where they end on it.
 pub(super) fn passed<N: Number>(scene: &Scene, path: &Path<N>, light: usize) -> Passes<N> {
     let (objects, one) = (&scene.model.objects, N::of(1.0));
