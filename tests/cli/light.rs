@@ -100,7 +100,12 @@ fn black_burnt_and_empty_images_say_why() {
     let burnt = format!("{FAR} }} {}", PART.replace("emissivity 1 1 1", "emissivity 30 30 30"));
     let empty =
         format!("{} rules free }} sky day {{ }} {PART}", FAR.replace("target 0 0 0", "target 0 0 900"));
+    let metal =
+        PART.replace("material grey { diffuse 0.8 0.8 0.8 }", "metal grey { roughness 0.3 } sky day { }");
+    let (rough, sky) = (format!("{FAR} }} {metal}"), format!("{FAR} }} sky day {{ lights yes }} {PART}"));
     for (scene, says, cure) in [
+        (&rough, "`part` has a rough material", "`samples 64`"),
+        (&sky, "which sees a single direction", "`samples 64`"),
         (&black, "by the notes' rules adds up to", "`rules free`"),
         (&burnt, "of the image is burnt to white: `key` adds up to", "`rules notes`"),
         (&empty, "no object is in view", "`target 0 0 0` looks at their middle"),

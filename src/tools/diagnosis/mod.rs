@@ -12,7 +12,7 @@ use tabray_core::render::plan::Plan;
 use tabray_core::render::trace::{self, Scratch, Tracer};
 use tabray_core::scene::attribute::Pose;
 use tabray_core::scene::kind::Kind;
-use tabray_core::scene::model::Model;
+use tabray_core::scene::model::{Model, Object};
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::text::{self, short};
 use tabray_core::world::camera::Projected;
@@ -89,17 +89,23 @@ pub fn remark(plan: &Plan, part: [&Range<usize>; 2], levels: &Levels) -> Option<
     })
 }
 
-/// Says that a background lights the scene from one direction, where pixels have one sample.
+/// Says that a background lights the scene from one direction, or that what is rough is smooth, where pixels have one sample.
 fn flat(model: &Model) -> Option<Remark> {
     let Sensor { samples, adaptive, .. } = &model.camera.value;
-    let sky = model.lights.iter().find(|light| light.args.entity().kind() == Kind::Background)?;
-    (*samples == 1 && adaptive.is_none()).then(|| Remark {
-        message: format!(
-            "`{}` lights the scene, but each pixel has one sample, which sees a single direction",
-            sky.args.name()
-        ),
+    if *samples != 1 || adaptive.is_some() {
+        return None;
+    }
+    let said = |name: &str, what: &str| Remark {
+        message: format!("`{name}` {what}"),
         help: "take more: `samples 64` in the camera, `--samples 64` or `--max-error 2`".to_owned(),
-    })
+    };
+    let sky = model.lights.iter().find(|light| light.args.entity().kind() == Kind::Background);
+    let is_rough =
+        |object: &&Object| object.material.interface.as_ref().is_some_and(|of| of.roughness() > 0.0);
+    let lights = "lights the scene, but each pixel has one sample, which sees a single direction";
+    let rough = "has a rough material, but each pixel has one sample, which shows it smooth";
+    let of_sky = sky.map(|sky| said(sky.args.name(), lights));
+    of_sky.or_else(|| model.objects.iter().find(is_rough).map(|object| said(object.args.name(), rough)))
 }
 
 /// Returns what is to be said of a model's image, of which a few pixels are tried.
