@@ -30,8 +30,7 @@ impl Checker {
             let (low, high) = (low * self.squares, high * self.squares);
             return between(own, other, odd_part(0.5 * (low + high), high - low));
         }
-        let square = self.tile(at);
-        if (square.x + square.y).rem_euclid(2.0) == 0.0 { own } else { other }
+        if is_odd(self.tile(at)) { other } else { own }
     }
 }
 
@@ -67,7 +66,7 @@ impl Shader for Checker {
         };
         let [own, other] = [LookBounds::from(material), LookBounds::from(&*self.other)];
         Some(match (square(0), square(1)) {
-            (Some(column), Some(row)) if (column + row).rem_euclid(2.0) == 0.0 => own,
+            (Some(column), Some(row)) if !is_odd(DVec2::new(column, row)) => own,
             (Some(_), Some(_)) => other,
             _ => own.hull(&other),
         })

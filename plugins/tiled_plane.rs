@@ -62,18 +62,21 @@ impl Tiles {
         DVec2::new(tile(0), tile(1))
     }
 
+    /// Returns the part of a patch around a point that is odd.
+    #[inline(never)]
+    fn odd_part(&self, at: DVec3, patch: &Patch) -> f64 {
+        let (from, offset) = self.origin.map_or((at, OFFSET), |origin| (at - origin, 0.0));
+        let middle = DVec2::from(self.sides.map(|side| side.dot(from) + offset)) / self.dimensions;
+        odd_part(middle, DVec2::from(self.sides.map(|side| patch.extent(side))) / self.dimensions)
+    }
+
     /// Returns the colour of the tile at a point, or the mean over the patch around it.
     #[inline]
     fn colour(&self, own: Rgb, other: Rgb, at: &SurfacePoint) -> Rgb {
         if let Some(patch) = &at.patch {
-            let (from, offset) =
-                self.origin.map_or((at.position, OFFSET), |origin| (at.position - origin, 0.0));
-            let middle = DVec2::from(self.sides.map(|side| side.dot(from) + offset)) / self.dimensions;
-            let widths = DVec2::from(self.sides.map(|side| patch.extent(side))) / self.dimensions;
-            return between(other, own, odd_part(middle, widths));
+            return between(other, own, self.odd_part(at.position, patch));
         }
-        let tile = self.tile_at(at.position);
-        if (tile.x + tile.y).rem_euclid(2.0) == 0.0 { other } else { own }
+        if is_odd(self.tile_at(at.position)) { own } else { other }
     }
 }
 
@@ -113,7 +116,7 @@ impl Shader for Tiles {
         let other = Material { specular, ..(*self.other).clone() };
         let (own, other) = (LookBounds::from(material), LookBounds::from(&other));
         Some(match (tile(u, 0), tile(v, 1)) {
-            (Some(i), Some(j)) if (i + j).rem_euclid(2.0) == 0.0 => other,
+            (Some(i), Some(j)) if !is_odd(DVec2::new(i, j)) => other,
             (Some(_), Some(_)) => own,
             _ => own.hull(&other),
         })

@@ -129,8 +129,7 @@ impl Grid {
     /// 0 twice as wide; with `floor` in place of the cast, tiles are equally wide at any distance.
     #[inline]
     pub fn is_odd(&self, along: DVec2) -> bool {
-        let tile = self.tile(along);
-        (tile.x + tile.y).rem_euclid(2.0) != 0.0
+        is_odd(self.tile(along))
     }
 
     /// Returns the part of a patch around a point that is odd, given the two axes along which tiles lie.
@@ -153,6 +152,6 @@ impl Grid {
         let is_exact = self.width.to_bits() << 12 == 0 && self.per_unit.is_normal();
         let tiles = |along| if is_exact { n(self.per_unit) * along } else { along / n(self.width) };
         let [one, other] = along.map(|along| (tiles(along) + n(1000.0)).certain_floor());
-        Some((one? + other?).rem_euclid(2.0) != 0.0)
+        Some(is_odd(DVec2::new(one?, other?)))
     }
 }

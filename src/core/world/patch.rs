@@ -60,6 +60,15 @@ impl Patch {
     }
 }
 
+/// Tells whether a square or a tile is odd, given its two whole numbers: in a row, every other one is. One that is no
+/// number counts as odd.
+#[inline(always)]
+pub fn is_odd(square: DVec2) -> bool {
+    // Exact, and many times faster than a remainder.
+    let half = 0.5 * (square.x + square.y);
+    half - half.floor() != 0.0
+}
+
 /// Returns the part that odd squares have of a rectangle with this middle and these widths, where space is tiled with squares
 /// of side 1 and the one from 0 to 1 is even.
 pub fn odd_part(middle: DVec2, widths: DVec2) -> f64 {
@@ -87,6 +96,23 @@ fn balance(middle: f64, width: f64) -> f64 {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn odd_are_those_with_an_odd_sum() {
+        for (x, y, expected) in [
+            (0.0, 0.0, false),
+            (1.0, 0.0, true),
+            (-3.0, 2.0, true),
+            (-3.0, -5.0, false),
+            (9_007_199_254_740_991.0, 0.0, true),
+            (1e300, 1.0, false),
+            (f64::INFINITY, 0.0, true),
+            (f64::NAN, 0.0, true),
+        ] {
+            assert_eq!(is_odd(DVec2::new(x, y)), expected, "{x} {y}");
+            assert_eq!(is_odd(DVec2::new(x, y)), (x + y).rem_euclid(2.0) != 0.0, "{x} {y}");
+        }
+    }
 
     proptest! {
         #[test]
