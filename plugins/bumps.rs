@@ -12,58 +12,25 @@ const TABLE: Table = &[&HEIGHT, &SHADER];
 inventory::submit! {
     Entity::shader("bumps", "bumps and waves, by a formula of their height", &[TABLE], |args| {
         let (height, colours) = (args.get(&HEIGHT), args.get(&SHADER).unwrap_or_default());
-        Ok(ShaderFactory::new(move |anchor| Bumps { height: height.clone(), colours: colours.on(anchor) }))
+        Ok(ShaderFactory::new(move |anchor| Bent { bend: Bumps(height.clone()), colours: colours.on(anchor) }))
     })
 }
 
-struct Bumps {
-    height: Field,
-    colours: AnyShader,
-}
+/// Bumps of this height.
+struct Bumps(Field);
 
-impl Shader for Bumps {
-    fn sees(&self) -> ShaderInputs {
-        ShaderInputs { normal: true, ..self.colours.sees() }
-    }
-
-    fn bends(&self) -> bool {
-        true
-    }
+impl Bend for Bumps {
+    const SEES: ShaderInputs = ShaderInputs::POSITION;
 
     /// Leans the normal against the slope of the height along the surface.
-    fn bend(&self, at: &SurfacePoint) -> DVec3 {
-        let normal = self.colours.bend(at);
+    fn bent(&self, at: &SurfacePoint, normal: DVec3) -> DVec3 {
         let slope = |axis: usize| {
             let along =
                 |other| Dual { value: at.position[other], slope: if other == axis { 1.0 } else { 0.0 } };
-            self.height.at(per_axis(along)).slope
+            self.0.at(per_axis(along)).slope
         };
         let gradient = DVec3::from(per_axis(slope));
         let bent = normal - (gradient - gradient.dot(normal) * normal);
         if bent.is_finite() { bent.try_normalize().unwrap_or(normal) } else { normal }
-    }
-
-    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.colours.ambient(material, at)
-    }
-
-    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.colours.diffuse(material, at)
-    }
-
-    fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.colours.specular(material, at)
-    }
-
-    fn uniform(&self, material: &Material) -> Option<Look> {
-        self.colours.uniform(material)
-    }
-
-    fn tile(&self, at: &SurfacePoint) -> DVec2 {
-        self.colours.tile(at)
-    }
-
-    fn brightest(&self, material: &Material) -> Option<Look> {
-        self.colours.brightest(material)
     }
 }

@@ -25,8 +25,8 @@ inventory::submit! {
         let (texture, strength) = (args.get(&TEXTURE), args.get(&STRENGTH));
         let repeat = DVec2::from(args.get(&REPEAT).map(|count| count as f64));
         let colours = args.get(&SHADER).unwrap_or_default();
-        let on = move |anchor| Normals { texture: texture.clone(), repeat, strength, colours: colours.on(anchor) };
-        Ok(ShaderFactory::new(on))
+        let normals = move || Normals { texture: texture.clone(), repeat, strength };
+        Ok(ShaderFactory::new(move |anchor| Bent { bend: normals(), colours: colours.on(anchor) }))
     })
     .known_as(&["normal_map", "normalmap"])
 }
@@ -35,7 +35,6 @@ struct Normals {
     texture: Arc<Texture>,
     repeat: DVec2,
     strength: f64,
-    colours: AnyShader,
 }
 
 impl Normals {
@@ -54,45 +53,14 @@ impl Normals {
     }
 }
 
-impl Shader for Normals {
-    fn sees(&self) -> ShaderInputs {
-        ShaderInputs { normal: true, uv: true, tangents: true, ..self.colours.sees() }
-    }
-
-    fn bends(&self) -> bool {
-        true
-    }
+impl Bend for Normals {
+    const SEES: ShaderInputs = ShaderInputs { tangents: true, ..ShaderInputs::UV };
 
     /// Where there are no u and v, the normal is straight.
-    fn bend(&self, at: &SurfacePoint) -> DVec3 {
-        let normal = self.colours.bend(at);
+    fn bent(&self, at: &SurfacePoint, normal: DVec3) -> DVec3 {
         let (Some(uv), Some([along_u, along_v])) = (at.uv, at.tangents) else { return normal };
         let DVec3 { x, y, z } = self.parts(uv);
         let bent = self.strength * (x * along_u + y * along_v) + z.max(0.0) * normal;
         bent.try_normalize().unwrap_or(normal)
-    }
-
-    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.colours.ambient(material, at)
-    }
-
-    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.colours.diffuse(material, at)
-    }
-
-    fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.colours.specular(material, at)
-    }
-
-    fn uniform(&self, material: &Material) -> Option<Look> {
-        self.colours.uniform(material)
-    }
-
-    fn tile(&self, at: &SurfacePoint) -> DVec2 {
-        self.colours.tile(at)
-    }
-
-    fn brightest(&self, material: &Material) -> Option<Look> {
-        self.colours.brightest(material)
     }
 }

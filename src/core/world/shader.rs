@@ -112,6 +112,17 @@ impl ShaderInputs {
     /// The position, and the patch around it.
     pub const PATCH: Self = Self { patch: true, ..Self::POSITION };
 
+    /// Returns what one or the other sees.
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            normal: self.normal | other.normal,
+            uv: self.uv | other.uv,
+            face: self.face | other.face,
+            tangents: self.tangents | other.tangents,
+            patch: self.patch | other.patch,
+        }
+    }
+
     /// Tells whether the position is all that is seen, where there are no patches.
     #[inline(always)]
     pub(crate) fn is_position(self) -> bool {

@@ -1,0 +1,61 @@
+//! Shaders that bend normals, and leave the colours to another one.
+
+use crate::world::body::AnyShader;
+use crate::world::material::{Look, Material, Rgb};
+use crate::world::shader::{Shader, ShaderInputs, SurfacePoint};
+use glam::{DVec2, DVec3};
+
+/// How normals are bent.
+pub trait Bend: Send + Sync {
+    /// What it sees of a point beside the normal.
+    const SEES: ShaderInputs;
+
+    /// Returns the outward unit normal with which a point is shaded, in place of this one.
+    fn bent(&self, at: &SurfacePoint, normal: DVec3) -> DVec3;
+}
+
+/// A shader that bends the normals of another one.
+pub struct Bent<B> {
+    /// How normals are bent.
+    pub bend: B,
+    /// The shader that gives the colours.
+    pub colours: AnyShader,
+}
+
+impl<B: Bend> Shader for Bent<B> {
+    fn sees(&self) -> ShaderInputs {
+        ShaderInputs::NORMAL.and(B::SEES).and(self.colours.sees())
+    }
+
+    fn bends(&self) -> bool {
+        true
+    }
+
+    fn bend(&self, at: &SurfacePoint) -> DVec3 {
+        self.bend.bent(at, self.colours.bend(at))
+    }
+
+    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.colours.ambient(material, at)
+    }
+
+    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.colours.diffuse(material, at)
+    }
+
+    fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.colours.specular(material, at)
+    }
+
+    fn uniform(&self, material: &Material) -> Option<Look> {
+        self.colours.uniform(material)
+    }
+
+    fn tile(&self, at: &SurfacePoint) -> DVec2 {
+        self.colours.tile(at)
+    }
+
+    fn brightest(&self, material: &Material) -> Option<Look> {
+        self.colours.brightest(material)
+    }
+}
