@@ -102,7 +102,8 @@ fn black_burnt_and_empty_images_say_why() {
         format!("{} rules free }} sky day {{ }} {PART}", FAR.replace("target 0 0 0", "target 0 0 900"));
     let metal =
         PART.replace("material grey { diffuse 0.8 0.8 0.8 }", "metal grey { roughness 0.3 } sky day { }");
-    let (rough, sky) = (format!("{FAR} }} {metal}"), format!("{FAR} }} sky day {{ lights yes }} {PART}"));
+    let dim = PART.replace("emissivity 1 1 1", "emissivity 0.1 0.1 0.1");
+    let (rough, sky) = (format!("{FAR} }} {metal}"), format!("{FAR} }} sky day {{ lights yes }} {dim}"));
     for (scene, says, cure) in [
         (&rough, "`part` has a rough material", "`samples 64`"),
         (&sky, "which sees a single direction", "`samples 64`"),

@@ -25,7 +25,8 @@ const FLOORS: [&str; 3] = [
 /// Returns the root of the mean square difference of the images of two plans, where 1 is white.
 fn difference(one: &Plan, other: &Plan) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
-    for (x, y) in (0..48).flat_map(|x| (0..36).map(move |y| (x, y))) {
+    // Every other column and row is enough.
+    for (x, y) in (0..24).flat_map(|x| (0..18).map(move |y| (2 * x, 2 * y))) {
         sum += (trace::pixel(one, x, y) - trace::pixel(other, x, y)).length_squared() / 3.0;
         count += 1.0;
     }

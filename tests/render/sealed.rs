@@ -53,7 +53,7 @@ fn no_light_comes_in_at_an_edge() {
 fn no_light_comes_into_a_mirror_of_bumps() {
     for (smooth, height) in [(0, "0.2*sin(9*x)"), (1, "0.2*sin(9*x)"), (1, "0.3*sin(5*x+3*y)+0.2*sin(7*z)")] {
         let model = scene(&format!(
-            "look_at eye {{ pixeldim 64 48 position 3.7 2.6 3.3 target 1 0 0 angle 100 }}
+            "look_at eye {{ pixeldim 32 24 position 3.7 2.6 3.3 target 1 0 0 angle 100 }}
              bumps waves {{ height \"{height}\" }} material m {{ diffuse 9 9 9 specular 0.9 }} {LAMPS}
              mesh room {{ material m file cube.obj shader waves smooth {smooth} }}"
         ));

@@ -179,7 +179,7 @@ fn a_smooth_mesh_is_lit_only_where_the_light_is_before_its_faces() {
 fn a_smooth_mirror_shows_only_what_is_before_its_faces() {
     let black = is_black(
         OCTAHEDRON,
-        "look_at eye { pixeldim 12 12 position 0.6 0 -0.39 target 0.97 0.015 0.015 angle 120 }
+        "look_at eye { pixeldim 6 6 position 0.6 0 -0.39 target 0.97 0.015 0.015 angle 120 }
          material mirror { specular 1 1 1 } background pale { colour 1 1 1 }
          mesh o { material mirror file mesh.obj smooth 1 }",
     );

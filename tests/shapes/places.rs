@@ -16,7 +16,12 @@ const BEFORE: &str = "camera eye { pixeldim 160 120 worlddim 8 6 viewpoint 4 3 8
 
 /// Asserts that two scenes look the same but for the rounding of single pixels' bytes.
 fn look_the_same(one: &str, other: &str) {
-    let [one_bytes, other_bytes] = [one, other].map(|scene| render(&model(&format!("{BEFORE}{scene}"))));
+    look_the_same_in(BEFORE, one, other);
+}
+
+/// Asserts it of what follows a camera and what else is in the scene.
+fn look_the_same_in(before: &str, one: &str, other: &str) {
+    let [one_bytes, other_bytes] = [one, other].map(|scene| render(&model(&format!("{before}{scene}"))));
     let differences = || one_bytes.iter().zip(other_bytes.iter()).map(|(one, other)| one.abs_diff(*other));
     assert!(differences().all(|difference| difference <= 1), "{one}");
     let different = differences().filter(|difference| *difference > 0).count();
@@ -200,11 +205,14 @@ fn a_copy_of_a_smooth_mesh_is_smooth() {
 
 #[test]
 fn a_copy_of_a_mesh_of_1e_150_or_1e150_looks_as_the_mesh_does() {
+    // Boxes of such faces are of little use to a ray, so each takes many tests.
+    let before = BEFORE.replace("160 120", "64 48");
     for (mesh, copy) in [("1e150", "1e-150"), ("1e-150", "1e150")] {
         for smooth in [0, 1] {
             let object = format!("material red file scenes/models/knot.obj smooth {smooth}");
             let place = "rotation 50 0 20 translation 4 2 -2";
-            look_the_same(
+            look_the_same_in(
+                &before,
                 &format!(
                     "mesh o {{ {object} scale {mesh} {mesh} {mesh} }}
                      place p {{ object o material red scale {copy} {copy} {copy} {place} }}"
