@@ -61,7 +61,7 @@ pub fn small(path: &Path, accuracy: Option<Accuracy>) -> Model {
     // Mirrors that touch cost 20,000 rays per pixel, and rays that graze 1 ms each. Neither width nor height is a multiple
     // of the tile size.
     let is_costly = ["touching-mirrors.ray", "grazing.ray"].iter().any(|name| path.ends_with(name));
-    camera.pixels = if is_costly { [9, 5] } else { [36, 27] };
+    camera.pixels = if is_costly { [5, 3] } else { [36, 27] };
     camera.samples = camera.samples.min(3);
     model
 }

@@ -1,6 +1,6 @@
 //! What `choose --max-error` promises, measured on scenes made at random.
 //!
-//! `TABRAY_SCENES=200 cargo test --release --test slow choose -- --nocapture` measures 200 scenes in place of 40, and
+//! `TABRAY_SCENES=200 cargo test --release --test slow choose -- --nocapture` measures 200 scenes in place of 15, and
 //! prints a table; `TABRAY` names a program other than the one that is built.
 
 mod made;
@@ -115,7 +115,7 @@ struct Tally {
 
 #[test]
 fn promises_are_kept_and_given() {
-    let scenes = env::var("TABRAY_SCENES").map_or(40, |count| count.parse().expect("a number of scenes"));
+    let scenes = env::var("TABRAY_SCENES").map_or(15, |count| count.parse().expect("a number of scenes"));
     let renderer = renderer_with(0).expect("threads");
     let folder = TempDir::new().expect("a folder");
     let mut tallies = [Tally::default(), Tally::default()];
