@@ -21,6 +21,7 @@ mod fmt;
 pub mod fuzz;
 mod grammar;
 mod heap;
+mod hits;
 mod list;
 mod lsp;
 mod man;
@@ -88,6 +89,7 @@ enum Command {
     Fmt(fmt::Args),
     Plan(plan::Args),
     Probe(probe::Args),
+    Hits(Box<hits::Args>),
     Verify(verify::Args),
     Chart(chart::Args),
     Choose(choose::Args),
@@ -171,6 +173,7 @@ fn chosen() -> ExitCode {
             Some(Command::Fmt(args)) => fmt::run(registry, &args),
             Some(Command::Plan(args)) => plan::run(registry, args),
             Some(Command::Probe(args)) => probe::run(registry, args),
+            Some(Command::Hits(args)) => hits::run(registry, *args),
             Some(Command::Verify(args)) => verify::run(registry, args),
             Some(Command::Chart(args)) => chart::run(registry, args),
             Some(Command::Choose(args)) => choose::run(registry, args),

@@ -42,6 +42,7 @@ pub mod memory;
 pub mod output;
 pub mod parallel;
 pub mod prelude;
+pub mod query;
 pub mod render;
 pub mod scene;
 pub mod shapes;

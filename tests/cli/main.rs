@@ -15,6 +15,7 @@ mod editor;
 mod failures;
 mod firsthour;
 mod full_range;
+mod hits;
 mod light;
 mod limits;
 mod messages;

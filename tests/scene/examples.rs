@@ -2,6 +2,8 @@
 
 #[path = "../../src/exact/examples/bounds.rs"]
 mod bounds;
+#[path = "../../src/lang/examples/rays.rs"]
+mod rays;
 #[path = "../../src/lang/examples/scene.rs"]
 mod scene;
 #[path = "../../src/core/examples/torus.rs"]

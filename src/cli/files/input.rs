@@ -67,11 +67,31 @@ impl Source {
     /// Reads the text of a scene, beside which values are set.
     pub fn read(path: &Path, sets: &set::Args) -> Result<Self, Failure> {
         let (name, bytes) = read(path)?;
-        let syntax = Syntax::of_name(path);
-        let syntax = syntax.or_else(|| Some(Syntax::of_text(std::str::from_utf8(&bytes).ok()?)));
-        let model = if syntax == Some(Syntax::Toml) { MODEL_IN_TOML } else { MODEL };
-        memory::refuse_too_large(model.saturating_mul(bytes.len()), &format!("the model of `{name}`"))?;
-        Ok(Self { name, folder: path.parent().unwrap_or(path).to_owned(), bytes, sets: sets.clone() })
+        let source =
+            Self { name, folder: path.parent().unwrap_or(path).to_owned(), bytes, sets: sets.clone() };
+        let model = if source.syntax() == Syntax::Toml { MODEL_IN_TOML } else { MODEL };
+        let size = model.saturating_mul(source.bytes.len());
+        memory::refuse_too_large(size, &format!("the model of `{}`", source.name))?;
+        Ok(source)
+    }
+
+    /// Takes a text for that of a file.
+    pub fn of_text(path: &Path, text: String, sets: &set::Args) -> Self {
+        let folder = path.parent().unwrap_or(path).to_owned();
+        Self { name: path.display().to_string(), folder, bytes: text.into_bytes(), sets: sets.clone() }
+    }
+
+    /// Returns the text with more lines at its end.
+    #[must_use]
+    pub fn and(&self, lines: &str) -> Self {
+        let bytes = [&self.bytes, &b"\n"[..], lines.as_bytes()].concat();
+        Self { name: self.name.clone(), folder: self.folder.clone(), bytes, sets: self.sets.clone() }
+    }
+
+    /// Returns the syntax, by the name or, where that does not tell, by the text.
+    pub fn syntax(&self) -> Syntax {
+        let of_text = || std::str::from_utf8(&self.bytes).map_or(Syntax::Notes, Syntax::of_text);
+        Syntax::of_name(Path::new(&self.name)).unwrap_or_else(of_text)
     }
 
     /// Returns the SHA-256 of the text, as `sha256sum` prints it.

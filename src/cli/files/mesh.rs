@@ -28,6 +28,14 @@ pub fn read(path: &Path) -> Result<Surface, Failure> {
     })
 }
 
+/// The endings of the names of files of meshes.
+const ENDINGS: [&str; 3] = ["obj", "ply", "stl"];
+
+/// Tells by its name whether a file holds a mesh.
+pub fn is_one(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known)))
+}
+
 /// Describes what a file holds: a line for each fact.
 pub fn described(surface: &Surface) -> String {
     let [low, high] = surface.bounds();

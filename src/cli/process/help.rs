@@ -8,7 +8,7 @@ use std::fmt::Write;
 const GROUPS: [(&str, &[&str]); 5] = [
     ("Rendering", &["render", "watch", "merge", "film", "farm"]),
     ("Scenes", &["new", "list", "check", "fmt", "convert", "dump"]),
-    ("Looking inside", &["plan", "probe", "diff", "review"]),
+    ("Looking inside", &["plan", "probe", "hits", "diff", "review"]),
     ("Speed and accuracy", &["choose", "chart", "verify", "bench"]),
     ("Tools", &["lsp", "schema", "grammar", "completions", "man", "help"]),
 ];

@@ -30,8 +30,8 @@ struct PlacementChain {
 
 #[derive(Clone, Debug)]
 enum SightTarget {
-    /// A direction, of any length.
-    Direction(DVec3),
+    /// A direction, of any length. Its numbers were rounded if this says so.
+    Direction(DVec3, Rounded),
     /// A point on the image plane z = 0, whose x and y are each `at / last * size`: `at` and `last` in pixels, `size`
     /// in world units.
     ImagePoint { at: DVec2, last: DVec2, size: DVec2 },
@@ -108,13 +108,18 @@ impl Sight {
 
     /// Returns a sight along a ray, taking all of its numbers for exact, including the length of its direction.
     pub fn along(ray: &Ray) -> Self {
-        Self { origin: ray.origin, toward: SightTarget::Direction(ray.dir), within: None }
+        Self { origin: ray.origin, toward: SightTarget::Direction(ray.dir, Rounded::Ray), within: None }
+    }
+
+    /// Returns the ray from a point along a direction of any length but 0, whose numbers are those that are meant.
+    pub fn exactly(origin: DVec3, dir: DVec3) -> Self {
+        Self { origin, toward: SightTarget::Direction(dir, Rounded::Nothing), within: None }
     }
 
     /// Tells which of the ray's numbers were rounded before they were given.
     pub fn rounded(&self) -> Rounded {
         match self.toward {
-            SightTarget::Direction(_) => Rounded::Ray,
+            SightTarget::Direction(_, rounded) => rounded,
             SightTarget::Forward(_) => Rounded::Start,
             SightTarget::ImagePoint { .. } | SightTarget::Ahead(_) => Rounded::Nothing,
         }
@@ -135,7 +140,8 @@ impl Sight {
             return Ray { origin: origin.into(), dir: DVec3::from(dir).normalize() };
         }
         let dir = match &self.toward {
-            SightTarget::Direction(dir) => *dir,
+            SightTarget::Direction(dir, Rounded::Nothing) => unit(*dir),
+            SightTarget::Direction(dir, _) => *dir,
             SightTarget::ImagePoint { at, last, size } => direction(self.origin, *at, *last, *size),
             SightTarget::Forward(frame) => frame.forward(),
             SightTarget::Ahead(ahead) => ahead.0.direction(view_frame::half_tangent(ahead.1), &ahead.2),
@@ -147,7 +153,7 @@ impl Sight {
     pub fn line<N: Scalar>(&self) -> Line<N> {
         let n = N::constant;
         let dir = match &self.toward {
-            SightTarget::Direction(dir) => constants(*dir),
+            SightTarget::Direction(dir, _) => constants(*dir),
             SightTarget::Forward(frame) => frame.exact_forward(),
             SightTarget::Ahead(ahead) => {
                 let (frame, angle, at) = **ahead;
@@ -181,6 +187,14 @@ impl PlacementChain {
         };
         Line { origin: self.placement.point(origin), dir: self.placement.vector(dir) }
     }
+}
+
+/// Returns the unit vector along a vector of any length but 0, rounded as that of a camera's ray is.
+fn unit(dir: DVec3) -> DVec3 {
+    let largest = dir.abs().max_element();
+    // The squares of the largest and the smallest numbers overflow and underflow.
+    let dir = if (1e-100..1e100).contains(&largest) { dir } else { dir / largest };
+    dir.normalize()
 }
 
 /// Returns the rounded unit vector from a viewpoint to a point of the image plane. A component is 0 only where the

@@ -70,6 +70,11 @@ pub trait Hittable: Send + Sync {
         None
     }
 
+    /// Returns the index of the face that a ray hits at a distance in world units, from 0. `None` for a shape of one face.
+    fn face_hit(&self, ray: &Ray, distance: f64) -> Option<u32> {
+        self.face(ray.at(distance))
+    }
+
     /// Passes to a function what proofs about the shape take for exact, although it was rounded on its way from the numbers
     /// of the scene.
     fn assumes(&self, _each: &mut dyn FnMut(Assumption)) {}

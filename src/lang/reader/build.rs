@@ -62,6 +62,9 @@ pub fn model(
     (model, places, time + (now() - start))
 }
 
+/// What is said of a scene without a camera.
+pub const NO_CAMERA: &str = "the scene has no camera";
+
 impl Check<'_, '_> {
     /// Returns the model, after reporting the faults that show only when the whole scene has been read.
     fn finish(mut self, store: &Arc<Store>, source: &Source<'_, '_>) -> (Option<Model>, Places) {
@@ -92,12 +95,10 @@ impl Check<'_, '_> {
             && !camera_misspelt
         {
             self.report.add(
-                Fault::error(first.kind.place.clone(), "the scene has no camera")
-                    .label("expected a camera")
-                    .help(format!(
-                        "add one: {}",
-                        self.registry.example(Kind::Camera, "NAME", self.report.syntax())
-                    )),
+                Fault::error(first.kind.place.clone(), NO_CAMERA).label("expected a camera").help(format!(
+                    "add one: {}",
+                    self.registry.example(Kind::Camera, "NAME", self.report.syntax())
+                )),
             );
         }
         if let Some(levels) = self.levels.take().filter(|_| !self.report.is_fatal()) {

@@ -83,6 +83,8 @@ pub struct ReadOptions<'s> {
     pub may_share_names: bool,
     /// Whether there is no warning of colours that may be meant to be from 0 to 255.
     pub may_be_bright: bool,
+    /// Whether only rays are asked about, so that nothing is said of the image.
+    pub only_rays: bool,
     /// The limit on the memory of the scene's textures and of its objects' files, in bytes; by default 1 GiB for the
     /// textures, and none for the objects, which take little more than their files do.
     pub memory: Option<u64>,

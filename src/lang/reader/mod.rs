@@ -38,6 +38,7 @@ mod toml_faults;
 mod unseen;
 mod values;
 
+pub use build::NO_CAMERA;
 pub use check::ReadOptions;
 pub use fault::{Fault, Place, Places, Severity};
 pub(crate) use guesses::find_attribute;
@@ -173,7 +174,7 @@ fn read_text(
     };
     let all = checked(&mut report, Source::Text(&sources.text, Box::new(parser)));
     if !errors.is_fatal() {
-        return finish(all, registry, report);
+        return finish(all, registry, report, accuracy);
     }
     drop(all);
     // All syntax errors are reported before all other faults. After too many, nothing else is.
@@ -185,7 +186,8 @@ fn read_text(
     let Some(parser) = statements::parser(registry, &sources, &mut nowhere) else {
         return Err(report.into_owned());
     };
-    finish(checked(&mut report, Source::Text(&sources.text, Box::new(parser.reading_on()))), registry, report)
+    let all = checked(&mut report, Source::Text(&sources.text, Box::new(parser.reading_on())));
+    finish(all, registry, report, accuracy)
 }
 
 /// Reads one of the course's older scenes.
@@ -218,7 +220,7 @@ fn read_list<'s>(
         return Err(report.into_owned());
     }
     let checked = build::model(registry, folder, accuracy, &mut Source::List(&parsed), &mut report);
-    finish(checked, registry, report)
+    finish(checked, registry, report, accuracy)
 }
 
 /// Makes a model without any text (the notes' `modelstat.c`). The entities are checked like those of a text; file names
@@ -255,7 +257,7 @@ pub fn build(
     let parsed: Vec<_> = parsed.into_iter().collect();
     let mut source = Source::List(&parsed);
     let checked = build::model(registry, Path::new(""), ReadOptions::default(), &mut source, &mut report);
-    finish(checked, registry, report)
+    finish(checked, registry, report, ReadOptions::default())
 }
 
 /// Returns a scene that was checked, if there is nothing wrong with it.
@@ -263,6 +265,7 @@ fn finish(
     (model, places, building): Checked,
     registry: &Registry,
     mut report: report::Report<'_>,
+    ReadOptions { only_rays, .. }: ReadOptions<'_>,
 ) -> Result<Loaded, Report> {
     if places.is_empty() && !report.is_fatal() {
         report
@@ -270,7 +273,8 @@ fn finish(
     }
     match model {
         Some(model) if !report.is_fatal() => {
-            unseen::warning(&model).into_iter().for_each(|warning| report.add(warning));
+            let unseen = if only_rays { None } else { unseen::warning(&model) };
+            unseen.into_iter().for_each(|warning| report.add(warning));
             Ok(Loaded { model, warnings: report.into_owned(), building, places })
         }
         _ => Err(report.into_owned()),

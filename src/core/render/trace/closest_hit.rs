@@ -79,7 +79,7 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
         let [x, y] = &self.scratch.places;
         let lens = |side: usize| self.scratch.lens[side].get(lane).copied().unwrap_or_default();
         let look = || self.plan.camera.sight_through(x[lane], y[lane], DVec2::new(lens(0), lens(1)));
-        let sight = group.looks.then(look).or_else(|| group.sight.clone());
+        let sight = group.looks.then(look).or_else(|| group.sights.get(lane).cloned());
         RoundedRay { ray: group.rays().get(lane), error: group.error(lane), sight }
     }
 

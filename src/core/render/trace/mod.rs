@@ -46,11 +46,12 @@ use crate::world::material::Rgb;
 use crate::world::rules::Rules;
 use crate::world::sample::{self, Sample};
 use crate::world::sensor;
-use arrays::VectorList;
-use context::PrimaryScratch;
+use arrays::{VectorList, gather};
+use context::{HitScratch, PrimaryScratch};
 use direct_light::RIM_POINTS;
 use glam::DVec2;
-use ray_group::{HitRecord, RayGroup};
+use ray_group::RayGroup;
+use std::slice;
 
 /// Computes the colour of a pixel, before it is clamped to what an image can show. `x` counts pixels from the left and
 /// `y` from the bottom.
@@ -192,15 +193,38 @@ fn traced(
 
 /// Finds the first hit of a primary ray.
 pub fn first_hit<'m>(plan: &Plan<'m>, sight: &Sight) -> Option<Hit<'m>> {
+    first_hits(plan, slice::from_ref(sight)).pop().flatten()
+}
+
+/// Finds the first hit of each of some rays, up to [`PACKET_SIZE`] together.
+pub fn first_hits<'m>(plan: &Plan<'m>, sights: &[Sight]) -> Vec<Option<Hit<'m>>> {
     let (mut scratch, mut nobody) = (Scratch::default(), Flaws::default());
     let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody);
-    let mut group = RayGroup::primary(sight, None);
-    let (mut hits, mut distances) = (HitRecord::default(), Vec::new());
-    tracer.closest(&mut group, None, &mut hits);
-    let object = (hits.hit_ids[0] as usize).checked_sub(1)?;
-    tracer.refine(&group, (&hits.near, &hits.far), object, &mut distances);
-    let (distance, ray) = (distances[0], group.rays().get(0));
-    Some(Hit { index: object, object: &plan.model.objects[object], distance, point: ray.at(distance) })
+    let (mut group, mut part) = (RayGroup::default(), RayGroup::default());
+    let HitScratch { mut hits, mut parts, mut near, mut far, .. } = HitScratch::default();
+    let (mut distances, mut found) = (Vec::new(), Vec::new());
+    for sights in sights.chunks(PACKET_SIZE) {
+        group.become_sights(sights, None);
+        tracer.closest(&mut group, None, &mut hits);
+        let first = found.len();
+        found.resize_with(first + sights.len(), || None);
+        parts.begin(&hits.hit_ids[..group.len]);
+        while let Some((id, lanes)) = parts.next() {
+            let Some(index) = (id as usize).checked_sub(1) else { continue };
+            part.gather(&group, lanes);
+            gather(&mut near, &hits.near, lanes, part.padded());
+            gather(&mut far, &hits.far, lanes, part.padded());
+            part.sights.extend(lanes.iter().map(|lane| sights[usize::from(*lane)].clone()));
+            tracer.refine(&part, (&near, &far), index, &mut distances);
+            for (lane, distance) in lanes.iter().zip(&distances) {
+                let (lane, distance) = (usize::from(*lane), *distance);
+                let point = group.rays().get(lane).at(distance);
+                found[first + lane] =
+                    Some(Hit { index, object: &plan.model.objects[index], distance, point });
+            }
+        }
+    }
+    found
 }
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {

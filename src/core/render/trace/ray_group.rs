@@ -4,7 +4,7 @@ use super::arrays::{VectorList, gather, resized};
 use super::light::{self, PathWeight};
 use super::surface::{Errors, SecondaryRays, Surface};
 use super::tree::OpenRay;
-use crate::geometry::ray::{MISS, Side};
+use crate::geometry::ray::{MISS, Ray, Side};
 use crate::geometry::ray_packet::{Nearest, PACKET_SIZE, RayPacket};
 use crate::geometry::sight::Sight;
 use crate::render::limits::MAX_RAYS;
@@ -15,6 +15,7 @@ use crate::world::sensor::Sensor;
 use glam::DVec3;
 use std::mem::swap;
 use std::ops::Range;
+use std::slice;
 
 /// The lanes of a packet, in ascending order.
 const LANE_INDICES: [u8; PACKET_SIZE] = {
@@ -37,8 +38,8 @@ pub(super) struct RayGroup {
     pub travelled: Vec<f64>,
     /// The number of rays that each ray may still cost, itself included.
     pub ray_budget: Vec<u32>,
-    /// The single primary ray of the group before anything is rounded, if that is what the group is.
-    pub sight: Option<Sight>,
+    /// The rays before anything is rounded, where they are rays of which that is known and no camera's.
+    pub sights: Vec<Sight>,
     /// Whether these are the current primary rays, each through its position in [`Scratch::places`].
     ///
     /// [`Scratch::places`]: super::context::Scratch::places
@@ -65,11 +66,26 @@ pub(super) struct RayGroup {
 impl RayGroup {
     /// Makes a group of one primary ray.
     pub fn primary(sight: &Sight, depth: Option<&Depth>) -> Self {
-        let (mut group, ray) = (Self::default(), sight.ray());
-        group.begin(ray.origin, 1, true, depth);
-        group.dir.fill(LANES, ray.dir);
-        group.sight = Some(sight.clone());
+        let mut group = Self::default();
+        group.become_sights(slice::from_ref(sight), depth);
         group
+    }
+
+    /// Becomes these rays, of which there is at least one.
+    pub fn become_sights(&mut self, sights: &[Sight], depth: Option<&Depth>) {
+        self.begin(sights[0].ray().origin, sights.len(), true, depth);
+        let count = self.padded();
+        let (mut origins, mut dirs) = (self.origin.resized(count), self.dir.resized(count));
+        for lane in 0..count {
+            // The last ray fills the rest of the arrays.
+            let Ray { origin, dir } = sights[lane.min(sights.len() - 1)].ray();
+            self.is_from_one &= origin == origins.get(0) || lane == 0;
+            origins.set(lane, origin);
+            dirs.set(lane, dir);
+        }
+        self.sights.clear();
+        self.sights.extend_from_slice(sights);
+        self.looks = false;
     }
 
     /// Becomes the primary rays through the first `len` image positions, in pixels from the left and from the bottom, and
@@ -126,7 +142,8 @@ impl RayGroup {
 
     /// Marks the rays as known only by their rounded numbers.
     fn forget_sights(&mut self) {
-        (self.sight, self.looks) = (None, false);
+        self.sights.clear();
+        self.looks = false;
     }
 
     /// Clears `goes` for the rays that would return too little to be seen at their path lengths.

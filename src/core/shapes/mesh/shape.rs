@@ -165,8 +165,12 @@ impl<A: Bounded> Hittable for Mesh<A> {
     }
 
     fn part(&self, ray: &Ray, distance: f64) -> Option<String> {
+        Some(format!("face {}", self.face_hit(ray, distance)? + 1))
+    }
+
+    fn face_hit(&self, ray: &Ray, distance: f64) -> Option<u32> {
         let face = distance.is_finite().then(|| self.surface.face_along(ray, distance))?;
-        Some(format!("face {}", self.surface.order[face] + 1))
+        Some(self.surface.order[face])
     }
 
     fn assumes(&self, each: &mut dyn FnMut(Assumption)) {

@@ -248,6 +248,11 @@ impl Hittable for Placed {
         self.body.shape.part(&own, distance * length)
     }
 
+    fn face_hit(&self, ray: &Ray, distance: f64) -> Option<u32> {
+        let (own, length) = self.object_ray(ray);
+        self.body.shape.face_hit(&own, distance * length)
+    }
+
     fn uv(&self, at: DVec3) -> Option<DVec2> {
         self.body.shape.uv(self.object_point(at))
     }

@@ -282,6 +282,10 @@ impl Hittable for SolidPart {
         self.own().face(at)
     }
 
+    fn face_hit(&self, ray: &Ray, distance: f64) -> Option<u32> {
+        self.own().face_hit(ray, distance)
+    }
+
     fn part(&self, ray: &Ray, distance: f64) -> Option<String> {
         let Part { name, body, .. } = &self.parts[self.index];
         let own = body.shape.part(ray, distance);

@@ -1,0 +1,255 @@
+//! `tabray hits`: answers what rays hit.
+
+mod model;
+
+use crate::files::input::is_standard;
+use crate::files::output::{self, Output};
+use crate::files::paths::open_stream;
+use crate::options::number::whole;
+use crate::options::{method, set};
+use crate::process::failure::Failure;
+use crate::process::interrupt::{self, InterruptAction};
+use crate::process::messages;
+use crate::process::progress::Progress;
+use clap::ValueEnum;
+use std::io::{self, BufRead, BufReader, BufWriter, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use tabray_core::query::Query;
+use tabray_core::text::{self, count};
+use tabray_core::world::accuracy::Accuracy;
+use tabray_lang::registry::Registry;
+use tabray_tools::hits::answers::AnswerFormat;
+use tabray_tools::hits::rays::{RayFormat, RayReader};
+use tabray_tools::hits::{self, Asked, Ended, Tally};
+use tabray_tools::threads::renderer_with;
+
+/// Answer what rays hit first, each with a proof
+///
+/// Reads rays, and writes an answer for each, in the same order: whether and which object it hits, the t of the hit in lengths
+/// of the ray's direction, with bounds that contain the real t, the distance in world units, the point, the normal and, where
+/// there are some, u, v and the number of the face. The scene needs no camera, and may be the file of a mesh.
+///
+/// The proof is about the real ray through the numbers that are given and the scene's numbers as they are read, as `verify`
+/// has it. The verdicts are `hit`; `miss`; `edge`, where the ray passes exactly through an edge, of a
+/// surface or between two faces; `tie`, where
+/// several objects are hit at once; and `undecided`, where 237 bits do not tell, or a shape has no equation. Of several
+/// objects the first in the scene is named; where it is undecided, the one that the tracer finds.
+///
+/// Rays are lines of six numbers, the origin and the direction, which need not be a unit vector, and perhaps a seventh, the t
+/// at which the ray ends; or CSV with the columns ox, oy, oz, dx, dy, dz and t_max; or JSON lines; or a NumPy array of shape
+/// (n, 6) or (n, 7).
+#[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
+pub struct Args {
+    /// The scene, or the file of a mesh; `-` reads a scene from standard input
+    #[arg(value_name = "SCENE")]
+    scene: PathBuf,
+    /// The rays; by default, or with `-`, they are read from standard input
+    #[arg(value_name = "RAYS")]
+    rays: Option<PathBuf>,
+    #[command(flatten)]
+    set: set::Args,
+    /// The format of the rays; by default it is told from their first bytes
+    #[arg(long, value_name = "FORM")]
+    from: Option<From>,
+    /// Ask about the rays through the middles of the pixels of the scene's camera, row by row from the top, with t in world
+    /// units
+    #[arg(long, conflicts_with_all = ["rays", "from", "skip_bad"])]
+    from_camera: bool,
+    /// Write the answers to this file; its ending, .jsonl, .csv or .npy, is their format
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// The format of the answers on standard output
+    #[arg(long, value_name = "FORM", default_value = "jsonl", conflicts_with = "output")]
+    to: To,
+    /// Prove nothing, and say what the tracer finds: many times faster
+    #[arg(long)]
+    fast: bool,
+    /// Narrow the bounds of t to about a unit in its last place, in many times the time
+    #[arg(long, conflicts_with = "fast")]
+    tight: bool,
+    /// Say only whether something is hit, as for shadows: no object is named
+    #[arg(long)]
+    any: bool,
+    /// The t at which rays end that have no end of their own
+    #[arg(long, value_name = "T", value_parser = end)]
+    t_max: Option<f64>,
+    /// Leave out what is no ray, and count it
+    #[arg(long)]
+    skip_bad: bool,
+    #[command(flatten)]
+    method: method::Args,
+    /// The number of threads; by default one per core
+    #[arg(long, value_name = "N", value_parser = whole::<u16>(1..=1024))]
+    threads: Option<u16>,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  echo '0 0 9  0 0 -1' | tabray hits ball.ray
+  tabray hits part.stl rays.csv -o answers.csv
+  tabray hits part.stl rays.npy -o answers.npy --fast
+  tabray hits ball.ray --from-camera --to csv";
+
+#[derive(Clone, Copy, ValueEnum)]
+enum From {
+    /// Six or seven numbers a line
+    Text,
+    /// A line of names, and lines of values
+    Csv,
+    /// A JSON object or list a line
+    Jsonl,
+    /// A NumPy array
+    Npy,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum To {
+    /// A JSON object a line
+    Jsonl,
+    /// A line of names, and lines of values
+    Csv,
+    /// A structured NumPy array
+    Npy,
+}
+
+impl From {
+    fn format(self) -> RayFormat {
+        match self {
+            Self::Text => RayFormat::Text,
+            Self::Csv => RayFormat::Csv,
+            Self::Jsonl => RayFormat::JsonLines,
+            Self::Npy => RayFormat::Npy,
+        }
+    }
+}
+
+impl To {
+    fn format(self) -> AnswerFormat {
+        match self {
+            Self::Jsonl => AnswerFormat::JsonLines,
+            Self::Csv => AnswerFormat::Csv,
+            Self::Npy => AnswerFormat::Npy,
+        }
+    }
+}
+
+/// Reads the t at which rays end.
+fn end(text: &str) -> Result<f64, String> {
+    let end = text.parse().ok().filter(|end: &f64| *end > 0.0);
+    end.ok_or_else(|| "give a positive number".to_owned())
+}
+
+pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+    let format = match &args.output {
+        None => args.to.format(),
+        Some(path) => of_name(path)?,
+    };
+    let rays = args.rays.as_deref().unwrap_or(Path::new("-"));
+    if is_standard(&args.scene) && is_standard(rays) && !args.from_camera {
+        let help = "give the rays in a file, or the scene";
+        return Err(Failure::Usage("standard input cannot be both".to_owned(), Some(help.to_owned())));
+    }
+    let accuracy = args.method.accuracy()?.or(Some(Accuracy::Exact));
+    let model = model::load(registry, &args.scene, &args.set, accuracy)?;
+    interrupt::catch(InterruptAction::Exit("the answers were not finished"))?;
+    let mut reader = match args.from_camera {
+        true => None,
+        false => Some(open(rays, args.from.map(From::format))?),
+    };
+    let [width, height] = model.camera.value.pixels;
+    let known = match &reader {
+        None => Some((width * height) as u64),
+        Some(reader) => reader.count().filter(|_| !args.skip_bad),
+    };
+    if format == AnswerFormat::Npy && known.is_none() {
+        let what = "an array needs to know the number of its answers first, which only an array of rays says";
+        let help = match args.skip_bad {
+            true => "write .jsonl or .csv, or leave out `--skip-bad`",
+            false => "write .jsonl or .csv, or give the rays as a .npy file",
+        };
+        return Err(Failure::Usage(what.to_owned(), Some(help.to_owned())));
+    }
+    let path = args.output.as_deref().unwrap_or(Path::new("-"));
+    if args.output.is_some() {
+        output::refuse_source(path, &args.scene, &model)?;
+        output::refuse_source(path, rays, &model)?;
+    }
+    let cannot = |error: &io::Error| Failure::cannot_write(path, error);
+    let is_text = args.output.is_none() && format != AnswerFormat::Npy;
+    let mut out = BufWriter::new(if is_text { Output::Standard } else { Output::open(path)? });
+    let asked = Asked {
+        fast: args.fast,
+        tight: args.tight,
+        any: args.any,
+        t_max: args.t_max.unwrap_or(f64::INFINITY),
+        skip_bad: args.skip_bad,
+    };
+    let renderer = renderer_with(args.threads.unwrap_or(0).into())?;
+    let query = Query::new(&model);
+    let progress = known.map(|known| Progress::new(known as usize));
+    let mut step = |done: usize| progress.iter().for_each(|progress| progress.advance(done));
+    let answered = format.begin(known, &mut out).map_err(Ended::Unwritten).and_then(|()| match &mut reader {
+        None => hits::of_camera(&renderer, &query, &asked, (&format, &mut out), &mut step)
+            .map_err(Ended::Unwritten),
+        Some(reader) => hits::read(&renderer, &query, &asked, reader, (&format, &mut out), &mut step),
+    });
+    if let Some(progress) = &progress {
+        progress.end();
+    }
+    let Tally { bad, .. } = match answered {
+        Ok(tally) => tally,
+        // A reader that closes the pipe is no failure.
+        Err(Ended::Unwritten(error)) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(()),
+        Err(Ended::Unwritten(error)) => return Err(cannot(&error)),
+        Err(Ended::Bad(bad)) => {
+            // What was answered before stays, where it goes to a reader.
+            let _ = out.flush();
+            let lines: Vec<_> = bad.iter().map(|bad| format!("`{}`, {bad}", name(rays))).collect();
+            let help = "`--skip-bad` leaves such rays out, and counts them";
+            return Err(Failure::Usage(lines.join("\nerror: "), Some(help.to_owned())));
+        }
+    };
+    let written = out.flush();
+    output::finished(path, written, out)?;
+    if bad > 0 {
+        let were = if bad == 1 { "is no ray and was" } else { "are no rays and were" };
+        messages::warning(&format!("{} {were} left out", count(bad as usize, "line")), None);
+    }
+    Ok(())
+}
+
+/// Returns the name of the rays in messages.
+fn name(rays: &Path) -> String {
+    if is_standard(rays) { "<stdin>".to_owned() } else { rays.display().to_string() }
+}
+
+/// Returns the format of a file of answers, by its name.
+fn of_name(path: &Path) -> Result<AnswerFormat, Failure> {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+    match ending.as_deref() {
+        Some("jsonl" | "ndjson") => Ok(AnswerFormat::JsonLines),
+        Some("csv") => Ok(AnswerFormat::Csv),
+        Some("npy") => Ok(AnswerFormat::Npy),
+        _ if is_standard(path) => Ok(AnswerFormat::JsonLines),
+        _ => {
+            let help = "end it in .jsonl, .csv or .npy";
+            Err(Failure::Usage(format!("`{}` has no known format", path.display()), Some(help.to_owned())))
+        }
+    }
+}
+
+fn open<'r>(rays: &Path, format: Option<RayFormat>) -> Result<RayReader<'r>, Failure> {
+    let input: Box<dyn BufRead> = if is_standard(rays) {
+        if io::stdin().is_terminal() {
+            messages::note("reading rays from the terminal: six numbers a line; Ctrl-D ends them");
+        }
+        Box::new(BufReader::new(io::stdin()))
+    } else {
+        let file = open_stream(rays).map_err(|error| {
+            Failure::Unread(format!("cannot read `{}`: {}", rays.display(), text::reason(&error)), None)
+        })?;
+        Box::new(BufReader::new(file))
+    };
+    RayReader::new(input, format).map_err(|bad| Failure::Usage(format!("`{}`, {bad}", name(rays)), None))
+}

@@ -1,0 +1,119 @@
+//! Which of a scene's objects a ray hits first, as far as intervals tell.
+
+use crate::geometry::sight::Sight;
+use crate::world::any_shape::AnyShape;
+use crate::world::certify::{Enclosure, Precision};
+use f256::f256;
+use tabray_exact::interval::{Float, Wide};
+
+/// The objects that a ray may hit first.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FirstHits {
+    /// This object, by its index, in these bounds of its distance, or nothing: for certain.
+    Certain(Option<(usize, Wide)>),
+    /// One of these objects, each with what is known about its distance, in the order of their indices.
+    OneOf {
+        /// The objects.
+        any: Vec<(usize, Enclosure)>,
+        /// A distance at which or before which something is certainly hit; infinite where perhaps nothing is.
+        end: f256,
+    },
+}
+
+impl FirstHits {
+    /// Tells whether an object, or nothing, may be what is hit first.
+    pub fn may_be(&self, found: Option<usize>) -> bool {
+        match (self, found) {
+            (Self::Certain(first), _) => first.map(|(index, _)| index) == found,
+            (Self::OneOf { any, .. }, Some(found)) => any.iter().any(|(index, _)| *index == found),
+            (Self::OneOf { end, .. }, None) => !end.is_finite(),
+        }
+    }
+}
+
+/// Proves which of some objects a ray hits first, given by their indices and shapes, and says with which precision. Distances
+/// are multiples of the length of the sight's direction. What 53 bits leave open takes 237.
+pub fn first_of<'s>(
+    objects: impl IntoIterator<Item = (usize, &'s AnyShape)>,
+    sight: &Sight,
+) -> (FirstHits, Precision) {
+    let objects: Vec<_> = objects.into_iter().collect();
+    let certify = |(index, shape): &(usize, &AnyShape), precision| (*index, shape.certify(sight, precision));
+    let all: Vec<_> = objects.iter().map(|object| certify(object, Precision::Double)).collect();
+    match first(&all) {
+        FirstHits::OneOf { any, .. } => {
+            let is_open = |(index, _): &&(usize, &AnyShape)| any.iter().any(|(open, _)| open == index);
+            let any: Vec<_> =
+                objects.iter().filter(is_open).map(|object| certify(object, Precision::Octuple)).collect();
+            (first(&any), Precision::Octuple)
+        }
+        certain => (certain, Precision::Double),
+    }
+}
+
+/// Returns a distance at which or before which a ray certainly hits one of some objects; infinite where none is known.
+pub fn last_end<'s>(objects: impl IntoIterator<Item = (usize, &'s AnyShape)>, sight: &Sight) -> f256 {
+    let ends = objects.into_iter().map(|(_, shape)| match shape.certify(sight, Precision::Double) {
+        Enclosure::Hits(at) => at.high,
+        _ => f256::INFINITY,
+    });
+    ends.fold(f256::INFINITY, Float::min)
+}
+
+/// Returns which of the objects may be hit first, given an enclosure of each object's distance.
+fn first(enclosures: &[(usize, Enclosure)]) -> FirstHits {
+    // Some object is certainly hit at this distance or nearer.
+    let end = enclosures.iter().filter_map(|(_, enclosure)| match enclosure {
+        Enclosure::Hits(at) => Some(at.high),
+        _ => None,
+    });
+    let end = end.fold(f256::INFINITY, Float::min);
+    let is_near = |(_, enclosure): &&(usize, Enclosure)| match enclosure {
+        Enclosure::Misses => false,
+        Enclosure::Hits(Wide { low, .. }) | Enclosure::Edge(Wide { low, .. }) | Enclosure::Doubtful(low) => {
+            *low <= end
+        }
+    };
+    let any: Vec<_> = enclosures.iter().filter(is_near).copied().collect();
+    match any[..] {
+        [] => FirstHits::Certain(None),
+        [(index, Enclosure::Hits(at))] => FirstHits::Certain(Some((index, at))),
+        _ => FirstHits::OneOf { any, end },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tabray_exact::interval::Interval;
+
+    fn wide(low: f64, high: f64) -> Wide {
+        Interval { low, high }.into()
+    }
+
+    #[test]
+    fn the_first_is_certain_only_where_nothing_may_lie_before() {
+        let hits = |low, high| Enclosure::Hits(wide(low, high));
+        let doubtful = |from: f64| Enclosure::Doubtful(from.into());
+        let (near, far, between) = (hits(1.0, 2.0), hits(3.0, 4.0), hits(1.5, 3.5));
+        for (enclosures, right) in [
+            (&[][..], &[None][..]),
+            (&[Enclosure::Misses], &[None]),
+            (&[far, Enclosure::Misses, near], &[Some(2)]),
+            (&[near, far], &[Some(0)]),
+            (&[near, between], &[Some(0), Some(1)]),
+            (&[between, near], &[Some(0), Some(1)]),
+            (&[far, between, near], &[Some(1), Some(2)]),
+            (&[near, doubtful(2.5)], &[Some(0)]),
+            (&[doubtful(1.5), near], &[Some(0), Some(1)]),
+            (&[doubtful(1.5)], &[None, Some(0)]),
+        ] {
+            let numbered: Vec<_> = enclosures.iter().copied().enumerate().collect();
+            let found = first(&numbered);
+            let may_be: Vec<_> =
+                [None, Some(0), Some(1), Some(2)].into_iter().filter(|index| found.may_be(*index)).collect();
+            assert_eq!(may_be, right, "{enclosures:?}");
+            assert_eq!(matches!(found, FirstHits::Certain(_)), right.len() == 1, "{enclosures:?}");
+        }
+    }
+}

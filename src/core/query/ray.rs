@@ -1,0 +1,123 @@
+//! Rays whose numbers are exact.
+
+use crate::geometry::sight::Sight;
+use crate::world::certify;
+use f256::f256;
+use glam::DVec3;
+use tabray_exact::interval::{Float, Interval, Wide};
+
+/// A ray all of whose digits count: the half-line from a point along a direction, which need not be a unit vector.
+#[derive(Clone, Debug)]
+pub struct ExactRay {
+    sight: Sight,
+    /// The t of this ray at 1 of the sight, a power of 2; `None` where t counts world units.
+    scale: Option<f64>,
+}
+
+impl ExactRay {
+    /// Returns the ray from a point along a direction, in whose lengths t is measured. `None` where the direction is 0 or
+    /// any number is not finite.
+    pub fn new(origin: DVec3, dir: DVec3) -> Option<Self> {
+        if !origin.is_finite() || !dir.is_finite() || dir == DVec3::ZERO {
+            return None;
+        }
+        // The squares of numbers as large or as small as f64 has them overflow or underflow in plain arithmetic.
+        let exponent = libm::ilogb(dir.abs().max_element());
+        let scale = libm::scalbn(1.0, exponent.clamp(-1000, 1000));
+        let scaled = dir / scale;
+        let is_exact = scaled * scale == dir;
+        let (dir, scale) = if is_exact { (scaled, scale) } else { (dir, 1.0) };
+        Some(Self { sight: Sight::exactly(origin, dir), scale: Some(1.0 / scale) })
+    }
+
+    /// Returns a camera's ray, along which t is measured in world units.
+    pub(super) fn of_camera(sight: Sight) -> Self {
+        Self { sight, scale: None }
+    }
+
+    /// Returns the sight along the ray.
+    pub fn sight(&self) -> &Sight {
+        &self.sight
+    }
+
+    /// Returns bounds of t in the ray's own unit, given bounds in lengths of the sight's direction, rounded outward.
+    pub fn t(&self, at: Wide) -> Interval {
+        match self.scale {
+            None => certify::bounds_in_world_units(at, &self.sight),
+            Some(scale) => {
+                // A product with a power of 2 is exact: these numbers have exponents to spare.
+                let scale = f256::of(scale);
+                Interval { low: rounded_down(at.low * scale), high: -rounded_down(-(at.high * scale)) }
+            }
+        }
+    }
+
+    /// Returns t in the ray's own unit, given in lengths of the sight's direction, rounded to the nearest.
+    pub(super) fn rounded_t(&self, at: f256) -> f64 {
+        match self.scale {
+            None => certify::in_world_units(Wide::point(at), &self.sight).high,
+            Some(scale) => (at * f256::of(scale)).to_f64(),
+        }
+    }
+
+    /// Returns t in the ray's own unit at a distance in world units, rounded.
+    pub fn t_at(&self, distance: f64) -> f64 {
+        match self.scale {
+            None => distance,
+            Some(scale) => {
+                let [x, y, z] = self.sight.line::<f64>().dir;
+                // Scaled, so that no square overflows.
+                let largest = x.abs().max(y.abs()).max(z.abs());
+                let length = largest * (DVec3::new(x, y, z) / largest).length();
+                distance / length * scale
+            }
+        }
+    }
+
+    /// Returns the point at a distance in world units, rounded.
+    pub fn at(&self, distance: f64) -> DVec3 {
+        self.sight.ray().at(distance)
+    }
+}
+
+/// Rounds a number down to an f64.
+fn rounded_down(number: f256) -> f64 {
+    let nearest = number.to_f64();
+    if f256::of(nearest) > number { nearest.next_down() } else { nearest }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(ray: &ExactRay, t: f64) -> Interval {
+        ray.t(Wide::point(f256::of(t)))
+    }
+
+    #[test]
+    fn t_counts_lengths_of_the_direction_as_it_is_given() {
+        for dir in [DVec3::new(3.0, 0.0, 0.0), DVec3::new(0.0, 1e-200, 0.0), DVec3::new(1e250, 1e-30, 5e-324)]
+        {
+            let ray = ExactRay::new(DVec3::ONE, dir).expect("a ray");
+            let inner = ray.sight().line::<f64>().dir;
+            let times = dir.max_element() / inner.iter().copied().fold(0.0, f64::max);
+            assert_eq!(at(&ray, times), Interval { low: 1.0, high: 1.0 }, "{dir}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_ray_is_none() {
+        for dir in [DVec3::ZERO, DVec3::new(f64::NAN, 1.0, 0.0), DVec3::new(f64::INFINITY, 0.0, 0.0)] {
+            assert!(ExactRay::new(DVec3::ZERO, dir).is_none(), "{dir}");
+        }
+        assert!(ExactRay::new(DVec3::new(0.0, f64::NAN, 0.0), DVec3::X).is_none());
+    }
+
+    #[test]
+    fn bounds_are_rounded_outward() {
+        let ray = ExactRay::new(DVec3::ZERO, DVec3::X).expect("a ray");
+        let third = f256::of(1.0) / f256::of(3.0);
+        let Interval { low, high } = ray.t(Wide::point(third));
+        assert!(f256::of(low) < third && third < f256::of(high) && low.next_up() == high);
+    }
+}

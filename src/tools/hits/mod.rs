@@ -1,0 +1,144 @@
+//! Answers what rays hit: rays are read as text, CSV, JSON lines or a NumPy array, and answers are written as CSV, JSON lines or
+//! a NumPy array.
+
+pub mod answers;
+mod npy;
+pub mod rays;
+
+use answers::{AnswerFormat, Answered};
+use rayon::prelude::*;
+use rays::{BadRay, RayReader, RayRow};
+use std::io::{self, Write};
+use tabray_core::geometry::ray_packet::PACKET_SIZE;
+use tabray_core::query::{Answer, ExactRay, Query};
+use tabray_core::render::Renderer;
+
+/// The number of rays that are answered before any of their answers is written: enough for all threads, and little memory.
+const TOGETHER: usize = 64 * PACKET_SIZE;
+
+/// The maximum number of bad rays that are told.
+const TOLD: usize = 10;
+
+/// What is asked of the rays.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked {
+    /// Whether nothing is proven.
+    pub fast: bool,
+    /// Whether bounds are narrowed with 237 bits.
+    pub tight: bool,
+    /// Whether it is only of interest that something is hit, not what.
+    pub any: bool,
+    /// The end of rays that have none of their own, in the unit of their t.
+    pub t_max: f64,
+    /// Whether rays that are none are left out.
+    pub skip_bad: bool,
+}
+
+/// How many rays were answered, and how many left out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// The answers.
+    pub answered: u64,
+    /// The rays that were none.
+    pub bad: u64,
+}
+
+/// Why answers end early.
+#[derive(Debug)]
+pub enum Ended {
+    /// Some rays are none: the first ones.
+    Bad(Vec<BadRay>),
+    /// The answers cannot be written.
+    Unwritten(io::Error),
+}
+
+/// A ray that is asked about, and the t at which it ends.
+type Ray = (ExactRay, f64);
+
+/// Answers all rays of a reader, in their order. The answers depend on the rays alone, not on the threads. `step` is told
+/// how many rays are done.
+///
+/// # Errors
+/// Without `skip_bad`, the first rays that are none; and what the output says.
+pub fn read(
+    renderer: &Renderer,
+    query: &Query,
+    asked: &Asked,
+    rays: &mut RayReader,
+    (format, out): (&AnswerFormat, &mut dyn Write),
+    step: &mut dyn FnMut(usize),
+) -> Result<Tally, Ended> {
+    let (mut tally, mut bad) = (Tally::default(), Vec::new());
+    loop {
+        let mut part: Vec<Ray> = Vec::with_capacity(TOGETHER);
+        let mut is_over = false;
+        for row in rays.by_ref().take(TOGETHER) {
+            match row {
+                Ok(RayRow { ray, t_max }) => part.push((ray, t_max.unwrap_or(asked.t_max))),
+                Err(fault) => {
+                    tally.bad += 1;
+                    is_over |= fault.is_last;
+                    if !asked.skip_bad || fault.is_last {
+                        bad.push(fault);
+                    }
+                }
+            }
+            if bad.len() == TOLD {
+                break;
+            }
+        }
+        if !bad.is_empty() {
+            return Err(Ended::Bad(bad));
+        }
+        if part.is_empty() && !is_over {
+            return Ok(tally);
+        }
+        answer(renderer, query, asked, &part, (format, out)).map_err(Ended::Unwritten)?;
+        tally.answered += part.len() as u64;
+        step(part.len());
+    }
+}
+
+/// Answers the rays through the pixels of a scene's camera, row by row from the top.
+///
+/// # Errors
+/// Those of the output.
+pub fn of_camera(
+    renderer: &Renderer,
+    query: &Query,
+    asked: &Asked,
+    (format, out): (&AnswerFormat, &mut dyn Write),
+    step: &mut dyn FnMut(usize),
+) -> io::Result<Tally> {
+    let [width, height] = query.model().camera.value.pixels;
+    let mut tally = Tally::default();
+    for y in (0..height).rev() {
+        let part: Vec<Ray> = (0..width).map(|x| (query.camera_ray(x, y), asked.t_max)).collect();
+        answer(renderer, query, asked, &part, (format, out))?;
+        tally.answered += width as u64;
+        step(width);
+    }
+    Ok(tally)
+}
+
+fn answer(
+    renderer: &Renderer,
+    query: &Query,
+    asked: &Asked,
+    rays: &[Ray],
+    (format, out): (&AnswerFormat, &mut dyn Write),
+) -> io::Result<()> {
+    let packet = |rays: &[Ray]| -> io::Result<Vec<u8>> {
+        let (of, ends): (Vec<_>, Vec<_>) = rays.iter().cloned().unzip();
+        let answers = if asked.fast { query.traced(&of) } else { query.proven(&of, asked.tight) };
+        let ended = answers.into_iter().zip(&ends).map(|(answer, end)| answer.within(*end));
+        let shown = |(ray, answer): (&ExactRay, Answer)| {
+            let answer = if asked.any { Answer { object: None, ..answer } } else { answer };
+            let surface = query.surroundings(ray, &answer);
+            Answered { model: query.model(), answer, surface }
+        };
+        format.written(of.iter().zip(ended).map(shown))
+    };
+    let packets: Vec<_> = renderer.run(|| rays.par_chunks(PACKET_SIZE).map(packet).collect());
+    packets.into_iter().try_for_each(|bytes| out.write_all(&bytes?))
+}

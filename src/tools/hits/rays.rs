@@ -1,0 +1,291 @@
+//! Reads rays.
+
+use super::npy;
+use glam::DVec3;
+use serde::Deserialize;
+use std::fmt;
+use std::io::{self, BufRead, Read};
+use tabray_core::query::ExactRay;
+
+/// The maximum length of a line, in bytes: more than any six numbers have.
+const LONGEST: u64 = 1 << 12;
+
+/// How rays are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RayFormat {
+    /// Six numbers a line: the origin and the direction; a seventh is the t at which the ray ends. `#` begins a comment.
+    Text,
+    /// A line of names, and then numbers: `ox`, `oy`, `oz`, `dx`, `dy`, `dz`, and `t_max` where rays end.
+    Csv,
+    /// A JSON value a line: `{"origin": [x, y, z], "direction": [x, y, z], "t_max": t}`, or a list of numbers as in text.
+    JsonLines,
+    /// A NumPy array of shape (n, 6) or (n, 7), of `f8` or `f4`.
+    Npy,
+}
+
+/// A ray, and the t at which it ends if it does.
+#[derive(Clone, Debug)]
+pub struct RayRow {
+    /// The ray.
+    pub ray: ExactRay,
+    /// The end, in lengths of its direction.
+    pub t_max: Option<f64>,
+}
+
+/// Something that is no ray.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BadRay {
+    /// Its line, or its row in an array, from 1.
+    pub number: u64,
+    /// `line` or `row`.
+    pub unit: &'static str,
+    /// What is wrong, in lower case.
+    pub message: String,
+    /// Whether nothing can be read after it.
+    pub is_last: bool,
+}
+
+impl fmt::Display for BadRay {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}: {}", self.unit, self.number, self.message)
+    }
+}
+
+/// Reads rays one after the other, in memory that does not grow with their number.
+pub struct RayReader<'r> {
+    rows: Rows<'r>,
+    number: u64,
+    is_over: bool,
+}
+
+enum Rows<'r> {
+    Text(Box<dyn BufRead + 'r>),
+    /// Lines of CSV, and in which columns the numbers are.
+    Csv(Box<csv::Reader<Box<dyn BufRead + 'r>>>, Box<[Option<usize>; 7]>),
+    JsonLines(Box<dyn BufRead + 'r>),
+    Npy(npy::Rows<'r>),
+}
+
+/// The columns of a CSV.
+const COLUMNS: [&str; 7] = ["ox", "oy", "oz", "dx", "dy", "dz", "t_max"];
+
+impl<'r> RayReader<'r> {
+    /// Starts to read, in a format or in the one that the first bytes show.
+    ///
+    /// # Errors
+    /// Where the input cannot be read, or where its head is none of the format.
+    pub fn new(mut input: Box<dyn BufRead + 'r>, format: Option<RayFormat>) -> Result<Self, BadRay> {
+        let head = |message: String| BadRay { number: 1, unit: "line", message, is_last: true };
+        let format = match format {
+            Some(format) => format,
+            None => of_content(input.fill_buf().map_err(|error| head(error.to_string()))?),
+        };
+        let rows = match format {
+            RayFormat::Text => Rows::Text(input),
+            RayFormat::JsonLines => Rows::JsonLines(input),
+            RayFormat::Npy => {
+                Rows::Npy(npy::Rows::new(input).map_err(|message| BadRay { unit: "row", ..head(message) })?)
+            }
+            RayFormat::Csv => {
+                let mut reader =
+                    csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(input);
+                let names = reader.headers().map_err(|error| head(error.to_string()))?.clone();
+                let columns = COLUMNS.map(|column| names.iter().position(|name| name == column));
+                let missing = COLUMNS[..6].iter().zip(&columns).filter(|(_, at)| at.is_none());
+                let missing: Vec<_> = missing.map(|(name, _)| format!("`{name}`")).collect();
+                if !missing.is_empty() {
+                    return Err(head(format!(
+                        "the first line lacks {}: it names the columns, `ox,oy,oz,dx,dy,dz` and perhaps `t_max`",
+                        missing.join(", ")
+                    )));
+                }
+                Rows::Csv(Box::new(reader), Box::new(columns))
+            }
+        };
+        Ok(Self { rows, number: 0, is_over: false })
+    }
+
+    /// Returns the number of rays, where the input says it.
+    pub fn count(&self) -> Option<u64> {
+        match &self.rows {
+            Rows::Npy(rows) => Some(rows.count()),
+            _ => None,
+        }
+    }
+
+    /// Returns the numbers of the next ray; `None` at the end.
+    fn numbers(&mut self) -> Option<Result<Numbers, (String, bool)>> {
+        match &mut self.rows {
+            Rows::Npy(rows) => {
+                self.number += 1;
+                rows.next()
+            }
+            Rows::Csv(reader, columns) => {
+                let mut record = csv::StringRecord::new();
+                match reader.read_record(&mut record) {
+                    Ok(false) => None,
+                    Ok(true) => {
+                        self.number = record.position().map_or(self.number + 1, csv::Position::line);
+                        Some(of_record(&record, columns).map_err(|message| (message, false)))
+                    }
+                    Err(error) => {
+                        self.number = error.position().map_or(self.number + 1, csv::Position::line);
+                        let is_last = matches!(error.kind(), csv::ErrorKind::Io(_));
+                        Some(Err((error.to_string(), is_last)))
+                    }
+                }
+            }
+            Rows::Text(input) => loop {
+                self.number += 1;
+                let line = match line(input)? {
+                    Ok(line) => line,
+                    Err(fault) => return Some(Err(fault)),
+                };
+                let text = line.split('#').next().unwrap_or_default().trim();
+                if !text.is_empty() {
+                    let words =
+                        text.split(|c: char| c.is_whitespace() || c == ',').filter(|word| !word.is_empty());
+                    return Some(of_words(words).map_err(|message| (message, false)));
+                }
+            },
+            Rows::JsonLines(input) => loop {
+                self.number += 1;
+                let line = match line(input)? {
+                    Ok(line) => line,
+                    Err(fault) => return Some(Err(fault)),
+                };
+                if !line.trim().is_empty() {
+                    return Some(of_json(&line).map_err(|message| (message, false)));
+                }
+            },
+        }
+    }
+}
+
+/// The origin, the direction and the end of a ray.
+pub(super) type Numbers = ([f64; 6], Option<f64>);
+
+impl Iterator for RayReader<'_> {
+    type Item = Result<RayRow, BadRay>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.is_over {
+            return None;
+        }
+        let unit = if matches!(self.rows, Rows::Npy(_)) { "row" } else { "line" };
+        let (message, is_last) = match self.numbers()? {
+            Ok((numbers, t_max)) => match of_numbers(numbers, t_max) {
+                Ok(row) => return Some(Ok(row)),
+                Err(message) => (message, false),
+            },
+            Err(fault) => fault,
+        };
+        self.is_over = is_last;
+        Some(Err(BadRay { number: self.number, unit, message, is_last }))
+    }
+}
+
+/// Returns the format that the first bytes of rays show.
+fn of_content(head: &[u8]) -> RayFormat {
+    if head.starts_with(b"\x93NUMPY") {
+        return RayFormat::Npy;
+    }
+    let text = String::from_utf8_lossy(head);
+    let first = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
+    match first {
+        Some(line) if line.starts_with(['{', '[']) => RayFormat::JsonLines,
+        Some(line) if line.split(',').any(|name| COLUMNS.contains(&name.trim())) => RayFormat::Csv,
+        _ => RayFormat::Text,
+    }
+}
+
+/// Reads a line; `None` at the end.
+fn line(input: &mut dyn BufRead) -> Option<Result<String, (String, bool)>> {
+    let mut bytes = Vec::new();
+    match input.take(LONGEST).read_until(b'\n', &mut bytes) {
+        Ok(0) => None,
+        Ok(read) if read as u64 == LONGEST && !bytes.ends_with(b"\n") => {
+            Some(Err((format!("it is longer than {LONGEST} bytes"), true)))
+        }
+        Ok(_) => Some(String::from_utf8(bytes).map_err(|_| ("it is not UTF-8".to_owned(), false))),
+        Err(error) => Some(Err((reason(&error), true))),
+    }
+}
+
+pub(super) fn reason(error: &io::Error) -> String {
+    tabray_core::text::reason(error)
+}
+
+fn of_words<'w>(words: impl Iterator<Item = &'w str>) -> Result<Numbers, String> {
+    let mut numbers = Vec::with_capacity(7);
+    for word in words.take(8) {
+        numbers.push(word.parse().map_err(|_| format!("`{}` is no number", short(word)))?);
+    }
+    of_list(&numbers)
+}
+
+fn of_list(numbers: &[f64]) -> Result<Numbers, String> {
+    match *numbers {
+        [a, b, c, d, e, f] => Ok(([a, b, c, d, e, f], None)),
+        [a, b, c, d, e, f, end] => Ok(([a, b, c, d, e, f], Some(end))),
+        _ => Err(format!(
+            "a ray has six numbers, its origin and its direction, and perhaps the t at which it ends; here {}",
+            match numbers.len() {
+                1 => "is 1".to_owned(),
+                8.. => "are more than 7".to_owned(),
+                count => format!("are {count}"),
+            }
+        )),
+    }
+}
+
+fn of_record(record: &csv::StringRecord, columns: &[Option<usize>; 7]) -> Result<Numbers, String> {
+    let mut numbers = [f64::INFINITY; 7];
+    for (number, (column, name)) in numbers.iter_mut().zip(columns.iter().zip(COLUMNS)) {
+        let Some(column) = column else { continue };
+        let word = record.get(*column).unwrap_or_default();
+        if !(word.is_empty() && name == "t_max") {
+            *number = word.parse().map_err(|_| format!("`{}` is no number for `{name}`", short(word)))?;
+        }
+    }
+    let [a, b, c, d, e, f, end] = numbers;
+    Ok(([a, b, c, d, e, f], (end != f64::INFINITY).then_some(end)))
+}
+
+/// A ray as JSON has it.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Json {
+    List(Vec<f64>),
+    Named {
+        origin: [f64; 3],
+        #[serde(alias = "dir")]
+        direction: [f64; 3],
+        t_max: Option<f64>,
+    },
+}
+
+fn of_json(line: &str) -> Result<Numbers, String> {
+    // An untagged enum does not say where a text is no JSON.
+    let value: serde_json::Value = serde_json::from_str(line).map_err(|error| error.to_string())?;
+    match serde_json::from_value(value) {
+        Ok(Json::List(numbers)) => of_list(&numbers),
+        Ok(Json::Named { origin: [a, b, c], direction: [d, e, f], t_max }) => Ok(([a, b, c, d, e, f], t_max)),
+        Err(_) => Err(r#"a ray is `{"origin": [0, 0, 9], "direction": [0, 0, -1]}`, with `t_max` if it ends, or a list of these numbers"#
+            .to_owned()),
+    }
+}
+
+fn of_numbers([a, b, c, d, e, f]: [f64; 6], t_max: Option<f64>) -> Result<RayRow, String> {
+    let (origin, dir) = (DVec3::new(a, b, c), DVec3::new(d, e, f));
+    if t_max.is_some_and(|end| end.is_nan() || end <= 0.0) {
+        return Err("a ray ends at a positive t".to_owned());
+    }
+    let ray = ExactRay::new(origin, dir);
+    let why = if dir == DVec3::ZERO { "its direction is 0" } else { "its numbers are not all finite" };
+    ray.map(|ray| RayRow { ray, t_max }).ok_or_else(|| why.to_owned())
+}
+
+fn short(word: &str) -> String {
+    word.chars().take(20).collect()
+}
