@@ -194,6 +194,43 @@ impl<'e> Selection<'e> {
 
     /// Says which choices were considered and which one was chosen, and shows the command line.
     fn words(&self, chosen: &Estimate, scene: &Path, set: &set::Args) -> String {
+        let how = match chosen.accuracy {
+            Accuracy::Classic => "--method classic".to_owned(),
+            accuracy => format!("--accuracy {}", accuracy.option().name),
+        };
+        let why = match self.goal {
+            Goal::Error { .. } | Goal::None => format!("the fastest with an error of at most {}", self.asked),
+            Goal::Time { .. } => {
+                format!("the one with the least error within {} on {} cores", self.asked, self.cores)
+            }
+        };
+        let Estimates { pixels: all, small, is_short, .. } = *self.estimates;
+        let measured = chosen.pixels;
+        let sure = ", with a confidence of 99 %";
+        let small = match small.pixels {
+            0 => String::new(),
+            pixels => format!(
+                " {pixels} pixels may show what is smaller than a sample; they were measured with more samples, and bounds \
+                 include what these may have missed."
+            ),
+        };
+        let short = if is_short { "; there was no time for more" } else { "" };
+        format!(
+            "{}\nThe marked choice is {why}{sure}. Errors are in levels of 255. Its own was measured on {measured} of {all} \
+             pixels{short}; that of the whole image is at most what the table says.{small} Choices of one \
+             accuracy are compared by their rays per pixel, those of several by their times.\n\n{}\n\n\
+             {} render {}{} {how} --samples {}\n",
+            self.table(chosen),
+            self.times(chosen),
+            program::name(),
+            scene.display(),
+            set.words(),
+            chosen.numbers()
+        )
+    }
+
+    /// Lists the choices that were considered, with a mark before the chosen one.
+    fn table(&self, chosen: &Estimate) -> String {
         let head = ["accuracy", "samples", "error", "at most", "rays", "time", "CPU time"];
         let mut text = format!(
             "  {:<9}{:>8}{:>12}{:>12}{:>9}{:>12}{:>12}\n",
@@ -221,39 +258,6 @@ impl<'e> Selection<'e> {
                 estimate.rays
             );
         }
-        let how = match chosen.accuracy {
-            Accuracy::Classic => "--method classic".to_owned(),
-            accuracy => format!("--accuracy {}", accuracy.option().name),
-        };
-        let why = match self.goal {
-            Goal::Error { .. } | Goal::None => format!("the fastest with an error of at most {}", self.asked),
-            Goal::Time { .. } => {
-                format!("the one with the least error within {} on {} cores", self.asked, self.cores)
-            }
-        };
-        let Estimates { pixels: all, small, is_short, .. } = *self.estimates;
-        let measured = chosen.pixels;
-        let sure = ", with a confidence of 99 %";
-        let small = match small.pixels {
-            0 => String::new(),
-            pixels => format!(
-                " {pixels} pixels may show what is smaller than a sample; they were measured with more samples, and bounds \
-                 include what these may have missed."
-            ),
-        };
-        let short = if is_short { "; there was no time for more" } else { "" };
-        let _ = write!(
-            text,
-            "\nThe marked choice is {why}{sure}. Errors are in levels of 255. Its own was measured on {measured} of {all} \
-             pixels{short}; that of the whole image is at most what the table says.{small} Choices of one \
-             accuracy are compared by their rays per pixel, those of several by their times.\n\n{}\n\n\
-             {} render {}{} {how} --samples {}\n",
-            self.times(chosen),
-            program::name(),
-            scene.display(),
-            set.words(),
-            chosen.numbers()
-        );
         text
     }
 

@@ -3,7 +3,7 @@
 use crate::files::input::Source;
 use crate::files::output::Output;
 use crate::options::set;
-use crate::options::size::Part;
+use crate::options::size::Region;
 use crate::options::stop::Stop;
 use crate::process::failure::Failure;
 use crate::process::interrupt::{self, InterruptAction};
@@ -34,7 +34,7 @@ pub fn run(registry: &Registry) -> Result<(), Failure> {
     messages::warnings(&warnings);
     let job = Job {
         plan: &Plan::new(&model),
-        part: &Part::whole(&model.camera.value),
+        region: &Region::whole(&model.camera.value),
         renderer: &renderer_with(0)?,
         format: Format::Ppm,
         path: standard,

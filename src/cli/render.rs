@@ -6,7 +6,7 @@ use crate::files::output::{Output, format_by_name};
 use crate::files::{input, output, provenance, several};
 use crate::options::named::by_name;
 use crate::options::number::whole;
-use crate::options::size::Part;
+use crate::options::size::Region;
 use crate::options::stop::{self, Stop};
 use crate::options::{cpu, frames, keep, method, samples, set, size};
 use crate::process::failure::Failure;
@@ -23,6 +23,7 @@ use tabray_core::output::deflate::Compression;
 use tabray_core::output::full_range::FullRange;
 use tabray_core::output::picture::Format;
 use tabray_core::scene::model::Model;
+use tabray_core::simd::cpu::Cpu;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::reader::{self, Loaded, ReadOptions};
 use tabray_lang::registry::Registry;
@@ -207,74 +208,154 @@ fn render_image(
     let accuracy = args.method.accuracy()?;
     let source = Source::read(scene, &args.set)?;
     let memory = args.stop.memory_left();
-    let chosen =
-        |accuracy| ReadOptions { above_all: accuracy, memory, clock: Some(clock), ..ReadOptions::default() };
+    let chosen = ReadOptions { above_all: accuracy, memory, clock: Some(clock), ..ReadOptions::default() };
     let Loaded { mut model, building, warnings, .. } =
-        input::print_warnings(source.load_by(registry, chosen(accuracy)))?;
-    let mut stats = Stats { reading: start.elapsed() - building, building, ..Stats::default() };
+        input::print_warnings(source.load_by(registry, chosen))?;
+    let stats = Stats { reading: start.elapsed() - building, building, ..Stats::default() };
     let camera = &mut model.camera.value;
     args.samples.apply(camera)?;
     camera.exposure += args.exposure;
-    let part = args.size.apply(camera)?;
-    let made = provenance::texts(&source, &args.set, (&model.camera.value, args.exposure), &part);
-    let differences = Differences::of(registry, &source, &model);
-    args.refuse_sources(&path, scene, &model)?;
+    let region = args.size.apply(camera)?;
+    let made = provenance::texts(&source, &args.set, (&model.camera.value, args.exposure), &region);
+    let image = ImageRender {
+        registry,
+        args,
+        stop,
+        path: &path,
+        format,
+        full_range,
+        differences: Differences::of(registry, &source, &model),
+        source,
+        memory,
+        model,
+        region,
+        made,
+        cpu,
+    };
+    args.refuse_sources(&path, scene, &image.model)?;
     if let Some(number) = args.part.part {
-        return share(
-            registry,
-            args,
-            (&path, format, full_range),
-            (&source, &model, &part),
-            (stop, stats),
-            (number, &made),
-        );
+        return image.part(number, stats);
     }
-    if args.skips(&path, &model)? && provenance::is_up_to_date(&path, &made, warnings.files()) {
+    if args.skips(&path, &image.model)? && provenance::is_up_to_date(&path, &image.made, warnings.files()) {
         messages::note(&format!("{} exists already", path.display()));
         return Ok(());
     }
-    args.size.refuse_other_size(&path, &part)?;
-    let output = Output::open(&path)?;
-    let beside = aov::open(&model, &args.aov, &args.main(&path), &output)?;
-    // The text of a large scene takes as much memory as its model.
-    let source = (!beside.is_empty()).then_some(source);
-    if full_range.is_some() && args.stop.resume {
-        return Err(full_range::refuse(&path, "resumed"));
+    image.whole(stats)
+}
+
+/// An image that is to be rendered.
+struct ImageRender<'a> {
+    registry: &'a Registry,
+    args: &'a Args,
+    stop: &'a Stop,
+    path: &'a Path,
+    /// The format of an image of bytes, and of those beside the image.
+    format: Format,
+    full_range: Option<FullRange>,
+    source: Source,
+    /// The memory that was left when the scene was read, in bytes, if there is a limit.
+    memory: Option<u64>,
+    model: Model,
+    region: Region,
+    /// The texts about how it was made.
+    made: Vec<(&'static str, String)>,
+    differences: Differences,
+    cpu: Cpu,
+}
+
+impl ImageRender<'_> {
+    /// Renders the image into its file, with those beside it.
+    fn whole(self, mut stats: Stats) -> Result<(), Failure> {
+        let Self { registry, args, stop, path, format, source, memory, model, region, .. } = self;
+        args.size.refuse_other_size(path, &region)?;
+        let output = Output::open(path)?;
+        let beside = aov::open(&model, &args.aov, &args.main(path), &output)?;
+        // The text of a large scene takes as much memory as its model.
+        let source = (!beside.is_empty()).then_some(source);
+        if self.full_range.is_some() && args.stop.resume {
+            return Err(full_range::refuse(path, "resumed"));
+        }
+        let begun = ResumedImage::open(args.continues(path), &model, &region, path, &output)?;
+        debug::print(&model, &args.debug)?;
+        let threads = args.threads.unwrap_or(0).into();
+        let start = Instant::now();
+        let plan = args.keep.plan(&model);
+        stats.building += start.elapsed();
+        let renderer = renderer_with(threads)?.on(self.cpu);
+        let whole = Instant::now();
+        if let Some(format) = self.full_range {
+            args.stop.refuse_too_large(full_range::PIXEL * region.columns.len() * region.rows.len())?;
+            full_range::render((&plan, &region), (&renderer, stop), (format, path), output, &stats)?;
+        } else {
+            let job = Job {
+                plan: &plan,
+                region: &region,
+                renderer: &renderer,
+                format,
+                path,
+                made: &self.made,
+                at_once: args.stop.band(region.columns.len())?,
+                stop,
+                stats: args.stats.wants_any().then_some(&stats),
+            };
+            render_bytes(&job, (output, begun), &self.differences, start)?;
+        }
+        stats.writing = whole.elapsed().saturating_sub(stats.rendering.get());
+        args.stats.print(&stats, &model);
+        let Some(source) = source else { return Ok(()) };
+        stop.exit_on_interrupt()?;
+        aov::write(&plan, || read_exact(&source, registry, &model, memory), threads, format, beside)
     }
-    let begun = ResumedImage::open(args.continues(&path), &model, &part, &path, &output)?;
-    debug::print(&model, &args.debug)?;
-    let threads = args.threads.unwrap_or(0).into();
-    let start = Instant::now();
-    let plan = args.keep.plan(&model);
-    stats.building += start.elapsed();
-    let renderer = renderer_with(threads)?.on(cpu);
-    let whole = Instant::now();
-    if let Some(format) = full_range {
-        args.stop.refuse_too_large(full_range::PIXEL * part.columns.len() * part.rows.len())?;
-        full_range::render((&plan, &part), (&renderer, stop), (format, &path), output, &stats)?;
-    } else {
-        let job = Job {
+
+    /// Renders a part of the image into a file of its own.
+    fn part(&self, number: [usize; 2], mut stats: Stats) -> Result<(), Failure> {
+        let Self { args, stop, path, format, model, region, .. } = self;
+        if *path == Path::new("-") {
+            return Err(Failure::Usage(
+                "a part cannot be written beside standard output".to_owned(),
+                Some("name the image with `-o FILE`".to_owned()),
+            ));
+        }
+        debug::print(model, &args.debug)?;
+        let beside = aov::requested(&args.aov, model)?;
+        let start = Instant::now();
+        let plan = args.keep.plan(model);
+        stats.building += start.elapsed();
+        let main = args.main(path);
+        let part = part::PartRender {
+            part: number,
+            made: &self.made,
             plan: &plan,
-            part: &part,
-            renderer: &renderer,
-            format,
-            path: &path,
-            made: &made,
-            at_once: args.stop.band(part.columns.len())?,
+            region,
+            renderer: &renderer_with(args.threads.unwrap_or(0).into())?.on(self.cpu),
+            paths: [path, &main],
+            what: self.full_range.map_or(PixelFormat::picture(*format), PixelFormat::full_range),
+            beside: &beside,
+            format: *format,
+            at_once: args.stop.band(region.columns.len())?,
             stop,
-            stats: args.stats.wants_any().then_some(&stats),
+            stats: &stats,
         };
-        render_bytes(&job, (output, begun), &differences, start)?;
+        let whole = Instant::now();
+        let exact = || read_exact(&self.source, self.registry, model, args.stop.memory_left());
+        let is_wanted = beside.contains(&Aov::Error);
+        part.run(args.stop.resume, |work| aov::with_truth(&plan, is_wanted, exact, |truth| work(truth)))?;
+        stats.writing = whole.elapsed().saturating_sub(stats.rendering.get());
+        args.stats.print(&stats, model);
+        Ok(())
     }
-    stats.writing = whole.elapsed().saturating_sub(stats.rendering.get());
-    args.stats.print(&stats, &model);
-    let Some(source) = source else { return Ok(()) };
-    let exact = || {
-        let chosen = ReadOptions { rules: Some(model.camera.value.rules), ..chosen(Some(Accuracy::Exact)) };
-        source.load_by(registry, chosen).map(|loaded| loaded.model).map_err(Failure::Scene)
-    };
-    stop.exit_on_interrupt()?;
-    aov::write(&plan, exact, threads, format, beside)
+}
+
+/// Reads a scene again, with the rules of light of its model, and hits that are exact.
+fn read_exact(
+    source: &Source,
+    registry: &Registry,
+    model: &Model,
+    memory: Option<u64>,
+) -> Result<Model, Failure> {
+    let rules = Some(model.camera.value.rules);
+    let chosen = ReadOptions { above_all: Some(Accuracy::Exact), rules, memory, ..ReadOptions::default() };
+    source.load_by(registry, chosen).map(|loaded| loaded.model).map_err(Failure::Scene)
 }
 
 /// Renders an image of bytes, and tells what was written since a time, unless that is standard output.
@@ -285,70 +366,18 @@ fn render_bytes(
     start: Instant,
 ) -> Result<(), Failure> {
     let (levels, far) = job.run(output, begun)?;
-    let &Job { plan, part, path, .. } = job;
+    let &Job { plan, region, path, .. } = job;
     if path == Path::new("-") {
         return Ok(());
     }
-    let [width, height] = part.size();
+    let [width, height] = region.size();
     let (which, seconds) = (progress::count(), start.elapsed().as_secs_f64());
     messages::note(&format!("{which}wrote {} ({width} x {height} pixels, {seconds:.2} s)", path.display()));
     differences.print();
     job::tell_of_far(far);
     if !reader::is_black(plan.model) {
-        messages::remark(diagnosis::remark(plan, [&part.columns, &part.rows], &levels));
+        messages::remark(diagnosis::remark(plan, [&region.columns, &region.rows], &levels));
     }
-    Ok(())
-}
-
-/// Renders a part of the image into a file of its own.
-fn share(
-    registry: &Registry,
-    args: &Args,
-    (path, format, full_range): (&Path, Format, Option<FullRange>),
-    (source, model, region): (&Source, &Model, &Part),
-    (stop, mut stats): (&Stop, Stats),
-    (number, made): ([usize; 2], &[(&str, String)]),
-) -> Result<(), Failure> {
-    if path == Path::new("-") {
-        return Err(Failure::Usage(
-            "a part cannot be written beside standard output".to_owned(),
-            Some("name the image with `-o FILE`".to_owned()),
-        ));
-    }
-    debug::print(model, &args.debug)?;
-    let beside = aov::requested(&args.aov, model)?;
-    let start = Instant::now();
-    let plan = args.keep.plan(model);
-    stats.building += start.elapsed();
-    let main = args.main(path);
-    let share = part::PartRender {
-        part: number,
-        made,
-        plan: &plan,
-        region,
-        renderer: &renderer_with(args.threads.unwrap_or(0).into())?.on(args.cpu.cpu()?),
-        paths: [path, &main],
-        what: full_range.map_or(PixelFormat::picture(format), PixelFormat::full_range),
-        beside: &beside,
-        format,
-        at_once: args.stop.band(region.columns.len())?,
-        stop,
-        stats: &stats,
-    };
-    let whole = Instant::now();
-    let exact = || {
-        let chosen = ReadOptions {
-            above_all: Some(Accuracy::Exact),
-            rules: Some(model.camera.value.rules),
-            memory: args.stop.memory_left(),
-            ..ReadOptions::default()
-        };
-        source.load_by(registry, chosen).map(|loaded| loaded.model).map_err(Failure::Scene)
-    };
-    let is_wanted = beside.contains(&Aov::Error);
-    share.run(args.stop.resume, |work| aov::with_truth(&plan, is_wanted, exact, |truth| work(truth)))?;
-    stats.writing = whole.elapsed().saturating_sub(stats.rendering.get());
-    args.stats.print(&stats, model);
     Ok(())
 }
 

@@ -10,7 +10,7 @@ use crate::options::{method, scene};
 use crate::process::failure::Failure;
 use crate::process::interrupt::{self, InterruptAction};
 use crate::process::progress::Progress;
-use form::{Form, Premises};
+use form::{Form, PictureFile, Premises};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use tabray_core::render::plan::Plan;
@@ -75,7 +75,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             let format = format_by_name(&path, "end it in .png or .ppm")?;
             output::refuse_source(&path, &args.scene.path, &model)?;
             let output = Output::open(&path)?;
-            Some((path, format, output))
+            Some(PictureFile { path, format, output })
         }
         None => None,
     };

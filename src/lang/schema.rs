@@ -173,14 +173,14 @@ fn body(entity: &'static Entity) -> Schema {
     }
 }
 
-/// Returns the schema of the values of one attribute.
-fn value(attribute: &'static dyn Attribute) -> Schema {
+/// Returns the schema of one value of an attribute, whatever its rule is.
+fn one(attribute: &'static dyn Attribute) -> Schema {
     let choices = |sorts: [&'static str; 2], choices| Schema {
         choices: Some(choices),
         types: Some(TypeKeyword::Any(sorts.to_vec())),
         ..Schema::default()
     };
-    let one = match attribute.value_type() {
+    match attribute.value_type() {
         Type::Whole => number("integer"),
         Type::Number | Type::Rotation => number("number"),
         Type::Truth => {
@@ -209,10 +209,15 @@ fn value(attribute: &'static dyn Attribute) -> Schema {
                 None => choices(sorts, names.chain(numbers).collect()),
             }
         }
-    };
+    }
+}
+
+/// Returns the schema of the values of one attribute.
+fn value(attribute: &'static dyn Attribute) -> Schema {
     let [minimum, maximum] = attribute.range().map_or([None; 2], |range| range.map(Some));
     let least = if minimum.is_none() && maximum.is_none() { least(attribute) } else { [None; 2] };
-    let one = Schema { minimum: minimum.or(least[0]), exclusive_minimum: least[1], maximum, ..one };
+    let one =
+        Schema { minimum: minimum.or(least[0]), exclusive_minimum: least[1], maximum, ..one(attribute) };
     let (counts, [least, most]) = match attribute.arity() {
         Counts::Of(counts) => (
             counts.to_vec(),

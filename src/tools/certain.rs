@@ -104,9 +104,9 @@ pub fn measure(renderer: &Renderer, model: &mut Model, limit: f64, truth: &[Samp
     let camera = &mut model.camera.value;
     (camera.samples, camera.adaptive) = (4, Some(Adaptive { most: 4096, error: Some(limit) }));
     camera.certain = true;
-    let (certain, bounds, seconds) = render(renderer, model);
+    let Rendered { colours: certain, bounds, seconds } = render(renderer, model);
     model.camera.value.certain = false;
-    let (_, _, without) = render(renderer, model);
+    let without = render(renderer, model).seconds;
     let (mut worst, mut contradicted, mut open) = (0.0_f64, 0, Vec::new());
     let display = model.camera.value.display();
     for ((colour, bound), truth) in certain.iter().zip(&bounds).zip(truth) {
@@ -131,8 +131,15 @@ pub fn measure(renderer: &Renderer, model: &mut Model, limit: f64, truth: &[Samp
     }
 }
 
-/// Renders a model on one thread, in rows from the top. Returns its colours, their proven bounds, and the CPU time.
-fn render(renderer: &Renderer, model: &Model) -> (Vec<Rgb>, Vec<PixelBound>, f64) {
+/// The colours of an image, in rows from the top, with their proven bounds and the CPU time.
+struct Rendered {
+    colours: Vec<Rgb>,
+    bounds: Vec<PixelBound>,
+    seconds: f64,
+}
+
+/// Renders a model on one thread.
+fn render(renderer: &Renderer, model: &Model) -> Rendered {
     renderer.run(|| {
         let (mut scratch, mut bounds) = (Scratch::default(), Bounds::default());
         let start = clock::now();
@@ -155,7 +162,7 @@ fn render(renderer: &Renderer, model: &Model) -> (Vec<Rgb>, Vec<PixelBound>, f64
             (0..pixels.len()).for_each(|lane| colours[at(pixels[lane])] = seen.get(lane));
             pixels.iter().zip(&bounds.0).for_each(|(pixel, bound)| proven[at(*pixel)] = *bound);
         }
-        (colours, proven, (clock::now() - start).as_secs_f64())
+        Rendered { colours, bounds: proven, seconds: (clock::now() - start).as_secs_f64() }
     })
 }
 

@@ -7,7 +7,9 @@ use std::cell::Cell;
 use std::ops::ControlFlow;
 use tabray_core::geometry::sight::Sight;
 use tabray_core::render::bytes::level;
-use tabray_core::render::enclosed::{Colour, Endpoint, LightPoints, Limits, Scene, SceneBounds, Tracer};
+use tabray_core::render::enclosed::{
+    Colour, EnclosedScene, EnclosingTracer, Endpoint, LightPoints, Limits, SceneBounds,
+};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::plan::depth::FAINT;
 use tabray_core::render::renderer::Renderer;
@@ -150,7 +152,7 @@ impl<'p, 'm> Prover<'p, 'm> {
     /// Encloses a pixel's colour, the mean of its samples.
     fn colour<F: Endpoint>(&self, x: usize, y: usize) -> Enclosed<F> {
         let (plan, camera) = (self.plan, &self.plan.camera);
-        let scene = Scene {
+        let scene = EnclosedScene {
             model: plan.model,
             lights: &plan.needs.lights,
             depth: plan.depth.as_ref(),
@@ -163,7 +165,7 @@ impl<'p, 'm> Prover<'p, 'm> {
         for (place, sample) in camera.places(x, y, camera.samples) {
             let sight: Sight = camera.sight_of(place, sample.as_ref());
             let lights = sample.map_or(LightPoints::Middle, LightPoints::Of);
-            let mut tracer = Tracer::new(&scene, limits::<F>(), lights);
+            let mut tracer = EnclosingTracer::new(&scene, limits::<F>(), lights);
             let colour = tracer.primary(&sight.line::<Interval<F>>());
             is_open |= tracer.is_open();
             is_spent |= tracer.is_spent();

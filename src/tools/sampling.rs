@@ -28,6 +28,14 @@ pub struct Samples {
     pub adaptive: Option<Adaptive>,
 }
 
+impl Samples {
+    /// Gives a plan these numbers.
+    pub fn set(self, plan: &mut Plan) {
+        (plan.camera.samples, plan.camera.sampler) = (self.samples, self.sampler);
+        plan.set_adaptive(self.adaptive);
+    }
+}
+
 /// The cost and the error of a number of samples. Errors are in levels of 1/255, of colours as they are shown but not
 /// rounded to levels.
 #[derive(Clone, Debug, Serialize, Deserialize)]

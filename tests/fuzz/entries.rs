@@ -11,7 +11,7 @@ use super::serve::connections::{Answer, Connections, Limits};
 use super::watch::answer::{self, JOBS};
 use super::watch::frame::Frame;
 use super::watch::session::Session;
-use crate::options::size::Part;
+use crate::options::size::Region;
 use crate::rendering::resume::{self, ResumedImage};
 use hyper::Request;
 use hyper::body::Bytes;
@@ -36,13 +36,13 @@ use tokio::runtime::{Builder, Runtime};
 /// An image that is rendered in parts, with a checkpoint in between.
 pub struct Image {
     identity: Identity,
-    part: Part,
+    part: Region,
 }
 
 impl Image {
     /// Begins the image of a model.
     pub fn new(model: &Model) -> Option<Self> {
-        let part = Part::whole(&model.camera.value);
+        let part = Region::whole(&model.camera.value);
         let identity = resume::identity(model, &part).ok()?;
         Some(Self { identity, part })
     }

@@ -37,6 +37,22 @@ pub enum Question {
     Certain,
 }
 
+impl Question {
+    /// Returns the head of the table.
+    fn head(self) -> &'static str {
+        match self {
+            Self::Rms => {
+                "| scene | samples | CPU seconds | rays per pixel | RMS error | worst pixel | fixed samples of that RMS | their time |\n\
+                 |---|---|---:|---:|---:|---:|---:|---:|\n"
+            }
+            Self::Limits | Self::Certain => {
+                "| scene | levels | CPU seconds | rays per pixel | pixels within | worst pixel | kept | fixed samples that keep it | their time |\n\
+                 |---|---:|---:|---:|---:|---:|---|---:|---:|\n"
+            }
+        }
+    }
+}
+
 /// Measures the scenes, prints a table in Markdown, and writes a chart, if a file is named for it.
 pub fn run(
     question: Question,
@@ -52,16 +68,7 @@ pub fn run(
         panels: Vec::new(),
         is_whole: true,
     };
-    print(match question {
-        Question::Rms => {
-            "| scene | samples | CPU seconds | rays per pixel | RMS error | worst pixel | fixed samples of that RMS | their time |\n\
-             |---|---|---:|---:|---:|---:|---:|---:|\n"
-        }
-        Question::Limits | Question::Certain => {
-            "| scene | levels | CPU seconds | rays per pixel | pixels within | worst pixel | kept | fixed samples that keep it | their time |\n\
-             |---|---:|---:|---:|---:|---:|---|---:|---:|\n"
-        }
-    })?;
+    print(question.head())?;
     for (path, mut model) in models {
         let camera = &mut model.camera.value;
         camera.pixels = size.unwrap_or(camera.pixels);

@@ -2,7 +2,7 @@
 //! texts, an existing frame is recognized.
 
 use crate::files::input::Source;
-use crate::options::size::Part;
+use crate::options::size::Region;
 use crate::options::{max_error, set};
 use std::env;
 use std::fs;
@@ -24,12 +24,12 @@ pub fn texts(
     source: &Source,
     set: &set::Args,
     camera: (&Sensor, f64),
-    part: &Part,
+    region: &Region,
 ) -> Vec<(&'static str, String)> {
     vec![
         ("Software", concat!("tabray ", env!("CARGO_PKG_VERSION")).to_owned()),
         ("tabray scene", source.hash()),
-        ("tabray options", options(camera, part) + &set.words()),
+        ("tabray options", options(camera, region) + &set.words()),
     ]
 }
 
@@ -66,11 +66,11 @@ fn is_whole(path: &Path, texts: &[(&str, String)]) -> io::Result<bool> {
     Ok(true)
 }
 
-fn options((camera, exposure): (&Sensor, f64), part: &Part) -> String {
+fn options((camera, exposure): (&Sensor, f64), region: &Region) -> String {
     let [width, height] = camera.pixels;
     let mut words = format!("--size {width}x{height}");
-    if part.size() != camera.pixels {
-        let (columns, rows) = (&part.columns, &part.rows);
+    if region.size() != camera.pixels {
+        let (columns, rows) = (&region.columns, &region.rows);
         words += &format!(" --crop {},{},{},{}", columns.start, height - rows.end, columns.len(), rows.len());
     }
     match camera.adaptive {

@@ -39,14 +39,14 @@ struct Size {
 }
 
 /// A part of an image.
-pub struct Part {
+pub struct Region {
     /// The columns, from 0 at the left.
     pub columns: Range<usize>,
     /// The rows, from 0 at the top.
     pub rows: Range<usize>,
 }
 
-impl Part {
+impl Region {
     /// Returns the width and the height in pixels.
     pub fn size(&self) -> [usize; 2] {
         [self.columns.len(), self.rows.len()]
@@ -61,7 +61,7 @@ impl Part {
 
 impl Args {
     /// Gives the image the requested size, and returns the requested part of it.
-    pub fn apply(&self, camera: &mut Sensor) -> Result<Part, Failure> {
+    pub fn apply(&self, camera: &mut Sensor) -> Result<Region, Failure> {
         let [width, height] = camera.pixels;
         if self.quick {
             camera.pixels = camera.pixels.map(|side| (side / 4).max(1));
@@ -81,13 +81,13 @@ impl Args {
         }
         match self.crop {
             Some(crop) => part(camera, crop),
-            None => Ok(Part::whole(camera)),
+            None => Ok(Region::whole(camera)),
         }
     }
 
     /// Refuses to let a preview, an image of a size asked for or a part replace an image of another size, such as the one
     /// that took an hour. One with a checkpoint beside it is not finished.
-    pub fn refuse_other_size(&self, path: &Path, part: &Part) -> Result<(), Failure> {
+    pub fn refuse_other_size(&self, path: &Path, region: &Region) -> Result<(), Failure> {
         let is_asked_for = self.quick || self.size.is_some() || self.crop.is_some();
         let mut checkpoint = path.as_os_str().to_owned();
         checkpoint.push(".checkpoint");
@@ -98,7 +98,7 @@ impl Args {
         let Some((width, height)) = reader.and_then(|reader| reader.into_dimensions().ok()) else {
             return Ok(());
         };
-        let [new_width, new_height] = part.size();
+        let [new_width, new_height] = region.size();
         if [width as usize, height as usize] == [new_width, new_height] {
             return Ok(());
         }
@@ -121,7 +121,7 @@ impl Args {
 }
 
 /// Returns the part that the user named, if the image contains it.
-fn part(camera: &Sensor, [x, y, wide, high]: [i64; 4]) -> Result<Part, Failure> {
+fn part(camera: &Sensor, [x, y, wide, high]: [i64; 4]) -> Result<Region, Failure> {
     let [width, height] = camera.pixels;
     let range = |from: i64, count: i64, whole: usize| {
         let (from, count) = (usize::try_from(from).ok()?, usize::try_from(count).ok()?);
@@ -129,7 +129,7 @@ fn part(camera: &Sensor, [x, y, wide, high]: [i64; 4]) -> Result<Part, Failure> 
         Some(from..to)
     };
     match (range(x, wide, width), range(y, high, height)) {
-        (Some(columns), Some(rows)) => Ok(Part { columns, rows: height - rows.end..height - rows.start }),
+        (Some(columns), Some(rows)) => Ok(Region { columns, rows: height - rows.end..height - rows.start }),
         _ => Err(Failure::Usage(
             format!("the image of {width} x {height} pixels has no part of {wide} x {high} at {x} {y}"),
             Some(format!(

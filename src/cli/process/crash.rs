@@ -5,10 +5,16 @@ use crate::process::program;
 use std::panic::{self, AssertUnwindSafe, Location};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// The message of the last panic, and the name of the scene that was read last.
-static LAST: Mutex<(String, String)> = Mutex::new((String::new(), String::new()));
+struct Last {
+    /// The message of the last panic.
+    said: String,
+    /// The name of the scene that was read last.
+    scene: String,
+}
 
-fn last() -> MutexGuard<'static, (String, String)> {
+static LAST: Mutex<Last> = Mutex::new(Last { said: String::new(), scene: String::new() });
+
+fn last() -> MutexGuard<'static, Last> {
     LAST.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -26,24 +32,24 @@ pub fn capture_panics() {
             )));
         }
         let place = info.location().map(Location::to_string).unwrap_or_default();
-        last().0 = format!("{said} ({place})");
+        last().said = format!("{said} ({place})");
     }));
 }
 
 /// Names the scene that later panics are reported for.
 pub fn set_scene(scene: &str) {
-    scene.clone_into(&mut last().1);
+    scene.clone_into(&mut last().scene);
 }
 
 /// Returns the name of the scene that was read last, unless it is being set now.
 pub fn scene() -> Option<String> {
-    LAST.try_lock().ok().map(|last| last.1.clone()).filter(|scene| !scene.is_empty())
+    LAST.try_lock().ok().map(|last| last.scene.clone()).filter(|scene| !scene.is_empty())
 }
 
 /// Runs `work` and turns a panic into a failure.
 pub fn catch<T>(work: impl FnOnce() -> T) -> Result<T, Failure> {
     panic::catch_unwind(AssertUnwindSafe(work)).map_err(|_| {
-        let (said, scene) = &*last();
+        let Last { said, scene } = &*last();
         let scene = if scene.is_empty() { String::new() } else { format!(" at `{scene}`") };
         Failure::Failed(format!(
             "internal error{scene}: {said}; this is a bug in {} {} or in one of its plugins; please report it with the scene",

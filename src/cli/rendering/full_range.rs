@@ -1,7 +1,7 @@
 //! Renders an image into a file of full range: colours before they are clamped and rounded to levels.
 
 use crate::files::output::{self, Output};
-use crate::options::size::Part;
+use crate::options::size::Region;
 use crate::options::stop::Stop;
 use crate::process::failure::Failure;
 use crate::process::progress::Progress;
@@ -22,13 +22,13 @@ const UNKEPT: &str = "an EXR or a PFM is written only when it is complete: nothi
 
 /// Renders a part of an image, and writes it once it is whole: its formats have no place for what is not rendered.
 pub fn render(
-    (plan, part): (&Plan, &Part),
+    (plan, region): (&Plan, &Region),
     (renderer, stop): (&Renderer, &Stop),
     (format, path): (FullRange, &Path),
     output: Output,
     stats: &Stats,
 ) -> Result<(), Failure> {
-    let [width, height] = part.size();
+    let [width, height] = region.size();
     memory::refuse_too_large(PIXEL.saturating_mul(width).saturating_mul(height), "the image")?;
     let progress = Progress::new(height);
     stop.begin_unkept(UNKEPT);
@@ -36,7 +36,7 @@ pub fn render(
     let tally = &stats.tally;
     let add = |part: RayStats| tally.add(&part);
     let mut pixels = None;
-    stats.timed(|| pixels = renderer.colours(plan, [&part.columns, &part.rows], overseer, &add));
+    stats.timed(|| pixels = renderer.colours(plan, [&region.columns, &region.rows], overseer, &add));
     progress.end();
     let flaws = stats.tally.flaws();
     job::warn_of(&flaws, plan.model);

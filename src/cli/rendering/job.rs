@@ -1,7 +1,7 @@
 //! Renders an image and writes it, or stops and leaves what a later render can continue from.
 
 use crate::files::output::{Output, finished};
-use crate::options::size::Part;
+use crate::options::size::Region;
 use crate::options::stop::Stop;
 use crate::process::failure::{self, Failure};
 use crate::process::progress::Progress;
@@ -40,7 +40,7 @@ const MOST_REASONS: usize = 4;
 /// A part of a plan's image, and how it is rendered.
 pub struct Job<'a> {
     pub plan: &'a Plan<'a>,
-    pub part: &'a Part,
+    pub region: &'a Region,
     pub renderer: &'a Renderer,
     pub format: Format,
     /// The path of the image.
@@ -59,7 +59,7 @@ impl Job<'_> {
     /// ends with what is done, because threads may still be at work.
     /// Returns the levels of the image, and the rays whose paths were too long by the notes' rules.
     pub fn run(&self, output: Output, begun: Option<ResumedImage>) -> Result<(Levels, FarPaths), Failure> {
-        let progress = Progress::new(self.part.rows.len());
+        let progress = Progress::new(self.region.rows.len());
         let (flaws, proofs) = (Mutex::new(Flaws::default()), Mutex::new(Proofs::default()));
         let flawed = |part: Flaws| flaws.lock().unwrap_or_else(PoisonError::into_inner).add(&part);
         let sum = self.stats.map(|stats| &stats.tally);
@@ -97,8 +97,8 @@ impl Job<'_> {
         progress: &Progress,
         fill: impl Fn(&mut Band),
     ) -> Result<Levels, Failure> {
-        let Part { columns, rows } = self.part;
-        let mut tiles = Tiles::none(self.part.size());
+        let Region { columns, rows } = self.region;
+        let mut tiles = Tiles::none(self.region.size());
         let (mut broken, mut told, mut is_cut) = (None, false, false);
         let mut levels = Levels::default();
         let mut out = BufWriter::with_capacity(1 << 16, output);
@@ -133,7 +133,7 @@ impl Job<'_> {
         });
         // Pieces that are compressed together are in memory together.
         let renderer = (self.at_once == BAND).then_some(self.renderer);
-        let written = self.format.write_on(renderer, self.made, &mut out, self.part.size(), bands);
+        let written = self.format.write_on(renderer, self.made, &mut out, self.region.size(), bands);
         match (broken, written) {
             (Some(failure), _) => Err(failure),
             (None, Err(error)) if is_cut && error.kind() == io::ErrorKind::Other => {
@@ -158,7 +158,7 @@ impl Job<'_> {
 
     /// Makes a band, filled with the pixels of a checkpoint.
     fn band(&self, rows: Range<usize>, begun: Option<&mut ResumedImage>) -> Result<Band, Failure> {
-        let columns = self.part.columns.clone();
+        let columns = self.region.columns.clone();
         memory::refuse_too_large(3 * rows.len() * columns.len(), "the image")?;
         let band = Band::blank(columns, rows);
         begun.map_or(Ok(()), |begun| begun.fill(&band))?;
@@ -174,7 +174,7 @@ impl Job<'_> {
     fn left(&self, out: BufWriter<Output>, tiles: &Tiles, rows: usize) -> Result<(), Failure> {
         let output =
             out.into_inner().map_err(|error| Failure::cannot_write(self.path, &error.into_error()))?;
-        let [width, height] = self.part.size();
+        let [width, height] = self.region.size();
         // Rounded down, so that an unfinished image does not show 100 %.
         let share = (1000.0 * tiles.pixels() as f64 / (width * height) as f64).floor() / 10.0;
         messages::note(&match &output {
@@ -184,7 +184,7 @@ impl Job<'_> {
             Output::File(..) => {
                 let checkpoint = resume::leave(
                     self.plan.model,
-                    self.part,
+                    self.region,
                     (self.path, self.format),
                     output,
                     (tiles, rows),

@@ -1,7 +1,7 @@
 //! `tabray render --part`: renders a part of an image into a file beside it, from which `tabray merge` makes the image.
 
 use crate::files::output::{self, Output};
-use crate::options::size::Part;
+use crate::options::size::Region;
 use crate::options::stop::Stop;
 use crate::process::failure::{self, Failure};
 use crate::process::progress::Progress;
@@ -68,7 +68,7 @@ pub struct PartRender<'a> {
     pub made: &'a [(&'a str, String)],
     pub plan: &'a Plan<'a>,
     /// The part of the image that is rendered.
-    pub region: &'a Part,
+    pub region: &'a Region,
     pub renderer: &'a Renderer,
     /// The path of the image, and that of an image whose name those beside it have.
     pub paths: [&'a Path; 2],
@@ -230,7 +230,7 @@ impl PartRender<'_> {
         rows: Range<usize>,
         begun: Option<&mut ResumedImage>,
     ) -> Result<Band, Failure> {
-        let Part { columns, rows: all } = self.region;
+        let Region { columns, rows: all } = self.region;
         let band = Band::blank(columns.clone(), all.start + rows.start..all.start + rows.end);
         begun.map_or(Ok(()), |begun| begun.fill(&band))?;
         self.mark_others(&band, tiles, &rows, true);
@@ -285,7 +285,7 @@ impl PartRender<'_> {
     fn full_range(&self, file: &(PathBuf, Label)) -> Result<(), Failure> {
         let (path, label) = file;
         let (tiles, grid) = (label.tiles(), self.grid());
-        let Part { columns, rows } = self.region;
+        let Region { columns, rows } = self.region;
         let progress = Progress::new(grid.rows(&tiles).len());
         let overseer = RenderCallbacks { stops: &|| self.stop.is_due(), row: &|| progress.step() };
         let sum = &self.stats.tally;

@@ -1,7 +1,7 @@
 //! Checkpoints beside images: written where a render stops, and continued from by `--resume`.
 
 use crate::files::output::{self, Output};
-use crate::options::size::Part;
+use crate::options::size::Region;
 use crate::process::failure::Failure;
 use crate::process::messages;
 use std::fs::{self, File};
@@ -30,7 +30,7 @@ impl ResumedImage {
     pub fn open(
         wanted: bool,
         model: &Model,
-        part: &Part,
+        region: &Region,
         picture: &Path,
         output: &Output,
     ) -> Result<Option<Self>, Failure> {
@@ -53,7 +53,7 @@ impl ResumedImage {
             return Ok(None);
         }
         let missing = format!("there is no {shown} to continue from: the render starts from the beginning");
-        let begun = Self::find(path, || identity(model, part), part.size())?;
+        let begun = Self::find(path, || identity(model, region), region.size())?;
         if begun.is_none() {
             messages::note(&missing);
         }
@@ -151,16 +151,16 @@ pub fn write(
 /// Both files are complete before either is moved to its path.
 pub fn leave(
     model: &Model,
-    part: &Part,
+    region: &Region,
     (picture, format): (&Path, Format),
     written: Output,
     (tiles, rows): (&Tiles, usize),
 ) -> Result<PathBuf, Failure> {
-    let [width, height] = part.size();
+    let [width, height] = region.size();
     let path = beside(picture);
     let cannot_write = |error: io::Error| Failure::cannot_write(&path, &error);
     let mut shown = written.read().and_then(|file| format.read(file)).map_err(cannot_write)?;
-    let identity = identity(model, part)?;
+    let identity = identity(model, region)?;
     let checkpoint = write(&path, [width, rows], &identity, tiles, |row| shown.next(row))?;
     let partial = match format {
         Format::Ppm => {
@@ -183,8 +183,8 @@ pub fn leave(
 }
 
 /// Describes what a part of a model's image depends on.
-pub fn identity(model: &Model, part: &Part) -> Result<Identity, Failure> {
-    Identity::of(model, &part.columns, &part.rows).map_err(|error| {
+pub fn identity(model: &Model, region: &Region) -> Result<Identity, Failure> {
+    Identity::of(model, &region.columns, &region.rows).map_err(|error| {
         let reason = text::reason(&error);
         Failure::Failed(format!(
             "cannot read the program's own file, whose hash a checkpoint contains: {reason}"

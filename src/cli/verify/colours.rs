@@ -1,17 +1,13 @@
 //! `tabray verify --colours`: proves the bytes of an image.
 
-use super::form::{Form, Premises};
-use crate::files::output::{self, Output};
+use super::form::{Form, PictureFile, Premises};
 use crate::options::number::whole;
 use crate::options::stop;
 use crate::process::failure::{Failure, print};
 use crate::process::messages;
 use crate::process::progress::Progress;
 use serde::Serialize;
-use std::iter;
-use std::path::PathBuf;
 use std::time::{Duration, Instant};
-use tabray_core::output::picture::Format;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::renderer::Renderer;
 use tabray_core::text;
@@ -87,12 +83,7 @@ pub fn prove(
 }
 
 /// Reports what was found, and writes the image of it.
-pub fn report(
-    args: &Args,
-    pixels: Proof,
-    form: &Form,
-    picture: Option<(PathBuf, Format, Output)>,
-) -> Result<(), Failure> {
+pub fn report(args: &Args, pixels: Proof, form: &Form, picture: Option<PictureFile>) -> Result<(), Failure> {
     let verdicts: Vec<_> = pixels.iter().map(|pixel| pixel.map(|pixel| pixel.verdict())).collect();
     let bytes = pixels.iter().flat_map(|pixel| match pixel {
         Some(pixel) => pixel.channels.map(Some),
@@ -111,7 +102,7 @@ pub fn report(
         premises: &form.premises,
     };
     print(&if form.is_json { text::json_in_lines(&numbers) } else { numbers.message() })?;
-    if let Some((path, format, output)) = picture {
+    if let Some(picture) = picture {
         let colour = |verdict: &Option<Verdict>| match verdict {
             Some(Verdict::Proven) => [0; 3],
             Some(Verdict::Rounded) => [128; 3],
@@ -119,8 +110,7 @@ pub fn report(
             Some(Verdict::Uncertified) => [0, 0, 255],
             Some(Verdict::Contradicted) => [255, 0, 0],
         };
-        let bytes = verdicts.iter().flat_map(colour).collect();
-        output::write_image(&path, output, |out| format.write(out, form.size, iter::once(Ok(bytes))))?;
+        picture.write(form.size, verdicts.iter().flat_map(colour).collect())?;
     }
     let contradicted = numbers.pixels.contradicted;
     if contradicted > 0 {

@@ -1,6 +1,10 @@
 //! What `tabray verify` reports beside its verdicts: what the proofs start from, and the first pixels of each kind.
 
+use crate::files::output::{self, Output};
+use crate::process::failure::Failure;
 use serde::Serialize;
+use std::path::PathBuf;
+use tabray_core::output::picture::Format;
 use tabray_core::render::plan::Plan;
 use tabray_core::text;
 use tabray_tools::assumptions::{self, Assumed};
@@ -15,6 +19,21 @@ pub struct Form {
     pub premises: Premises,
     /// Whether it is reported as JSON.
     pub is_json: bool,
+}
+
+/// The image of the verdicts.
+pub struct PictureFile {
+    pub path: PathBuf,
+    pub format: Format,
+    pub output: Output,
+}
+
+impl PictureFile {
+    /// Writes the bytes of an image of this size.
+    pub fn write(self, size: [usize; 2], bytes: Vec<u8>) -> Result<(), Failure> {
+        let Self { path, format, output } = self;
+        output::write_image(&path, output, |out| format.write(out, size, [Ok(bytes)]))
+    }
 }
 
 /// What proofs start from.

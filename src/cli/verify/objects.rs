@@ -1,12 +1,8 @@
 //! The report of `tabray verify`: which pixels show the object that is certainly hit first.
 
-use super::form::{Form, Premises};
-use crate::files::output::{self, Output};
+use super::form::{Form, PictureFile, Premises};
 use crate::process::failure::{Failure, print};
 use serde::Serialize;
-use std::iter;
-use std::path::PathBuf;
-use tabray_core::output::picture::Format;
 use tabray_core::text;
 use tabray_tools::verify::Verdict;
 
@@ -38,11 +34,7 @@ struct Numbers<'a> {
 }
 
 /// Reports the verdicts on all pixels, in rows from the top, and writes the image of them.
-pub fn report(
-    verdicts: &[Verdict],
-    form: &Form,
-    picture: Option<(PathBuf, Format, Output)>,
-) -> Result<(), Failure> {
+pub fn report(verdicts: &[Verdict], form: &Form, picture: Option<PictureFile>) -> Result<(), Failure> {
     let counts = Counts::of(verdicts);
     let contradicted = counts.contradicted;
     let first = |verdict| form.first(verdicts, &verdict);
@@ -56,15 +48,14 @@ pub fn report(
     } else {
         counts.message(form)
     })?;
-    if let Some((path, format, output)) = picture {
+    if let Some(picture) = picture {
         let colour = |verdict: &Verdict| match verdict {
             Verdict::Proven => [0; 3],
             Verdict::Tie => [255; 3],
             Verdict::Uncertified => [0, 0, 255],
             Verdict::Contradicted => [255, 0, 0],
         };
-        let bytes = verdicts.iter().flat_map(colour).collect();
-        output::write_image(&path, output, |out| format.write(out, form.size, iter::once(Ok(bytes))))?;
+        picture.write(form.size, verdicts.iter().flat_map(colour).collect())?;
     }
     if contradicted > 0 {
         return Err(Failure::Failed(format!(

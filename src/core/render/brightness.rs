@@ -1,6 +1,6 @@
 //! Bounds on what the rays through a part of an image return, each by itself.
 
-use crate::render::enclosed::{LightPoints, Scene, SceneBounds, Tracer};
+use crate::render::enclosed::{EnclosedScene, EnclosingTracer, LightPoints, SceneBounds};
 use crate::render::footprint::{LIMITS, lines};
 use crate::render::plan::depth::{Depth, clearance};
 use crate::scene::model::Model;
@@ -49,12 +49,12 @@ impl<'m> Brightness<'m> {
         let Self { model, depth, lights, bounds } = self;
         let meets_uncertified = Cell::new(false);
         let window = camera.window();
-        let scene = Scene { model, lights, depth: Some(depth), bounds, window, meets_uncertified };
+        let scene = EnclosedScene { model, lights, depth: Some(depth), bounds, window, meets_uncertified };
         let Some(lines) = lines(camera, middle, half) else {
             let most = Rgb::splat(self.most(camera));
             return [-most, most];
         };
-        let colour = Tracer::new(&scene, LIMITS, LightPoints::All).primary(&lines);
+        let colour = EnclosingTracer::new(&scene, LIMITS, LightPoints::All).primary(&lines);
         let ranges = colour.unwrap_or([Affine::WHOLE; 3]).map(|channel| channel.range());
         let steepest = camera.display().steepest();
         let end = |of: fn(&tabray_exact::interval::Interval) -> f64, unknown: f64| {

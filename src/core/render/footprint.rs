@@ -12,7 +12,7 @@
 
 use crate::geometry::image_point::ImagePoint;
 use crate::geometry::sight::Line;
-use crate::render::enclosed::{LightPoints, Limits, Scene, SceneBounds, Tracer};
+use crate::render::enclosed::{EnclosedScene, EnclosingTracer, LightPoints, Limits, SceneBounds};
 use crate::render::plan::depth::Depth;
 use crate::scene::model::Model;
 use crate::world::display::Display;
@@ -133,11 +133,11 @@ impl PixelProver {
     ) -> Proof {
         let Self { bounds, lights } = self;
         let (window, meets_uncertified) = (camera.window(), Cell::new(false));
-        let scene = Scene { model, lights, depth, bounds, window, meets_uncertified };
+        let scene = EnclosedScene { model, lights, depth, bounds, window, meets_uncertified };
         let display = &camera.display();
         let footprint = |middle: [f64; 2], cuts: u32| {
             let lines = lines(camera, middle, power_of_two(-(cuts as i32) - 1));
-            let mut tracer = Tracer::new(&scene, LIMITS, LightPoints::All);
+            let mut tracer = EnclosingTracer::new(&scene, LIMITS, LightPoints::All);
             let colour = lines.and_then(|lines| tracer.primary(&lines)).unwrap_or([Affine::WHOLE; 3]);
             Footprint { middle, cuts, mean: colour.map(|channel| channel.mean()) }
         };

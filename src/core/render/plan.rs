@@ -6,6 +6,7 @@ mod shut_out;
 
 use depth::{ContinuationBounds, Depth};
 use needs::{Needs, UnlitReason};
+pub(crate) use shut_out::ShutOut;
 use shut_out::{Objects, shut_out};
 
 use crate::geometry::aabb::Aabb;
@@ -51,8 +52,8 @@ pub struct Plan<'m> {
     pub bounces: usize,
     /// The lights that are sampled, and what is left out.
     pub needs: Needs,
-    /// The lights that a closed object keeps from all that is seen, each with the index of that object.
-    pub(crate) shut_out: Vec<(usize, usize)>,
+    /// The lights that a closed object keeps from all that is seen.
+    pub(crate) shut_out: Vec<ShutOut>,
 }
 
 /// Objects whose hits may take long to find.
@@ -104,7 +105,7 @@ impl<'m> Plan<'m> {
         let bounded: Vec<_> = bounded.iter().map(|index| (*index, box_of(*index))).collect();
         let searched = Objects { unbounded: &unbounded, bounded: &bounded, tree: tree.as_ref() };
         let shut_out = shut_out(model, &searched);
-        for (light, _) in &shut_out {
+        for ShutOut { light, .. } in &shut_out {
             needs.leave_out(*light, UnlitReason::ShutOut);
         }
         let camera = model.camera.value.clone();

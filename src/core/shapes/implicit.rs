@@ -27,7 +27,7 @@ use tabray_exact::formula::field::Field;
 use tabray_exact::interval::Interval;
 use tabray_exact::polynomial::{Coefficient, MOST, Polynomial};
 use tabray_exact::roots::stretch::Stretch;
-use tabray_exact::roots::taylor::{self, FirstRoot};
+use tabray_exact::roots::taylor::{self, FirstRoot, SignChange};
 use tabray_exact::roots::{Method, twice};
 use tabray_exact::scalar::Scalar;
 
@@ -153,7 +153,7 @@ impl<T: Implicit> Searched for ImplicitShape<T> {
         for _ in 0..MOST_CUT {
             let root = method.first_root(&line, outer.clone(), line.closest, &left, shortest(&outer));
             match root {
-                Some(root) if self.formula.is_cut() && !line.kept(root).0 => {
+                Some(root) if self.formula.is_cut() && !line.kept(root).is_kept => {
                     // A method may find the root where it starts again, unless it knows that the line leaves there.
                     let rises = taylor::FunctionOnLine::at(&line, Dual::variable(root)).slope > 0.0;
                     left.origin_side = Some(if rises { Side::Outside } else { Side::Inside });
@@ -209,6 +209,12 @@ fn direction(vector: DVec3) -> Option<DVec3> {
     (vector / vector.abs().max_element()).try_normalize()
 }
 
+/// Whether a surface is kept at a root, and whether that is certain in `f64`.
+struct Kept {
+    is_kept: bool,
+    is_certain: bool,
+}
+
 /// A formula along a ray.
 struct FormulaOnRay<'s, T> {
     shape: &'s ImplicitShape<T>,
@@ -258,7 +264,9 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         let start = taylor::FunctionOnLine::at(self, Interval::<f64>::constant(stretch.outer.start));
         let rounding = 4.0 * f64::EPSILON * (self.closest.abs() + root.abs());
         let width = 4.0 * (self.blur + self.turn * root.abs()) + rounding;
-        let Some((low, high, rises)) = taylor::bracket(self, root, width) else { return Bracket::UNKNOWN };
+        let Some(SignChange { low, high, rises }) = taylor::bracket(self, root, width) else {
+            return Bracket::UNKNOWN;
+        };
         // The function does not cross 0 from the start to the root, and so has the sign there that it starts with.
         let is_first = if rises { start.high < 0.0 } else { start.low > 0.0 };
         let is_kept = !self.shape.formula.is_cut()
@@ -308,7 +316,8 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         let (mut range, mut all_certain) = (*range, true);
         loop {
             let found = self.first_root(&stretch, &range, pieces);
-            let (is_kept, is_certain) = found.root.map_or((true, true), |root| self.kept(root));
+            let kept = found.root.map(|root| self.kept(root));
+            let Kept { is_kept, is_certain } = kept.unwrap_or(Kept { is_kept: true, is_certain: true });
             all_certain &= found.is_certain && is_certain;
             match found.root {
                 Some(root) if !is_kept => range.near = self.closest + root,
@@ -317,14 +326,14 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         }
     }
 
-    /// Tells whether the surface is kept at a root, and whether that is certain in `f64`. If not, it is decided at a
+    /// Tells whether the surface is kept at a root. Where that is not certain in `f64`, it is decided at a
     /// root in double-double arithmetic.
-    fn kept(&self, root: f64) -> (bool, bool) {
+    fn kept(&self, root: f64) -> Kept {
         let error = 4.0 * f64::EPSILON * root.abs() + self.blur;
         let at = self.on_line(Interval { low: root - error, high: root + error });
         let kept = self.shape.formula.inside_trim(at);
         if kept.low >= 0.0 || kept.high < 0.0 {
-            return (kept.low >= 0.0, true);
+            return Kept { is_kept: kept.low >= 0.0, is_certain: true };
         }
         let exact = self.shape.frame.exactly(self.ray, self.closest);
         let value = |t| self.shape.formula.value(exact.along(t));
@@ -332,7 +341,7 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         let Dual { value, slope } = value(Dual::variable(start));
         let fine = start - value / slope;
         let kept = self.shape.formula.inside_trim(exact.along(Dual::<DoubleDouble>::fixed(fine))).value;
-        (kept.high >= 0.0, false)
+        Kept { is_kept: kept.high >= 0.0, is_certain: false }
     }
 
     /// Encloses the points at distances along every ray that this one may have been rounded from.

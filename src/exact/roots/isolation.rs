@@ -5,7 +5,7 @@ use crate::polynomial::{Coefficient, Polynomial};
 
 /// A part of a polynomial's piece, by places from -1 to 1, that has a root or may have some.
 #[derive(Clone, Copy, Debug)]
-pub enum Part<C> {
+pub enum RootPart<C> {
     /// There is exactly one root.
     Root {
         /// The ends of the part.
@@ -21,7 +21,7 @@ pub enum Part<C> {
 /// of the polynomial.
 pub fn visit<C: Coefficient, const N: usize, R>(
     polynomial: &Polynomial<C, N>,
-    visit: impl FnMut(Part<C>) -> Option<R>,
+    visit: impl FnMut(RootPart<C>) -> Option<R>,
 ) -> Option<R> {
     let form = Bernstein::of(polynomial)?;
     let mut search = Search { visit, hidden: None };
@@ -42,12 +42,12 @@ struct Search<V, C> {
     hidden: Option<[C; 2]>,
 }
 
-impl<C: Coefficient, R, V: FnMut(Part<C>) -> Option<R>> Search<V, C> {
+impl<C: Coefficient, R, V: FnMut(RootPart<C>) -> Option<R>> Search<V, C> {
     fn piece<const N: usize>(&mut self, form: &Bernstein<C, N>, ends: [C; 2], depth: usize) -> Option<R> {
         let [low, high] = ends;
         match form.roots() {
             Roots::None => self.flush(),
-            Roots::One { rises, .. } => self.flush().or_else(|| (self.visit)(Part::Root { ends, rises })),
+            Roots::One { rises, .. } => self.flush().or_else(|| (self.visit)(RootPart::Root { ends, rises })),
             Roots::Unknown | Roots::Monotone { .. } if depth > 0 => {
                 let middle = C::from(0.5) * (low + high);
                 let [lower, upper] = form.halves();
@@ -65,7 +65,7 @@ impl<C: Coefficient, R, V: FnMut(Part<C>) -> Option<R>> Search<V, C> {
     /// Visits what is hidden.
     fn flush(&mut self) -> Option<R> {
         let ends = self.hidden.take()?;
-        (self.visit)(Part::Hidden(ends))
+        (self.visit)(RootPart::Hidden(ends))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Sampling and refinement: the first two places along a line between which the function changes its sign, and how the
 //! root between them is refined.
 
-use super::taylor::FunctionOnLine;
+use super::taylor::{FunctionOnLine, SignChange};
 use super::{bisection, chandrupatla, newton};
 use crate::dual::Dual;
 use crate::roots::range::Side;
@@ -58,19 +58,19 @@ impl Refiner {
     }
 }
 
-/// Returns the first two consecutive places between which the function's sign changes, and whether it falls there.
+/// Returns the first two consecutive places between which the function's sign changes.
 ///
 /// If the line leaves the surface, the side is known that it starts on, whatever the computed sign.
 pub(super) fn sign_change(
     line: &impl FunctionOnLine,
     mut places: impl Iterator<Item = f64>,
     origin_side: Option<Side>,
-) -> Option<(f64, f64, bool)> {
+) -> Option<SignChange> {
     let mut low = places.next()?;
     let is_outside = origin_side.map_or_else(|| line.at(low) >= 0.0, |side| side == Side::Outside);
     for high in places {
         if (line.at(high) >= 0.0) != is_outside {
-            return Some((low, high, is_outside));
+            return Some(SignChange { low, high, rises: !is_outside });
         }
         low = high;
     }

@@ -5,7 +5,7 @@
 //! roots lie between two samples, the refiner may find the last one.
 
 use super::refiner::{Refiner, evenly, sign_change};
-use super::taylor::FunctionOnLine;
+use super::taylor::{FunctionOnLine, SignChange};
 use crate::roots::range::Side;
 use std::ops::Range;
 
@@ -16,6 +16,6 @@ pub fn first_root(
     origin_side: Option<Side>,
     (count, refiner): (u32, Refiner),
 ) -> Option<f64> {
-    let (low, high, falls) = sign_change(line, evenly(&span, count), origin_side)?;
-    Some(refiner.root(line, (low, high), falls, shortest))
+    let SignChange { low, high, rises } = sign_change(line, evenly(&span, count), origin_side)?;
+    Some(refiner.root(line, (low, high), !rises, shortest))
 }

@@ -6,7 +6,7 @@
 
 use super::bisection;
 use super::refiner::sign_change;
-use super::taylor::FunctionOnLine;
+use super::taylor::{FunctionOnLine, SignChange};
 use crate::roots::range::Side;
 use std::ops::Range;
 
@@ -23,6 +23,6 @@ pub fn first_root(
     let end = end.min(start + FAR);
     let count = ((end - start) / STEP).ceil() as u32;
     let places = (0..=count).map(|index| (start + f64::from(index) * STEP).min(end));
-    let (low, high, falls) = sign_change(line, places, origin_side)?;
-    Some(bisection::root(|t| line.at(t), (low, high), falls, 1e-6))
+    let SignChange { low, high, rises } = sign_change(line, places, origin_side)?;
+    Some(bisection::root(|t| line.at(t), (low, high), !rises, 1e-6))
 }

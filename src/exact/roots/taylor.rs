@@ -171,19 +171,30 @@ pub fn first_root_within(
     FirstRoot { root, is_certain: search.is_certain }
 }
 
+/// Two places between which the sign of a function changes.
+#[derive(Clone, Copy, Debug)]
+pub struct SignChange {
+    /// The first place.
+    pub low: f64,
+    /// The last one.
+    pub high: f64,
+    /// Whether the function rises from one to the other.
+    pub rises: bool,
+}
+
 /// How often the bracket of a root is made four times as wide until the function has certain signs at both ends.
 const WIDENINGS: usize = 8;
 
 /// Returns two places around a certain root, at least `width` from it, between which every line crosses 0 that this one
-/// may have been rounded from, and whether it rises there. `None` where bounds in `f64` do not tell.
-pub fn bracket(line: &impl FunctionOnLine, root: f64, mut width: f64) -> Option<(f64, f64, bool)> {
+/// may have been rounded from. `None` where bounds in `f64` do not tell.
+pub fn bracket(line: &impl FunctionOnLine, root: f64, mut width: f64) -> Option<SignChange> {
     let value = |t: f64| line.at(Interval::<f64>::constant(t));
     for _ in 0..WIDENINGS {
         let (low, high) = (root - width, root + width);
         let (before, after) = (value(low), value(high));
         let rises = before.high < 0.0 && after.low > 0.0;
         if rises || before.low > 0.0 && after.high < 0.0 {
-            return Some((low, high, rises));
+            return Some(SignChange { low, high, rises });
         }
         width *= 4.0;
     }

@@ -189,26 +189,8 @@ impl AttributeChecker<'_, '_> {
         if words.iter().any(|word| word.form == Form::Faulty) {
             return None;
         }
-        let truth = words.iter().find(|word| word.form == Form::Truth);
-        if let (false, Some(truth)) = (matches!(attribute.value_type(), Type::Truth), truth) {
-            let message = format!("`{}` cannot be the value of an attribute", truth.text);
-            self.report.add(Fault::error(truth.place.clone(), message).help(VALUES));
-            return None;
-        }
-        if !attribute.arity().allow(words.len()) {
-            let takes = attribute.takes();
-            let more = if words.len() < MAX_VALUES { "" } else { " or more" };
-            let count = format!("{}{more}", words.len());
-            let not = match attribute.value_type() {
-                Type::Truth | Type::Formula(_) => format!("{count} values"),
-                _ => attribute.arity().not(&count),
-            };
-            let message = format!("`{}` of {title} takes {takes}, not {not}", word.text);
-            self.report.add(Fault::error(whole(word, words), message).help(format!(
-                "`{}`: {}",
-                attribute.name(),
-                attribute.meaning()
-            )));
+        if let Err(fault) = are_values(attribute, title, word, words) {
+            self.report.add(fault);
             return None;
         }
         let datum = match (attribute.value_type(), words) {
@@ -238,23 +220,8 @@ impl AttributeChecker<'_, '_> {
                 }
             },
         };
-        if !attribute.allows(&datum) {
-            let given = words.iter().map(|word| word.text.as_ref()).collect::<Vec<_>>().join(" ");
-            let message = format!("`{}` of {title} must be {}, not {given}", word.text, attribute.rule());
-            let place = words.first().map_or(word.place.clone(), |first| whole(first, words));
-            self.report.add(Fault::error(place, message).help(format!(
-                "`{}`: {}",
-                attribute.name(),
-                attribute.meaning()
-            )));
-            return None;
-        }
-        if let Some((index, why)) = attribute.beyond_squares(&datum) {
-            let message = format!("`{}` of {title} is {why}", attribute.name());
-            let place = words.get(index).map_or(word.place.clone(), |word| word.place.clone());
-            self.report.add(Fault::error(place, message).help(format!(
-                "lengths and coordinates other than 0 must be between {MIN_LENGTH:e} and {MAX_LENGTH:e} world units"
-            )));
+        if let Err(fault) = keeps_rules(attribute, &datum, title, word, words) {
+            self.report.add(fault);
             return None;
         }
         Some(datum)
@@ -277,6 +244,57 @@ impl AttributeChecker<'_, '_> {
         }
         is_right.then_some(Datum::Objects(all))
     }
+}
+
+/// Checks that values can be those of an attribute at all, and are as many as it takes.
+fn are_values(
+    attribute: &dyn Attribute,
+    title: &str,
+    word: &Word<'_>,
+    words: &[Word<'_>],
+) -> Result<(), Fault> {
+    let truth = words.iter().find(|word| word.form == Form::Truth);
+    if let (false, Some(truth)) = (matches!(attribute.value_type(), Type::Truth), truth) {
+        let message = format!("`{}` cannot be the value of an attribute", truth.text);
+        return Err(Fault::error(truth.place.clone(), message).help(VALUES));
+    }
+    if attribute.arity().allow(words.len()) {
+        return Ok(());
+    }
+    let more = if words.len() < MAX_VALUES { "" } else { " or more" };
+    let count = format!("{}{more}", words.len());
+    let not = match attribute.value_type() {
+        Type::Truth | Type::Formula(_) => format!("{count} values"),
+        _ => attribute.arity().not(&count),
+    };
+    let message = format!("`{}` of {title} takes {}, not {not}", word.text, attribute.takes());
+    Err(Fault::error(whole(word, words), message).help(meaning(attribute)))
+}
+
+/// Checks that an attribute's value satisfies its rule, and that squares of it do not overflow.
+fn keeps_rules(
+    attribute: &dyn Attribute,
+    datum: &Datum,
+    title: &str,
+    word: &Word<'_>,
+    words: &[Word<'_>],
+) -> Result<(), Fault> {
+    if !attribute.allows(datum) {
+        let given = words.iter().map(|word| word.text.as_ref()).collect::<Vec<_>>().join(" ");
+        let message = format!("`{}` of {title} must be {}, not {given}", word.text, attribute.rule());
+        let place = words.first().map_or(word.place.clone(), |first| whole(first, words));
+        return Err(Fault::error(place, message).help(meaning(attribute)));
+    }
+    let Some((index, why)) = attribute.beyond_squares(datum) else { return Ok(()) };
+    let message = format!("`{}` of {title} is {why}", attribute.name());
+    let place = words.get(index).map_or(word.place.clone(), |word| word.place.clone());
+    Err(Fault::error(place, message).help(format!(
+        "lengths and coordinates other than 0 must be between {MIN_LENGTH:e} and {MAX_LENGTH:e} world units"
+    )))
+}
+
+fn meaning(attribute: &dyn Attribute) -> String {
+    format!("`{}`: {}", attribute.name(), attribute.meaning())
 }
 
 /// Returns the place from an attribute's name, or its first value, to its last value.

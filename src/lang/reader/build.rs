@@ -1,8 +1,9 @@
 //! Makes a [`Model`] of a scene's entities.
 
-use super::check::{Check, ReadOptions, Source, TOGETHER};
+use super::check::{Check, Source, TOGETHER};
 use super::fault::{Fault, Places, Severity};
 use super::names::suggestion;
+use super::options::ReadOptions;
 use super::report::Report;
 use crate::registry::Registry;
 use std::mem::{swap, take};

@@ -7,8 +7,9 @@ use super::levels;
 use super::missing::Missing;
 use super::names::{Names, placeholder};
 use super::notes;
+use super::options::ReadOptions;
 use super::parsed::{Parsed, Word};
-use super::quick::Quick;
+use super::quick::{Packed, Quick};
 use super::report::Report;
 use super::statements::Parser;
 use crate::registry::Registry;
@@ -18,7 +19,6 @@ use std::collections::hash_map::Entry;
 use std::mem::replace;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Duration;
 use tabray_core::parallel;
 use tabray_core::scene::entity::{Args, Construct, Entity, Refusal, Setting};
 use tabray_core::scene::kind::Kind;
@@ -69,35 +69,6 @@ pub(super) const PIECE: usize = 1 << 8;
 /// The default limit on the memory of all textures of a scene, in bytes: far more than scenes need, and far less than a
 /// small file can claim to hold.
 const TEXTURE_MEMORY: u64 = 1 << 30;
-
-/// What the caller chooses beside the text of a scene.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct ReadOptions<'s> {
-    /// The accuracy that overrides the scene's own.
-    pub above_all: Option<Accuracy>,
-    /// The rules of light that override the scene's own, and those of the accuracy.
-    pub rules: Option<Rules>,
-    /// The accuracy where the scene chooses none.
-    pub by_default: Accuracy,
-    /// Whether there is no warning of entities that share a name and are all used.
-    pub may_share_names: bool,
-    /// Whether there is no warning of colours that may be meant to be from 0 to 255.
-    pub may_be_bright: bool,
-    /// Whether only rays are asked about, so that nothing is said of the image.
-    pub only_rays: bool,
-    /// The limit on the memory of the scene's textures and of its objects' files, in bytes; by default 1 GiB for the
-    /// textures, and none for the objects, which take little more than their files do.
-    pub memory: Option<u64>,
-    /// The caller's clock, for the time that making a model takes: the time since some moment.
-    pub clock: Option<fn() -> Duration>,
-    /// The values that are set beside the text, each as `NAME.ATTRIBUTE=VALUES` or `NUMBER=VALUE`.
-    pub sets: &'s [String],
-    /// What messages call the last of these values, where these are not given by options `--set` of their own.
-    pub set_by: &'s [String],
-    /// The texts of files that are open in an editor, by their paths: where such a file is included, they stand in place
-    /// of what is stored.
-    pub open: &'s [(PathBuf, Arc<str>)],
-}
 
 pub(super) struct Check<'r, 't> {
     pub(super) registry: &'r Registry,
@@ -215,9 +186,9 @@ impl Check<'_, '_> {
         for (parsed, packed) in parsed.iter().zip(quick.packed()) {
             match packed {
                 None => self.entity(parsed),
-                Some((entity, hash, packed)) => {
+                Some(Packed { entity, hash, bytes }) => {
                     if self.names.claim(&self.store, entity, (&parsed.name, hash), self.report) {
-                        self.store.add_packed(packed);
+                        self.store.add_packed(bytes);
                     } else {
                         self.store.add(entity, &parsed.name.text, None);
                     }
@@ -237,27 +208,10 @@ impl Check<'_, '_> {
             self.store.skip();
             return;
         };
-        let Word { text, place, .. } = &parsed.name;
+        let text = &parsed.name.text;
         let hash = self.names.hash(entity.kind(), text);
         let counts = self.names.claim(&self.store, entity, (&parsed.name, hash), self.report);
-        if entity.kind() == Kind::Camera
-            && let Some(first) = self.first_camera.replace(place.clone())
-        {
-            self.report.add(
-                Fault::error(place.clone(), format!("a second camera `{text}`"))
-                    .also(first, "the first one")
-                    .help("a scene has exactly one camera"),
-            );
-        }
-        if entity.kind() == Kind::Background
-            && let Some(first) = self.first_background.replace(place.clone())
-        {
-            self.report.add(
-                Fault::error(place.clone(), format!("a second background `{text}`"))
-                    .also(first, "the first one")
-                    .help("a scene has at most one background"),
-            );
-        }
+        self.refuse_second(entity.kind(), &parsed.name);
         let values = AttributeChecker {
             registry: self.registry,
             entity,
@@ -292,6 +246,22 @@ impl Check<'_, '_> {
             && self.names.defined(entity.kind(), text).is_none()
         {
             self.define(entity.kind(), text, &placeholder(entity.kind()));
+        }
+    }
+
+    /// Reports an entity of a kind of which a scene has one, if it is the second.
+    fn refuse_second(&mut self, kind: Kind, Word { text, place, .. }: &Word<'_>) {
+        let (first, how_many) = match kind {
+            Kind::Camera => (&mut self.first_camera, "exactly"),
+            Kind::Background => (&mut self.first_background, "at most"),
+            _ => return,
+        };
+        if let Some(first) = first.replace(place.clone()) {
+            self.report.add(
+                Fault::error(place.clone(), format!("a second {kind} `{text}`"))
+                    .also(first, "the first one")
+                    .help(format!("a scene has {how_many} one {kind}")),
+            );
         }
     }
 

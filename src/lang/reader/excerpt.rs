@@ -42,13 +42,8 @@ pub fn rendered(fault: &Fault, parts: &Parts<'_>, renderer: &Renderer) -> String
             (Piece::of(lines.text, &lines.place(place), &lines.ends), label, lines.name)
         })
         .collect();
-    let elsewhere = elsewhere.iter().map(|(piece, label, name)| {
-        let mark = AnnotationKind::Context.span(piece.mark.clone());
-        let mark = if label.is_empty() { mark } else { mark.label(*label) };
-        Element::from(
-            Snippet::source(piece.text.as_str()).path(*name).line_start(piece.line).annotation(mark),
-        )
-    });
+    let elsewhere =
+        elsewhere.iter().map(|(piece, label, name)| piece.element(AnnotationKind::Context, label, name));
     // Only the marked lines are passed on: a long scene with many faults must not be scanned over and over.
     let first = marks.iter().map(|(place, _)| place.start).min().unwrap_or(0);
     let last = marks.iter().map(|(place, _)| place.end).max().unwrap_or(0);
@@ -68,14 +63,10 @@ pub fn rendered(fault: &Fault, parts: &Parts<'_>, renderer: &Renderer) -> String
     }
     let pieces: Vec<_> =
         marks.iter().map(|(place, label)| (Piece::of(text, place, newlines), *label)).collect();
-    let mut elements: Vec<Element> = Vec::new();
     let mut kind = AnnotationKind::Primary;
-    for (piece, label) in &pieces {
-        let mark = std::mem::replace(&mut kind, AnnotationKind::Context).span(piece.mark.clone());
-        let mark = if label.is_empty() { mark } else { mark.label(*label) };
-        let snippet = Snippet::source(piece.text.as_str()).path(*name).line_start(piece.line);
-        elements.push(snippet.annotation(mark).into());
-    }
+    let elements = pieces.iter().map(|(piece, label)| {
+        piece.element(std::mem::replace(&mut kind, AnnotationKind::Context), label, name)
+    });
     let rendered = renderer.render(&[title.elements(elements).elements(elsewhere).elements(notes)]);
     // The renderer only knows the columns of the shortened line, so the true ones are put in.
     pieces.iter().fold(rendered, |rendered, (piece, _)| {
@@ -147,6 +138,13 @@ impl Piece {
             line: line(place.start, newlines),
             column: 1 + text[own.start..place.start].chars().count(),
         }
+    }
+
+    /// Returns the piece of the text of this name with its mark.
+    fn element<'p>(&'p self, kind: AnnotationKind, label: &'p str, name: &'p str) -> Element<'p> {
+        let mark = kind.span(self.mark.clone());
+        let mark = if label.is_empty() { mark } else { mark.label(label) };
+        Snippet::source(self.text.as_str()).path(name).line_start(self.line).annotation(mark).into()
     }
 }
 

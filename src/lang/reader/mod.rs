@@ -22,9 +22,11 @@ pub(crate) mod notes;
 mod numbers;
 mod objects;
 mod older;
+mod options;
 pub(crate) mod parsed;
 mod parts;
 mod quick;
+mod repeated;
 pub(crate) mod report;
 mod rounds;
 mod sets;
@@ -39,12 +41,12 @@ mod unseen;
 mod values;
 
 pub use build::NO_CAMERA;
-pub use check::ReadOptions;
 pub use fault::{Fault, Place, Places, Severity};
 pub(crate) use guesses::find_attribute;
 pub(crate) use located::Located;
 pub use machine::Message;
 pub(crate) use older::is_older;
+pub use options::ReadOptions;
 pub use parsed::Parsed;
 pub use toml_faults::toml_error;
 
@@ -101,7 +103,7 @@ pub fn read_by(
     name: &str,
     folder: &Path,
     bytes: &[u8],
-    accuracy: ReadOptions<'_>,
+    options: ReadOptions<'_>,
 ) -> Result<Loaded, Report> {
     has_types(registry, name)?;
     let text = decode(name, bytes)?;
@@ -110,9 +112,9 @@ pub fn read_by(
         _ => Syntax::of_text(text),
     };
     if syntax == Syntax::Notes && is_older(registry, text) {
-        return read_older(registry, (name, folder), text, accuracy);
+        return read_older(registry, (name, folder), text, options);
     }
-    let read = |text: &str| read_text(registry, (name, folder), text, syntax, accuracy);
+    let read = |text: &str| read_text(registry, (name, folder), text, syntax, options);
     read(text).map_err(|report| match languages::recognised(registry, report, name, text, syntax) {
         Ok(report) => report,
         Err(report) if syntax == Syntax::Notes => {
@@ -149,23 +151,22 @@ fn read_text(
     (name, folder): (&str, &Path),
     text: &str,
     syntax: Syntax,
-    accuracy: ReadOptions<'_>,
+    options: ReadOptions<'_>,
 ) -> Result<Loaded, Report> {
     // The memory for making a model, in bytes per byte of its text.
     let weight = if syntax == Syntax::Toml { 48 } else { 8 };
-    let room = accuracy.memory.map_or(u64::MAX, |memory| memory / weight);
-    let sources =
-        Sources::read((name, folder), text, syntax, (accuracy.sets, accuracy.set_by), accuracy.open, room);
+    let room = options.memory.map_or(u64::MAX, |memory| memory / weight);
+    let sources = Sources::read((name, folder), text, syntax, options, room);
     let begin = || sources.report(name, syntax);
     let checked = |report: &mut report::Report<'_>, mut source: Source<'_, '_>| {
-        build::model(registry, folder, accuracy, &mut source, report)
+        build::model(registry, folder, options, &mut source, report)
     };
     let mut report = begin();
     if syntax == Syntax::Toml {
         let parse = |part: Range<usize>, report: &mut report::Report<'_>| {
             toml::parse(registry, &sources.text[..part.end], part.start, report)
         };
-        return read_list(registry, folder, &sources, &parse, report, accuracy);
+        return read_list(registry, folder, &sources, &parse, report, options);
     }
     // A sound text is parsed and checked at one go.
     let mut errors = report.clone();
@@ -174,7 +175,7 @@ fn read_text(
     };
     let all = checked(&mut report, Source::Text(&sources.text, Box::new(parser)));
     if !errors.is_fatal() {
-        return finish(all, registry, report, accuracy);
+        return finish(all, registry, report, options);
     }
     drop(all);
     // All syntax errors are reported before all other faults. After too many, nothing else is.
@@ -187,7 +188,7 @@ fn read_text(
         return Err(report.into_owned());
     };
     let all = checked(&mut report, Source::Text(&sources.text, Box::new(parser.reading_on())));
-    finish(all, registry, report, accuracy)
+    finish(all, registry, report, options)
 }
 
 /// Reads one of the course's older scenes.
@@ -195,15 +196,15 @@ fn read_older(
     registry: &Registry,
     (name, folder): (&str, &Path),
     text: &str,
-    accuracy: ReadOptions<'_>,
+    options: ReadOptions<'_>,
 ) -> Result<Loaded, Report> {
-    let sources = Sources::alone(name, text, (accuracy.sets, accuracy.set_by));
+    let sources = Sources::alone(name, text, options);
     let parse = |part: Range<usize>, report: &mut report::Report<'_>| {
         older::parse(&sources.text, part, folder, report)
     };
     // Their lamps are far away, and their colours were chosen accordingly.
-    let accuracy = ReadOptions { may_be_bright: true, ..accuracy };
-    read_list(registry, folder, &sources, &parse, sources.report(name, Syntax::Notes), accuracy)
+    let options = ReadOptions { may_be_bright: true, ..options };
+    read_list(registry, folder, &sources, &parse, sources.report(name, Syntax::Notes), options)
 }
 
 /// Reads a scene of which all entities are parsed before any is checked.
@@ -213,14 +214,14 @@ fn read_list<'s>(
     sources: &'s Sources<'s>,
     parse: listed::Parse<'_, 's, 's>,
     mut report: report::Report<'s>,
-    accuracy: ReadOptions<'_>,
+    options: ReadOptions<'_>,
 ) -> Result<Loaded, Report> {
     let parsed = listed::entities(registry, sources, parse, &mut report);
     if report.has_enough() {
         return Err(report.into_owned());
     }
-    let checked = build::model(registry, folder, accuracy, &mut Source::List(&parsed), &mut report);
-    finish(checked, registry, report, accuracy)
+    let checked = build::model(registry, folder, options, &mut Source::List(&parsed), &mut report);
+    finish(checked, registry, report, options)
 }
 
 /// Makes a model without any text (the notes' `modelstat.c`). The entities are checked like those of a text; file names

@@ -21,27 +21,31 @@ use tabray_core::world::body::{NamedBody, ShaderFactory};
 
 /// The scope in which a name must be unique: the entity type for an object, and an empty string, the whole kind, for
 /// the others.
-type Scope = &'static str;
+pub(super) type Scope = &'static str;
 
 /// The claims of further entities to a name that one has already.
 #[derive(Default)]
-struct RepeatedClaims {
+pub(super) struct RepeatedClaims {
     /// The other scopes in which the name was claimed.
     scopes: Vec<Scope>,
-    again: Vec<(Scope, usize)>,
+    /// The claims, each with the order of the entity.
+    pub again: Vec<(Scope, usize)>,
 }
 
-/// The maximum number of faults of one sort that are listed separately.
-const MAX_LISTED: usize = 8;
+/// An entity: half the hash of its name, and its order.
+struct First {
+    hash: u32,
+    order: u32,
+}
 
 /// The names of a scene, as far as the scene has been checked. Their letters are in the [`Store`].
 #[derive(Default)]
 pub struct Names {
     hasher: DefaultHashBuilder,
-    /// The first entity of each kind and name: half its hash, and its order.
-    firsts: HashTable<(u32, u32)>,
+    /// The first entity of each kind and name.
+    firsts: HashTable<First>,
     /// The entities that claimed a name again, by the order of the first one.
-    again: BTreeMap<usize, RepeatedClaims>,
+    pub(super) again: BTreeMap<usize, RepeatedClaims>,
     /// The hashes of the names of entities of unknown types, which a reference may mean.
     doubtful: HashSet<u64>,
     /// The materials, textures and shaders that can be referred to so far, and the objects to which an entity has
@@ -91,11 +95,11 @@ impl Names {
             );
         }
         let order = store.count();
-        let is_same = |first: &(u32, u32)| is_of(store, *first, hash, kind, text);
-        let first = match self.firsts.entry(spread(hash), is_same, |(hash, _)| spread(*hash)) {
-            Entry::Occupied(first) => first.get().1 as usize,
+        let is_same = |first: &First| is_of(store, first, hash, kind, text);
+        let first = match self.firsts.entry(spread(hash), is_same, |first| spread(first.hash)) {
+            Entry::Occupied(first) => first.get().order as usize,
             Entry::Vacant(free) => {
-                free.insert((hash, order as u32));
+                free.insert(First { hash, order: order as u32 });
                 return true;
             }
         };
@@ -122,89 +126,13 @@ impl Names {
     /// Finds the first entity of a kind and name.
     fn first(&self, store: &Store, kind: Kind, name: &str) -> Option<usize> {
         let hash = self.hash(kind, name);
-        let first = self.firsts.find(spread(hash), |first| is_of(store, *first, hash, kind, name));
-        first.map(|(_, order)| *order as usize)
+        let first = self.firsts.find(spread(hash), |first| is_of(store, first, hash, kind, name));
+        first.map(|first| first.order as usize)
     }
 
     /// Returns half a hash of the name of an entity of a kind.
     pub fn hash(&self, kind: Kind, name: &str) -> u32 {
         (self.hasher.hash_one((kind, name)) >> 32) as u32
-    }
-
-    /// Warns of names that several entities have: once for each name, or once for all of them where they are many.
-    /// `place` returns the place of the name of the entity of an order. If they `may_share` one, there is no warning of
-    /// entities that are all used.
-    pub fn report_repeated(
-        &self,
-        store: &Store,
-        place: impl Fn(usize) -> Place,
-        may_share: bool,
-        report: &mut Report<'_>,
-    ) {
-        let (mut left_out, mut shared) = (Vec::new(), Vec::new());
-        for (first, RepeatedClaims { again, .. }) in &self.again {
-            let (text, Some(entity)) = (store.name(*first), store.entity(*first)) else { continue };
-            let kind = entity.kind();
-            let mut scopes: BTreeMap<Scope, Vec<usize>> = BTreeMap::new();
-            let mut firsts = Vec::new();
-            for (scope, order) in [(scope(entity), *first)].iter().chain(again) {
-                let orders = scopes.entry(*scope).or_default();
-                orders.push(*order);
-                firsts.extend((orders.len() == 1).then_some(*order));
-            }
-            for (scope, orders) in scopes.into_iter().filter(|(_, orders)| orders.len() > 1) {
-                let what = if scope.is_empty() { kind.to_string() } else { scope.to_owned() };
-                if kind == Kind::Light { &mut shared } else { &mut left_out }.push(Repeated {
-                    what,
-                    text,
-                    orders,
-                });
-            }
-            if firsts.len() > 1 {
-                shared.push(Repeated { what: kind.to_string(), text, orders: firsts });
-            }
-        }
-        if may_share {
-            shared.clear();
-        }
-        let is_placed = place(0).is_some();
-        for (Repeated { what, text, orders }, names, more) in few(left_out, is_placed) {
-            let message = match (names, orders.len()) {
-                (0, 2) => format!("{what} `{text}` is defined twice"),
-                (0, count) => format!("{what} `{text}` is defined {count} times"),
-                _ => {
-                    format!("{what} `{text}` and {} are defined more than once", text::count(names, "other"))
-                }
-            };
-            let label = match more {
-                0 => "ignored".to_owned(),
-                1 => "ignored, as is 1 more".to_owned(),
-                _ => format!("ignored, as are {more} more"),
-            };
-            report.add(
-                Fault::warning(place(orders[1]), message)
-                    .label(label)
-                    .also(place(orders[0]), "this one is used")
-                    .help("only the first definition of a name is used: rename the others"),
-            );
-        }
-        for (Repeated { what, text, orders }, names, more) in few(shared, is_placed) {
-            let message = match (names, orders.len()) {
-                (0, 2) => format!("two {what}s have the name `{text}`"),
-                (0, count) => format!("{count} {what}s have the name `{text}`"),
-                _ => format!(
-                    "several entities have the name `{text}`, and {} too",
-                    text::count(names, "other name")
-                ),
-            };
-            let label = if more == 0 { String::new() } else { format!("and {more} more") };
-            report.add(
-                Fault::warning(place(orders[1]), message)
-                    .label(label)
-                    .also(place(orders[0]), "the first one")
-                    .help("all of them are used, but messages and dumps cannot tell them apart"),
-            );
-        }
     }
 
     /// Defines a name, so that later entities can refer to it.
@@ -261,21 +189,7 @@ impl Names {
         let others = self.unresolved.others().filter(|hash| !is_doubtful(*hash)).count();
         report.count_more(Severity::Error, others);
         unresolved.sort_by_key(|(_, (place, _))| place.as_ref().map(|place| place.start));
-        let mut known: BTreeMap<Kind, Vec<&str>> = BTreeMap::new();
-        known.extend(unresolved.iter().map(|((kind, _), _)| (*kind, Vec::new())));
-        let orders = if unresolved.is_empty() { 0..0 } else { 0..store.count() };
-        for (entity, order) in orders.filter_map(|order| Some((store.entity(order)?, order))) {
-            if let Some(known) = known.get_mut(&entity.kind()) {
-                known.push(store.name(order));
-            }
-        }
-        if let Some(known) = known.get_mut(&Kind::Shader) {
-            known.extend(procedural::types().map(|entity| entity.name));
-        }
-        known.values_mut().for_each(|known| {
-            known.sort_unstable();
-            known.dedup();
-        });
+        let known = known(store, unresolved.iter().map(|((kind, _), _)| *kind));
         for ((kind, text), (first, count)) in unresolved {
             let is_told = report.would_list(Severity::Error, first);
             let fault = match self.first(store, *kind, text) {
@@ -310,6 +224,25 @@ impl Names {
     }
 }
 
+/// Returns the names of the entities of each of these kinds, in alphabetical order.
+fn known(store: &Store, kinds: impl Iterator<Item = Kind>) -> BTreeMap<Kind, Vec<&str>> {
+    let mut known: BTreeMap<Kind, Vec<&str>> = kinds.map(|kind| (kind, Vec::new())).collect();
+    let orders = if known.is_empty() { 0..0 } else { 0..store.count() };
+    for (entity, order) in orders.filter_map(|order| Some((store.entity(order)?, order))) {
+        if let Some(known) = known.get_mut(&entity.kind()) {
+            known.push(store.name(order));
+        }
+    }
+    if let Some(known) = known.get_mut(&Kind::Shader) {
+        known.extend(procedural::types().map(|entity| entity.name));
+    }
+    known.values_mut().for_each(|known| {
+        known.sort_unstable();
+        known.dedup();
+    });
+    known
+}
+
 /// Returns the name of the entity in which a place is: the last one whose name comes before it.
 fn owner<'s>(store: &'s Store, place: impl Fn(usize) -> Place, at: &Place) -> Option<&'s str> {
     let (at, mut orders) = (at.as_ref()?.start, 0..store.count());
@@ -332,7 +265,7 @@ fn table_of(kind: Kind) -> usize {
 
 /// Returns the scope in which the name of an entity must be unique. The course's own images show a sphere `left` and an
 /// fplane `left` in one scene.
-fn scope(entity: &'static Entity) -> Scope {
+pub(super) fn scope(entity: &'static Entity) -> Scope {
     if entity.kind() == Kind::Object { entity.name } else { "" }
 }
 
@@ -343,33 +276,13 @@ fn spread(hash: u32) -> u64 {
 }
 
 /// Tells whether an entity, given by its hash and its order, is of this kind and name.
-fn is_of(store: &Store, first: (u32, u32), hash: u32, kind: Kind, name: &str) -> bool {
-    let order = first.1 as usize;
+fn is_of(store: &Store, first: &First, hash: u32, kind: Kind, name: &str) -> bool {
+    let order = first.order as usize;
     // An entity that is being checked has its name, and is not in the store yet.
-    first.0 == hash
+    first.hash == hash
         && order < store.count()
         && store.entity(order).is_some_and(|entity| entity.kind() == kind)
         && store.name(order) == name
-}
-
-/// Entities that share a name.
-struct Repeated<'n> {
-    what: String,
-    text: &'n str,
-    orders: Vec<usize>,
-}
-
-/// Returns names that are repeated, each with the number of further names and further places that it stands for. Of
-/// more than [`MAX_LISTED`] names, returns only the first.
-fn few(mut all: Vec<Repeated<'_>>, is_placed: bool) -> Vec<(Repeated<'_>, usize, usize)> {
-    // Entities without places come in the order of their names.
-    all.sort_unstable_by_key(|repeated| (is_placed.then_some(repeated.orders[1]), repeated.text));
-    let (names, later) = (all.len(), all.iter().map(|repeated| repeated.orders.len() - 1).sum::<usize>());
-    if names > MAX_LISTED {
-        return all.into_iter().take(1).map(|first| (first, names - 1, later - 1)).collect();
-    }
-    let more: Vec<_> = all.iter().map(|repeated| repeated.orders.len() - 2).collect();
-    all.into_iter().zip(more).map(|(repeated, more)| (repeated, 0, more)).collect()
 }
 
 /// Returns a default entity, in place of one that is faulty or missing. All of a kind are the same.

@@ -3,6 +3,7 @@
 use super::check::{Check, PIECE, Source, TOGETHER, place_of};
 use super::constructed::{Constructed, constructed};
 use super::fault::Fault;
+use std::collections::BTreeMap;
 use std::iter;
 use std::mem::take;
 use std::sync::Arc;
@@ -32,29 +33,7 @@ impl Check<'_, '_> {
         let store = Arc::new(take(&mut self.store));
         let patterns = self.names.patterns();
         self.names.forget();
-        let accuracy = self.setting.camera.accuracy;
-        if self.names.combines && accuracy == Accuracy::Classic {
-            // The notes' formulas do not tell all hits of a ray, which solids need.
-            Arc::make_mut(&mut self.setting).camera.accuracy = Accuracy::Exact;
-        }
-        for (order, datum) in &patterns {
-            let Datum::Object { body, .. } = datum else { continue };
-            let mut args = store.args(*order);
-            args.is_pattern = true;
-            if store.sound(*order).is_some()
-                && !args.refers_to_nothing()
-                && let Some(constructed) = self.body(args, source)
-            {
-                let material =
-                    constructed.material.clone().or_else(|| Record::new(&store, *order).material());
-                let entity = Some(store.args(*order).entity.name);
-                body.set(Body { name: Some(store.name(*order).into()), entity, material, ..constructed });
-            }
-            self.patterns.push(Item { args: Record::new(&store, *order), value: body.clone() });
-        }
-        if self.setting.camera.accuracy != accuracy {
-            Arc::make_mut(&mut self.setting).camera.accuracy = accuracy;
-        }
+        self.construct_patterns(&store, &patterns, source);
         for start in (0..store.count()).step_by(8 * TOGETHER) {
             let orders = start..store.count().min(start + 8 * TOGETHER);
             let constructed = parallel::map(orders.len().div_ceil(PIECE), |piece| {
@@ -64,36 +43,74 @@ impl Check<'_, '_> {
             for (order, constructed) in constructed.into_iter().flatten() {
                 let record = Record::new(&store, order);
                 match constructed {
-                    Ok(Constructed::Plain(shape, shader)) => {
-                        let object = |material| Object { args: record.clone(), material, shape, shader };
-                        self.objects.extend(record.material().map(object));
-                    }
-                    Ok(Constructed::Body(body)) => {
-                        if !body.warnings.is_empty() {
-                            self.warn(&record.args(), &body.warnings, source);
-                        }
-                        self.objects.extend(objects(record, *body));
-                    }
-                    Ok(Constructed::Deferred) => {
-                        let body = self.body(record.args(), source);
-                        self.objects.extend(body.into_iter().flat_map(|body| objects(record.clone(), body)));
-                    }
-                    Ok(Constructed::Light(lamp)) => {
-                        if let Some(warning) = self.unused_falloff(&lamp) {
-                            self.warn(&record.args(), &[warning], source);
-                        }
-                        if lamp.emitter().is_some() && self.setting.camera.rules == Rules::Notes {
-                            self.refused(&record.args(), only_free(None), source);
-                        }
-                        self.objects.extend(surface(&record, &lamp));
-                        self.lights.push(Item { args: record, value: lamp });
-                    }
+                    Ok(constructed) => self.add(record, constructed, source),
                     Err(refusal) => self.refused(&record.args(), refusal, source),
                 }
             }
         }
         self.objects.shrink_to_fit();
         store
+    }
+
+    /// Constructs the objects to which others refer, by their orders.
+    fn construct_patterns(
+        &mut self,
+        store: &Arc<Store>,
+        patterns: &BTreeMap<usize, Datum>,
+        source: &Source<'_, '_>,
+    ) {
+        let accuracy = self.setting.camera.accuracy;
+        if self.names.combines && accuracy == Accuracy::Classic {
+            // The notes' formulas do not tell all hits of a ray, which solids need.
+            Arc::make_mut(&mut self.setting).camera.accuracy = Accuracy::Exact;
+        }
+        for (order, datum) in patterns {
+            let Datum::Object { body, .. } = datum else { continue };
+            let mut args = store.args(*order);
+            args.is_pattern = true;
+            if store.sound(*order).is_some()
+                && !args.refers_to_nothing()
+                && let Some(constructed) = self.body(args, source)
+            {
+                let material = constructed.material.clone().or_else(|| Record::new(store, *order).material());
+                let entity = Some(store.args(*order).entity.name);
+                body.set(Body { name: Some(store.name(*order).into()), entity, material, ..constructed });
+            }
+            self.patterns.push(Item { args: Record::new(store, *order), value: body.clone() });
+        }
+        if self.setting.camera.accuracy != accuracy {
+            Arc::make_mut(&mut self.setting).camera.accuracy = accuracy;
+        }
+    }
+
+    /// Adds an object or a light to the model.
+    fn add(&mut self, record: Record, constructed: Constructed, source: &Source<'_, '_>) {
+        match constructed {
+            Constructed::Plain(shape, shader) => {
+                let object = |material| Object { args: record.clone(), material, shape, shader };
+                self.objects.extend(record.material().map(object));
+            }
+            Constructed::Body(body) => {
+                if !body.warnings.is_empty() {
+                    self.warn(&record.args(), &body.warnings, source);
+                }
+                self.objects.extend(objects(record, *body));
+            }
+            Constructed::Deferred => {
+                let body = self.body(record.args(), source);
+                self.objects.extend(body.into_iter().flat_map(|body| objects(record.clone(), body)));
+            }
+            Constructed::Light(lamp) => {
+                if let Some(warning) = self.unused_falloff(&lamp) {
+                    self.warn(&record.args(), &[warning], source);
+                }
+                if lamp.emitter().is_some() && self.setting.camera.rules == Rules::Notes {
+                    self.refused(&record.args(), only_free(None), source);
+                }
+                self.objects.extend(surface(&record, &lamp));
+                self.lights.push(Item { args: record, value: lamp });
+            }
+        }
     }
 
     /// Adds the light of a background that lights surfaces.

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 /// A part of a scene's text, which messages name.
 #[derive(Clone, Debug)]
-pub struct Part {
+pub struct TextPart {
     /// The name of the file, or the option.
     pub name: String,
     /// The part's range of the whole text, in bytes.
@@ -17,7 +17,7 @@ pub struct Parts<'t>(Vec<Lines<'t>>);
 
 impl<'t> Parts<'t> {
     /// Finds the lines of a text. It is one part of this name if there are no others.
-    pub fn of(name: &'t str, text: &'t str, parts: &'t [Part]) -> Self {
+    pub fn of(name: &'t str, text: &'t str, parts: &'t [TextPart]) -> Self {
         if parts.is_empty() {
             return Self(vec![Lines::of(name, text, 0)]);
         }

@@ -1,13 +1,15 @@
 //! Checks and packs entities in which nothing is wrong; whatever else there is,
 //! [`AttributeChecker`](super::attributes::AttributeChecker) explains.
 
-use super::guesses::Tables;
+use super::guesses::{Table, Tables};
 use super::names::Names;
 use super::parsed::{Form, Parsed, Word};
 use super::values::{self, ValueError};
 use crate::registry::Registry;
 use std::mem::replace;
 use std::ops::Range;
+use tabray_core::scene::attribute::Attribute;
+use tabray_core::scene::counts::OneOf;
 use tabray_core::scene::entity::Entity;
 use tabray_core::scene::kind::Kind;
 use tabray_core::scene::store::{Packer, Store};
@@ -18,14 +20,22 @@ pub struct Quick<'r> {
     registry: &'r Registry,
     tables: Tables,
     bytes: Vec<u8>,
-    /// The type of each entity, the hash of its name and its range of the bytes, or `None` where something is out of the
-    /// ordinary.
-    entities: Vec<Option<(&'static Entity, u32, Range<usize>)>>,
+    /// The entities, with their ranges of the bytes; `None` where something is out of the ordinary.
+    entities: Vec<Option<Packed<Range<usize>>>>,
     /// The values of an attribute.
     numbers: Datum,
     whole: Datum,
     /// The indices of the entity's attributes, for each attribute of its table.
     given: Vec<Option<usize>>,
+}
+
+/// An entity that was checked and packed.
+pub struct Packed<B> {
+    /// Its type.
+    pub entity: &'static Entity,
+    /// The hash of its name.
+    pub hash: u32,
+    pub bytes: B,
 }
 
 impl<'r> Quick<'r> {
@@ -48,11 +58,12 @@ impl<'r> Quick<'r> {
         table.is_none_or(|table| matches!(self.tables[table].entity.kind(), Kind::Object | Kind::Light))
     }
 
-    /// Returns the type, the hash of the name and the bytes of each of the entities that were checked, or `None` where
-    /// something is out of the ordinary.
-    pub fn packed(&self) -> impl Iterator<Item = Option<(&'static Entity, u32, &[u8])>> {
-        let packed = self.entities.iter().map(Option::as_ref);
-        packed.map(|of| of.map(|(entity, hash, range)| (*entity, *hash, &self.bytes[range.clone()])))
+    /// Returns the entities that were checked, or `None` where something is out of the ordinary.
+    pub fn packed(&self) -> impl Iterator<Item = Option<Packed<&[u8]>>> {
+        self.entities.iter().map(|packed| {
+            let Packed { entity, hash, bytes } = packed.as_ref()?;
+            Some(Packed { entity, hash: *hash, bytes: &self.bytes[bytes.clone()] })
+        })
     }
 
     /// Checks objects and lights in place of others. What they refer to must be defined.
@@ -65,8 +76,11 @@ impl<'r> Quick<'r> {
             if packed.is_none() {
                 self.bytes.truncate(start);
             }
-            let hash = |entity: &Entity| names.hash(entity.kind(), &parsed.name.text);
-            self.entities.push(packed.map(|entity| (entity, hash(entity), start..self.bytes.len())));
+            self.entities.push(packed.map(|entity| Packed {
+                entity,
+                hash: names.hash(entity.kind(), &parsed.name.text),
+                bytes: start..self.bytes.len(),
+            }));
         }
     }
 
@@ -78,19 +92,7 @@ impl<'r> Quick<'r> {
         let table = self.tables.named(self.registry, &parsed.kind.text)?;
         let table = &self.tables[table];
         let number = store.number(table.entity)?;
-        self.given.clear();
-        self.given.resize(table.len(), None);
-        for (index, (name, _)) in parsed.attributes().enumerate() {
-            if self.given[table.find_next(&name.text, index)?].replace(index).is_some() {
-                return None;
-            }
-        }
-        for group in table.groups() {
-            let is_given = |name: &&&str| table.find(name).is_some_and(|index| self.given[index].is_some());
-            if group.names.iter().filter(is_given).count() != 1 {
-                return None;
-            }
-        }
+        find(table, parsed, &mut self.given)?;
         let mut packed = Packer::begin(&mut self.bytes, number, &parsed.name.text, true);
         // Defaults at the end take no memory: most objects name no shader.
         let mut defaults = 0;
@@ -104,9 +106,6 @@ impl<'r> Quick<'r> {
             };
             (0..replace(&mut defaults, 0)).for_each(|_| packed.default());
             let words = parsed.values_of(*given);
-            let is_right = |datum: &Datum| {
-                known.attribute.allows(datum) && known.attribute.beyond_squares(datum).is_none()
-            };
             if !known.attribute.arity().allow(words.len()) {
                 return None;
             }
@@ -115,21 +114,21 @@ impl<'r> Quick<'r> {
                     if let Datum::Numbers(numbers) = &mut self.numbers {
                         read(numbers, words, values::number)?;
                     }
-                    is_right(&self.numbers).then_some(())?;
+                    is_right(known.attribute, &self.numbers).then_some(())?;
                     packed.numbers(&self.numbers);
                 }
                 (Type::Whole, words) => {
                     if let Datum::Whole(numbers) = &mut self.whole {
                         read(numbers, words, values::whole)?;
                     }
-                    is_right(&self.whole).then_some(())?;
+                    is_right(known.attribute, &self.whole).then_some(())?;
                     packed.numbers(&self.whole);
                 }
                 (Type::Name(kind), [word])
                     if !matches!(word.form, Form::Number | Form::Truth | Form::Faulty) =>
                 {
                     let index = names.defined(kind, &word.text)?;
-                    is_right(store.datum(index)).then_some(())?;
+                    is_right(known.attribute, store.datum(index)).then_some(())?;
                     packed.datum(index);
                 }
                 _ => return None,
@@ -137,6 +136,25 @@ impl<'r> Quick<'r> {
         }
         Some(table.entity)
     }
+}
+
+/// Finds the attributes of a table that an entity has, each by its index; `None` where one is unknown or repeated, or one of
+/// several is not given exactly once.
+fn find(table: &Table, parsed: &Parsed<'_>, given: &mut Vec<Option<usize>>) -> Option<()> {
+    given.clear();
+    given.resize(table.len(), None);
+    for (index, (name, _)) in parsed.attributes().enumerate() {
+        if given[table.find_next(&name.text, index)?].replace(index).is_some() {
+            return None;
+        }
+    }
+    let is_given = |name: &&&str| table.find(name).is_some_and(|index| given[index].is_some());
+    let is_one = |group: &OneOf| group.names.iter().filter(is_given).count() == 1;
+    table.groups().iter().all(|group| is_one(group)).then_some(())
+}
+
+fn is_right(attribute: &dyn Attribute, datum: &Datum) -> bool {
+    attribute.allows(datum) && attribute.beyond_squares(datum).is_none()
 }
 
 /// Reads numbers in place of others.

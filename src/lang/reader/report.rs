@@ -3,7 +3,7 @@
 use super::excerpt::rendered;
 use super::fault::{Fault, Place, Severity};
 use super::guesses::Guesses;
-use super::parts::{Part, Parts};
+use super::parts::{Parts, TextPart};
 use crate::syntax::Syntax;
 use annotate_snippets::Renderer;
 use std::borrow::Cow;
@@ -47,7 +47,7 @@ struct Notes {
     is_cut_short: bool,
     guesses: Guesses,
     /// The parts of the text, if there are several.
-    parts: Vec<Part>,
+    parts: Vec<TextPart>,
     /// The ranges of the text that are read more than once. Of the faults at one place of them, one is listed.
     repeated: Vec<Range<usize>>,
 }
@@ -59,7 +59,7 @@ impl<'t> Report<'t> {
     }
 
     /// Divides the text into parts, which messages name.
-    pub(super) fn in_parts(mut self, parts: &[Part]) -> Self {
+    pub(super) fn in_parts(mut self, parts: &[TextPart]) -> Self {
         self.notes.parts = parts.to_vec();
         self
     }

@@ -3,8 +3,9 @@
 
 use super::encoding;
 use super::fault::Fault;
+use super::options::ReadOptions;
 use super::parsed::Word;
-use super::parts::Part;
+use super::parts::TextPart;
 use super::report::Report;
 use super::sets::{OPTION, Sets};
 use super::tokens::{Token, TokenForm, Tokens};
@@ -31,7 +32,7 @@ pub struct Sources<'t> {
     /// All texts.
     pub text: Cow<'t, str>,
     /// The parts of the text; empty if it is one.
-    pub parts: Vec<Part>,
+    pub parts: Vec<TextPart>,
     /// The part that each `include` includes, by the place at which its file is named, or why it cannot.
     includes: HashMap<usize, Result<usize, Fault>>,
     /// The range of the scene's own text.
@@ -54,22 +55,21 @@ impl<'t> Sources<'t> {
         (name, folder): (&str, &Path),
         text: &'t str,
         syntax: Syntax,
-        (sets, set_by): (&[String], &[String]),
-        open: &[(PathBuf, Arc<str>)],
+        options: ReadOptions<'_>,
         room: u64,
     ) -> Self {
         let mut sources = Self::of(text);
-        if !text.contains("include") && sets.is_empty() {
+        if !text.contains("include") && options.sets.is_empty() {
             return sources;
         }
-        sources.parts.push(Part { name: name.to_owned(), range: sources.own.clone() });
+        sources.parts.push(TextPart { name: name.to_owned(), range: sources.own.clone() });
         let own = folder.join(Path::new(name).file_name().unwrap_or_default());
         let mut readings = vec![OpenSource { path: own, includer: None }];
         let mut room = room.min(LARGEST).saturating_sub(text.len() as u64);
         let mut at = 0;
         while at < readings.len() {
             for (place, file) in included(syntax, &sources.text, sources.parts[at].range.clone()) {
-                let read = sources.include(&mut readings, at, &file, (syntax, open), &mut room);
+                let read = sources.include(&mut readings, at, &file, (syntax, options.open), &mut room);
                 let read = read.map_err(|(message, help)| {
                     let fault = Fault::error(Some(place.clone()), message);
                     Fault { help, ..fault }
@@ -78,14 +78,14 @@ impl<'t> Sources<'t> {
             }
             at += 1;
         }
-        sources.add_options((sets, set_by));
+        sources.add_options(options);
         sources
     }
 
     /// Adds the options to a text that includes no file.
-    pub fn alone(name: &str, text: &'t str, options: (&[String], &[String])) -> Self {
+    pub fn alone(name: &str, text: &'t str, options: ReadOptions<'_>) -> Self {
         let mut sources = Self::of(text);
-        sources.parts.push(Part { name: name.to_owned(), range: sources.own.clone() });
+        sources.parts.push(TextPart { name: name.to_owned(), range: sources.own.clone() });
         sources.add_options(options);
         sources
     }
@@ -101,7 +101,7 @@ impl<'t> Sources<'t> {
         }
     }
 
-    fn add_options(&mut self, (sets, set_by): (&[String], &[String])) {
+    fn add_options(&mut self, ReadOptions { sets, set_by, .. }: ReadOptions<'_>) {
         if sets.is_empty() {
             return;
         }
@@ -150,7 +150,7 @@ impl<'t> Sources<'t> {
         all.push('\n');
         let range = all.len()..all.len() + text.len();
         *all += text;
-        self.parts.push(Part { name, range: range.clone() });
+        self.parts.push(TextPart { name, range: range.clone() });
         range
     }
 
@@ -162,54 +162,15 @@ impl<'t> Sources<'t> {
         file: &str,
         (syntax, open): (Syntax, &[(PathBuf, Arc<str>)]),
         room: &mut u64,
-    ) -> Result<usize, (String, Option<String>)> {
+    ) -> Result<usize, Refused> {
         let path = readings[includer].path.with_file_name(file);
         self.files.push(path.clone());
-        let same = |other: &Path| match (other.canonicalize(), path.canonicalize()) {
-            (Ok(other), Ok(path)) => other == path,
-            _ => false,
-        };
-        let mut outer = Some(includer);
-        let mut depth = 0;
-        while let Some(reading) = outer.map(|outer| &readings[outer]) {
-            if same(&reading.path) {
-                let help = "a file cannot include itself, directly or through others";
-                return Err((format!("`{file}` includes itself"), Some(help.to_owned())));
-            }
-            outer = reading.includer;
-            depth += 1;
-        }
-        if depth > DEEPEST || readings.len() > MOST_FILES {
-            let help =
-                format!("a scene includes at most {MOST_FILES} files, at most {DEEPEST} within each other");
-            return Err((format!("`{file}` is one file too many"), Some(help)));
-        }
+        may_include(readings, includer, file, &path)?;
         if Syntax::of_name(&path).unwrap_or(syntax) != syntax {
             let help = "`tabray convert` writes a file in the other syntax";
             return Err((format!("`{file}` has another syntax than the scene"), Some(help.to_owned())));
         }
-        let mut bytes = Vec::new();
-        let plain = files::plain(&path);
-        let read = match open.iter().find(|(known, _)| *known == plain) {
-            Some((_, text)) => {
-                bytes.extend_from_slice(text.as_bytes());
-                Ok(())
-            }
-            None => {
-                files::open(&path).and_then(|opened| opened.take(*room + 1).read_to_end(&mut bytes)).map(drop)
-            }
-        };
-        if let Err(error) = read {
-            let near = nearest_file(&path).filter(|_| error.kind() == io::ErrorKind::NotFound);
-            let near = near.map(|near| Path::new(file).with_file_name(near));
-            return Err((
-                format!("cannot read `{file}`: {}", text::reason(&error)),
-                Some(match near {
-                    Some(near) => format!("did you mean `{}`?", near.display()),
-                    None => "the name is relative to the file that includes it".to_owned(),
-                }),
-            ));
-        }
+        let bytes = read(file, &path, open, *room)?;
         *room = room
             .checked_sub(bytes.len() as u64)
             .ok_or_else(|| (format!("`{file}` is too large to be included"), None))?;
@@ -225,6 +186,51 @@ impl<'t> Sources<'t> {
         readings.push(OpenSource { path, includer: Some(includer) });
         Ok(self.parts.len() - 1)
     }
+}
+
+/// What is wrong with a file that is included, and what would be right.
+type Refused = (String, Option<String>);
+
+/// Checks that a file includes itself in no way, and that there are not too many.
+fn may_include(readings: &[OpenSource], includer: usize, file: &str, path: &Path) -> Result<(), Refused> {
+    let same = |other: &Path| match (other.canonicalize(), path.canonicalize()) {
+        (Ok(other), Ok(path)) => other == path,
+        _ => false,
+    };
+    let mut outer = Some(includer);
+    let mut depth = 0;
+    while let Some(reading) = outer.map(|outer| &readings[outer]) {
+        if same(&reading.path) {
+            let help = "a file cannot include itself, directly or through others";
+            return Err((format!("`{file}` includes itself"), Some(help.to_owned())));
+        }
+        outer = reading.includer;
+        depth += 1;
+    }
+    if depth > DEEPEST || readings.len() > MOST_FILES {
+        let help =
+            format!("a scene includes at most {MOST_FILES} files, at most {DEEPEST} within each other");
+        return Err((format!("`{file}` is one file too many"), Some(help)));
+    }
+    Ok(())
+}
+
+/// Reads a file, or takes its text as an editor has it. One byte more than there is room for is enough to refuse it.
+fn read(file: &str, path: &Path, open: &[(PathBuf, Arc<str>)], room: u64) -> Result<Vec<u8>, Refused> {
+    let plain = files::plain(path);
+    if let Some((_, text)) = open.iter().find(|(known, _)| *known == plain) {
+        return Ok(text.as_bytes().to_vec());
+    }
+    let mut bytes = Vec::new();
+    let read = files::open(path).and_then(|opened| opened.take(room + 1).read_to_end(&mut bytes));
+    let Err(error) = read else { return Ok(bytes) };
+    let near = nearest_file(path).filter(|_| error.kind() == io::ErrorKind::NotFound);
+    let near = near.map(|near| Path::new(file).with_file_name(near));
+    let help = match near {
+        Some(near) => format!("did you mean `{}`?", near.display()),
+        None => "the name is relative to the file that includes it".to_owned(),
+    };
+    Err((format!("cannot read `{file}`: {}", text::reason(&error)), Some(help)))
 }
 
 /// Returns the files that a part of a text includes, each with the place at which it is named.

@@ -1,7 +1,7 @@
 //! Warns of images that are black for certain, or show no plane, with the reason.
 
 use super::fault::Fault;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use tabray_core::geometry::aabb::Aabb;
 use tabray_core::scene::model::{Model, Object};
 use tabray_core::text::shortest;
@@ -30,24 +30,15 @@ pub fn warning(model: &Model) -> Option<Fault> {
     }
     // Of rays that start at different points, nothing is said.
     let corners = camera.camera.corners(camera.pixels, MARGIN)?;
-    let viewer = camera.origins().middle;
-    let place = |at: DVec3| at.to_array().map(shortest).join(" ");
+    let (viewer, screen) = (camera.origins().middle, camera.camera.screen());
     let ahead: DVec3 = corners.iter().sum();
+    let place = |at: DVec3| at.to_array().map(shortest).join(" ");
+    let looks = |how: String| format!("the viewer at {} looks {how}", place(viewer));
     if all_are(model, |bounds| is_behind(viewer, ahead, bounds)) {
-        return black(
-            "all objects are behind the viewer",
-            match camera.camera.screen() {
-                Some(_) => {
-                    let (along, side) = if viewer.z > 0.0 { ("-z", "below") } else { ("+z", "above") };
-                    let z = shortest(viewer.z);
-                    format!(
-                        "the viewer at {} looks along {along}: what can be seen has a z {side} {z}",
-                        place(viewer)
-                    )
-                }
-                None => format!("the viewer at {} looks the other way", place(viewer)),
-            },
-        );
+        let (along, side) = if viewer.z > 0.0 { ("-z", "below") } else { ("+z", "above") };
+        let seen = || format!("along {along}: what can be seen has a z {side} {}", shortest(viewer.z));
+        let how = screen.map_or_else(|| "the other way".to_owned(), |_| seen());
+        return black("all objects are behind the viewer", looks(how));
     }
     let is_aside = |bounds: &Aabb| {
         (0..4).any(|edge| {
@@ -56,17 +47,10 @@ pub fn warning(model: &Model) -> Option<Fault> {
         })
     };
     if all_are(model, is_aside) {
-        return black(
-            "all objects are outside the image",
-            match camera.camera.screen() {
-                Some(screen) => format!(
-                    "the viewer at {} looks through the rectangle from 0 0 0 to {}",
-                    place(viewer),
-                    place(screen.extend(0.0))
-                ),
-                None => format!("the viewer at {} looks past them", place(viewer)),
-            },
-        );
+        let through =
+            |screen: DVec2| format!("through the rectangle from 0 0 0 to {}", place(screen.extend(0.0)));
+        let how = screen.map_or_else(|| "past them".to_owned(), through);
+        return black("all objects are outside the image", looks(how));
     }
     // Planes end before such a viewer's image plane.
     let is_endless = |object: &Object| object.shape.facts().bounds.is_none();

@@ -42,8 +42,32 @@ struct RayBundle {
 }
 
 impl RayBundle {
+    const NONE: Self = Self { origin: Vectors::ZERO, dir: Vectors::ZERO };
+
     fn rays(&self) -> RayPacket<'_> {
         RayPacket::new(self.origin.view(PACKET_SIZE), self.dir.view(PACKET_SIZE), 0.0)
+    }
+}
+
+/// The nearest hits of a packet's rays.
+struct Hits {
+    near: [f64; PACKET_SIZE],
+    far: [f64; PACKET_SIZE],
+    hit_ids: [u64; PACKET_SIZE],
+    doubt: [u64; PACKET_SIZE],
+}
+
+impl Hits {
+    const NONE: Self = Self {
+        near: [MISS; PACKET_SIZE],
+        far: [MISS; PACKET_SIZE],
+        hit_ids: [0; PACKET_SIZE],
+        doubt: [0; PACKET_SIZE],
+    };
+
+    fn nearest(&mut self) -> Nearest<'_> {
+        let Self { near, far, hit_ids, doubt } = self;
+        Nearest { near, far, hit_ids, doubt }
     }
 }
 
@@ -68,8 +92,7 @@ pub(super) fn of(plan: &Plan, cpu: Cpu) -> Vec<Packet> {
 impl Packet {
     fn new(plan: &Plan, cpu: Cpu, tile: &[[usize; 2]]) -> Self {
         let camera = &plan.camera;
-        let mut view = RayBundle { origin: Vectors::ZERO, dir: Vectors::ZERO };
-        let mut hits = Vec::new();
+        let (mut view, mut hits) = (RayBundle::NONE, Vec::new());
         for lane in 0..PACKET_SIZE {
             let [x, y] = tile[lane.min(tile.len() - 1)];
             let ray = camera.ray(x as f64, y as f64);
@@ -81,8 +104,7 @@ impl Packet {
         let most = hits.iter().map(|(_, hit)| hit.index).max_by_key(|object| (count(*object), *object));
         let met = most.map(|object| {
             hits.retain(|(_, hit)| hit.index == object);
-            let bundle = || RayBundle { origin: Vectors::ZERO, dir: Vectors::ZERO };
-            let (mut view, mut toward) = (bundle(), bundle());
+            let (mut view, mut toward) = (RayBundle::NONE, RayBundle::NONE);
             let (mut sides, mut t_max) = ([Side::Outside; PACKET_SIZE], [0.0; PACKET_SIZE]);
             for (lane, (ray, hit)) in (0..PACKET_SIZE).zip(hits.iter().cycle()) {
                 let mut normal = hit.object.shape.normal(hit.point);
@@ -133,15 +155,11 @@ pub(super) fn times(
 
     let mut closest = || {
         for (packet, objects) in &viewed {
-            let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
-            let (mut hit_ids, mut doubt) = ([0; PACKET_SIZE], [0; PACKET_SIZE]);
+            let mut hits = Hits::NONE;
             for object in objects {
-                let (near, far, hit_ids, doubt) =
-                    (&mut near[..], &mut far[..], &mut hit_ids[..], &mut doubt[..]);
-                let nearest = Nearest { near, far, hit_ids, doubt };
-                shape(*object).closest_hits(cpu, packet.view.rays(), *object as u64 + 1, nearest);
+                shape(*object).closest_hits(cpu, packet.view.rays(), *object as u64 + 1, hits.nearest());
             }
-            black_box((&near, &far, &hit_ids));
+            black_box(&hits);
         }
     };
     let mut occluded = || {
@@ -158,16 +176,13 @@ pub(super) fn times(
     let brackets: Vec<_> = met
         .iter()
         .map(|view| {
-            let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
-            let (mut hit_ids, mut doubt) = ([0; PACKET_SIZE], [0; PACKET_SIZE]);
-            let nearest =
-                Nearest { near: &mut near, far: &mut far, hit_ids: &mut hit_ids, doubt: &mut doubt };
-            shape(view.object).closest_hits(cpu, view.view.rays(), 1, nearest);
-            (near, far)
+            let mut hits = Hits::NONE;
+            shape(view.object).closest_hits(cpu, view.view.rays(), 1, hits.nearest());
+            hits
         })
         .collect();
     let mut refine = || {
-        for (met, (near, far)) in met.iter().zip(&brackets) {
+        for (met, Hits { near, far, .. }) in met.iter().zip(&brackets) {
             let mut distances = [0.0; PACKET_SIZE];
             shape(met.object).packets().refine(cpu, met.view.rays(), (near, far), &mut distances);
             black_box(&distances);

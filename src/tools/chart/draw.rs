@@ -153,53 +153,16 @@ fn draw_panel<D: DrawingBackend>(
     panel: &Panel,
     corner: (f64, f64),
 ) -> io::Result<()> {
-    let plot = PlotArea {
-        left: corner.0 + 92.0,
-        top: corner.1 + 56.0,
-        right: corner.0 + PANEL.0 - 22.0,
-        bottom: corner.1 + PANEL.1 - 56.0,
-    };
+    let axes = Axes::of(panel, corner);
+    let (plot, place) = (axes.plot, |point: &Point| axes.place(point));
     let middle = 0.5 * (plot.left + plot.right);
     let title = Letters { is_bold: true, ..Letters::new(14.5) };
     canvas.text(&panel.title, (middle, corner.1 + 18.0), Align::Middle, title)?;
     let note = Letters { colour: GREY, ..Letters::new(12.0) };
     canvas.text(&panel.note, (middle, corner.1 + 39.0), Align::Middle, note)?;
-
-    let (unit, scale) = panel.unit();
-    // Errors that do not matter are drawn in a strip below the axis.
-    let nothing = panel.negligible();
-    let has_nothing = panel.points.iter().any(|point| point.error <= nothing);
-    let floor = plot.bottom - if has_nothing { NOTHING } else { 0.0 };
-    let times = panel.points.iter().map(|point| scale * point.times.least);
-    let across = Axis::new(times, (0.1, 0.12), (plot.left, plot.right));
-    let errors = panel.points.iter().map(|point| point.error).filter(|error| *error > nothing);
-    let up = Axis::new(errors, (0.2, 0.1), (floor, plot.top));
-    let place = |point: &Point| {
-        let y = if point.error > nothing { up.at(point.error) } else { plot.bottom - 0.5 * NOTHING };
-        (across.at(scale * point.times.least), y)
-    };
-
-    let ticks = Letters::new(12.0);
-    for (time, text) in across.ticks() {
-        let x = across.at(time);
-        canvas.line(&[(x, plot.top), (x, plot.bottom)], LIGHT, 1.0)?;
-        canvas.text(&text, (x, plot.bottom + 14.0), Align::Middle, ticks)?;
-    }
-    let ticks_up =
-        if panel.points.iter().any(|point| point.error > nothing) { up.ticks() } else { Vec::new() };
-    for (error, text) in ticks_up {
-        let y = up.at(error);
-        canvas.line(&[(plot.left, y), (plot.right, y)], LIGHT, 1.0)?;
-        canvas.text(&text, (plot.left - 8.0, y), Align::Right, ticks)?;
-    }
-    if has_nothing {
-        canvas.line(&[(plot.left, floor), (plot.right, floor)], LIGHT, 2.0)?;
-        let text = if nothing == 0.0 { "0" } else { "none" };
-        canvas.text(text, (plot.left - 8.0, plot.bottom - 0.5 * NOTHING), Align::Right, ticks)?;
-    }
-    canvas.frame(plot, BLACK)?;
+    axes.draw(canvas)?;
     let axis = Letters::new(12.5);
-    canvas.text(unit, (middle, plot.bottom + 36.0), Align::Middle, axis)?;
+    canvas.text(panel.unit().0, (middle, plot.bottom + 36.0), Align::Middle, axis)?;
     canvas.upward(panel.measure(), (corner.0 + 20.0, 0.5 * (plot.top + plot.bottom)), axis)?;
 
     if matches!(panel.subject, Subject::Samples | Subject::Bounces) {
@@ -222,21 +185,30 @@ fn draw_panel<D: DrawingBackend>(
     }
     // The lines that labels keep clear of.
     let mut lines: Vec<_> = front.windows(2).map(|ends| (ends[0], ends[1])).collect();
-    if has_nothing {
-        lines.push(((plot.left, floor), (plot.right, floor)));
-    }
+    lines.extend(axes.has_nothing.then_some(((plot.left, axes.floor), (plot.right, axes.floor))));
     // The most important labels are placed first.
     let mut order: Vec<usize> =
         (0..panel.points.len()).filter(|index| !panel.points[*index].error.is_nan()).collect();
     order.sort_by_key(|index| (!panel.points[*index].is_default, !is_on_front[*index]));
     let points: Vec<&Point> = order.iter().map(|index| &panel.points[*index]).collect();
-    let places: Vec<_> = points.iter().map(|point| place(point)).collect();
+    draw_points(canvas, panel, &points, &lines, &axes)
+}
+
+/// Draws points with their labels, which keep clear of lines; the most important ones come first.
+fn draw_points<D: DrawingBackend>(
+    canvas: &Canvas<D>,
+    panel: &Panel,
+    points: &[&Point],
+    lines: &[((f64, f64), (f64, f64))],
+    axes: &Axes,
+) -> io::Result<()> {
+    let places: Vec<_> = points.iter().map(|point| axes.place(point)).collect();
     let letters = |point: &Point| Letters { is_bold: point.is_default, ..Letters::new(12.0) };
     let names: Vec<String> = points.iter().map(|point| name(panel, point)).collect();
     // With a gap between neighbours, so that two numbers do not look like one.
     let size = |(name, point): (&String, &&Point)| (letters(point).width(name) + 6.0, 15.0);
-    let sizes: Vec<_> = names.iter().zip(&points).map(size).collect();
-    let labels = labels::place(&places, &sizes, &lines, plot);
+    let sizes: Vec<_> = names.iter().zip(points).map(size).collect();
+    let labels = labels::place(&places, &sizes, lines, axes.plot);
     for (label, place) in labels.iter().zip(&places) {
         if let Some(end) = label.and_then(|label| label.leader) {
             canvas.line(&[*place, end], GREY, 1.0)?;
@@ -247,7 +219,7 @@ fn draw_panel<D: DrawingBackend>(
         let marker = if point.is_default { Marker::Star } else { marker };
         canvas.marker(*place, marker, colour, point.wrong.faults() > 0)?;
     }
-    for ((label, name), point) in labels.iter().zip(&names).zip(&points) {
+    for ((label, name), point) in labels.iter().zip(&names).zip(points) {
         if let Some(label) = label {
             let middle =
                 (0.5 * (label.area.left + label.area.right), 0.5 * (label.area.top + label.area.bottom));
@@ -255,6 +227,71 @@ fn draw_panel<D: DrawingBackend>(
         }
     }
     Ok(())
+}
+
+/// The axes of a panel.
+struct Axes {
+    plot: PlotArea,
+    /// The times, in units of which so many are a second.
+    across: Axis,
+    scale: f64,
+    up: Axis,
+    /// The largest error that does not matter, whether there are such, and the lower end of the axis of the others: those are
+    /// drawn in a strip below it.
+    nothing: f64,
+    has_nothing: bool,
+    floor: f64,
+    /// Whether there are others.
+    has_errors: bool,
+}
+
+impl Axes {
+    fn of(panel: &Panel, corner: (f64, f64)) -> Self {
+        let plot = PlotArea {
+            left: corner.0 + 92.0,
+            top: corner.1 + 56.0,
+            right: corner.0 + PANEL.0 - 22.0,
+            bottom: corner.1 + PANEL.1 - 56.0,
+        };
+        let ((_, scale), nothing) = (panel.unit(), panel.negligible());
+        let has_nothing = panel.points.iter().any(|point| point.error <= nothing);
+        let floor = plot.bottom - if has_nothing { NOTHING } else { 0.0 };
+        let times = panel.points.iter().map(|point| scale * point.times.least);
+        let across = Axis::new(times, (0.1, 0.12), (plot.left, plot.right));
+        let errors = panel.points.iter().map(|point| point.error).filter(|error| *error > nothing);
+        let has_errors = errors.clone().next().is_some();
+        let up = Axis::new(errors, (0.2, 0.1), (floor, plot.top));
+        Self { plot, across, scale, up, nothing, has_nothing, floor, has_errors }
+    }
+
+    /// Returns the place of a point.
+    fn place(&self, point: &Point) -> (f64, f64) {
+        let is_drawn = point.error > self.nothing;
+        let y = if is_drawn { self.up.at(point.error) } else { self.plot.bottom - 0.5 * NOTHING };
+        (self.across.at(self.scale * point.times.least), y)
+    }
+
+    /// Draws the ticks with their lines, and the frame.
+    fn draw<D: DrawingBackend>(&self, canvas: &Canvas<D>) -> io::Result<()> {
+        let Self { plot, across, up, nothing, has_nothing, floor, .. } = self;
+        let ticks = Letters::new(12.0);
+        for (time, text) in across.ticks() {
+            let x = across.at(time);
+            canvas.line(&[(x, plot.top), (x, plot.bottom)], LIGHT, 1.0)?;
+            canvas.text(&text, (x, plot.bottom + 14.0), Align::Middle, ticks)?;
+        }
+        for (error, text) in if self.has_errors { up.ticks() } else { Vec::new() } {
+            let y = up.at(error);
+            canvas.line(&[(plot.left, y), (plot.right, y)], LIGHT, 1.0)?;
+            canvas.text(&text, (plot.left - 8.0, y), Align::Right, ticks)?;
+        }
+        if *has_nothing {
+            canvas.line(&[(plot.left, *floor), (plot.right, *floor)], LIGHT, 2.0)?;
+            let text = if *nothing == 0.0 { "0" } else { "none" };
+            canvas.text(text, (plot.left - 8.0, plot.bottom - 0.5 * NOTHING), Align::Right, ticks)?;
+        }
+        canvas.frame(*plot, BLACK)
+    }
 }
 
 /// Returns the label of a point.

@@ -26,8 +26,25 @@ use tabray_core::scene::model::Model;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_core::world::sensor::Sensor;
 
-/// The numbers of samples to choose from, and the number of samples that they are compared with.
-const STAGES: [(&[u32], u32); 2] = [(&[1, 2, 4, 8, 16, 32, 64], 256), (&[128, 256], 1024)];
+/// A part of a measurement: numbers of samples to choose from.
+#[derive(Clone, Copy)]
+struct Stage {
+    samples: &'static [u32],
+    /// The number of samples that they are compared with.
+    against: u32,
+}
+
+const STAGES: [Stage; 2] = [
+    Stage { samples: &[1, 2, 4, 8, 16, 32, 64], against: 256 },
+    Stage { samples: &[128, 256], against: 1024 },
+];
+
+impl Stage {
+    /// Returns the number of rays that one pixel costs: the samples of each choice, and the true ones.
+    fn rays_of_pixel(self, accuracies: usize) -> u32 {
+        self.samples.iter().sum::<u32>() * accuracies as u32 + self.against + needed::RAYS
+    }
+}
 
 /// The least ratio of the number of samples of the reference to that of an adaptive choice.
 const MORE: u32 = 4;
@@ -62,7 +79,6 @@ pub fn estimates(
     let model = load(None)?;
     let own = model.camera.value.accuracy;
     let timings = Timings::new(&model, &threads, beginning);
-    let mut study = Study { threads, own, kept: vec![0], timings, goal };
     let mut others = Vec::new();
     // The notes' methods lose hits, and are no choice for a scene that does not ask for them.
     for accuracy in [Accuracy::Exact, Accuracy::Draft] {
@@ -73,22 +89,23 @@ pub fn estimates(
     let models: Vec<_> =
         [(own, &model)].into_iter().chain(others.iter().map(|(own, model)| (*own, model))).collect();
     let compared: Vec<_> = others.iter().map(|(_, model)| model).collect();
-    let gains = timings::gains(&model, &compared, &study.threads);
-    study.kept.extend((1..models.len()).filter(|index| gains[index - 1]));
+    let gains = timings::gains(&model, &compared, &threads);
+    let kept: Vec<_> = (0..models.len()).filter(|index| *index == 0 || gains[index - 1]).collect();
     // The most exact of the accuracies is the truth.
     let right = if matches!(own, Accuracy::Exact | Accuracy::Strict) { 0 } else { 1 };
     let truth = plan(models[right].1);
     let [width, height] = truth.camera.pixels;
-    let is_whole = (width * height) as f64 * f64::from(of_pixel(STAGES[0], study.kept.len())) <= MIN_RAYS;
-    let seen = if is_whole { STAGES[0].1 } else { confirm::FEWEST };
+    let is_whole = (width * height) as f64 * f64::from(STAGES[0].rays_of_pixel(kept.len())) <= MIN_RAYS;
+    let seen = if is_whole { STAGES[0].against } else { confirm::FEWEST };
     let mut small = match goal {
         Goal::None => SmallThings::none(truth.camera.display()),
-        _ => SmallThings::find(&truth, &study.threads, goal.error(), seen),
+        _ => SmallThings::find(&truth, &threads, goal.error(), seen),
     };
-    small.measure(&truth, &study.threads, goal.error(), progress)?;
+    small.measure(&truth, &threads, goal.error(), progress)?;
+    let mut study = Study { threads, models: &models, right, kept, timings, goal };
     let mut last = None;
-    for (samples, against) in STAGES {
-        let estimates = study.measure((&models, right), &small, samples, against, progress)?;
+    for stage in STAGES {
+        let estimates = study.measure(stage, &small, progress)?;
         let is_met = match goal {
             Goal::Error { most, .. } => {
                 let is_hopeless = estimates.small.missed > most;
@@ -96,8 +113,8 @@ pub fn estimates(
             }
             Goal::None => true,
             Goal::Time { .. } => {
-                let met = goal.first_meeting(&estimates.all[..samples.len()]);
-                met.is_some_and(|met| met.samples < samples[samples.len() - 1])
+                let met = goal.first_meeting(&estimates.all[..stage.samples.len()]);
+                met.is_some_and(|met| Some(&met.samples) < stage.samples.last())
             }
         };
         let before = last.replace(estimates);
@@ -114,11 +131,6 @@ pub fn estimates(
     // A choice that was measured twice counts as it was with more samples.
     estimates.all.dedup_by_key(|one| (one.accuracy, one.most, one.samples));
     Ok(estimates)
-}
-
-/// Returns the number of rays that one pixel costs: the samples of each choice, and the true ones.
-fn of_pixel((samples, against): (&[u32], u32), accuracies: usize) -> u32 {
-    samples.iter().sum::<u32>() * accuracies as u32 + against + needed::RAYS
 }
 
 /// Compares accuracies and numbers of samples together, as [`estimates`] measures them.
@@ -162,17 +174,56 @@ pub(super) fn panel(load: Load, progress: &mut dyn Progress) -> io::Result<Panel
     })
 }
 
+/// The pixels that were drawn and measured so far.
+struct DrawnPixels<'m> {
+    /// The plan whose colours count as right.
+    truth: Plan<'m>,
+    /// Their errors for each accuracy.
+    errors: Vec<Errors>,
+    rights: Vec<Right>,
+    /// Whether time has run out.
+    is_short: bool,
+}
+
+impl DrawnPixels<'_> {
+    /// Measures the further ones of these pixels.
+    fn measure(
+        &mut self,
+        threads: &Renderer,
+        Stage { samples, against }: Stage,
+        plans: &mut [Plan],
+        pixels: &[[usize; 2]],
+        progress: &mut dyn Progress,
+    ) -> io::Result<()> {
+        // Few enough that it is often asked whether time has run out.
+        for pixels in pixels[self.errors[0].pixels()..].chunks(FEWEST) {
+            if self.is_short {
+                break;
+            }
+            let mut colours = Colours { threads, pixels, progress };
+            let rights = colours.right(&mut self.truth, against / 2)?;
+            Errors::add_each(&mut self.errors, &mut colours, plans, samples, &rights)?;
+            self.rights.extend(rights);
+            self.is_short = progress.is_late();
+        }
+        Ok(())
+    }
+}
+
 /// The inputs and the state of a measurement.
-struct Study {
+struct Study<'m> {
     threads: Renderer,
-    own: Accuracy,
+    /// The scene with its own accuracy, and with others.
+    models: &'m [(Accuracy, &'m Model)],
+    /// The index of the model whose colours count as right.
+    right: usize,
     /// The indices of the scene's own accuracy, which is 0, and of those that are clearly faster.
     kept: Vec<usize>,
     timings: Timings,
     goal: Goal,
 }
 
-impl Study {
+impl Study<'_> {
     /// Measures pixels that take as many samples as they need, with the scene's own accuracy.
     fn needed(
         &mut self,
@@ -235,125 +286,117 @@ impl Study {
         }
     }
 
+    /// Measures the choices of a stage, on as many pixels as it takes.
     fn measure(
         &mut self,
-        (models, right): (&[(Accuracy, &Model)], usize),
+        stage: Stage,
         small: &SmallThings,
-        samples: &[u32],
-        against: u32,
         progress: &mut dyn Progress,
     ) -> io::Result<Estimates> {
-        let goal = self.goal;
-        let kept = self.kept.clone();
-        let mut plans: Vec<_> = kept.iter().map(|index| plan(models[*index].1)).collect();
-        for (index, plan) in kept.iter().zip(&mut plans) {
+        let (goal, Stage { samples, against }) = (self.goal, stage);
+        let mut plans: Vec<_> = self.kept.iter().map(|index| plan(self.models[*index].1)).collect();
+        for (index, plan) in self.kept.clone().iter().zip(&mut plans) {
             self.time(*index, samples, plan, progress)?;
         }
-        let mut truth = plan(models[right].1);
-        let draw = Draw::new(models[0].1.camera.value.pixels, small.pixels());
-        let (all, rest) = (draw.all(), draw.rest());
-        // The pixels that may show small things are all measured.
-        let mut of_small: Vec<Errors> = vec![Errors::new(samples.len()); kept.len()];
-        if small.is_measured() {
-            let pixels = small.pixels();
-            for (plan, errors) in plans.iter_mut().zip(&mut of_small) {
-                let mut colours = Colours { threads: &self.threads, pixels: &pixels, progress };
-                let choices = samples.iter().map(|samples| colours.of(plan, *samples));
-                errors.add(&choices.collect::<io::Result<Vec<_>>>()?, &small.right());
-            }
-        }
-        let missed = &small.missed();
-        let of_pixel = of_pixel((samples, against), kept.len());
-        let most = |picture: u32| {
-            let least = if goal.is_worst() { 2.0 * MIN_RAYS } else { MIN_RAYS };
-            // What is to be confirmed is measured on more pixels later, with fewer samples.
-            let part = if confirm::is_for(goal) { 0.0 } else { PART };
-            let rays = (part * f64::from(picture) * all as f64).max(least);
-            // A small image has fewer pixels than that.
-            ((rays / f64::from(of_pixel)) as usize).max(FEWEST).min(rest)
+        let own = self.models[0];
+        let draw = Draw::new(own.1.camera.value.pixels, small.pixels());
+        let (all, rest, missed) = (draw.all(), draw.rest(), &small.missed());
+        let mut drawn = DrawnPixels {
+            truth: plan(self.models[self.right].1),
+            errors: vec![Errors::new(samples.len()); plans.len()],
+            rights: Vec::new(),
+            is_short: false,
         };
-        let mut errors: Vec<Errors> = vec![Errors::new(samples.len()); kept.len()];
-        let mut rights = Vec::new();
-        let (mut next, mut is_short) = (FIRST, false);
+        // The pixels that may show small things are all measured.
+        let mut of_small = drawn.errors.clone();
+        if small.is_measured() {
+            let mut colours = Colours { threads: &self.threads, pixels: &small.pixels(), progress };
+            Errors::add_each(&mut of_small, &mut colours, &mut plans, samples, &small.right())?;
+        }
+        let of_pixel = stage.rays_of_pixel(plans.len());
+        // A small image has fewer pixels than that.
+        let most =
+            |picture| ((self.goal_rays(picture, all) / f64::from(of_pixel)) as usize).max(FEWEST).min(rest);
+        let mut next = FIRST;
         loop {
             let wanted = next.min(rest);
             if wanted == rest {
-                errors.fill(Errors::new(samples.len()));
-                rights.clear();
+                drawn.errors.fill(Errors::new(samples.len()));
+                drawn.rights.clear();
             }
             let pixels = draw.first(wanted);
-            progress.more((wanted - errors[0].pixels()) * of_pixel as usize / 10);
-            while errors[0].pixels() < wanted && !is_short {
-                // Few enough that it is often asked whether time has run out.
-                let from = errors[0].pixels();
-                let part = &pixels[from..wanted.min(from + FEWEST)];
-                let mut colours = Colours { threads: &self.threads, pixels: part, progress };
-                let true_ones = colours.right(&mut truth, against / 2)?;
-                for (plan, errors) in plans.iter_mut().zip(&mut errors) {
-                    let choices = samples.iter().map(|samples| colours.of(plan, *samples));
-                    let choices = choices.collect::<io::Result<Vec<_>>>()?;
-                    errors.add(&choices, &true_ones);
-                }
-                rights.extend(true_ones);
-                is_short = progress.is_late();
-            }
-            let measured = errors[0].pixels();
-            let timings = &self.timings;
-            let estimates =
-                kept.iter().zip(errors.iter().zip(&of_small)).flat_map(|(index, (errors, small))| {
-                    let image = Image { all, small, missed };
-                    let choice = move |(place, samples): (usize, &u32)| {
-                        let [error, bound] =
-                            errors.bounds(place, image, goal.is_worst(), doubt_of_each(COMPARED));
-                        Estimate {
-                            accuracy: models[*index].0,
-                            samples: *samples,
-                            most: None,
-                            rays: f64::from(*samples),
-                            cost: timings.cost(*index, *samples),
-                            error,
-                            bound,
-                            worst: errors.worst(place).max(small.worst(place)),
-                            pixels: measured + missed.pixels.len(),
-                        }
-                    };
-                    samples.iter().enumerate().map(choice)
-                });
-            let mut estimates: Vec<_> = estimates.collect();
+            progress.more((wanted - drawn.errors[0].pixels()) * of_pixel as usize / 10);
+            drawn.measure(&self.threads, stage, &mut plans, &pixels, progress)?;
+            let measured = drawn.errors[0].pixels();
+            let mut estimates = self.estimates(samples, &drawn.errors, &of_small, (all, missed));
             let is_all = measured == rest;
             let met = match is_all {
                 true => goal.first_meeting(&estimates[..samples.len()]),
                 false => confirm::likely(goal, &estimates[..samples.len()]),
             };
             let picture = met.map_or(samples[samples.len() - 1], |met| met.samples);
-            if is_short || measured >= most(picture) {
-                if !is_short && picture >= ADAPTIVE_FROM {
-                    let right = [&rights[..], &small.right()].concat();
-                    let pixels = [&pixels[..measured], &small.pixels()].concat();
-                    let image = (all, measured, missed);
-                    estimates.extend(self.needed(models[0], &pixels, &right, against, image));
-                    let _ = progress.done(0);
-                }
-                if !is_short && !is_all {
-                    let known = Known { errors: &errors[0], samples, small, missed, draw: &draw };
-                    let plans = Plans { threads: &self.threads, model: models[0].1, truth: &mut truth };
-                    is_short = confirm::confirm(goal, plans, &known, &mut estimates, progress)?;
-                }
-                let of_accuracy = estimates[..kept.len() * samples.len()].chunks_mut(samples.len());
-                for ((index, plan), estimates) in kept.iter().zip(&mut plans).zip(of_accuracy) {
-                    self.refine(*index, estimates, plan, progress);
-                }
-                let small = Small { pixels: missed.pixels.len(), missed: missed.error(all) };
-                return Ok(Estimates {
-                    all: estimates,
-                    own: self.own,
-                    pixels: all,
-                    small,
-                    against,
-                    is_short,
-                });
+            if !drawn.is_short && measured < most(picture) {
+                next = (2 * next).min(most(picture));
+                continue;
             }
-            next = (2 * next).min(most(picture));
+            if !drawn.is_short && picture >= ADAPTIVE_FROM {
+                let right = [&drawn.rights[..], &small.right()].concat();
+                let pixels = [&pixels[..measured], &small.pixels()].concat();
+                estimates.extend(self.needed(own, &pixels, &right, against, (all, measured, missed)));
+                let _ = progress.done(0);
+            }
+            if !drawn.is_short && !is_all {
+                let known = Known { errors: &drawn.errors[0], samples, small, missed, draw: &draw };
+                let plans = Plans { threads: &self.threads, model: own.1, truth: &mut drawn.truth };
+                drawn.is_short = confirm::confirm(goal, plans, &known, &mut estimates, progress)?;
+            }
+            let of_accuracy = estimates[..plans.len() * samples.len()].chunks_mut(samples.len());
+            for ((index, plan), estimates) in self.kept.clone().iter().zip(&mut plans).zip(of_accuracy) {
+                self.refine(*index, estimates, plan, progress);
+            }
+            let small = Small { pixels: missed.pixels.len(), missed: missed.error(all) };
+            let is_short = drawn.is_short;
+            return Ok(Estimates { all: estimates, own: own.0, pixels: all, small, against, is_short });
         }
+    }
+
+    /// Returns the number of rays that a measurement of an image of so many pixels may take, if `samples` of each pixel meet
+    /// the goal.
+    fn goal_rays(&self, samples: u32, pixels: usize) -> f64 {
+        let least = if self.goal.is_worst() { 2.0 * MIN_RAYS } else { MIN_RAYS };
+        // What is to be confirmed is measured on more pixels later, with fewer samples.
+        let part = if confirm::is_for(self.goal) { 0.0 } else { PART };
+        (part * f64::from(samples) * pixels as f64).max(least)
+    }
+
+    /// Estimates each number of samples of each accuracy, from the errors of the pixels that were drawn and of those that may
+    /// show small things.
+    fn estimates(
+        &self,
+        samples: &[u32],
+        errors: &[Errors],
+        of_small: &[Errors],
+        (all, missed): (usize, &Missed),
+    ) -> Vec<Estimate> {
+        let of_accuracy = |(index, (errors, small)): (&usize, (&Errors, &Errors))| {
+            let (accuracy, image) = (self.models[*index].0, Image { all, small, missed });
+            let choice = |(place, samples): (usize, &u32)| {
+                let [error, bound] =
+                    errors.bounds(place, image, self.goal.is_worst(), doubt_of_each(COMPARED));
+                Estimate {
+                    accuracy,
+                    samples: *samples,
+                    most: None,
+                    rays: f64::from(*samples),
+                    cost: self.timings.cost(*index, *samples),
+                    error,
+                    bound,
+                    worst: errors.worst(place).max(small.worst(place)),
+                    pixels: errors.pixels() + missed.pixels.len(),
+                }
+            };
+            samples.iter().enumerate().map(choice).collect::<Vec<_>>()
+        };
+        self.kept.iter().zip(errors.iter().zip(of_small)).flat_map(of_accuracy).collect()
     }
 }

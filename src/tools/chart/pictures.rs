@@ -11,6 +11,7 @@ use super::progress::Progress;
 use super::study::Study;
 use super::times::Times;
 use super::traced;
+use crate::sampling::Samples;
 use glam::DVec2;
 use std::ops::ControlFlow;
 use tabray_core::geometry::ray_packet::PACKET_SIZE;
@@ -190,14 +191,14 @@ pub fn samples(
     pixels.truncate(right.len());
     let mut choices: Vec<_> = choices(own.samples, own.sampler);
     if seen == SampledEffect::Picture {
-        choices.extend(
-            ADAPTIVE.map(|[least, most]| (least, Sampler::Sobol, Some(Adaptive { most, error: None }))),
-        );
+        choices.extend(ADAPTIVE.map(|[samples, most]| {
+            let adaptive = Some(Adaptive { most, error: None });
+            Samples { sampler: Sampler::Sobol, samples, adaptive }
+        }));
     }
     let mut differences = Vec::new();
-    for (samples, sampler, adaptive) in &choices {
-        (plan.camera.samples, plan.camera.sampler) = (*samples, *sampler);
-        plan.set_adaptive(*adaptive);
+    for choice in &choices {
+        choice.set(&mut plan);
         let colours = match seen {
             SampledEffect::Picture => traced::apart(threads, &plan, &pixels).0,
             SampledEffect::Shadows => each(threads, &pixels, |x, y| shadowed(&plan, [x, y])),
@@ -208,9 +209,7 @@ pub fn samples(
     let timed = timed(own.pixels, tests);
     let times = thread.run(|| {
         let work = |choice: usize| {
-            let (samples, sampler, adaptive) = choices[choice];
-            (plan.camera.samples, plan.camera.sampler) = (samples, sampler);
-            plan.set_adaptive(adaptive);
+            choices[choice].set(&mut plan);
             traced::tiles(&plan, &timed);
         };
         clock::rounds(choices.len(), count(&timed), work, progress)
@@ -218,15 +217,15 @@ pub fn samples(
     if differences.iter().all(|off| off.rmse == 0.0) {
         return ControlFlow::Continue(None);
     }
-    let points =
-        choices.iter().zip(differences).zip(times?).map(|(((samples, sampler, adaptive), off), times)| {
-            let (name, family, most) = match adaptive {
-                Some(Adaptive { most, .. }) => (format!("{samples}..{most}"), Family::Adaptive, *most),
-                None => (format!("{} {samples}", name(*sampler)), family(*sampler), *samples),
-            };
-            let is_default = adaptive.is_none() && *samples == own.samples && *sampler == own.sampler;
-            Point { is_default, ..point(name, family, times, off, (pixels.len(), most)) }
-        });
+    let points = choices.iter().zip(differences).zip(times?).map(|((choice, off), times)| {
+        let Samples { sampler, samples, adaptive } = *choice;
+        let (name, family, most) = match adaptive {
+            Some(Adaptive { most, .. }) => (format!("{samples}..{most}"), Family::Adaptive, most),
+            None => (format!("{} {samples}", name(sampler)), family(sampler), samples),
+        };
+        let is_default = adaptive.is_none() && samples == own.samples && sampler == own.sampler;
+        Point { is_default, ..point(name, family, times, off, (pixels.len(), most)) }
+    });
     let title = match (seen, has_size(model)) {
         (SampledEffect::Picture, false) => "samples per pixel: edges",
         (SampledEffect::Picture, true) => "samples per pixel: edges and soft shadows",
@@ -269,7 +268,7 @@ fn name(sampler: Sampler) -> &'static str {
 }
 
 /// Returns the numbers of samples and the samplers that are compared; a single sample is compared only once.
-fn choices(own: u32, own_sampler: Sampler) -> Vec<(u32, Sampler, Option<Adaptive>)> {
+fn choices(own: u32, own_sampler: Sampler) -> Vec<Samples> {
     let mut counts = SAMPLES.to_vec();
     if !counts.contains(&own) && own <= TRUE_SAMPLES / 4 {
         counts.push(own);
@@ -278,12 +277,8 @@ fn choices(own: u32, own_sampler: Sampler) -> Vec<(u32, Sampler, Option<Adaptive
     let mut choices = Vec::new();
     for sampler in [Sampler::Sobol, Sampler::Random] {
         // A single sample lies at the centre, whatever the sampler.
-        choices.extend(
-            counts
-                .iter()
-                .filter(|count| **count > 1 || sampler == own_sampler)
-                .map(|count| (*count, sampler, None)),
-        );
+        let counts = counts.iter().filter(|count| **count > 1 || sampler == own_sampler);
+        choices.extend(counts.map(|samples| Samples { sampler, samples: *samples, adaptive: None }));
     }
     choices
 }

@@ -1,8 +1,10 @@
 //! Errors of sampled pixels, and what they say about the whole image.
 
 use super::betting::Drawn;
-use super::right::Right;
+use super::right::{Colours, Right};
 use super::small::Missed;
+use std::io;
+use tabray_core::render::plan::Plan;
 use tabray_core::world::material::Rgb;
 
 /// The part of the pixels that may be worse than the error of the worst pixels.
@@ -98,6 +100,21 @@ impl Errors {
         for (errors, colours) in self.choices.iter_mut().zip(choices) {
             errors.extend(colours.iter().zip(right).map(|(colour, right)| PixelError::new(*colour, *right)));
         }
+    }
+
+    /// Adds pixels to the errors of each plan, whose choices are numbers of samples.
+    pub fn add_each(
+        errors: &mut [Self],
+        colours: &mut Colours,
+        plans: &mut [Plan],
+        samples: &[u32],
+        right: &[Right],
+    ) -> io::Result<()> {
+        for (plan, errors) in plans.iter_mut().zip(errors) {
+            let choices = samples.iter().map(|samples| colours.of(plan, *samples));
+            errors.add(&choices.collect::<io::Result<Vec<_>>>()?, right);
+        }
+        Ok(())
     }
 
     /// Returns the error of a choice and an upper bound for the image: the root of the mean square, or with `worst` the

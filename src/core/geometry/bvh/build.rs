@@ -36,20 +36,20 @@ pub fn build(count: usize, bounds: impl Fn(usize) -> Aabb + Sync) -> Parts {
     let mut parts = Parts::default();
     if !items.is_empty() {
         parts.nodes.push(Node::EMPTY);
-        parts.add(Part::new(&mut items), 0, 0);
+        parts.add(ItemSet::new(&mut items), 0, 0);
     }
     parts
 }
 
 /// Some items, their limits, and those of twice their centers.
 #[derive(Default)]
-struct Part<'i> {
+struct ItemSet<'i> {
     items: &'i mut [Item],
     limits: Limits,
     centers: Limits,
 }
 
-impl<'i> Part<'i> {
+impl<'i> ItemSet<'i> {
     fn new(items: &'i mut [Item]) -> Self {
         let fold = |items: &[Item]| {
             items.iter().fold((NOTHING, NOTHING), |(limits, centers), item| {
@@ -75,7 +75,7 @@ impl<'i> Part<'i> {
 
 impl Parts {
     /// Makes the node of this index the root of the tree of some items.
-    fn add(&mut self, part: Part, index: usize, depth: usize) {
+    fn add(&mut self, part: ItemSet, index: usize, depth: usize) {
         let mut inner = divide(part, depth);
         inner.sort_by_key(|part| part.items.len() == 1);
         let mut boxes = [Aabb::EMPTY; WIDTH];
@@ -128,12 +128,12 @@ impl Parts {
 }
 
 /// Divides items into at most eight parts, one for each child of a node.
-fn divide(whole: Part, depth: usize) -> Vec<Part> {
+fn divide(whole: ItemSet, depth: usize) -> Vec<ItemSet> {
     let mut parts = Vec::with_capacity(WIDTH);
     parts.push(whole);
     // While there is room, the largest part is split that does not fit into a node.
     while parts.len() < WIDTH {
-        let size = |part: &Part| match part.items.len() {
+        let size = |part: &ItemSet| match part.items.len() {
             len if len <= WIDTH => -1.0,
             len if depth >= DEEP => len as f64,
             _ => half_area(part.limits),
@@ -146,14 +146,14 @@ fn divide(whole: Part, depth: usize) -> Vec<Part> {
     // Where there is room for all items of a part, each is a child.
     loop {
         let room = WIDTH - parts.len();
-        let size = |part: &Part| match part.items.len() {
+        let size = |part: &ItemSet| match part.items.len() {
             len if len > 1 && len - 1 <= room => half_area(part.limits),
             _ => -1.0,
         };
         let Some(largest) = largest(&parts, size) else { break };
         let part = parts.remove(largest);
         let single = part.items.chunks_exact_mut(1);
-        parts.extend(single.map(|items| Part {
+        parts.extend(single.map(|items| ItemSet {
             limits: items[0].limits,
             centers: items[0].centers(),
             items,
@@ -163,7 +163,7 @@ fn divide(whole: Part, depth: usize) -> Vec<Part> {
 }
 
 /// Returns the index of the largest part, the first of equal ones. Parts of negative size are left out.
-fn largest(parts: &[Part], size: impl Fn(&Part) -> f64) -> Option<usize> {
+fn largest(parts: &[ItemSet], size: impl Fn(&ItemSet) -> f64) -> Option<usize> {
     let sizes = parts.iter().map(size).enumerate().filter(|(_, size)| *size >= 0.0);
     let largest = sizes.reduce(|one, other| if other.1 > one.1 { other } else { one });
     largest.map(|(index, _)| index)
@@ -176,7 +176,7 @@ fn chunks<T: Send>(items: &[Item], work: impl Fn(&[Item]) -> T + Sync) -> Vec<T>
 }
 
 /// Splits the items of a part in two.
-fn split(part: Part, depth: usize) -> [Part; 2] {
+fn split(part: ItemSet, depth: usize) -> [ItemSet; 2] {
     let size = per_axis(|axis| -part.centers[axis + 3] - part.centers[axis]);
     let axis = if size[0] >= size[1] && size[0] >= size[2] { 0 } else { 1 + usize::from(size[2] > size[1]) };
     let (low, scale) = (part.centers[axis], BINS as f64 * (1.0 - 1e-9) / size[axis]);
@@ -195,7 +195,11 @@ fn split(part: Part, depth: usize) -> [Part; 2] {
     let Some((cut, [near, far])) = best_cut(Cpu::best(), &bins) else { return part.halves() };
     let middle = partition(part.items, |item| grid.place(item) < cut as f64);
     let (before, after) = part.items.split_at_mut(middle);
-    [(before, near), (after, far)].map(|(items, Bin { limits, centers, .. })| Part { items, limits, centers })
+    [(before, near), (after, far)].map(|(items, Bin { limits, centers, .. })| ItemSet {
+        items,
+        limits,
+        centers,
+    })
 }
 
 /// The number of items of a block of [`partition`].

@@ -3,8 +3,8 @@
 use super::light::{LightPoints, power};
 use super::number::{Endpoint, Number, ranges};
 use super::panes::passed;
-use super::scene::{Colour, Path, Scene};
-use super::surface::{Surface, is_black};
+use super::scene::{Colour, EnclosedScene, Path};
+use super::surface::{HitPoints, is_black};
 use crate::geometry::sight::Line;
 use crate::world::emitter::{Emitter, Extent};
 use crate::world::panel::Panel;
@@ -17,10 +17,10 @@ use tabray_exact::scalar::{constants, dot, per_axis};
 /// The mean over a panel is enclosed by what its points add; the sum of what a sky sends, or a sample, by nothing and the most
 /// that there may be.
 pub(super) fn shine<N: Number>(
-    scene: &Scene,
+    scene: &EnclosedScene,
     (index, seen): (usize, LightPoints),
     emitter: &dyn Emitter,
-    surface: &Surface<N>,
+    surface: &HitPoints<N>,
     dir: [N; 3],
 ) -> Option<Colour<N>> {
     let light = &scene.model.lights[index].value;
@@ -56,6 +56,24 @@ pub(super) fn shine<N: Number>(
     let (LightPoints::All, Extent::Panel(panel)) = (seen, emitter.extent()) else {
         return Some(any);
     };
+    let highlight = has_highlight.then_some(shininess);
+    let lit = from_panel(scene, &panel, (index, sent), surface, dir, highlight)?;
+    Some(per_axis(|channel| {
+        let width = |of: N| of.mean().coarse().width();
+        // Near a panel, its points say less than all that there may be.
+        if width(lit[channel]) <= width(any[channel]) { lit[channel] } else { any[channel] }
+    }))
+}
+
+/// Encloses what the points of a panel, a light of this index that sends such light, add to the colour of points.
+fn from_panel<N: Number>(
+    scene: &EnclosedScene,
+    panel: &Panel,
+    (index, sent): (usize, Colour<N>),
+    surface: &HitPoints<N>,
+    dir: [N; 3],
+    highlight: Option<f64>,
+) -> Option<Colour<N>> {
     let Panel { middle, half, .. } = panel;
     let n = N::constant;
     let [x, y] = [0, 1].map(N::on_light);
@@ -74,7 +92,7 @@ pub(super) fn shine<N: Number>(
     }
     let weight = n(panel.area()) * leaving / (N::enclosing(Interval::pi()) * square);
     let mut scattered = per_axis(|channel| surface.diffuse[channel] * cosine);
-    if has_highlight {
+    if let Some(shininess) = highlight {
         let half = per_axis(|axis| toward[axis] / distance - dir[axis]);
         let strength = power(dot(half, surface.normal) / dot(half, half).sqrt(), shininess);
         scattered = per_axis(|channel| scattered[channel] + surface.specular[channel] * strength);
@@ -82,10 +100,5 @@ pub(super) fn shine<N: Number>(
     let path = Path { line: Line { origin: surface.at, dir: toward }, leaves: Some(surface.place) };
     let full = per_axis(|channel| scattered[channel] * sent[channel] * weight);
     let lit = passed(scene, &path, index).lit(scene, &full, above)?;
-    Some(per_axis(|channel| {
-        let mean = lit[channel].mean_over_light();
-        let width = |of: N| of.mean().coarse().width();
-        // Near a panel, its points say less than all that there may be.
-        if width(mean) <= width(any[channel]) { mean } else { any[channel] }
-    }))
+    Some(per_axis(|channel| lit[channel].mean_over_light()))
 }

@@ -2,8 +2,8 @@
 
 use super::number::{Endpoint, Number, ranges};
 use super::panes::passed;
-use super::scene::{Colour, Path, Scene};
-use super::surface::{Surface, is_black};
+use super::scene::{Colour, EnclosedScene, Path};
+use super::surface::{HitPoints, is_black};
 use crate::geometry::sight::Line;
 use crate::world::packets::light::PacketLight;
 use crate::world::rules::{Falloff, Rules};
@@ -28,9 +28,9 @@ pub enum LightPoints {
 /// Encloses what the light of this index adds to the colour of points; `None` where it is open. `dir` is the unit vector
 /// along the rays that see the points.
 pub(super) fn shine<N: Number>(
-    scene: &Scene,
+    scene: &EnclosedScene,
     (index, seen): (usize, LightPoints),
-    surface: &Surface<N>,
+    surface: &HitPoints<N>,
     dir: [N; 3],
 ) -> Option<Colour<N>> {
     let (zero, black) = (N::of(0.0), [N::constant(0.0); 3]);

@@ -21,5 +21,5 @@ mod surface;
 
 pub use light::LightPoints;
 pub use number::{Endpoint, Number};
-pub use rays::{Limits, Tracer};
-pub use scene::{Colour, Scene, SceneBounds};
+pub use rays::{EnclosingTracer, Limits};
+pub use scene::{Colour, EnclosedScene, SceneBounds};

@@ -1,7 +1,7 @@
 //! How much light passes between a point and a lamp.
 
 use super::number::{Endpoint, Hit, Number, coarse, ranges};
-use super::scene::{Colour, Path, Place, Scene};
+use super::scene::{Colour, EnclosedScene, Path, Place};
 use super::surface::tint;
 use crate::geometry::sight::Line;
 use crate::world::shader::PointBounds;
@@ -26,7 +26,12 @@ pub(super) enum Passes<N> {
 impl<N: Number> Passes<N> {
     /// Encloses what reaches points of the light that they would get, and which comes from above the surface for the part of
     /// them whose cosines are above 0; `None` where that is open.
-    pub fn lit(&self, scene: &Scene, full: &Colour<N>, cosines: Interval<N::End>) -> Option<Colour<N>> {
+    pub fn lit(
+        &self,
+        scene: &EnclosedScene,
+        full: &Colour<N>,
+        cosines: Interval<N::End>,
+    ) -> Option<Colour<N>> {
         if matches!(self, Self::Open) && !scene.bounds.passes_fractions {
             return None;
         }
@@ -45,7 +50,7 @@ impl<N: Number> Passes<N> {
 }
 
 /// Tells how much of the light of this index passes along lines from t = 0 to t = 1, where they end on it.
-pub(super) fn passed<N: Number>(scene: &Scene, path: &Path<N>, light: usize) -> Passes<N> {
+pub(super) fn passed<N: Number>(scene: &EnclosedScene, path: &Path<N>, light: usize) -> Passes<N> {
     let (objects, one) = (&scene.model.objects, N::of(1.0));
     let coarse = coarse(&path.line);
     let is_glass = |object: &usize| objects[*object].material.transparency != 0.0;
@@ -102,7 +107,7 @@ impl<N: Number> Panes<N> {
     ///
     /// # Errors
     /// The t before which all are added, where it is open which follow.
-    fn add(&mut self, scene: &Scene, path: &Path<N>, object: usize) -> Result<(), N::End> {
+    fn add(&mut self, scene: &EnclosedScene, path: &Path<N>, object: usize) -> Result<(), N::End> {
         let one = N::of(1.0);
         let (mut onward, mut start) = (*path, N::constant(0.0));
         for _ in 0..MAX_PANES {
@@ -149,7 +154,7 @@ impl<N: Number> Panes<N> {
 }
 
 /// Encloses the fraction of light that passes through a place at points; `None` where it is open.
-fn pane_tint<N: Number>(scene: &Scene, place: Place, at: [N; 3]) -> Option<Colour<N>> {
+fn pane_tint<N: Number>(scene: &EnclosedScene, place: Place, at: [N; 3]) -> Option<Colour<N>> {
     let pane = &scene.model.objects[place.object];
     let seen = PointBounds::seen(pane.shape.proven()?, pane.shader.sees(), place.part, ranges(at), None);
     let diffuse = N::End::look(pane, &seen)?.diffuse;

@@ -3,8 +3,8 @@
 use super::emitted;
 use super::light::{self, LightPoints};
 use super::number::{Hit, Number};
-use super::scene::{Colour, Path, Place, Scene};
-use super::surface::{Surface, is_black, tint};
+use super::scene::{Colour, EnclosedScene, Path, Place};
+use super::surface::{HitPoints, is_black, tint};
 use crate::geometry::sight::Line;
 use crate::world::rules::{self, Rules};
 use tabray_exact::interval::{Float, Interval};
@@ -38,8 +38,8 @@ struct Ray<N> {
 }
 
 /// Traces rays that start as one.
-pub struct Tracer<'s> {
-    scene: &'s Scene<'s>,
+pub struct EnclosingTracer<'s> {
+    scene: &'s EnclosedScene<'s>,
     limits: Limits,
     lights: LightPoints,
     hits: usize,
@@ -47,9 +47,9 @@ pub struct Tracer<'s> {
     is_open: bool,
 }
 
-impl<'s> Tracer<'s> {
+impl<'s> EnclosingTracer<'s> {
     /// Returns a tracer of one ray from the viewer, or of all through a footprint.
-    pub fn new(scene: &'s Scene<'s>, limits: Limits, lights: LightPoints) -> Self {
+    pub fn new(scene: &'s EnclosedScene<'s>, limits: Limits, lights: LightPoints) -> Self {
         Self { scene, limits, lights, hits: 0, is_spent: false, is_open: false }
     }
 
@@ -142,14 +142,14 @@ impl<'s> Tracer<'s> {
         }
         let mut any = None;
         let window = self.scene.window.filter(|_| ray.depth == 0);
-        for surface in Surface::facing(self.scene, (&ray.path.line, ray.length), t, place, window)? {
+        for surface in HitPoints::facing(self.scene, (&ray.path.line, ray.length), t, place, window)? {
             let shaded = self.shaded(ray, t, &surface)?;
             any = Some(any.map_or(shaded, |any| hull(any, shaded)));
         }
         any
     }
 
-    fn shaded<N: Number>(&mut self, ray: &Ray<N>, t: N, surface: &Surface<N>) -> Option<Colour<N>> {
+    fn shaded<N: Number>(&mut self, ray: &Ray<N>, t: N, surface: &HitPoints<N>) -> Option<Colour<N>> {
         let travelled = ray.travelled + t * ray.length;
         let dir = ray.path.line.dir;
         let toward = per_axis(|axis| dir[axis] / ray.length);
@@ -182,7 +182,7 @@ impl<'s> Tracer<'s> {
     fn secondary<N: Number>(
         &mut self,
         ray: &Ray<N>,
-        surface: &Surface<N>,
+        surface: &HitPoints<N>,
         travelled: N,
         dir: [N; 3],
         factor: &Colour<N>,

@@ -56,7 +56,7 @@ impl SceneBounds {
 }
 
 /// A scene whose colours are enclosed.
-pub struct Scene<'a> {
+pub struct EnclosedScene<'a> {
     /// The model.
     pub model: &'a Model,
     /// The lights that count, by their indices.
@@ -71,7 +71,7 @@ pub struct Scene<'a> {
     pub meets_uncertified: Cell<bool>,
 }
 
-impl Scene<'_> {
+impl EnclosedScene<'_> {
     /// Notes that the hits of the object of this index are open; of a shape without an equation, they always are.
     pub(super) fn note_open(&self, object: usize) {
         if !self.model.objects[object].shape.is_certified() {

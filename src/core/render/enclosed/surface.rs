@@ -1,8 +1,9 @@
 //! The points of a surface that lines hit.
 
 use super::number::{Endpoint, Number, ranges};
-use super::scene::{Colour, Place, Scene};
+use super::scene::{Colour, EnclosedScene, Place};
 use crate::geometry::sight::Line;
+use crate::scene::model::Object;
 use crate::world::patch::{LEAST_COSINE, Window};
 use crate::world::rules;
 use crate::world::shader::PointBounds;
@@ -13,7 +14,7 @@ use tabray_exact::scalar::{dot, per_axis};
 const MEAN_ROUNDING: f64 = 1e-7;
 
 /// The points that lines hit, and how they look there.
-pub(super) struct Surface<N> {
+pub(super) struct HitPoints<N> {
     pub place: Place,
     pub at: [N; 3],
     /// The unit normals with which the points are shaded, turned to face the lines where both sides are lit.
@@ -25,11 +26,11 @@ pub(super) struct Surface<N> {
     pub specular: Colour<N>,
 }
 
-impl<N: Number> Surface<N> {
+impl<N: Number> HitPoints<N> {
     /// Returns the points at t of lines, once for each way that the normals may face; `None` where these or the look are
     /// open. Through a window, a shader's look is a mean over the points around: all of their looks enclose it.
     pub fn facing(
-        scene: &Scene,
+        scene: &EnclosedScene,
         (line, length_of_dir): (&Line<N>, N),
         t: N,
         place: Place,
@@ -61,35 +62,45 @@ impl<N: Number> Surface<N> {
             let cosine = (dot(outward, line.dir) / length_of_dir).abs().coarse().low;
             (1.0 + 1e-9) * width.high / cosine.max(LEAST_COSINE)
         });
-        let shaded = |own: [N; 3], is_turned: bool| {
-            // What is mirrored is mirrored by the shading normal, too.
-            let normal = N::shading_normal(shape, at, place.part, own)?;
-            let unbent = (normal != own).then_some(own);
-            let outward = if is_turned { per_axis(|axis| -normal[axis]) } else { normal };
-            let (mut at_ranges, outward) = (ranges(at), Some(ranges(outward)));
-            if let Some(reach) = reach {
-                let around = Interval { low: N::of(-reach), high: N::of(reach) };
-                at_ranges = at_ranges.map(|along| along + around);
-            }
-            let point = PointBounds::seen(shape, object.shader.sees(), place.part, at_ranges, outward);
-            let look = N::End::look(object, &point)?;
-            let rounding = |of: Interval<N::End>| {
-                let error = if reach.is_some() { MEAN_ROUNDING * of.coarse().magnitude() } else { 0.0 };
-                of + Interval { low: N::of(-error), high: N::of(error) }
-            };
-            let enclosing =
-                |of: [Interval<N::End>; 3]| per_axis(|channel| N::enclosing(rounding(of[channel])));
-            let (ambient, diffuse) = (enclosing(look.ambient), enclosing(look.diffuse));
-            Some(Self { place, at, normal, unbent, ambient, diffuse, specular: enclosing(look.specular) })
-        };
         let mut all = Vec::with_capacity(2);
         if toward.low <= zero {
-            all.push(shaded(outward, false)?);
+            all.push(Self::shaded(object, at, place, outward, false, reach)?);
         }
         if toward.high >= zero {
-            all.push(shaded(per_axis(|axis| -outward[axis]), true)?);
+            all.push(Self::shaded(object, at, place, per_axis(|axis| -outward[axis]), true, reach)?);
         }
         Some(all)
+    }
+
+    /// Returns points whose normals face the lines, turned inward or not. Of a patch, the look is that of all points within
+    /// `reach`.
+    fn shaded(
+        object: &Object,
+        at: [N; 3],
+        place: Place,
+        own: [N; 3],
+        is_turned: bool,
+        reach: Option<f64>,
+    ) -> Option<Self> {
+        let shape = object.shape.proven()?;
+        // What is mirrored is mirrored by the shading normal, too.
+        let normal = N::shading_normal(shape, at, place.part, own)?;
+        let unbent = (normal != own).then_some(own);
+        let outward = if is_turned { per_axis(|axis| -normal[axis]) } else { normal };
+        let (mut at_ranges, outward) = (ranges(at), Some(ranges(outward)));
+        if let Some(reach) = reach {
+            let around = Interval { low: N::of(-reach), high: N::of(reach) };
+            at_ranges = at_ranges.map(|along| along + around);
+        }
+        let point = PointBounds::seen(shape, object.shader.sees(), place.part, at_ranges, outward);
+        let look = N::End::look(object, &point)?;
+        let rounding = |of: Interval<N::End>| {
+            let error = if reach.is_some() { MEAN_ROUNDING * of.coarse().magnitude() } else { 0.0 };
+            of + Interval { low: N::of(-error), high: N::of(error) }
+        };
+        let enclosing = |of: [Interval<N::End>; 3]| per_axis(|channel| N::enclosing(rounding(of[channel])));
+        let (ambient, diffuse) = (enclosing(look.ambient), enclosing(look.diffuse));
+        Some(Self { place, at, normal, unbent, ambient, diffuse, specular: enclosing(look.specular) })
     }
 
     /// Returns the directions in which rays along `dir` are mirrored, as long as these; `None` where they are open.

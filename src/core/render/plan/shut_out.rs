@@ -37,8 +37,14 @@ impl Objects<'_> {
     }
 }
 
-/// Returns the lights that are kept from all that is seen, each with the object that does it.
-pub(super) fn shut_out(model: &Model, objects: &Objects) -> Vec<(usize, usize)> {
+/// A light that is kept from all that is seen, and the object that does it, by their indices.
+pub(crate) struct ShutOut {
+    pub light: usize,
+    pub object: usize,
+}
+
+/// Returns the lights that are kept from all that is seen.
+pub(super) fn shut_out(model: &Model, objects: &Objects) -> Vec<ShutOut> {
     if model.lights.is_empty() || model.camera.value.accuracy == Accuracy::Classic {
         return Vec::new();
     }
@@ -58,7 +64,8 @@ pub(super) fn shut_out(model: &Model, objects: &Objects) -> Vec<(usize, usize)> 
         let (at, size) = (item.value.location(), item.value.size());
         let around = objects.around(at);
         let candidates = around_viewer.iter().chain(&around);
-        Some((light, *candidates.filter(|index| separates(index, at, size)).min()?))
+        let object = *candidates.filter(|index| separates(index, at, size)).min()?;
+        Some(ShutOut { light, object })
     });
     by.collect()
 }

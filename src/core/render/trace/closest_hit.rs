@@ -1,7 +1,7 @@
 //! The closest hits of a packet's rays.
 
 use super::arrays::resized;
-use super::context::Tracer;
+use super::context::{Tracer, UndecidedRay};
 use super::exact::{Located, RoundedRay, certain_order, exact, is_before, is_unclear, located};
 use super::ray_group::{HitRecord, RayGroup};
 use crate::geometry::bvh::{self, PacketVisitor, Stack};
@@ -39,7 +39,7 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
         let part = 0..group.padded();
         ClosestHitSearch { tracer: self, group, hits, part, single: None }.run(&mut stack, &mut ends);
         (self.scratch.stack, self.scratch.ends) = (stack, ends);
-        if !self.scratch.undecided.lanes.is_empty() {
+        if !self.scratch.undecided.rays.is_empty() {
             self.note_undecided(group, hits);
         }
     }
@@ -266,7 +266,7 @@ impl<W: TraceObserver> ClosestHitSearch<'_, '_, '_, W> {
         let Located { distance, bracket: own, open } =
             located(&objects[index].shape, &start, origin_side, MISS);
         if let Some(from) = open {
-            self.tracer.scratch.undecided.lanes.push((lane, index, from));
+            self.tracer.scratch.undecided.rays.push(UndecidedRay { lane, object: index, from });
         }
         if distance == MISS {
             return;

@@ -119,11 +119,27 @@ pub struct Scratch {
 /// What is undecided. Nearly always there is nothing.
 #[derive(Default)]
 pub(super) struct UndecidedScratch {
-    /// The lanes of the current packet of primary rays that may hit an object, which is given by its index, and from which
-    /// distance on, in lengths of the direction of the ray before anything is rounded.
-    pub lanes: Vec<(usize, usize, f256)>,
-    /// The pixels, each by its number, with the index of the object and the reason.
-    pub pixels: Vec<(u32, usize, Doubt)>,
+    /// The primary rays of the current packet.
+    pub rays: Vec<UndecidedRay>,
+    pub pixels: Vec<UndecidedPixel>,
+}
+
+/// A ray that may hit an object.
+pub(super) struct UndecidedRay {
+    pub lane: usize,
+    /// The object's index.
+    pub object: usize,
+    /// The distance from which on it may, in lengths of the direction of the ray before anything is rounded.
+    pub from: f256,
+}
+
+/// A pixel whose ray may hit an object.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct UndecidedPixel {
+    pub number: u32,
+    /// The object's index.
+    pub object: usize,
+    pub doubt: Doubt,
 }
 
 /// The scratch space of primary rays.

@@ -8,8 +8,10 @@ use super::shadow_rays::LightPaths;
 use super::surface::Surface;
 use crate::geometry::aabb::{self, Aabb};
 use crate::render::observer::{Event, LightOutcome, TraceObserver};
+use crate::render::plan::ShutOut;
 use crate::scene::model::Object;
-use crate::world::light_samples::{LightSamples, ShadingPoints};
+use crate::world::lamp::Lamp;
+use crate::world::light_samples::{AnyLit, LightSamples, ShadingPoints};
 use crate::world::material::Rgb;
 use crate::world::packets::light::PacketLight;
 use crate::world::rules::{Falloff, Rules};
@@ -22,7 +24,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Adds the contributions of all lights.
     pub(super) fn illuminate(&mut self, group: &mut RayGroup, surface: &Surface, colours: &mut VectorList) {
         if W::SEES {
-            for (light, object) in &self.plan.shut_out {
+            for ShutOut { light, object } in &self.plan.shut_out {
                 self.observer.see(Event::Light(*light, LightOutcome::Blocked(*object)));
             }
         }
@@ -67,48 +69,10 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         colours: &mut VectorList,
     ) {
         let (cpu, count) = (self.cpu, group.padded());
-        let (light, rules) = (&self.model.lights[index].value, self.plan.camera.rules);
-        let material = &self.model.objects[surface.index].material;
-        let LightScratch {
-            diffuse,
-            lights,
-            draws,
-            toward,
-            strengths,
-            t_max,
-            emissivity,
-            shines,
-            blocked,
-            shadows,
-        } = lighting;
-        let (points, normals) = (surface.points.view(count), surface.normals.view(count));
-        let emitter = light.emitter();
-        let is_ball = emitter.is_none() && light.size() != 0.0;
-        let mut source = Aabb { low: light.location(), high: light.location() };
-        if is_ball {
-            self.sample_light(&**light, index, group, surface, (lights, draws));
-            source = aabb::around(cpu, lights.view(count));
-        }
-        let lights = is_ball.then(|| lights.view(count));
-        let (t_max, shines, blocked) =
-            (resized(t_max, count), resized(shines, count), resized(blocked, count));
-        let samples = LightSamples {
-            toward: toward.resized(count),
-            emissivity: emissivity.resized(count),
-            strengths: resized(strengths, count),
-            t_max,
-            shines,
-        };
-        let shading = ShadingPoints { points, normals, lights, rules, slack: self.slack() };
-        let mut faced = match emitter {
-            None => light.sample(cpu, &shading, samples),
-            Some(emitter) => {
-                self.sample_emitter((emitter, index), group, &shading, draws, samples, &mut source)
-            }
-        };
-        if surface.is_bent {
-            faced.any_shines = surface.hide_from_behind(toward.view(count), shines, t_max);
-        }
+        let light = &self.model.lights[index].value;
+        let (faced, source) = self.sample_light(index, group, surface, lighting);
+        let LightScratch { diffuse, toward, strengths, t_max, emissivity, shines, blocked, shadows, .. } =
+            lighting;
         if !faced.any_shines {
             if W::SEES {
                 self.observer.see(Event::Light(
@@ -119,20 +83,11 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             return;
         }
         let paths = LightPaths { from: *around, to: source, toward };
-        let (mut sent, mut tint) = (light.uniform(), Rgb::ONE);
-        let fades = rules == Rules::Free && light.fading.falloff != Falloff::None;
-        if fades {
-            if let Some(sent) = sent.take() {
-                emissivity.fill(count, sent);
-            }
-            for lane in 0..count {
-                let from = lights.map_or(light.location(), |lights| lights.get(lane));
-                let factor = light.fading.factor((from - points.get(lane)).length());
-                emissivity.set(lane, factor * emissivity.get(lane));
-            }
-        }
-        if W::SEES || self.plan.has_glass {
-            if let Some(sent) = sent.take() {
+        let uniform = light.uniform().filter(|_| !self.fades(light));
+        let mut tint = Rgb::ONE;
+        let passes = W::SEES || self.plan.has_glass;
+        if passes {
+            if let Some(sent) = uniform {
                 emissivity.fill(count, sent);
             }
             let (blocker, passed) = self.pass(group, surface, &paths, t_max, shines, emissivity);
@@ -150,11 +105,14 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let lit = LitPoints {
             toward: toward.view(count),
             seen: group.dir.view(count),
-            normals,
+            normals: surface.normals.view(count),
             strengths: &strengths[..count],
             shines,
             blocked,
-            emissivity: sent.map_or(Colours::Each(emissivity.view(count)), Colours::Uniform),
+            emissivity: match uniform {
+                Some(sent) if !passes => Colours::Uniform(sent),
+                _ => Colours::Each(emissivity.view(count)),
+            },
             looks: match surface.look {
                 Some(look) => Reflectivities::Uniform(look),
                 None => Reflectivities::Each {
@@ -163,13 +121,13 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 },
             },
         };
-        let shows_highlights = emitter.is_none_or(|emitter| emitter.has_highlights());
+        let shows_highlights = light.emitter().is_none_or(|emitter| emitter.has_highlights());
+        let material = &self.model.objects[surface.index].material;
         let shininess = if shows_highlights { material.shininess } else { 0.0 };
         light::shine(cpu, &lit, shininess, colours.resized(count));
         if self.scratch.trails.is_on {
-            let is_shiny = shininess != 0.0;
-            let has_tints = light.uniform().is_some() && !fades;
-            self.scratch.trails.see_light(&group.camera[..group.len], index, &lit, [is_shiny, has_tints]);
+            let (is_shiny, has_tints) = (shininess != 0.0, uniform.is_some());
+            self.scratch.trails.see_light(&group.camera[..group.len], index, &lit, is_shiny, has_tints);
         }
         if W::SEES {
             let mut alone = VectorList::default();
@@ -180,9 +138,67 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
     }
 
-    /// Samples the point of a light that each point of a surface sees: on the disc around the light's centre that faces
-    /// the point, where the primary ray's sample chooses.
+    /// Samples a light from the points of a surface, into the scratch space. Returns which of them are lit, and a box around
+    /// the ends of the shadow rays.
     fn sample_light(
+        &self,
+        index: usize,
+        group: &RayGroup,
+        surface: &Surface,
+        lighting: &mut LightScratch,
+    ) -> (AnyLit, Aabb) {
+        let (cpu, count) = (self.cpu, group.padded());
+        let light = &self.model.lights[index].value;
+        let LightScratch { lights, draws, toward, strengths, t_max, emissivity, shines, .. } = lighting;
+        let emitter = light.emitter();
+        let is_ball = emitter.is_none() && light.size() != 0.0;
+        let mut source = Aabb { low: light.location(), high: light.location() };
+        if is_ball {
+            self.sample_ball(&**light, index, group, surface, (lights, draws));
+            source = aabb::around(cpu, lights.view(count));
+        }
+        let lights = is_ball.then(|| lights.view(count));
+        let (t_max, shines) = (resized(t_max, count), resized(shines, count));
+        let samples = LightSamples {
+            toward: toward.resized(count),
+            emissivity: emissivity.resized(count),
+            strengths: resized(strengths, count),
+            t_max,
+            shines,
+        };
+        let (points, normals) = (surface.points.view(count), surface.normals.view(count));
+        let rules = self.plan.camera.rules;
+        let shading = ShadingPoints { points, normals, lights, rules, slack: self.slack() };
+        let mut faced = match emitter {
+            None => light.sample(cpu, &shading, samples),
+            Some(emitter) => {
+                self.sample_emitter((emitter, index), group, &shading, draws, samples, &mut source)
+            }
+        };
+        if surface.is_bent {
+            faced.any_shines = surface.hide_from_behind(toward.view(count), shines, t_max);
+        }
+        if faced.any_shines && self.fades(light) {
+            if let Some(sent) = light.uniform() {
+                emissivity.fill(count, sent);
+            }
+            for lane in 0..count {
+                let from = lights.map_or(light.location(), |lights| lights.get(lane));
+                let factor = light.fading.factor((from - points.get(lane)).length());
+                emissivity.set(lane, factor * emissivity.get(lane));
+            }
+        }
+        (faced, source)
+    }
+
+    /// Tells whether the light of a lamp grows weaker with the distance.
+    fn fades(&self, light: &Lamp) -> bool {
+        self.plan.camera.rules == Rules::Free && light.fading.falloff != Falloff::None
+    }
+
+    /// Samples the point of a ball of light that each point of a surface sees: on the disc around its centre that faces the
+    /// point, where the primary ray's sample chooses.
+    fn sample_ball(
         &self,
         light: &dyn PacketLight,
         index: usize,

@@ -1,7 +1,7 @@
 //! What one ray hits, where rounding leaves the hits of a packet in doubt: whether it hits a shape, which of two it hits
 //! first, and where 237 bits do not tell.
 
-use super::context::Tracer;
+use super::context::{Tracer, UndecidedPixel, UndecidedRay};
 use super::ray_group::{HitRecord, RayGroup};
 use crate::geometry::aabb::larger;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
@@ -215,19 +215,19 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// without an equation nothing is decided, and its own distance counts.
     #[cold]
     pub(super) fn note_undecided(&mut self, group: &RayGroup, hits: &HitRecord) {
-        let lanes = take(&mut self.scratch.undecided.lanes);
+        let rays = take(&mut self.scratch.undecided.rays);
         if !group.looks || self.scratch.are_probes {
             return;
         }
-        for (lane, index, from) in lanes {
-            let shape = &self.model.objects[index].shape;
+        for UndecidedRay { lane, object, from } in rays {
+            let shape = &self.model.objects[object].shape;
             let Some(sight) = self.start(group, lane).sight else { continue };
             if let Some(proven) = shape.proven()
                 && shape.is_certified()
-                && (hits.hit_ids[lane] == index as u64 + 1 || in_world_units(from, &sight) <= hits.far[lane])
+                && (hits.hit_ids[lane] == object as u64 + 1 || in_world_units(from, &sight) <= hits.far[lane])
             {
-                let pixel = self.pixel_of(lane);
-                self.scratch.undecided.pixels.push((pixel, index, Doubt::of(proven, &sight, from)));
+                let (number, doubt) = (self.pixel_of(lane), Doubt::of(proven, &sight, from));
+                self.scratch.undecided.pixels.push(UndecidedPixel { number, object, doubt });
             }
         }
     }
@@ -246,8 +246,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     pub(super) fn report_undecided(&mut self) {
         let mut pixels = take(&mut self.scratch.undecided.pixels);
         pixels.sort_unstable();
-        pixels.dedup_by_key(|(pixel, ..)| *pixel);
-        for (_, object, doubt) in pixels {
+        pixels.dedup_by_key(|pixel| pixel.number);
+        for UndecidedPixel { object, doubt, .. } in pixels {
             self.observer.count(Count::Undecided(object, doubt));
         }
     }

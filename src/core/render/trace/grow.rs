@@ -13,7 +13,6 @@ use crate::render::observer::{Count, Event, RayKind, RayPurpose, TraceObserver};
 use crate::render::plan::depth::Depth;
 use crate::world::interface::Crossing;
 use crate::world::material::Rgb;
-use crate::world::rules;
 use glam::DVec3;
 use std::mem::take;
 
@@ -155,14 +154,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let crossings = object.material.interface.as_deref();
         let crossings =
             crossings.map(|interface| refract::crossings(interface, group.dir.view(count), surface));
-        let mut mirrored = dir.resized(count);
-        for lane in 0..count {
-            let (seen, normal) = (group.dir.get(lane), surface.normals.get(lane));
-            mirrored.set(lane, rules::mirrored(seen.to_array(), normal.to_array()).into());
-        }
-        if surface.is_bent {
-            surface.keep_before(group.dir.view(count), dir);
-        }
+        surface.mirror_rays(group.dir.view(count), dir);
         for lane in 0..group.len {
             let side = surface.sides[lane];
             let tint = || {
@@ -186,20 +178,10 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 continue;
             }
             let passed = surface.passed.get(lane).map_or(before.weight, |passed| before.weight * *passed);
+            let ray = surface.open_ray(lane, before);
             let open = |weight: Rgb, dir: DVec3, side: Side, kind: RayKind| {
                 let weight = passed * weight;
-                (weight != Rgb::ZERO).then_some(OpenRay {
-                    weight,
-                    origin: surface.points.get(lane),
-                    dir,
-                    travelled: surface.travelled[lane],
-                    cosine: surface.cosines[lane],
-                    object: surface.index as u32,
-                    side,
-                    kind,
-                    depth: before.depth + 1,
-                    ..before
-                })
+                (weight != Rgb::ZERO).then_some(OpenRay { weight, dir, side, kind, ..ray })
             };
             scratch.outcomes[place].onward = [
                 onward.and_then(|dir| open(through, dir, side.opposite(), RayKind::Transmitted)),

@@ -6,14 +6,14 @@ use super::context::{HitScratch, ShadingScratch, Tracer};
 use super::light;
 use super::ray_group::RayGroup;
 use super::refract;
-use super::surface::Errors;
+use super::surface::{Errors, SeenPatches, Surface};
 use crate::geometry::ray::Side;
 use crate::geometry::ray_packet::SurfaceInteraction;
 use crate::render::observer::{Count, DropReason, Event, Hit, RayKind, RayPurpose, TraceObserver};
 use crate::render::plan::depth::{Branch, STEPS, step};
 use crate::scene::model::Object;
 use crate::world::background::Background;
-use crate::world::interface::Interface;
+use crate::world::interface::{Crossing, Interface};
 use crate::world::material::Rgb;
 use crate::world::packets::shader::SurfacePoints;
 use crate::world::rules::{self, Rules};
@@ -70,49 +70,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.refine(group, brackets, index, &mut shading.distances);
         let (distances, surface) = (&shading.distances[..count], &mut shading.surface);
         let object = &self.model.objects[index];
-        let Object { material, shape, shader, .. } = object;
-        surface.index = index;
-        let travelled = resized(&mut surface.travelled, count);
-        travelled.copy_from_slice(&group.travelled[..count]);
-        let interaction = SurfaceInteraction {
-            points: surface.points.resized(count),
-            normals: surface.normals.resized(count),
-            geometric_normals: surface.unbent.resized(count),
-            sides: resized(&mut surface.sides, count),
-            cosines: resized(&mut surface.cosines, count),
-            travelled,
-        };
-        shape.packets().interact(cpu, group.rays(), distances, interaction);
-        self.pass_media(group, distances, surface);
-        let window = if self.depth == 0 && shader.sees().patch { self.plan.camera.window() } else { None };
-        surface.see(object, count, window.map(|window| (group.dir.view(count), distances, window)));
-        surface.look = shader.uniform(material);
-        surface.is_mirror = match surface.look {
-            Some(look) => {
-                colours.fill(count, look.ambient);
-                look.specular != Rgb::ZERO
-            }
-            None => {
-                let (points, seen) = (surface.points.view(count), &surface.seen);
-                let points = SurfacePoints { positions: points, seen };
-                let (ambients, speculars) = (colours.resized(count), surface.specular.resized(count));
-                shader.ambient_and_specular(cpu, material, points, ambients, speculars)
-            }
-        };
-        if self.scratch.trails.is_on {
-            let nearest = (self.depth == 0).then_some(distances);
-            let shader = surface.look.is_none().then_some((&**shader, surface.points(count)));
-            self.scratch.trails.meet(cpu, &group.camera[..group.len], index, nearest, shader);
-        }
-        let goes_on = !self.plan.needs.lights.is_empty() || surface.is_mirror || material.transparency != 0.0;
-        surface.errors = if goes_on {
-            self.errors(&**shape, &surface.travelled[..count], &surface.cosines[..count])
-        } else {
-            Errors::NONE
-        };
-        if W::SEES {
-            self.observer.see(Event::Surface { normal: surface.normals.get(0), ambient: colours.get(0) });
-        }
+        let material = &object.material;
+        self.find_surface(group, distances, index, surface, colours);
         let is_free = self.plan.camera.rules == Rules::Free;
         let glints = material.glints();
         if glints {
@@ -152,6 +111,65 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
         for (lane, passed) in shading.surface.passed.iter().enumerate() {
             colours.set(lane, colours.get(lane) * *passed);
+        }
+    }
+
+    /// Computes the points at these distances, where the rays of a packet hit an object, how they look, and how far they
+    /// may be off, and sets the colours to their ambient light.
+    #[inline]
+    fn find_surface(
+        &mut self,
+        group: &RayGroup,
+        distances: &[f64],
+        index: usize,
+        surface: &mut Surface,
+        colours: &mut VectorList,
+    ) {
+        let (cpu, count) = (self.cpu, group.padded());
+        let object = &self.model.objects[index];
+        let Object { material, shape, shader, .. } = object;
+        surface.index = index;
+        let travelled = resized(&mut surface.travelled, count);
+        travelled.copy_from_slice(&group.travelled[..count]);
+        let interaction = SurfaceInteraction {
+            points: surface.points.resized(count),
+            normals: surface.normals.resized(count),
+            geometric_normals: surface.unbent.resized(count),
+            sides: resized(&mut surface.sides, count),
+            cosines: resized(&mut surface.cosines, count),
+            travelled,
+        };
+        shape.packets().interact(cpu, group.rays(), distances, interaction);
+        self.pass_media(group, distances, surface);
+        let window = if self.depth == 0 && shader.sees().patch { self.plan.camera.window() } else { None };
+        let patches = window.map(|window| SeenPatches { dir: group.dir.view(count), distances, window });
+        surface.see(object, count, patches);
+        surface.look = shader.uniform(material);
+        surface.is_mirror = match surface.look {
+            Some(look) => {
+                colours.fill(count, look.ambient);
+                look.specular != Rgb::ZERO
+            }
+            None => {
+                let (points, seen) = (surface.points.view(count), &surface.seen);
+                let points = SurfacePoints { positions: points, seen };
+                let (ambients, speculars) = (colours.resized(count), surface.specular.resized(count));
+                shader.ambient_and_specular(cpu, material, points, ambients, speculars)
+            }
+        };
+        if self.scratch.trails.is_on {
+            let nearest = (self.depth == 0).then_some(distances);
+            let shader = surface.look.is_none().then_some((&**shader, surface.points(count)));
+            self.scratch.trails.meet(cpu, &group.camera[..group.len], index, nearest, shader);
+        }
+        let goes_on = !self.plan.needs.lights.is_empty() || surface.is_mirror || material.transparency != 0.0;
+        surface.errors = if goes_on {
+            self.errors(&**shape, &surface.travelled[..count], &surface.cosines[..count])
+        } else {
+            Errors::NONE
+        };
+        if W::SEES {
+            self.observer.see(Event::Surface { normal: surface.normals.get(0), ambient: colours.get(0) });
         }
     }
 
@@ -273,6 +291,18 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
 
         self.keep_first_reflections(group);
+        self.add_split_reflected(&crossings, branches.mirrored, group, shading, colours);
+    }
+
+    /// Adds the reflected light of [`add_split`](Self::add_split).
+    fn add_split_reflected(
+        &mut self,
+        crossings: &[Crossing],
+        branch: Branch,
+        group: &mut RayGroup,
+        shading: &mut ShadingScratch,
+        colours: &mut VectorList,
+    ) {
         let steps: Vec<_> = crossings.iter().map(|crossing| step(crossing.reflected.max_element())).collect();
         for number in 0..=STEPS {
             let is_its = |lane: usize| steps[lane] == Some(number);
@@ -283,16 +313,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 let specular = crossings[0].reflected;
                 self.observer.see(Event::Begin(RayPurpose::Reflected { specular }));
             }
-            let surface = &mut shading.surface;
-            let mut dir = shading.dir.resized(count);
-            for lane in 0..count {
-                let (seen, normal) = (group.dir.get(lane), surface.normals.get(lane));
-                dir.set(lane, rules::mirrored(seen.to_array(), normal.to_array()).into());
-            }
-            if surface.is_bent {
-                surface.keep_before(group.dir.view(count), &mut shading.dir);
-            }
-            self.go(group, shading, RayKind::Reflected, branches.mirrored.reduced(number), is_its);
+            shading.surface.mirror_rays(group.dir.view(group.padded()), &mut shading.dir);
+            self.go(group, shading, RayKind::Reflected, branch.reduced(number), is_its);
             for lane in (0..group.len).filter(|lane| is_its(*lane)) {
                 let seen = crossings[lane].reflected * shading.behind.get(lane);
                 colours.set(lane, colours.get(lane) + seen);

@@ -2,6 +2,7 @@
 
 use super::arrays::VectorList;
 use super::light::Colours;
+use super::tree::OpenRay;
 use crate::geometry::ray::Side;
 use crate::scene::model::Object;
 use crate::simd::soa::View;
@@ -9,6 +10,7 @@ use crate::world::coincidence;
 use crate::world::material::{Look, Rgb};
 use crate::world::packets::shader::SurfacePoints;
 use crate::world::patch::{Patch, Window};
+use crate::world::rules;
 use crate::world::shader::SurfacePoint;
 use glam::DVec3;
 
@@ -44,6 +46,17 @@ pub(super) struct Surface {
     pub passed: Vec<Rgb>,
 }
 
+/// What the rays of a packet see around the points that they hit, where samples show patches.
+#[derive(Clone, Copy)]
+pub(super) struct SeenPatches<'p> {
+    /// The directions of the rays.
+    pub dir: View<'p>,
+    /// The distances of the points.
+    pub distances: &'p [f64],
+    /// The window through which a sample looks.
+    pub window: Window,
+}
+
 impl Surface {
     /// Returns the first points as the object's shader sees them.
     pub fn points(&self, count: usize) -> SurfacePoints<'_> {
@@ -51,14 +64,7 @@ impl Surface {
     }
 
     /// Finds what the object's shader sees of the points beside their positions, and lets it bend the normals.
-    /// `patches` has the directions of the rays, the distances of the points, and the window through which samples look, where
-    /// they show patches.
-    pub fn see(
-        &mut self,
-        Object { shape, shader, .. }: &Object,
-        count: usize,
-        patches: Option<(View, &[f64], Window)>,
-    ) {
+    pub fn see(&mut self, Object { shape, shader, .. }: &Object, count: usize, patches: Option<SeenPatches>) {
         self.seen.clear();
         let (bends, sees) = (shader.bends(), shader.sees());
         self.is_bent = bends || shape.is_smooth();
@@ -70,7 +76,7 @@ impl Surface {
             let (position, normal) = (self.points.get(lane), self.normals.get(lane));
             let normal = if is_two_sided && *side == Side::Inside { -normal } else { normal };
             let mut point = SurfacePoint::seen(&**shape, sees, position, normal, *side);
-            if let Some((dir, distances, Window { start, spread })) = patches {
+            if let Some(SeenPatches { dir, distances, window: Window { start, spread } }) = patches {
                 let normals = if shape.is_smooth() { &self.unbent } else { &self.normals };
                 let width = start + spread * distances[lane];
                 let mut patch = Patch::seen(dir.get(lane), normals.get(lane), width);
@@ -111,6 +117,18 @@ impl Surface {
         any
     }
 
+    /// Mirrors rays that hit the points in these directions.
+    pub fn mirror_rays(&self, seen: View, mirrored: &mut VectorList) {
+        let mut dir = mirrored.resized(seen.len());
+        for lane in 0..seen.len() {
+            let normal = self.normals.get(lane);
+            dir.set(lane, rules::mirrored(seen.get(lane).to_array(), normal.to_array()).into());
+        }
+        if self.is_bent {
+            self.keep_before(seen, mirrored);
+        }
+    }
+
     /// Turns mirrored directions back that bent normals mirror through the surface.
     pub fn keep_before(&self, seen: View, mirrored: &mut VectorList) {
         for lane in 0..seen.len() {
@@ -128,6 +146,18 @@ impl Surface {
     pub fn secondary_rays<'o>(&'o self, dir: &'o VectorList) -> SecondaryRays<'o> {
         let Self { index, points, sides, travelled, cosines, errors, .. } = self;
         SecondaryRays { points, dir, travelled, origin_object: *index, sides, cosines, errors: *errors }
+    }
+
+    /// Returns a ray of a tree that may continue from a point after another one.
+    pub fn open_ray(&self, lane: usize, before: OpenRay) -> OpenRay {
+        OpenRay {
+            origin: self.points.get(lane),
+            travelled: self.travelled[lane],
+            cosine: self.cosines[lane],
+            object: self.index as u32,
+            depth: before.depth + 1,
+            ..before
+        }
     }
 
     /// Returns a bound on the error of a point, in world units.

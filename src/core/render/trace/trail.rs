@@ -65,7 +65,8 @@ impl PathHashes {
         camera: &[u8],
         light: usize,
         lit: &LitPoints,
-        [is_shiny, has_tints]: [bool; 2],
+        is_shiny: bool,
+        has_tints: bool,
     ) {
         for (lane, primary) in camera.iter().enumerate() {
             let reflects = match lit.looks {

@@ -9,7 +9,7 @@ use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::dual::Dual;
 use tabray_exact::interval::Interval;
 use tabray_exact::polynomial::{Coefficient, FEW, MOST, Polynomial};
-use tabray_exact::roots::isolation::{self, Part};
+use tabray_exact::roots::isolation::{self, RootPart};
 use tabray_exact::roots::range::Side;
 use tabray_exact::scalar::per_axis;
 
@@ -55,10 +55,10 @@ impl<T: Implicit> ExactRay<'_, T> {
             ((low + high) + (high - low) * s).high
         };
         let root = isolation::visit(&polynomial, |part| match part {
-            Part::Root { ends, rises } => {
+            RootPart::Root { ends, rises } => {
                 counts(rises).then(|| at(isolation::refined(&polynomial, ends, rises)))
             }
-            Part::Hidden(ends) => {
+            RootPart::Hidden(ends) => {
                 let [low, high] = ends.map(at);
                 match self.exactly(low, high, origin_side) {
                     Some(decided) => decided,

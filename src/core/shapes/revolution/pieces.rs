@@ -159,26 +159,26 @@ impl Slabs {
 }
 
 /// A slab and the number of halvings of its range; compared by the slabs' errors.
-struct Part {
+struct HalvedSlab {
     slab: Slab,
     halvings: u32,
 }
 
-impl PartialEq for Part {
+impl PartialEq for HalvedSlab {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other).is_eq()
     }
 }
 
-impl Eq for Part {}
+impl Eq for HalvedSlab {}
 
-impl PartialOrd for Part {
+impl PartialOrd for HalvedSlab {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for Part {
+impl Ord for HalvedSlab {
     fn cmp(&self, other: &Self) -> Ordering {
         self.slab.error.total_cmp(&other.slab.error)
     }
@@ -213,12 +213,12 @@ fn cut(
         } else if !is_finite || !is_stuck && !is_steep && error > enough {
             waiting.extend([(middle, to, halvings + 1), (from, middle, halvings + 1)]);
         } else if error > ERROR && halvings < HALVINGS && !is_stuck {
-            coarse.push(Part { slab, halvings });
+            coarse.push(HalvedSlab { slab, halvings });
         } else {
             slabs.push(slab);
         }
     }
-    while let Some(Part { slab, halvings }) = coarse.pop() {
+    while let Some(HalvedSlab { slab, halvings }) = coarse.pop() {
         let (one, other) = (
             Slab::fit(square, slab.from, slab.middle, budget),
             Slab::fit(square, slab.middle, slab.to, budget),
@@ -231,7 +231,7 @@ fn cut(
         for half in [one, other] {
             let is_stuck = half.middle <= half.from || half.middle >= half.to;
             if half.error > ERROR && halvings + 1 < HALVINGS && !is_stuck {
-                coarse.push(Part { slab: half, halvings: halvings + 1 });
+                coarse.push(HalvedSlab { slab: half, halvings: halvings + 1 });
             } else {
                 slabs.push(half);
             }

@@ -17,7 +17,7 @@ use glam::DVec3;
 use std::slice::from_ref;
 use tabray_exact::roots::Method;
 use tabray_exact::roots::stretch::Stretch;
-use tabray_exact::roots::taylor::{self, FirstRoot};
+use tabray_exact::roots::taylor::{self, FirstRoot, SignChange};
 
 /// A unit direction whose component along the axis is below this stays in one slab, and is not divided by.
 const LEVEL: f64 = 1e-200;
@@ -70,7 +70,7 @@ impl Revolution {
         let width = 4.0 * (local.blur + local.turn * root.abs()) + rounding;
         taylor::bracket(&ProfileOnRay { surface: self, local: &local }, root, width).map_or(
             Bracket::UNKNOWN,
-            |(low, high, _)| Bracket {
+            |SignChange { low, high, .. }| Bracket {
                 near: (local.base + low - rounding).max(0.0),
                 far: local.base + high + rounding,
             },

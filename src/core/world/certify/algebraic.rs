@@ -6,7 +6,7 @@ use f256::f256;
 use tabray_exact::formula::rational::Rational;
 use tabray_exact::interval::{Fine, Float, Interval, Wide};
 use tabray_exact::polynomial::{Coefficient, MOST, Polynomial};
-use tabray_exact::roots::isolation::{self, Part};
+use tabray_exact::roots::isolation::{self, RootPart};
 use tabray_exact::scalar::per_axis;
 
 /// An equation that may be a polynomial with coefficients of one type.
@@ -49,7 +49,7 @@ pub(super) fn first_hit<C: Coefficient>(
         Interval::point(half) * Interval { low, high }
     };
     let found = isolation::visit(&polynomial, |part| match part {
-        Part::Root { ends, rises } => {
+        RootPart::Root { ends, rises } => {
             let at = interval(isolation::enclosed(&polynomial, ends, rises));
             let distance = base + at;
             if distance.high <= zero {
@@ -64,7 +64,7 @@ pub(super) fn first_hit<C: Coefficient>(
                 None => Some(HitEnclosure::Edge(distance)),
             }
         }
-        Part::Hidden(ends) => {
+        RootPart::Hidden(ends) => {
             let at = interval(ends);
             // A root that is certainly cut off is no hit.
             let is_open = is_kept(shape, &near, at) != Some(false) && (base + at).high > zero;

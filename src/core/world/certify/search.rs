@@ -45,12 +45,24 @@ pub fn first_hit<F: Float>(
     let [low, high] = shape.extent();
     let is_lost = (0..3).any(|axis| near.origin[axis].width() > F::of(high[axis] - low[axis]));
     let pieces = if is_lost { pieces.min(FEW_PIECES) } else { pieces };
-    let (from, to) = ((Interval::point(from) - base).low, (Interval::point(to) - base).high);
+    let ends = ((Interval::point(from) - base).low, (Interval::point(to) - base).high);
+    search_pieces(shape, &near, ends, base, pieces)
+}
+
+/// Finds the first hit between two ends of a line whose parameter counts from `base`.
+fn search_pieces<F: Float>(
+    shape: &dyn Values<Interval<F>>,
+    near: &Line<Interval<F>>,
+    (from, to): (F, F),
+    base: Interval<F>,
+    pieces: usize,
+) -> HitEnclosure<F> {
+    let zero = F::of(0.0);
     // A piece shorter than about 8 ulps of the whole is too short to split.
     let shortest = F::of(8.0) * F::EPSILON * (to - from);
     let shortest_jump = shortest.max(F::of(JUMP) * (to - from));
-    let search = Search { shape, line: &near };
-    let mut pending = open_pieces(shape, &near, (from, to));
+    let search = Search { shape, line: near };
+    let mut pending = open_pieces(shape, near, (from, to));
     for _ in 0..pieces {
         let Some((low, high)) = pending.pop() else { return HitEnclosure::Misses };
         let piece = Interval { low, high };
@@ -65,7 +77,7 @@ pub fn first_hit<F: Float>(
                 if distance.low <= zero {
                     return HitEnclosure::Doubtful(zero);
                 }
-                match is_kept(shape, &near, root) {
+                match is_kept(shape, near, root) {
                     Some(true) => return HitEnclosure::Hits(distance),
                     Some(false) => {}
                     None => return HitEnclosure::Edge(distance),
@@ -75,12 +87,12 @@ pub fn first_hit<F: Float>(
             Judgement::Jump if high - low > shortest_jump => pending.extend(cut(low, high)),
             // A root that is certainly cut off is no hit.
             Judgement::Open | Judgement::Jump => {
-                if is_kept(shape, &near, piece) != Some(false) {
+                if is_kept(shape, near, piece) != Some(false) {
                     return HitEnclosure::Doubtful(start());
                 }
             }
             Judgement::Touch(at) => {
-                if is_kept(shape, &near, at) != Some(false) {
+                if is_kept(shape, near, at) != Some(false) {
                     return HitEnclosure::Doubtful((base + at).low.max(zero));
                 }
             }

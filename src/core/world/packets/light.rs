@@ -2,7 +2,6 @@
 
 use crate::geometry::aabb::larger;
 use crate::simd::cpu::{Cpu, kernels};
-use crate::simd::soa::ViewMut;
 use crate::world::certify::Precise;
 use crate::world::light::Light;
 use crate::world::light_samples::{AnyLit, LightSamples, ShadingPoints};
@@ -47,7 +46,8 @@ kernels! {
         shines: &mut [u64],
     ) => toward, emissivity -> AnyLit {
         let (count, middle) = (shading.points.len(), light.location());
-        let out = (strengths, t_max, shines, toward.first(count), emissivity.first(count));
+        let (toward, emissivity) = (toward.first(count), emissivity.first(count));
+        let out = LightSamples { toward, emissivity, strengths, t_max, shines };
         let free = |cosine, inverse| Rules::Free.received(cosine, inverse);
         let notes = |cosine, inverse| Rules::Notes.received(cosine, inverse);
         match (shading.rules, shading.lights) {
@@ -72,14 +72,9 @@ fn sample_each<T: Light>(
     shading: &ShadingPoints,
     place: impl Fn(usize) -> DVec3,
     received: impl Fn(f64, f64) -> f64,
-    (strengths, t_max, shines, mut toward, mut emissivity): (
-        &mut [f64],
-        &mut [f64],
-        &mut [u64],
-        ViewMut,
-        ViewMut,
-    ),
+    out: LightSamples,
 ) -> AnyLit {
+    let LightSamples { mut toward, mut emissivity, strengths, t_max, shines } = out;
     let (count, slack, is_uniform) = (shading.points.len(), shading.slack, light.uniform().is_some());
     let (points, normals) = (shading.points.first(count), shading.normals.first(count));
     let (strengths, t_max, shines) = (&mut strengths[..count], &mut t_max[..count], &mut shines[..count]);

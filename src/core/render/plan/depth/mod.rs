@@ -73,8 +73,8 @@ use crate::scene::model::{Model, Object};
 use crate::world::accuracy::Accuracy;
 use crate::world::material::{Look, Rgb};
 use crate::world::rules::Rules;
-use solve::Scene;
-use surface::{Part, Surface};
+use solve::VisibleSurfaces;
+use surface::{BoundedLight, SurfaceLight};
 
 /// Bounds on what the branches of a scene with mirrors or glass can return.
 pub struct Depth {
@@ -99,9 +99,9 @@ impl Depth {
     /// Computes the bounds of any scene.
     pub(crate) fn of(model: &Model) -> Self {
         let looks = looks(model);
-        let surfaces = Surface::all(model, &looks, Part::default());
+        let surfaces = SurfaceLight::all(model, &looks, BoundedLight::default());
         let cuts = model.camera.value.accuracy != Accuracy::Classic;
-        let (most, objects) = Scene::new(model, surfaces, background(model)).bounds(cuts);
+        let (most, objects) = VisibleSurfaces::new(model, surfaces, background(model)).bounds(cuts);
         let ranges = match model.camera.value.rules {
             Rules::Notes => Vec::new(),
             Rules::Free => range::ranges(model, &looks),
@@ -143,7 +143,13 @@ fn background(model: &Model) -> f64 {
 /// Bounds what a primary ray that hits an object returns in any channel, times the path length; infinite where there is
 /// no bound.
 pub(crate) fn most(model: &Model) -> f64 {
-    Scene::new(model, Surface::all(model, &looks(model), Part::default()), background(model)).bounds(false).0
+    VisibleSurfaces::new(
+        model,
+        SurfaceLight::all(model, &looks(model), BoundedLight::default()),
+        background(model),
+    )
+    .bounds(false)
+    .0
 }
 
 /// Bounds what each light of a model adds to a primary ray in any channel, times the path length; infinite where there
@@ -151,8 +157,8 @@ pub(crate) fn most(model: &Model) -> f64 {
 pub(crate) fn most_of_lights(model: &Model) -> Vec<f64> {
     let looks = looks(model);
     let most = |light: usize| {
-        let of = Part { light: Some(light), channel: None };
-        Scene::new(model, Surface::all(model, &looks, of), 0.0).bounds(false).0
+        let of = BoundedLight { light: Some(light), channel: None };
+        VisibleSurfaces::new(model, SurfaceLight::all(model, &looks, of), 0.0).bounds(false).0
     };
     parallel::map(model.lights.len(), most)
 }

@@ -10,8 +10,8 @@
 //! not count on lamps, which may be in shadow everywhere.
 
 use super::sides::{SIDES, Sides};
-use super::solve::Scene;
-use super::surface::{Part, Surface};
+use super::solve::VisibleSurfaces;
+use super::surface::{BoundedLight, SurfaceLight};
 use crate::geometry::aabb::Aabb;
 use crate::scene::model::{Model, Object};
 use crate::world::material::{Look, Rgb};
@@ -39,8 +39,8 @@ pub(super) fn ranges(model: &Model, looks: &[Option<Look>]) -> Vec<Sides<LightRa
     let mut ranges = vec![[LightRange::default(); 2]; model.objects.len()];
     let [darkest, brightest] = background(model);
     for channel in 0..3 {
-        let surfaces = Surface::all(model, looks, Part { light: None, channel: Some(channel) });
-        for (index, most) in Scene::new(model, surfaces, brightest[channel]).beyond() {
+        let surfaces = SurfaceLight::all(model, looks, BoundedLight { light: None, channel: Some(channel) });
+        for (index, most) in VisibleSurfaces::new(model, surfaces, brightest[channel]).beyond() {
             (0..SIDES.len()).for_each(|side| ranges[index][side].high[channel] = most[side]);
         }
     }

@@ -2,7 +2,7 @@
 
 use super::branch::ContinuationBounds;
 use super::sides::{SIDES, Sides, above, gain};
-use super::surface::Surface;
+use super::surface::SurfaceLight;
 use crate::geometry::aabb::SLACK;
 use crate::geometry::ray::Side;
 use crate::render::limits::MAX_DIST;
@@ -17,8 +17,8 @@ const ROUNDS: usize = 50;
 const PAIRS: usize = 64;
 
 /// The surfaces of a scene, and which of them rays may hit from which.
-pub(super) struct Scene {
-    surfaces: Vec<Surface>,
+pub(super) struct VisibleSurfaces {
+    surfaces: Vec<SurfaceLight>,
     /// The indices of the surfaces from which rays continue, and whether rays that leave one on a side may hit it
     /// again.
     shiny: Vec<(usize, Sides<bool>)>,
@@ -29,10 +29,10 @@ pub(super) struct Scene {
     matt_light: Vec<Sides<f64>>,
 }
 
-impl Scene {
+impl VisibleSurfaces {
     /// Makes the scene of a model's surfaces. `background` bounds the light of rays that hit nothing, times their path
     /// length: they are not followed from where it is more than [`MAX_DIST`].
-    pub fn new(model: &Model, surfaces: Vec<Surface>, background: f64) -> Self {
+    pub fn new(model: &Model, surfaces: Vec<SurfaceLight>, background: f64) -> Self {
         let objects = &model.objects;
         let (shiny, matt): (Vec<_>, Vec<_>) =
             (0..surfaces.len()).partition(|index| surfaces[*index].goes_on());
@@ -68,12 +68,12 @@ impl Scene {
     /// it. `cuts` tells whether branches are cut at all.
     pub fn bounds(&self, cuts: bool) -> (f64, Vec<ContinuationBounds>) {
         let infinite = || vec![[f64::INFINITY; 2]; self.shiny.len()];
-        let own = |surface: &Surface| surface.own;
+        let own = |surface: &SurfaceLight| surface.own;
         let beyond = self.solve(&self.matt_light, own).unwrap_or_else(infinite);
         let one = |light: f64| if light > 0.0 { 1.0 } else { 0.0 };
         let matt_light: Vec<_> = self.matt_light.iter().map(|matt_light| matt_light.map(one)).collect();
-        let shares = self.solve(&matt_light, Surface::unit).unwrap_or_else(infinite);
-        let hits = |own: &dyn Fn(&Surface) -> f64, beyond: &[Sides<f64>]| {
+        let shares = self.solve(&matt_light, SurfaceLight::unit).unwrap_or_else(infinite);
+        let hits = |own: &dyn Fn(&SurfaceLight) -> f64, beyond: &[Sides<f64>]| {
             let mut met: Vec<_> = self.surfaces.iter().map(own).collect();
             for ((index, _), beyond) in self.shiny.iter().zip(beyond) {
                 let surface = &self.surfaces[*index];
@@ -82,9 +82,9 @@ impl Scene {
             }
             met
         };
-        let whole = hits(&Surface::unit, &shares).into_iter().fold(0.0, above);
+        let whole = hits(&SurfaceLight::unit, &shares).into_iter().fold(0.0, above);
         let hits = hits(&own, &beyond);
-        let none = |(surface, hit): (&Surface, &f64)| ContinuationBounds {
+        let none = |(surface, hit): (&SurfaceLight, &f64)| ContinuationBounds {
             own: surface.own,
             hit: *hit,
             ..ContinuationBounds::NONE
@@ -107,7 +107,11 @@ impl Scene {
 
     /// Bounds what rays that leave each shiny surface return, given the surfaces' own light, and in `matt_light` that
     /// of the others. Returns `None` where no bounds are found.
-    fn solve(&self, matt_light: &[Sides<f64>], own: impl Fn(&Surface) -> f64) -> Option<Vec<Sides<f64>>> {
+    fn solve(
+        &self,
+        matt_light: &[Sides<f64>],
+        own: impl Fn(&SurfaceLight) -> f64,
+    ) -> Option<Vec<Sides<f64>>> {
         let mut bounds = vec![[0.0; 2]; self.shiny.len()];
         let mut before: Option<Vec<Sides<f64>>> = None;
         for _ in 0..ROUNDS {
@@ -144,7 +148,7 @@ impl Scene {
     fn step(
         &self,
         matt_light: &[Sides<f64>],
-        own: impl Fn(&Surface) -> f64,
+        own: impl Fn(&SurfaceLight) -> f64,
         beyond: &[Sides<f64>],
     ) -> Vec<Sides<f64>> {
         let met = self.shiny.iter().zip(beyond).map(|((index, _), beyond)| {

@@ -15,14 +15,14 @@ const ROUNDING: f64 = 1.0 + 1e-11;
 
 /// The light that is bounded.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Part {
+pub(super) struct BoundedLight {
     /// The light of which surfaces scatter their own; `None` for all of them, and the ambient colours.
     pub light: Option<usize>,
     /// The channel; `None` for the largest.
     pub channel: Option<usize>,
 }
 
-impl Part {
+impl BoundedLight {
     /// Returns the magnitude of a colour.
     fn largest(self, colour: Rgb) -> f64 {
         self.channel.map_or(colour.abs().max_element(), |channel| colour[channel].abs())
@@ -31,7 +31,7 @@ impl Part {
 
 /// What an object's surface does with light: the largest magnitudes of any channel, or of one, at any point.
 #[derive(Clone, Copy)]
-pub(super) struct Surface {
+pub(super) struct SurfaceLight {
     /// The surface's own light, times the path length.
     pub own: f64,
     /// The tint of transmitted light.
@@ -49,9 +49,9 @@ pub(super) struct Surface {
 /// totally reflects, so that nothing else bounds the sum of their highlights.
 const HELD: f64 = 7.0 / 8.0;
 
-impl Surface {
+impl SurfaceLight {
     /// Bounds the surfaces of a scene, given each object's brightest look, if it has one.
-    pub fn all(model: &Model, looks: &[Option<Look>], of: Part) -> Vec<Self> {
+    pub fn all(model: &Model, looks: &[Option<Look>], of: BoundedLight) -> Vec<Self> {
         let (objects, rules) = (|| model.objects.iter().zip(looks), model.camera.value.rules);
         let tints: Vec<_> = objects().map(|(object, look)| tint(object, look.as_ref(), of)).collect();
         // Otherwise many panes may let through more light than is sent.
@@ -139,7 +139,7 @@ impl Surface {
 }
 
 /// Bounds the factor by which an object multiplies light that passes through it.
-fn tint(object: &Object, look: Option<&Look>, of: Part) -> f64 {
+fn tint(object: &Object, look: Option<&Look>, of: BoundedLight) -> f64 {
     let transparency = object.material.transparency;
     match (object.shader.uniform(&object.material), look) {
         _ if transparency == 0.0 => 0.0,
@@ -152,14 +152,14 @@ fn tint(object: &Object, look: Option<&Look>, of: Part) -> f64 {
 }
 
 /// Bounds the light of an object's own surface; by the notes' rules, times the path length to the surface.
-fn own(model: &Model, object: &Object, look: &Look, of: Part, any_light_comes: bool) -> f64 {
+fn own(model: &Model, object: &Object, look: &Look, of: BoundedLight, any_light_comes: bool) -> f64 {
     let highlight = if object.material.shininess == 0.0 { Rgb::ZERO } else { look.specular.abs() };
     let ambient = if of.light.is_some() { Rgb::ZERO } else { look.ambient.abs() };
     scattered(model, object, ambient, [look.diffuse.abs(), highlight], of, any_light_comes)
 }
 
 /// Bounds the highlights of a surface that are no part of its own light, as [`own`] does.
-fn glints(model: &Model, object: &Object, of: Part, any_light_comes: bool) -> f64 {
+fn glints(model: &Model, object: &Object, of: BoundedLight, any_light_comes: bool) -> f64 {
     scattered(model, object, Rgb::ZERO, [Rgb::ZERO, Rgb::ONE], of, any_light_comes)
 }
 
@@ -169,7 +169,7 @@ fn scattered(
     object: &Object,
     ambient: Rgb,
     [diffuse, highlight]: [Rgb; 2],
-    of: Part,
+    of: BoundedLight,
     any_light_comes: bool,
 ) -> f64 {
     let mut own = ambient;

@@ -106,25 +106,27 @@ impl Needs {
             Accuracy::Exact | Accuracy::Strict => 1e-9,
         };
         let Some(view) = View::of(&model.camera.value, margin) else { return Self::all(model) };
-        let scene = Scene { model, bounds, depth };
+        let scene = KnownScene { model, bounds, depth };
         scene.needs(view)
     }
 }
 
 /// A scene, and what is known of it.
-struct Scene<'s> {
+struct KnownScene<'s> {
     model: &'s Model,
     bounds: &'s [Option<Aabb>],
     depth: Option<&'s Depth>,
 }
 
-impl Scene<'_> {
+/// The indices of the objects that a view may show; without a view, what is seen from anywhere.
+type Shown<'v> = (Option<&'v View>, &'v [usize]);
+
+impl KnownScene<'_> {
     fn needs(&self, view: View) -> Needs {
         let views = self.views(view);
-        let everything = |index: usize| VisibleRegion::of(self.bounds[index].as_ref());
-        // For each view, the objects that it may show. Where anything may be seen, it is seen from anywhere.
+        // Where anything may be seen, it is seen from anywhere.
         let all: Vec<usize>;
-        let shown: Vec<(Option<&View>, &[usize])> = match &views {
+        let shown: Vec<Shown> = match &views {
             Some(views) => views.iter().map(|(view, shown)| (Some(view), &shown[..])).collect(),
             None => {
                 all = (0..self.model.objects.len()).collect();
@@ -139,35 +141,9 @@ impl Scene<'_> {
         let candidates = near_views.map_or_else(Vec::new, |views| self.unseen(views));
         let mut regions: Vec<Hull> = Vec::new();
         for (index, item) in self.model.lights.iter().enumerate() {
-            let (light, mut reason) = (&item.value, None);
-            let mut is_needed = false;
-            for (view, shown) in &shown {
-                let mut depth: Option<f64> = None;
-                for object in *shown {
-                    let bounds = self.bounds[*object].as_ref();
-                    let of = &self.model.objects[*object];
-                    let seen = view.map_or_else(|| everything(*object), |view| view.seen(of, bounds));
-                    match self.darkness(light, of, &seen, *view) {
-                        None => {
-                            is_needed = true;
-                            match view {
-                                Some(view) if !candidates.is_empty() => {
-                                    depth = Some(view.depth(&seen).max(depth.unwrap_or(0.0)));
-                                }
-                                _ => break,
-                            }
-                        }
-                        Some(own) if reason.is_none_or(|reason| reason == own) => reason = Some(own),
-                        Some(_) => reason = Some(UnlitReason::Mixed),
-                    }
-                }
-                let region = |(view, depth): (&View, f64)| view.paths(depth, light.location(), light.size());
-                regions.extend(view.zip(depth).map(region));
-            }
-            if is_needed {
-                needs.lights.push(index);
-            } else {
-                needs.dark.push((index, reason.unwrap_or(UnlitReason::Black)));
+            match self.lit(&item.value, &shown, !candidates.is_empty(), &mut regions) {
+                Ok(()) => needs.lights.push(index),
+                Err(reason) => needs.dark.push((index, reason)),
             }
         }
         let Some(views) = views else { return needs };
@@ -188,6 +164,42 @@ impl Scene<'_> {
             }
         }
         needs
+    }
+
+    /// Tells whether a light may light what any view shows, or why it does not. If `finds_paths`, adds to `regions` those in
+    /// which its shadow rays run.
+    fn lit(
+        &self,
+        light: &Lamp,
+        shown: &[Shown],
+        finds_paths: bool,
+        regions: &mut Vec<Hull>,
+    ) -> Result<(), UnlitReason> {
+        let (mut is_needed, mut reason) = (false, None);
+        for (view, shown) in shown {
+            let mut depth: Option<f64> = None;
+            for object in *shown {
+                let bounds = self.bounds[*object].as_ref();
+                let of = &self.model.objects[*object];
+                let seen = view.map_or_else(|| VisibleRegion::of(bounds), |view| view.seen(of, bounds));
+                match self.darkness(light, of, &seen, *view) {
+                    None => {
+                        is_needed = true;
+                        match view {
+                            Some(view) if finds_paths => {
+                                depth = Some(view.depth(&seen).max(depth.unwrap_or(0.0)));
+                            }
+                            _ => break,
+                        }
+                    }
+                    Some(own) if reason.is_none_or(|reason| reason == own) => reason = Some(own),
+                    Some(_) => reason = Some(UnlitReason::Mixed),
+                }
+            }
+            let region = |(view, depth): (&View, f64)| view.paths(depth, light.location(), light.size());
+            regions.extend(view.zip(depth).map(region));
+        }
+        if is_needed { Ok(()) } else { Err(reason.unwrap_or(UnlitReason::Black)) }
     }
 
     /// Returns the indices of the objects that no view may show, in ascending order.
