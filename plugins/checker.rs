@@ -73,12 +73,6 @@ impl Shader for Checker {
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {
-        let [one, other] = [material, &*self.other];
-        let is_sound = one.diffuse.min(other.diffuse).min_element() >= 0.0;
-        is_sound.then(|| Look {
-            ambient: one.ambient.abs().max(other.ambient.abs()),
-            diffuse: one.diffuse.max(other.diffuse),
-            specular: one.specular.abs().max(other.specular.abs()),
-        })
+        material.brightest_with(&self.other)
     }
 }

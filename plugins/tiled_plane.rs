@@ -128,12 +128,7 @@ impl Shader for Tiles {
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {
-        let [one, other] = [material, &*self.other];
-        let is_sound = one.diffuse.min(other.diffuse).min_element() >= 0.0;
-        is_sound.then(|| Look {
-            ambient: one.ambient.abs().max(other.ambient.abs()),
-            diffuse: one.diffuse.max(other.diffuse),
-            specular: if self.mirrors { one.specular.abs().max(other.specular.abs()) } else { one.specular },
-        })
+        let both = material.brightest_with(&self.other)?;
+        Some(Look { specular: if self.mirrors { both.specular } else { material.specular }, ..both })
     }
 }

@@ -2,7 +2,7 @@
 
 use super::course::Differences;
 use crate::files::input::Source;
-use crate::files::output::{Output, format_by_name};
+use crate::files::output::{Output, format_of};
 use crate::files::{input, output, provenance, several};
 use crate::options::named::by_name;
 use crate::options::number::whole;
@@ -98,7 +98,7 @@ pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
     args.samples.tell_max_error();
     let output = args.output.as_deref();
     if let ([scene], false) = (&args.scenes[..], several::is_folder(output, args.scenes.len())) {
-        let (scene, path) = (scene.clone(), target(&args, scene)?);
+        let (scene, path) = (scene.clone(), several::target(output, scene, args.extension())?);
         let frames = args.frames.of(&path, &mut args.part.part)?;
         let stop = args.stop.watch()?;
         let Some(frames) = frames else { return render_image(registry, &args, (&scene, path), &stop) };
@@ -133,8 +133,7 @@ pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
             Some("render the scenes one after the other, each with `-o FILE`".to_owned()),
         ));
     }
-    let extension = if args.format == Some(Format::Ppm) { "ppm" } else { "png" };
-    let targets = several::targets(&args.scenes, output, extension)?;
+    let targets = several::targets(&args.scenes, output, args.extension())?;
     let stop = args.stop.watch()?;
     several::for_each_scene(&args.scenes, |index| {
         stop.exit_on_interrupt()?;
@@ -143,6 +142,11 @@ pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
 }
 
 impl Args {
+    /// Returns the extension of an image whose name derives from its scene's.
+    fn extension(&self) -> &'static str {
+        if self.format == Some(Format::Ppm) { "ppm" } else { "png" }
+    }
+
     /// Returns the format of an image of full range.
     fn full_range(&self, path: &Path) -> Option<FullRange> {
         FullRange::of(path).filter(|_| self.format.is_none())
@@ -202,7 +206,11 @@ fn render_image(
     stop: &Stop,
 ) -> Result<(), Failure> {
     let full_range = args.full_range(&path);
-    let format = if full_range.is_some() { Format::Png(args.compress) } else { format(args, &path)? };
+    let format = if full_range.is_some() {
+        Format::Png(args.compress)
+    } else {
+        format_of(args.format, &path, args.compress)?
+    };
     let cpu = args.cpu.cpu()?;
     let start = Instant::now();
     let accuracy = args.method.accuracy()?;
@@ -390,30 +398,4 @@ fn clock() -> Duration {
 fn exposure(text: &str) -> Result<f64, String> {
     let stops = text.parse().ok().filter(|stops: &f64| (-32.0..=32.0).contains(stops));
     stops.ok_or_else(|| "give stops as `1.5` or `-2`, from -32 to 32".to_owned())
-}
-
-fn target(args: &Args, scene: &Path) -> Result<PathBuf, Failure> {
-    match (&args.output, scene.file_name()) {
-        (Some(path), _) => Ok(path.clone()),
-        (None, Some(name)) if !input::is_standard(scene) => {
-            let extension = if args.format == Some(Format::Ppm) { "ppm" } else { "png" };
-            Ok(Path::new(name).with_extension(extension))
-        }
-        _ => Err(Failure::Usage(
-            "a scene from standard input has no name to give its image".to_owned(),
-            Some("name a file with `-o FILE`; `-o -` writes to standard output".to_owned()),
-        )),
-    }
-}
-
-fn format(args: &Args, path: &Path) -> Result<Format, Failure> {
-    let format = match args.format {
-        Some(format) => format,
-        None if path == Path::new("-") => Format::Ppm,
-        None => format_by_name(path, "end it in .png or .ppm, or give `--format png` or `--format ppm`")?,
-    };
-    Ok(match format {
-        Format::Png(_) => Format::Png(args.compress),
-        Format::Ppm => Format::Ppm,
-    })
 }

@@ -1,10 +1,10 @@
 //! Random shapes with a formula for their hits, and rays that are hard for them: from afar, along edges, past
 //! silhouettes, and almost within planes.
 
-use super::Truth;
 use super::rays::{Random, toward};
 use super::shapes::{self, Line, Plane, Quadric};
 use super::tally::{Tally, Tolerance, ulp};
+use super::{Truth, fplane_text, spelt};
 use glam::{DMat3, DVec2, DVec3};
 use tabray::geometry::{Ray, RayRange};
 use tabray::world::Hittable;
@@ -43,10 +43,6 @@ pub const KINDS: [&str; 6] = ["sphere", "ellipsoid", "quadric", "triangle", "pla
 
 /// The sets of rays.
 pub const SETS: [&str; 3] = ["camera", "far", "grazing"];
-
-fn spelt(vector: DVec3) -> String {
-    format!("{:?} {:?} {:?}", vector.x, vector.y, vector.z)
-}
 
 fn vector(random: &mut Random, most: f64) -> DVec3 {
     DVec3::from([0; 3].map(|_| random.between(-most, most)))
@@ -240,14 +236,7 @@ fn rectangle(random: &mut Random) -> Subject {
         }
     };
     let plane = Plane::new(normal, point);
-    let text = format!(
-        "fplane f {{ material m normal {} point {} xdir {} dimensions {:?} {:?} }}",
-        spelt(normal),
-        spelt(point),
-        spelt(xdir),
-        dimensions.x,
-        dimensions.y
-    );
+    let text = fplane_text(normal, point, xdir, dimensions);
     let y = unit.cross(xdir).normalize();
     let x = y.cross(unit);
     let corner = |along: f64, up: f64| point + along * dimensions.x * x + up * dimensions.y * y;

@@ -7,6 +7,7 @@ pub mod revolution;
 pub mod shapes;
 pub mod tally;
 
+use glam::{DVec2, DVec3};
 use tabray::exact::double_double::DoubleDouble;
 
 /// The first hit of a ray on a surface.
@@ -28,6 +29,17 @@ pub struct Hit {
     /// The derivative of the surface's function along the ray: negative where the ray enters. At a ledge, where the
     /// derivative is unbounded, it is 1 or -1.
     pub slope: f64,
+}
+
+/// Writes a vector as scenes do.
+pub fn spelt(vector: DVec3) -> String {
+    format!("{:?} {:?} {:?}", vector.x, vector.y, vector.z)
+}
+
+/// Returns the text of an fplane.
+pub fn fplane_text(normal: DVec3, point: DVec3, xdir: DVec3, DVec2 { x, y }: DVec2) -> String {
+    let [normal, point, xdir] = [normal, point, xdir].map(spelt);
+    format!("fplane f {{ material m normal {normal} point {point} xdir {xdir} dimensions {x:?} {y:?} }}")
 }
 
 impl Truth {

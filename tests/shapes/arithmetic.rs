@@ -3,11 +3,11 @@
 //! rays.
 
 use crate::common;
-use crate::oracle::Truth;
 use crate::oracle::hard::{self, SETS};
 use crate::oracle::rays::Random;
 use crate::oracle::shapes::{self, Line, Plane, Quadric};
 use crate::oracle::tally::Tally;
+use crate::oracle::{Truth, fplane_text, spelt};
 use glam::{DVec3, dvec2, dvec3};
 use tabray::geometry::{Bracket, MISS, Ray, RayRange};
 use tabray::scene::Model;
@@ -118,11 +118,6 @@ fn rectangles_are_found() {
     finds("fplane", 8.0);
 }
 
-/// Writes a vector as scenes do.
-fn spelt(vector: DVec3) -> String {
-    format!("{:?} {:?} {:?}", vector.x, vector.y, vector.z)
-}
-
 /// The bounds contain the hit of the exact ray through a pixel, although the program's ray has a rounded direction, for
 /// shapes whose boundary that ray passes at a distance of a few ulps.
 #[test]
@@ -181,14 +176,7 @@ fn brackets_hold_the_hits_of_the_real_rays_of_a_camera() {
                 let xdir = normal.cross(other);
                 let point = at - radius * other;
                 let dimensions = dvec2(2.0 * radius, 3.0 * radius);
-                let text = format!(
-                    "fplane f {{ material m normal {} point {} xdir {} dimensions {:?} {:?} }}",
-                    spelt(normal),
-                    spelt(point),
-                    spelt(xdir),
-                    dimensions.x,
-                    dimensions.y
-                );
+                let text = fplane_text(normal, point, xdir, dimensions);
                 (text, shapes::rectangle(&Plane::new(normal, point), xdir, dimensions, &line))
             }
         };

@@ -6,7 +6,7 @@ use crate::oracle::rays::{self, BASE, Random};
 use crate::oracle::revolution::Revolution;
 use crate::oracle::shapes::{self, Plane, Quadric};
 use crate::oracle::tally::{Tally, Tolerance, ulp};
-use crate::oracle::{Crossings, Truth};
+use crate::oracle::{Crossings, Truth, fplane_text, spelt};
 use glam::{DMat3, DVec3, dvec2, dvec3};
 use hashbrown::HashMap;
 use std::cell::RefCell;
@@ -36,11 +36,6 @@ fn scene(accuracy: &str, object: &str) -> Model {
 /// Returns the distance of the object's first hit.
 fn distance(model: &Model, ray: &Ray) -> f64 {
     model.objects[0].shape.distance(ray, &RayRange::ALL)
-}
-
-/// Writes a vector as scenes do.
-fn spelt(vector: DVec3) -> String {
-    format!("{:?} {:?} {:?}", vector.x, vector.y, vector.z)
 }
 
 /// A shape, and the truth that its hits are compared with.
@@ -376,14 +371,7 @@ fn plane(scale: f64) -> Spelt {
 fn fplane(scale: f64) -> Spelt {
     let (normal, xdir, dimensions) = (dvec3(0.3, 1.0, 0.5), dvec3(1.0, 0.2, 0.0), scale * dvec2(3.0, 2.5));
     let point = scale * (MIDDLE - dvec3(1.5, 0.0, -1.0));
-    let text = format!(
-        "fplane f {{ material m normal {} point {} xdir {} dimensions {:?} {:?} }}",
-        spelt(normal),
-        spelt(point),
-        spelt(xdir),
-        dimensions.x,
-        dimensions.y
-    );
+    let text = fplane_text(normal, point, xdir, dimensions);
     let plane = Plane::new(normal, point);
     (text, Box::new(move |ray, near| beyond(shapes::rectangle(&plane, xdir, dimensions, &ray.into()), near)))
 }

@@ -11,6 +11,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, IsTerminal, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use tabray_core::output::deflate::Compression;
 use tabray_core::output::picture::Format;
 use tabray_core::scene::model::{Item, Model};
 use tabray_core::scene::store::Record;
@@ -240,5 +241,18 @@ pub fn format_by_name(path: &Path, help: &str) -> Result<Format, Failure> {
     Format::of(path).ok_or_else(|| {
         let message = format!("the name `{}` does not determine the format of the image", path.display());
         Failure::Usage(message, Some(help.to_owned()))
+    })
+}
+
+/// Returns the format of an image, which may be chosen; a PNG is compressed so.
+pub fn format_of(chosen: Option<Format>, path: &Path, compress: Compression) -> Result<Format, Failure> {
+    let format = match chosen {
+        Some(format) => format,
+        None if path == Path::new("-") => Format::Ppm,
+        None => format_by_name(path, "end it in .png or .ppm, or give `--format png` or `--format ppm`")?,
+    };
+    Ok(match format {
+        Format::Png(_) => Format::Png(compress),
+        Format::Ppm => Format::Ppm,
     })
 }

@@ -19,6 +19,18 @@ pub fn is_folder(output: Option<&Path>, scenes: usize) -> bool {
     })
 }
 
+/// Returns the path of the image of one scene.
+pub fn target(output: Option<&Path>, scene: &Path, extension: &str) -> Result<PathBuf, Failure> {
+    match (output, scene.file_name()) {
+        (Some(path), _) => Ok(path.to_owned()),
+        (None, Some(name)) if !input::is_standard(scene) => Ok(Path::new(name).with_extension(extension)),
+        _ => Err(Failure::Usage(
+            "a scene from standard input has no name to give its image".to_owned(),
+            Some("name a file with `-o FILE`; `-o -` writes to standard output".to_owned()),
+        )),
+    }
+}
+
 /// Returns the path of each scene's image in a folder, which is made where it does not exist.
 pub fn targets(scenes: &[PathBuf], output: Option<&Path>, extension: &str) -> Result<Vec<PathBuf>, Failure> {
     let usage = |message: String, help: &str| Failure::Usage(message, Some(help.to_owned()));

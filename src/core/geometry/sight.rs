@@ -46,7 +46,7 @@ enum SightTarget {
 pub enum Rounded {
     /// None.
     Nothing,
-    /// Those of its start.
+    /// The numbers of its start.
     Start,
     /// All of them.
     Ray,

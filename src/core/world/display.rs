@@ -8,10 +8,11 @@ use std::sync::LazyLock;
 /// How light above white is shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Tone {
-    /// It is white.
+    /// Light above white is white.
     #[default]
     Clip,
-    /// It is compressed, and what is far above loses its hue: the Khronos PBR neutral tone mapper (Khronos Group, 2024).
+    /// Light above white is compressed, and what is far above loses its hue: the Khronos PBR neutral tone mapper (Khronos
+    /// Group, 2024).
     Neutral,
 }
 
@@ -210,7 +211,7 @@ impl Display {
         let channel = |low: f64, high: f64| {
             let (below, above) = (low < 0.0, gain * high > 1.0);
             match (gain * low >= 1.0, high <= 0.0) {
-                // It is shown as white or as black, whatever it is.
+                // All of a range above white is shown as white, and all of one below black as black.
                 (true, _) if high.is_infinite() => low,
                 (_, true) if low.is_infinite() => high,
                 (false, false) if self.transfer != Transfer::Linear => {

@@ -33,8 +33,8 @@ pub struct LightSample {
     pub toward: DVec3,
     /// The distance up to which objects are in its way, in world units; infinite for light from the sky.
     pub distance: f64,
-    /// Its radiance, divided by pi and by the density of such samples per unit of solid angle. The cosine of the angle at
-    /// which the light arrives is not in it.
+    /// The radiance of the sample, divided by pi and by the density of such samples per unit of solid angle. The cosine of
+    /// the angle at which the light arrives is not in it.
     pub light: Rgb,
 }
 
@@ -42,7 +42,7 @@ pub struct LightSample {
 /// [`enclose`](crate::world::light::Light::enclose) returns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Extent {
-    /// Those of a flat panel.
+    /// The points of a flat panel.
     Panel(Panel),
     /// Any points.
     Unknown,

@@ -26,6 +26,16 @@ pub struct Material {
 }
 
 impl Material {
+    /// Returns bounds of the looks between those of two materials; `None` where their diffuse light may be negative.
+    pub fn brightest_with(&self, other: &Self) -> Option<Look> {
+        let is_sound = self.diffuse.min(other.diffuse).min_element() >= 0.0;
+        is_sound.then(|| Look {
+            ambient: self.ambient.abs().max(other.ambient.abs()),
+            diffuse: self.diffuse.max(other.diffuse),
+            specular: self.specular.abs().max(other.specular.abs()),
+        })
+    }
+
     /// Tells whether lamps show in the surface as highlights, beside the light that it scatters: in glass they do, whatever
     /// it transmits.
     pub(crate) fn glints(&self) -> bool {

@@ -15,7 +15,6 @@ pub mod hittable;
 pub mod interface;
 pub mod lamp;
 pub mod light;
-pub mod light_samples;
 pub mod material;
 pub mod packets;
 pub mod panel;

@@ -93,9 +93,7 @@ pub fn unit(vector: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
 #[inline]
 pub fn rounded_unit(vector: [DoubleDouble; 3]) -> [f64; 3] {
     let length = product(vector, vector).sqrt();
-    let first = 1.0 / length.high;
-    let rest = DoubleDouble::from(1.0) - length * DoubleDouble::from(first);
-    let inverse = DoubleDouble::normal(first, rest.high * first);
+    let inverse = reciprocal(length);
     let rounded = |part: DoubleDouble| {
         let DoubleDouble { high, low } = part * inverse;
         // The product and the inverse are off by a few 2^-104, and so is the quotient: where so little does not change
@@ -107,16 +105,21 @@ pub fn rounded_unit(vector: [DoubleDouble; 3]) -> [f64; 3] {
     [rounded(vector[0]), rounded(vector[1]), rounded(vector[2])]
 }
 
+/// Returns the reciprocal of a length, off by a few 2^-104 of it.
+#[inline(always)]
+fn reciprocal(length: DoubleDouble) -> DoubleDouble {
+    let first = 1.0 / length.high;
+    let rest = DoubleDouble::from(1.0) - length * DoubleDouble::from(first);
+    DoubleDouble::normal(first, rest.high * first)
+}
+
 /// Computes [`rounded_unit`] without branches, and returns whether the result is certain.
 #[inline(always)]
 pub fn quick_unit(vector: [DoubleDouble; 3]) -> ([f64; 3], bool) {
     let square = product(vector, vector);
     let root = DoubleDouble::from(square.high.sqrt());
     let rest = square - root * root;
-    let length = root + DoubleDouble::from(rest.high / (2.0 * root.high));
-    let first = 1.0 / length.high;
-    let rest = DoubleDouble::from(1.0) - length * DoubleDouble::from(first);
-    let inverse = DoubleDouble::normal(first, rest.high * first);
+    let inverse = reciprocal(root + DoubleDouble::from(rest.high / (2.0 * root.high)));
     let rounded = |part: DoubleDouble| {
         let DoubleDouble { high, low } = part * inverse;
         let error = power_of_two(-98) * high.abs();

@@ -215,7 +215,7 @@ fn pruned(values: &Values, place: [Interval; 3]) -> (Values, Interval) {
     }
     let result = same[values.result];
     let value = bounds[result];
-    // Those that the result is made of, in their order.
+    // The values that the result is made of, in their order.
     let mut is_used = vec![false; list.len()];
     is_used[..3].fill(true);
     is_used[result] = true;

@@ -13,9 +13,11 @@ pub mod rational;
 mod spline;
 mod step;
 pub mod variables;
+mod words;
 
 pub use function::functions;
-pub use parser::{FormulaFault, Named, is_in_name, is_taken};
+pub use parser::Named;
+pub use words::{FormulaFault, is_in_name, is_taken};
 
 use crate::dual::Dual;
 use crate::f64x8::F64x8;

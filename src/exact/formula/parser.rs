@@ -1,26 +1,14 @@
 //! The parser: from the text of a formula to its operations in postfix order.
 
-use super::function::{self, Meaning, functions};
+use super::function::{self, Meaning};
 use super::step::{Function, MAX_DEPTH, Step};
 use super::variables::SPACE;
+use super::words::{FormulaFault, SUPERSCRIPTS, is_in_name, language};
 use crate::decimal;
 use crate::text;
 use std::f64::consts::PI;
 use std::mem::replace;
 use std::ops::Range;
-
-/// An error in the text of a formula.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FormulaFault {
-    /// The byte range of the text to mark.
-    pub place: Range<usize>,
-    /// The error, for messages.
-    pub message: String,
-    /// The correction, for messages.
-    pub help: String,
-    /// The name that is unknown, if that is what is wrong.
-    pub unknown: Option<String>,
-}
 
 /// Looks up a number by the name that a scene gives it.
 pub type Named<'n> = &'n dyn Fn(&str) -> Option<f64>;
@@ -28,45 +16,12 @@ pub type Named<'n> = &'n dyn Fn(&str) -> Option<f64>;
 /// The operations of a formula, and the named numbers in its text, each with its place.
 pub(super) type Operations = (Vec<Step>, Vec<(Range<usize>, f64)>);
 
-/// Returns whether a name means something in every formula, so that a scene cannot give it to a number.
-pub fn is_taken(name: &str) -> bool {
-    ["x", "y", "z", "pi", "π"].contains(&name)
-        || function::find(name).is_some_and(function::FormulaFunction::is_reserved)
-}
-
 /// The greatest whole exponent of a power that is computed by multiplications.
 const MAX_POWER: i32 = 1000;
-
-/// The digits of exponents, from 0.
-const SUPERSCRIPTS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-
-/// Returns whether a character can be part of a name in a formula. The `²` of `x²` is no part of one.
-pub fn is_in_name(letter: char) -> bool {
-    (letter.is_alphanumeric() || letter == '_') && !SUPERSCRIPTS.contains(&letter)
-}
 
 /// The most operations of a formula: a function that is itself a formula may use an argument more than once, and so in
 /// nested calls many times.
 const MAX_STEPS: usize = 1 << 18;
-
-/// Says what a formula in these variables consists of.
-fn language(variables: &[&str]) -> String {
-    let variables = match variables {
-        [] => "named numbers".to_owned(),
-        variables => text::list(variables.iter().copied()),
-    };
-    let of = |count: usize| {
-        let names = functions().filter(|(_, arguments)| arguments.len() == count).map(|(name, _)| name);
-        names.collect::<Vec<_>>().join(" ")
-    };
-    format!(
-        "a formula consists of numbers, {variables}, `pi`, + - * / ^, parentheses, and the functions {} of one value, {} of \
-         two, and {} of three",
-        of(1),
-        of(2),
-        of(3)
-    )
-}
 
 /// Parses the operations of a formula in these variables and named numbers. An equation in x, y and z is the difference
 /// of its sides.

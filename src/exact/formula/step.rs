@@ -75,7 +75,7 @@ impl Step {
             };
         }
         match self {
-            // It is in its register.
+            // The value of a variable is in its register.
             Self::Variable(_) => a,
             Self::Number(number) => N::constant(number),
             Self::Neg => -a,

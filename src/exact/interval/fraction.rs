@@ -211,7 +211,7 @@ impl Div for Fraction {
 impl Float for Fraction {
     const IS_LONG: bool = true;
     const INFINITY: Self = Self::whole(f256::INFINITY);
-    // It is rounded by at most half of its last bit.
+    // Pi is rounded by at most half of the last bit.
     const PI: Self = Self { error: f256::EPSILON, ..Self::whole(::f256::consts::PI) };
     const EPSILON: Self = Self::whole(f256::EPSILON);
 

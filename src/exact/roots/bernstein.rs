@@ -36,9 +36,10 @@ pub struct Bernstein<C = f64, const N: usize = FEW> {
 /// What the coefficients tell of the roots on a piece, between its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Roots {
-    /// There is none.
+    /// There is no root.
     None,
-    /// There is one, at which the sign changes, and the ends are no roots. It is near this part of the piece, from 0 to 1.
+    /// There is one root, at which the sign changes, and the ends are no roots. The root is near this part of the piece,
+    /// from 0 to 1.
     One {
         /// Whether the polynomial rises there.
         rises: bool,

@@ -8,7 +8,7 @@ pub enum Side {
     /// The side that the normal points to.
     #[default]
     Outside,
-    /// The other side.
+    /// The side that the normal points away from.
     Inside,
 }
 

@@ -10,76 +10,18 @@
 //! If the function is a polynomial, the signs of its [`bernstein`](super::bernstein) coefficients are judged instead, on
 //! shorter and shorter pieces.
 
+mod function;
 mod polynomial;
+
+pub use function::FunctionOnLine;
 
 use crate::dual::Dual;
 use crate::interval::Interval;
-use crate::jet::Jet;
-use crate::polynomial::{FEW, MOST, Polynomial};
+use crate::polynomial::{FEW, MOST};
 use crate::roots::range::{RayRange, Side};
-use crate::roots::{newton, stretch::Stretch, twice};
+use crate::roots::{newton, stretch::Stretch};
 use crate::scalar::Scalar;
 use std::ops::Range;
-
-/// A function along a line: above 0 outside an object, below 0 inside.
-pub trait FunctionOnLine {
-    /// Returns the value at a place, in any number type.
-    fn at<N: Scalar>(&self, t: N) -> N;
-
-    /// Whether bounds of the value alone are tried on a piece before its derivatives, which take three to six times as long. That
-    /// is worth it where the line is mostly far from its roots.
-    const VALUES_FIRST: bool = false;
-
-    /// Whether only a root that bounds in `f64` prove is wanted: then a search need not go on where they do not decide.
-    fn wants_proof(&self) -> bool {
-        false
-    }
-
-    /// Returns bounds of the second derivative on a piece; `None` where the value is seen to have no root there.
-    fn curvature(&self, piece: Interval) -> Option<Interval> {
-        let Jet { value, second, .. } = self.at(Jet::variable(piece));
-        value.has_zero().then_some(second)
-    }
-
-    /// Tells whether no root on a piece counts: where the function is not defined, or the surface is cut off.
-    fn is_left_out(&self, _piece: Interval) -> bool {
-        false
-    }
-
-    /// Tells whether the function certainly has no root on a piece on which it jumps, or has a pole. By default, the ends of a
-    /// jump past 0 count as connected.
-    fn is_broken(&self, _piece: Interval) -> bool {
-        false
-    }
-
-    /// Returns the degree of the function, if it is a polynomial, less than [`MOST`]: that isolates roots with fewer operations.
-    fn degree(&self) -> Option<usize> {
-        None
-    }
-
-    /// Returns the function on a piece, if it is a polynomial of less than `N` coefficients.
-    fn polynomial<const N: usize>(&self, _piece: Interval) -> Polynomial<f64, N> {
-        Polynomial::unknown()
-    }
-
-    /// Returns a simple root of a polynomial with the last digits right, where the one given may be off by rounding.
-    fn polished(&self, root: f64) -> f64 {
-        root
-    }
-
-    /// Calls a function with the pieces between two places on which there may be a root, in their order, until it returns one.
-    fn pieces(&self, (low, high): (f64, f64), visit: &mut dyn FnMut(f64, f64) -> Option<f64>) -> Option<f64> {
-        visit(low, high)
-    }
-
-    /// Returns the root on a piece that bounds in `f64` cannot decide, however short: where rounding hides the
-    /// function's sign, or after the largest number of pieces. A line that is itself rounded answers for the line that
-    /// it stands for.
-    fn undecided(&self, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
-        let hidden = self.at(Interval::constant(piece.middle())).width();
-        twice::first_root(|t| self.at(t), piece, origin_side, hidden)
-    }
-}
 
 /// The result of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -444,7 +386,7 @@ fn clear_up_to(away: f64, slope: f64, bend: f64) -> f64 {
         return f64::INFINITY;
     }
     let root = discriminant.sqrt();
-    // The same root in two forms; the one that does not cancel is used.
+    // Each root has two forms, of which the one that does not cancel is used.
     if slope.low <= 0.0 {
         (two * away / (root - slope)).low.max(0.0)
     } else if bend.high < 0.0 {

@@ -49,7 +49,7 @@ pub fn first_root(
         return None;
     }
     let still_hidden = STILL_HIDDEN * hidden;
-    // So near to the turning point, the value differs from the value there by less than the hidden error.
+    // Within `near` of the turning point, the value differs from the value there by less than the hidden error.
     let bend = ((last.slope - first.slope) / (high - low)).abs();
     let near = 0.125 * (still_hidden / bend).sqrt();
     let mut turn = chandrupatla::root(|t| at(t).slope, (low, high), near);

@@ -222,9 +222,8 @@ impl Check<'_, '_> {
         .values(parsed);
         let values = values.filter(|_| counts);
         self.store.add(entity, text, values.as_deref());
-        // An object to which one entity refers is often that of many.
+        // What one entity refers to, an object or a type of shader that stands for a shader, is often that of many.
         for (datum, _) in values.iter().flatten() {
-            // And so is a type of shader that stands for a shader.
             let (kind, name) = match datum {
                 Datum::Object { name, .. } => (Kind::Object, name),
                 Datum::Shader { name, .. } => (Kind::Shader, name),

@@ -4,7 +4,6 @@ mod astray;
 mod attributes;
 mod build;
 mod check;
-mod constructed;
 mod encoding;
 mod excerpt;
 mod fault;

@@ -135,7 +135,7 @@ fn depend_on_each_other(parts: &[Vec<Statement<'_>>]) -> bool {
             let name = match statement {
                 Statement::Entity(entity) => (entity.kind.text.as_ref(), entity.name.text.as_ref()),
                 Statement::Repeat { name, .. } => ("repeat", name.text.as_ref()),
-                // These stand before the first title.
+                // Values by name and `include` stand before the first title.
                 Statement::Let { .. } | Statement::Include { .. } => continue,
             };
             if *known.entry(name).or_insert(index) != index {

@@ -222,7 +222,7 @@ impl Packet {
 
 /// The rays of all kinds of an image, counted in many places.
 pub(super) struct Counted {
-    /// Their number for each ray from the viewer.
+    /// The number of rays of all kinds for each ray from the viewer.
     each: f64,
     /// The relative standard error of this number.
     error: f64,

@@ -83,7 +83,7 @@ pub struct WrongHits {
     /// Hits found at a later crossing than the first.
     pub later: usize,
     /// Hits that are farther from the first crossing than its conditioning explains, where no other one lies between.
-    /// They are inaccurate, and not counted among the wrong ones.
+    /// Inaccurate hits are not counted among the wrong ones.
     pub inaccurate: usize,
 }
 

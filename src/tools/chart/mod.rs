@@ -9,6 +9,7 @@
 #[cfg(feature = "drawing")]
 mod axis;
 mod betting;
+mod bright;
 mod candidate;
 #[cfg(feature = "drawing")]
 mod canvas;

@@ -163,7 +163,7 @@ impl Errors {
             sorted(&mut small.iter().zip(&image.missed.pixels).map(|(error, missed)| error.worst + missed))
         };
         let rest = image.all - image.missed.pixels.len();
-        // So many of the small pixels exceed the percentile: then so large a part of the others does.
+        // If `above` of the small pixels exceed the percentile, so large a part of the others does.
         let allowed = (WORST * image.all as f64) as usize;
         let percentile = |small: &[f64], of_rest: &dyn Fn(f64) -> f64| {
             let least = |above: usize| {

@@ -5,12 +5,12 @@
 //! what samples are sure to see, the part is cut into quarters, down to parts of a pixel: to the cells in which the bright thing must be.
 //! Then all of these pixels are measured, by many samples in the cells and some in the rest of the pixel.
 
+use super::bright::{Bounds, Cell, unbounded};
 use super::progress::Progress;
 use super::right::{Right, SCRAMBLES};
 use glam::DVec2;
 use std::io;
 use std::ops::Range;
-use tabray_core::geometry::aabb::Aabb;
 use tabray_core::parallel;
 use tabray_core::render::brightness::Brightness;
 use tabray_core::render::flaws::Flaws;
@@ -27,16 +27,11 @@ use tabray_core::world::sensor::Sensor;
 /// a large part of a pixel, or of many pixels, to matter, and then samples see it.
 const BRIGHT: [f64; 2] = [4.0, 64.0];
 
-/// The width in pixels of the squares that are looked at first, and how many times the half width of a pixel is halved.
+/// The width in pixels of the squares that are looked at first.
 const SQUARE: usize = 8;
-const CUTS: u32 = 5;
 
-/// The greatest number of cells of a pixel, and of pixels that are cut into cells at all.
-const CELLS: usize = 16;
+/// The greatest number of pixels that are cut into cells.
 const CUT: usize = 500;
-
-/// The part of a square's bound that the largest of its quarters' bounds must be below if cutting is of use.
-const BETTER: f64 = 0.9;
 
 /// The samples of each image that counts as right: of the rest of a pixel, and at first of its cells.
 const REST: u32 = 128;
@@ -54,25 +49,6 @@ const EXPECTED: f64 = 0.541_341_132_946_451;
 
 /// The number of samples that miss a thing with a probability of 1 % is this divided by the part of the cell that it takes.
 const SURE: f64 = 4.605_170_185_988_091;
-
-/// A square part of a pixel that may show something bright.
-#[derive(Clone, Copy)]
-struct Cell {
-    middle: DVec2,
-    half: f64,
-    /// A bound on its brightness.
-    most: f64,
-}
-
-impl Cell {
-    fn area(&self) -> f64 {
-        (2.0 * self.half).powi(2)
-    }
-
-    fn contains(&self, place: DVec2) -> bool {
-        (place - self.middle).abs().max_element() <= self.half
-    }
-}
 
 /// A pixel that may show something bright and small.
 struct SmallPixel {
@@ -241,81 +217,6 @@ impl SmallThings {
         let pixels = self.of_each(SmallPixel::missed);
         let largest = self.of_each(SmallPixel::largest).into_iter().fold(0.0, f64::max);
         Missed { pixels, largest }
-    }
-}
-
-/// Bounds on the colours of an image.
-struct Bounds<'b> {
-    bounds: Brightness<'b>,
-    camera: &'b Sensor,
-    /// The brightness up to which nothing counts as small.
-    bright: f64,
-    /// The brightness that stands for one that is not bounded.
-    unbounded: f64,
-}
-
-/// Returns the brightness of what mirrors and glass may show of one surface, where nothing bounds what they add: a scene
-/// that has nothing bright shows nothing bright in them.
-fn unbounded(plan: &Plan) -> f64 {
-    let Some(depth) = &plan.depth else { return f64::INFINITY };
-    let viewer = plan.camera.origins();
-    let shown = plan.model.objects.iter().zip(&depth.objects).filter(|(_, bounds)| bounds.beyond > 0.0);
-    let distance = |bounds: Option<Aabb>| bounds.map_or(0.0, |bounds| viewer.distance(&bounds));
-    let nearest =
-        shown.map(|(object, _)| distance(object.shape.facts().bounds)).fold(f64::INFINITY, f64::min);
-    let own = depth.objects.iter().map(|bounds| bounds.own).fold(0.0, f64::max);
-    let most = plan.camera.display().steepest() * own / nearest;
-    if nearest > 0.0 { most } else { f64::INFINITY }
-}
-
-impl Bounds<'_> {
-    /// Adds the pixels of a square of the image that may show something bright. `corner` is its lower left pixel.
-    fn find(&self, corner: [usize; 2], side: usize, pixels: &mut Vec<([usize; 2], Cell)>) {
-        let [x, y] = corner;
-        if x >= self.camera.pixels[0] || y >= self.camera.pixels[1] {
-            return;
-        }
-        let half = 0.5 * side as f64;
-        let Some(cell) = self.cell(DVec2::new(x as f64, y as f64) + (half - 0.5), half) else { return };
-        if side == 1 {
-            return pixels.push((corner, cell));
-        }
-        let side = side / 2;
-        for corner in [[x, y], [x + side, y], [x, y + side], [x + side, y + side]] {
-            self.find(corner, side, pixels);
-        }
-    }
-
-    /// Returns a square with its bound; `None` if it shows nothing bright, or is white in any case.
-    fn cell(&self, middle: DVec2, half: f64) -> Option<Cell> {
-        let [low, high] = self.bounds.within(self.camera, middle.to_array(), half);
-        let known = |high: f64| if high.is_finite() { high } else { self.unbounded };
-        let channels = (0..3).filter(|channel| low[*channel] < 1.0);
-        let most = channels.map(|channel| known(high[channel])).fold(0.0, f64::max);
-        (most > self.bright).then_some(Cell { middle, half, most })
-    }
-
-    /// Returns the parts of a pixel in which something bright must be, if anywhere.
-    fn cut(&self, whole: Cell) -> Vec<Cell> {
-        let mut cells = vec![whole];
-        for _ in 0..CUTS {
-            let mut smaller = Vec::new();
-            for Cell { middle, half, .. } in &cells {
-                let half = 0.5 * half;
-                let corners = [[-half, -half], [half, -half], [-half, half], [half, half]];
-                smaller.extend(
-                    corners.iter().filter_map(|off| self.cell(*middle + DVec2::from_array(*off), half)),
-                );
-            }
-            let most = smaller.iter().map(|cell| cell.most).fold(0.0, f64::max);
-            // Where bounds do not depend on the place, smaller cells are of no use.
-            let is_same = smaller.len() == 4 * cells.len() && most >= BETTER * whole.most;
-            if smaller.len() > CELLS || is_same && cells.len() > 1 {
-                break;
-            }
-            cells = smaller;
-        }
-        if cells.len() == 4 && cells[0].half == 0.25 { vec![whole] } else { cells }
     }
 }
 

@@ -8,8 +8,11 @@ mod revolved;
 mod round;
 mod solids;
 
+use super::oracle;
 use super::random::Random;
+use super::ray::Ray;
 use super::scenes::Question;
+use super::text::Scene;
 
 /// A class of scenes.
 pub struct Class {
@@ -29,6 +32,29 @@ const fn class(name: &'static str, rays: [usize; 2], ask: fn(&mut Random) -> Que
 
 const fn closed(name: &'static str, rays: [usize; 2], ask: fn(&mut Random) -> Question) -> Class {
     Class { is_closed: true, ..class(name, rays, ask) }
+}
+
+/// Returns one of the questions between 0 and `far`, found by so many bisections at most, whose ray barely hits or barely
+/// misses.
+fn barely(
+    random: &mut Random,
+    question: impl Fn(f64) -> Question,
+    mut far: f64,
+    bisections: u64,
+) -> Question {
+    let is_met = |by: f64| {
+        let scene = Scene::read(&question(by).text, "");
+        oracle::first(&scene, &Ray::of_pixel(&scene, 0, 0)).first.is_some()
+    };
+    let mut near = 0.0;
+    if !is_met(near) || is_met(far) {
+        return question(near);
+    }
+    for _ in 0..random.below(bisections) {
+        let middle = 0.5 * (near + far);
+        if is_met(middle) { near = middle } else { far = middle }
+    }
+    question(if random.once_in(2) { near } else { far })
 }
 
 /// All classes.

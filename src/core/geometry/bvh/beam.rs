@@ -13,7 +13,8 @@ pub const HIGH: usize = 1;
 
 /// The largest reciprocal of a direction's component.
 ///
-/// It stands for that of 0. Within any distance that matters, such a ray moves less along the axis than the slack.
+/// This stands for the reciprocal of 0. Within any distance that matters, a ray whose component is 0 moves less along the
+/// axis than the slack.
 const STEEPEST: f64 = 1e150;
 
 /// The slack of rays whose coordinates are all 0, in world units: not 0, so that a product with [`STEEPEST`] is large.

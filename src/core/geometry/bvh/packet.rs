@@ -79,7 +79,7 @@ struct Search<'s, 'v> {
     eights: &'s mut Vec<Eight>,
     /// A bit for each eight that is set.
     is_set: u64,
-    /// Their bounds, and then each ray as a beam of its own, as soon as they were needed.
+    /// The bounds of each eight, and then each ray as a beam of its own, as soon as they were needed.
     beams: &'s mut Vec<Option<Beam>>,
     /// The first lane of the part, and the number of its lanes.
     start: usize,

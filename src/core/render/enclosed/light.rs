@@ -17,9 +17,9 @@ const MAX_POWER: i32 = 1000;
 /// The points of lights with a size that are seen.
 #[derive(Clone, Copy)]
 pub enum LightPoints {
-    /// Those in the middle.
+    /// The points in the middle.
     Middle,
-    /// Those that a sample chooses.
+    /// The points that a sample chooses.
     Of(Sample),
     /// All of them, of whose light the mean is taken.
     All,

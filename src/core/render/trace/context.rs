@@ -219,7 +219,7 @@ pub(super) struct LightScratch {
 pub(super) struct LightDraws {
     /// The sample of each point's primary ray.
     pub samples: Vec<Sample>,
-    /// Its two numbers from 0 to 1.
+    /// The two numbers from 0 to 1 of each sample.
     pub places: [Vec<f64>; 2],
 }
 

@@ -3,19 +3,21 @@
 use super::arrays::{VectorList, resized};
 use super::context::{LightDraws, LightScratch, Tracer};
 use super::light::{self, Colours, LitPoints, Reflectivities};
+use super::occlusion::LightPaths;
 use super::ray_group::RayGroup;
-use super::shadow_rays::LightPaths;
 use super::surface::Surface;
 use crate::geometry::aabb::{self, Aabb};
+use crate::geometry::ray::Side;
 use crate::render::observer::{Event, LightOutcome, TraceObserver};
 use crate::render::plan::ShutOut;
 use crate::scene::model::Object;
+use crate::world::emitter::{Emitter, LightSample};
 use crate::world::lamp::Lamp;
-use crate::world::light_samples::{AnyLit, LightSamples, ShadingPoints};
-use crate::world::material::Rgb;
-use crate::world::packets::light::PacketLight;
+use crate::world::material::{Look, Rgb};
+use crate::world::packets::light::{AnyLit, LightSamples, PacketLight, ShadingPoints};
 use crate::world::rules::{Falloff, Rules};
 use crate::world::sample;
+use glam::{DVec2, DVec3};
 
 /// The number of points on the rim of a light, or of a lens, that probes go through.
 pub(super) const RIM_POINTS: f64 = 16.0;
@@ -56,6 +58,23 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             group.ray_budget[0] = ray_budget;
         }
         self.scratch.lighting = Some(lighting);
+    }
+
+    /// Computes the highlights at the points of a surface that glints, as rays return them.
+    pub(super) fn glint(&mut self, group: &mut RayGroup, surface: &mut Surface, glints: &mut VectorList) {
+        let count = group.padded();
+        glints.fill(count, Rgb::ZERO);
+        let mirror = Look { ambient: Rgb::ZERO, diffuse: Rgb::ZERO, specular: Rgb::ONE };
+        let own = (surface.look.replace(mirror), surface.is_mirror);
+        surface.is_mirror = true;
+        self.illuminate(group, surface, glints);
+        (surface.look, surface.is_mirror) = own;
+        if self.plan.camera.rules == Rules::Notes {
+            light::fade(self.cpu, &surface.travelled[..count], glints.resized(count));
+        }
+        for lane in (0..count).filter(|lane| surface.sides[*lane] == Side::Inside) {
+            glints.set(lane, Rgb::ZERO);
+        }
     }
 
     /// Adds the contribution of one light.
@@ -220,6 +239,50 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
     }
 
+    /// Samples the point of a light that each point of a surface sees: where the primary ray's sample chooses, or by the
+    /// middle of the numbers where pixels have one sample. Sets `source` to a box around the ends of the shadow rays.
+    pub(super) fn sample_emitter(
+        &self,
+        (emitter, index): (&dyn Emitter, usize),
+        group: &RayGroup,
+        shading: &ShadingPoints,
+        draws: &mut LightDraws,
+        mut samples: LightSamples,
+        source: &mut Aabb,
+    ) -> AnyLit {
+        let drawn = (!self.scratch.samples.is_empty()).then(|| self.draw(index, group, draws));
+        let numbers = |lane: usize| match &drawn {
+            None => DVec2::splat(0.5),
+            Some([x, y]) => {
+                let lane = lane.min(x.len() - 1);
+                if self.scratch.are_probes { on_edge(y[lane]) } else { DVec2::new(x[lane], y[lane]) }
+            }
+        };
+        let mut any_shines = false;
+        *source = Aabb::EMPTY;
+        for lane in 0..shading.points.len() {
+            let (at, normal) = (shading.points.get(lane), shading.normals.get(lane));
+            let chosen = emitter.sample(at, normal, numbers(lane));
+            let chosen = chosen.filter(|sample| sample.toward.dot(normal) > 0.0);
+            let none = LightSample { toward: normal, distance: 0.0, light: Rgb::ZERO };
+            let LightSample { toward, distance, light } = chosen.unwrap_or(none);
+            samples.toward.set(lane, toward);
+            samples.emissivity.set(lane, light);
+            samples.strengths[lane] = toward.dot(normal);
+            samples.shines[lane] = u64::from(chosen.is_some());
+            samples.t_max[lane] = match distance.is_finite() {
+                true => (distance - shading.slack * (distance + at.abs().max_element())).max(0.0),
+                false => f64::INFINITY,
+            };
+            if chosen.is_some() {
+                any_shines = true;
+                let end = end(at, toward, distance);
+                *source = source.and(&Aabb { low: end, high: end });
+            }
+        }
+        AnyLit { any_faces: any_shines, any_shines }
+    }
+
     /// Returns the two numbers from 0 to 1 by which the primary ray's sample chooses a point of a light, for each ray of a
     /// packet; for probes, 1 and a part of a turn.
     pub(super) fn draw<'d>(
@@ -240,5 +303,24 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             sample::on_lights(self.cpu, samples, index, x, y);
         }
         [x, y]
+    }
+}
+
+/// Returns the end of a ray, which may be infinitely far away.
+fn end(from: DVec3, dir: DVec3, distance: f64) -> DVec3 {
+    // 0 times infinity is no number.
+    let along = |axis: usize| if dir[axis] == 0.0 { 0.0 } else { distance * dir[axis] };
+    from + DVec3::new(along(0), along(1), along(2))
+}
+
+/// Returns a point on the edge of the unit square, by a part of a turn around it.
+fn on_edge(turn: f64) -> DVec2 {
+    let side = 4.0 * turn.rem_euclid(1.0);
+    let along = side.fract();
+    match side as u32 {
+        0 => DVec2::new(along, 0.0),
+        1 => DVec2::new(1.0, along),
+        2 => DVec2::new(1.0 - along, 1.0),
+        _ => DVec2::new(0.0, 1.0 - along),
     }
 }

@@ -7,8 +7,7 @@
 
 use super::context::Tracer;
 use super::ray_group::RayGroup;
-use super::refract::facing;
-use super::surface::Surface;
+use super::surface::{Surface, facing};
 use crate::render::observer::TraceObserver;
 use crate::world::sample::on_disc;
 use glam::{DVec2, DVec3};

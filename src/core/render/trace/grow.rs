@@ -3,7 +3,6 @@
 use super::arrays::VectorList;
 use super::context::{ShadingScratch, Tracer};
 use super::ray_group::RayGroup;
-use super::refract;
 use super::round::TreeScratch;
 use super::tree::{Budget, End, Ends, OpenRay, Tree};
 use crate::geometry::ray::Side;
@@ -152,8 +151,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let Some(mut scratch) = self.scratch.trees.take() else { return };
         let (count, kept) = (group.padded(), 1.0 - transparency);
         let crossings = object.material.interface.as_deref();
-        let crossings =
-            crossings.map(|interface| refract::crossings(interface, group.dir.view(count), surface));
+        let crossings = crossings.map(|interface| surface.crossings(interface, group.dir.view(count)));
         surface.mirror_rays(group.dir.view(count), dir);
         for lane in 0..group.len {
             let side = surface.sides[lane];

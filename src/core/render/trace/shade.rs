@@ -5,7 +5,6 @@ use super::closest_hit;
 use super::context::{HitScratch, ShadingScratch, Tracer};
 use super::light;
 use super::ray_group::RayGroup;
-use super::refract;
 use super::surface::{Errors, SeenPatches, Surface};
 use crate::geometry::ray::Side;
 use crate::geometry::ray_packet::SurfaceInteraction;
@@ -263,7 +262,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let (count, surface) = (group.padded(), &mut shading.surface);
         let (object, branches) = (&self.model.objects[surface.index], self.plan.continuation(surface.index));
         let kept = 1.0 - object.material.transparency;
-        let crossings = refract::crossings(interface, group.dir.view(count), surface);
+        let crossings = surface.crossings(interface, group.dir.view(count));
         let tints: Vec<Rgb> = (0..group.len)
             .map(|lane| {
                 let point = object.surface_point(surface.points.get(lane), surface.sides[lane]);

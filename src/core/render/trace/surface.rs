@@ -7,6 +7,7 @@ use crate::geometry::ray::Side;
 use crate::scene::model::Object;
 use crate::simd::soa::View;
 use crate::world::coincidence;
+use crate::world::interface::{Crossing, Interface};
 use crate::world::material::{Look, Rgb};
 use crate::world::packets::shader::SurfacePoints;
 use crate::world::patch::{Patch, Window};
@@ -142,6 +143,20 @@ impl Surface {
         }
     }
 
+    /// Returns how rays along `dir` cross the surface, by its interface.
+    pub fn crossings(&self, interface: &dyn Interface, dir: View) -> Vec<Crossing> {
+        let crossing = |lane: usize| {
+            let (dir, side) = (dir.get(lane), self.sides[lane]);
+            let cross = |normal| interface.cross(dir, facing(normal, dir), side);
+            let crossing = cross(self.normals.get(lane));
+            // Bent normals may lead a ray back to the side from which it comes.
+            let Some(unbent) = self.bent_from(lane) else { return crossing };
+            let is_through = |onward: DVec3| onward.dot(unbent) * dir.dot(unbent) > 0.0;
+            if crossing.onward.is_none_or(is_through) { crossing } else { cross(unbent) }
+        };
+        (0..dir.len()).map(crossing).collect()
+    }
+
     /// Returns rays from the points in these directions.
     pub fn secondary_rays<'o>(&'o self, dir: &'o VectorList) -> SecondaryRays<'o> {
         let Self { index, points, sides, travelled, cosines, errors, .. } = self;
@@ -177,6 +192,11 @@ impl Surface {
             None => Colours::Each(self.specular.view(count)),
         }
     }
+}
+
+/// Returns the unit normal that faces a direction.
+pub(super) fn facing(normal: DVec3, dir: DVec3) -> DVec3 {
+    if normal.dot(dir) > 0.0 { -normal } else { normal }
 }
 
 /// Rays that continue from the points where a group's rays have hit an object, in the same lanes.

@@ -2,8 +2,8 @@
 
 use super::arrays::{VectorList, compact, gather, resized};
 use super::context::{Tracer, Transmittance};
+use super::occlusion::LightPaths;
 use super::ray_group::RayGroup;
-use super::shadow_rays::LightPaths;
 use super::surface::Surface;
 use crate::geometry::ray::{Ray, Side};
 use crate::render::observer::{Count, Event, RayKind, RayPurpose, TraceObserver};

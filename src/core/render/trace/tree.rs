@@ -248,7 +248,7 @@ impl Tree {
         let middle = ends.display.middle(bounds);
         match ends.levels_apart(bounds) {
             apart if apart <= SHOWN => End { colour: middle, apart: 0.0 },
-            // The other samples of the pixel may be known better.
+            // Of several samples, others of the pixel may be known better.
             apart if ends.is_averaged => End { colour: middle, apart },
             apart => End { colour: self.found, apart },
         }

@@ -85,7 +85,7 @@ impl<A: AccuracyTag> Plane<A> {
         if A::IS_CLASSIC {
             let toward = self.normal.dot(ray.dir);
             let away = self.normal.dot(self.point) - self.normal.dot(ray.origin);
-            // Both are 0 for a ray in the plane.
+            // For a ray in the plane, `away` is 0, too.
             return if toward == 0.0 { MISS } else { away / toward };
         }
         let quick = self.quick_crossing(ray);

@@ -31,7 +31,7 @@ impl Quadratic {
         }
         let root = discriminant.sqrt();
         let larger = if b.high > 0.0 { -b - root } else { root - b };
-        // Both are 0 where b and c are.
+        // Both roots are 0 where b and c are.
         let other = if larger.high == 0.0 { larger } else { c / larger };
         [fine(larger / a), fine(other)]
     }

@@ -42,7 +42,7 @@ fn coefficients_of_every_size_make_the_same_ball() {
         let found = hit(sphere, BOX, DVec3::new(0.6, 0.0, 3.0), DVec3::NEG_Z);
         assert!((found - 2.2).abs() < 1e-14, "1e{exponent}: {found:e}");
     }
-    // Its radius is 3e150, and no part of it is in the box.
+    // A sphere of radius 3e150, no part of which is in the box.
     let huge = [1e-301, 1e-301, 1e-301, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
     assert_eq!(hit(huge, BOX, DVec3::new(0.6, 0.0, 3.0), DVec3::NEG_Z), MISS);
 }

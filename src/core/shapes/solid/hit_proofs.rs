@@ -54,7 +54,7 @@ impl SolidPart {
                         None => is_known = false,
                     }
                 }
-                // So that no part is passed over.
+                // Nothing ends the visit, so that no part is passed over.
                 None
             });
             if !is_known {

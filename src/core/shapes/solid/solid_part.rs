@@ -115,7 +115,7 @@ impl SolidPart {
                     None => is_known = false,
                 }
             }
-            // So that no part is passed over.
+            // Nothing ends the visit, so that no part is passed over.
             None
         });
         is_known.then(|| self.tree.owner(&outside, &inside) == Some(self.index))

@@ -96,7 +96,7 @@ fn candidates<F: Float>([a, b, c]: [Interval<F>; 3]) -> [Option<Candidate<F>>; 2
     let near = if c.is_zero() { start } else { c / sum };
     let is_there = discriminant.low > F::of(0.0);
     if a.has_zero() {
-        // The other root is far away, on either side.
+        // Where the quadratic coefficient may be 0, the root other than `near` is far away, on either side.
         let far = farther_than(sum, a);
         if near.high >= far {
             return [Some(Perhaps(anywhere)), None];

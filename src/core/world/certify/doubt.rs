@@ -15,7 +15,7 @@ pub enum Doubt {
     Touched,
     /// The equation has no slope there, as where a profile jumps.
     Jumps,
-    /// Neither: the search takes more digits or more steps.
+    /// The surface is neither touched nor jumps: the search takes more digits or more steps.
     Long,
 }
 

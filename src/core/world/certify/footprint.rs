@@ -176,7 +176,7 @@ fn roots([a, b, c]: [Affine; 3]) -> [Option<FootprintHit>; 2] {
     };
     let near = c / sum;
     if a.has_zero() {
-        // The other root is far away, on either side.
+        // Where the quadratic coefficient may be 0, the root other than `near` is far away, on either side.
         let far = farther_than(sum, a);
         if near.range().high >= far {
             return anywhere;

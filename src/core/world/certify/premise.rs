@@ -5,7 +5,7 @@ use std::fmt;
 /// What is known of the proofs about a shape before any ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Premise {
-    /// They take this for exact.
+    /// The proofs take this for exact.
     Assumed(Assumption),
     /// There is no equation to prove hits by: that a hit lies in the bounds of the shape is all that is known.
     NoEquation,

@@ -163,9 +163,9 @@ enum Judgement<F> {
     Root(Interval<F>),
     /// The value may be 0 in this interval alone, where its slope is 0, and no shorter pieces tell whether it is.
     Touch(Interval<F>),
-    /// Neither is certain.
+    /// It is certain neither that the piece has no root nor that it has exactly one.
     Open,
-    /// Neither is certain, and the slope has no bound, as where the value jumps.
+    /// As for an open piece, and the slope has no bound, as where the value jumps.
     Jump,
 }
 
@@ -200,7 +200,7 @@ impl<F: Float> Search<'_, F> {
         if !value.has_zero() {
             return Judgement::Free;
         }
-        // Then no mean value theorem helps.
+        // Without bounds of the value and the slope, no mean value theorem helps.
         if !(slope.is_bounded() && value.is_bounded()) {
             return if self.is_broken(piece) { Judgement::Free } else { Judgement::Jump };
         }
@@ -248,7 +248,7 @@ impl<F: Float> Search<'_, F> {
         let around = place - middle;
         let extreme = value + (slope + bend * around) * around;
         if !extreme.has_zero() {
-            // Else there is a root on each side of it.
+            // An extreme beyond 0 has a root on each side of it.
             let is_away = (extreme.low > zero) == (bend.low > zero);
             return if is_away { Judgement::Free } else { Judgement::Open };
         }

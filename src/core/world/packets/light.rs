@@ -1,15 +1,55 @@
-//! Lights, sampled from many shading points at once.
+//! Lights, sampled from many shading points at once (the notes' `light_t::illuminate`, without shadows).
+//!
+//! All arrays are as long as those of the packet whose rays hit the points.
 
 use crate::geometry::aabb::larger;
 use crate::simd::cpu::{Cpu, kernels};
+use crate::simd::soa::{View, ViewMut};
 use crate::world::certify::Precise;
 use crate::world::light::Light;
-use crate::world::light_samples::{AnyLit, LightSamples, ShadingPoints};
 use crate::world::material::Rgb;
 use crate::world::rules::Rules;
 use f256::f256;
 use glam::DVec3;
 use tabray_exact::interval::{Fraction, Interval};
+
+/// Points of a surface that may see a light.
+pub struct ShadingPoints<'p> {
+    /// The points, in world coordinates.
+    pub points: View<'p>,
+    /// The unit normals at the points.
+    pub normals: View<'p>,
+    /// The point of the light that each point sees, in world coordinates; `None` for the light's own position.
+    pub lights: Option<View<'p>>,
+    /// The rules of light.
+    pub rules: Rules,
+    /// The distance before the light at which the shadow rays end, as a fraction of the sum of the distance to the
+    /// light and of the largest magnitude of the point's coordinates.
+    pub slack: f64,
+}
+
+/// The light that a light source sends to shading points, and its directions.
+pub struct LightSamples<'f> {
+    /// The unit vectors toward the light.
+    pub toward: ViewMut<'f>,
+    /// The colours that the light sends, black where it sends nothing. Left untouched for a uniform light.
+    pub emissivity: ViewMut<'f>,
+    /// The factors of the light, from the angles at which it arrives and by the notes' rules the distances: see
+    /// [`Rules::received`].
+    pub strengths: &'f mut [f64],
+    /// The ends of the shadow rays, in world units from the points; 0 where no shadow ray is needed.
+    pub t_max: &'f mut [f64],
+    /// 0 for a point that the light does not shine on or lies behind; otherwise 1.
+    pub shines: &'f mut [u64],
+}
+
+/// Whether any of several shading points is lit.
+pub struct AnyLit {
+    /// Whether any point faces the light.
+    pub any_faces: bool,
+    /// Whether the light shines on any of the points that face it.
+    pub any_shines: bool,
+}
 
 /// A light for packets. Every [`Light`] is one.
 pub trait PacketLight: Light + EncloseLight<f64> + EncloseLight<f256> + EncloseLight<Fraction> {

@@ -1,10 +1,8 @@
 //! Surfaces by formulas of scenes, and the simple shapes.
 
-use crate::falsify::oracle;
+use super::barely;
 use crate::falsify::random::{Point, Random, cross, dot, moved, turned, unit};
-use crate::falsify::ray::Ray;
 use crate::falsify::scenes::{Aim, Question, numbers};
-use crate::falsify::text::Scene;
 
 /// Returns a number with two decimals.
 fn short(random: &mut Random, low: f64, high: f64) -> f64 {
@@ -88,19 +86,7 @@ pub fn silhouettes(random: &mut Random) -> Question {
         let object = implicit(&text, moved(within, by, side), [-half, -half, -half, half, half, half]);
         aim.question(&[object])
     };
-    let is_met = |by: f64| {
-        let scene = Scene::read(&question(by).text, "");
-        oracle::first(&scene, &Ray::of_pixel(&scene, 0, 0)).first.is_some()
-    };
-    let (mut near, mut far) = (0.0, 2.0 * half);
-    if !is_met(near) || is_met(far) {
-        return question(near);
-    }
-    for _ in 0..random.below(60) {
-        let middle = 0.5 * (near + far);
-        if is_met(middle) { near = middle } else { far = middle }
-    }
-    question(if random.once_in(2) { near } else { far })
+    barely(random, question, 2.0 * half, 60)
 }
 
 /// Returns the name and the attributes of a round shape but its place and axis, and its height and radius.

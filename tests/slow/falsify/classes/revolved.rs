@@ -1,11 +1,9 @@
 //! Surfaces of revolution, tori and hearts.
 #![allow(clippy::approx_constant, reason = "the notes' vase is 6.28 high")]
 
-use crate::falsify::oracle;
+use super::barely;
 use crate::falsify::random::{Point, Random, cross, dot, moved, turned, unit};
-use crate::falsify::ray::Ray;
 use crate::falsify::scenes::{Aim, Question, numbers};
-use crate::falsify::text::Scene;
 
 /// A profile's attribute, the same profile as a Rust function, and a suitable height in world units.
 type Profile = (String, Box<dyn Fn(f64) -> f64>, f64);
@@ -205,18 +203,5 @@ pub fn silhouettes(random: &mut Random) -> Question {
         let at = moved(inside, by, side);
         aim.question(&[format!("{before}{} {after}", numbers(at))])
     };
-    let is_met = |by: f64| {
-        let scene = Scene::read(&question(by).text, "");
-        let truth = oracle::first(&scene, &Ray::of_pixel(&scene, 0, 0));
-        truth.first.is_some()
-    };
-    let (mut near, mut far) = (0.0, reach);
-    if !is_met(near) || is_met(far) {
-        return question(near);
-    }
-    for _ in 0..random.below(60) {
-        let middle = 0.5 * (near + far);
-        if is_met(middle) { near = middle } else { far = middle }
-    }
-    question(if random.once_in(2) { near } else { far })
+    barely(random, question, reach, 60)
 }

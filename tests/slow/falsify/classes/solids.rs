@@ -1,10 +1,8 @@
 //! Solids: several shapes combined.
 
-use crate::falsify::oracle;
+use super::barely;
 use crate::falsify::random::{Point, Random, moved, turned};
-use crate::falsify::ray::Ray;
 use crate::falsify::scenes::{Aim, Question, numbers};
-use crate::falsify::text::Scene;
 use std::fmt::Write;
 
 /// Returns a multiple of 1/64 near a number.
@@ -176,19 +174,7 @@ pub fn silhouettes(random: &mut Random) -> Question {
         let object = solid(&mut random, &mut patterns, moved(within, by, side), 2.0, 1);
         aim.question(&[object]).with_patterns(&patterns.text)
     };
-    let is_met = |by: f64| {
-        let scene = Scene::read(&question(by).text, "");
-        oracle::first(&scene, &Ray::of_pixel(&scene, 0, 0)).first.is_some()
-    };
-    let (mut near, mut far) = (0.0, 6.0);
-    if !is_met(near) || is_met(far) {
-        return question(near);
-    }
-    for _ in 0..random.below(52) {
-        let middle = 0.5 * (near + far);
-        if is_met(middle) { near = middle } else { far = middle }
-    }
-    question(if random.once_in(2) { near } else { far })
+    barely(random, question, 6.0, 52)
 }
 
 /// Returns a scene of boxes whose sides lie in the same planes, and of round shapes that touch them, with sides that

@@ -54,7 +54,7 @@ impl SurfaceLight {
     pub fn all(model: &Model, looks: &[Option<Look>], of: BoundedLight) -> Vec<Self> {
         let (objects, rules) = (|| model.objects.iter().zip(looks), model.camera.value.rules);
         let tints: Vec<_> = objects().map(|(object, look)| tint(object, look.as_ref(), of)).collect();
-        // Otherwise many panes may let through more light than is sent.
+        // With a tint above 1, many panes may let through more light than is sent.
         let any_light_comes = tints.iter().all(|tint| *tint <= 1.0);
         objects()
             .zip(&tints)
