@@ -216,9 +216,8 @@ fn render_image(
     let accuracy = args.method.accuracy()?;
     let source = Source::read(scene, &args.set)?;
     let memory = args.stop.memory_left();
-    let chosen = ReadOptions { above_all: accuracy, memory, clock: Some(clock), ..ReadOptions::default() };
-    let Loaded { mut model, building, warnings, .. } =
-        input::print_warnings(source.load_by(registry, chosen))?;
+    let how = ReadOptions { above_all: accuracy, memory, clock: Some(clock), ..ReadOptions::default() };
+    let Loaded { mut model, building, warnings, .. } = input::print_warnings(source.load_by(registry, how))?;
     let stats = Stats { reading: start.elapsed() - building, building, ..Stats::default() };
     let camera = &mut model.camera.value;
     args.samples.apply(camera)?;
@@ -346,8 +345,8 @@ impl ImageRender<'_> {
         };
         let whole = Instant::now();
         let exact = || read_exact(&self.source, self.registry, model, args.stop.memory_left());
-        let is_wanted = beside.contains(&Aov::Error);
-        part.run(args.stop.resume, |work| aov::with_truth(&plan, is_wanted, exact, |truth| work(truth)))?;
+        let has_errors = beside.contains(&Aov::Error);
+        part.run(args.stop.resume, |work| aov::with_truth(&plan, has_errors, exact, |truth| work(truth)))?;
         stats.writing = whole.elapsed().saturating_sub(stats.rendering.get());
         args.stats.print(&stats, model);
         Ok(())
@@ -362,8 +361,8 @@ fn read_exact(
     memory: Option<u64>,
 ) -> Result<Model, Failure> {
     let rules = Some(model.camera.value.rules);
-    let chosen = ReadOptions { above_all: Some(Accuracy::Exact), rules, memory, ..ReadOptions::default() };
-    source.load_by(registry, chosen).map(|loaded| loaded.model).map_err(Failure::Scene)
+    let exact = ReadOptions { above_all: Some(Accuracy::Exact), rules, memory, ..ReadOptions::default() };
+    source.load_by(registry, exact).map(|loaded| loaded.model).map_err(Failure::Scene)
 }
 
 /// Renders an image of bytes, and tells what was written since a time, unless that is standard output.

@@ -7,7 +7,7 @@ use std::cell::Cell;
 use tabray::exact::Interval;
 use tabray::exact::affine::Affine;
 use tabray::geometry::Line;
-use tabray::render::enclosed::{LightPoints, Limits, Number, Scene, SceneBounds, Tracer};
+use tabray::render::enclosed::{EnclosedScene, EnclosingTracer, LightPoints, Limits, Number, SceneBounds};
 use tabray::render::plan::Plan;
 use tabray::render::plan::depth::FAINT;
 use tabray::render::trace;
@@ -94,7 +94,7 @@ fn scene() -> impl Strategy<Value = String> {
 fn enclosed<N: Number<End = f64>>(plan: &Plan, line: &Line<N>) -> Option<[Interval; 3]> {
     let (bounds, lights) = (SceneBounds::of(plan.model), &plan.needs.lights);
     let (depth, meets_uncertified) = (plan.depth.as_ref(), Cell::new(false));
-    let scene = Scene {
+    let scene = EnclosedScene {
         model: plan.model,
         lights,
         depth,
@@ -102,7 +102,7 @@ fn enclosed<N: Number<End = f64>>(plan: &Plan, line: &Line<N>) -> Option<[Interv
         window: plan.camera.window(),
         meets_uncertified,
     };
-    let colour = Tracer::new(&scene, LIMITS, LightPoints::Middle).primary(line)?;
+    let colour = EnclosingTracer::new(&scene, LIMITS, LightPoints::Middle).primary(line)?;
     let colour = colour.map(|channel| channel.range());
     colour.iter().all(|channel| channel.width() < ROUNDING).then_some(colour)
 }

@@ -105,7 +105,7 @@ pub fn contradictions<T: Choice>() -> Vec<String> {
 }
 
 /// Returns an alternative that only its name chooses.
-const fn named((name, meaning): (&'static str, &'static str)) -> ChoiceName {
+const fn named(name: &'static str, meaning: &'static str) -> ChoiceName {
     const PLACE: &Location<'static> = Location::caller();
     ChoiceName { name, number: None, meaning, place: PLACE }
 }
@@ -118,69 +118,46 @@ impl Choice for Accuracy {
     }
 
     fn option(&self) -> ChoiceName {
-        named(self.named())
+        let (name, meaning) = self.named();
+        named(name, meaning)
     }
 }
 
-impl Choice for Rules {
-    const WHAT: &'static str = "set of rules";
+/// Makes types choices: each with its noun, and its alternatives with their names and meanings.
+macro_rules! choices {
+    ($($Type:ident, $what:literal { $($Variant:ident => $name:literal, $meaning:literal;)* })*) => {$(
+        impl Choice for $Type {
+            const WHAT: &'static str = $what;
 
-    fn all() -> Vec<Self> {
-        vec![Self::Notes, Self::Free]
-    }
-
-    fn option(&self) -> ChoiceName {
-        named(match self {
-            Self::Notes => {
-                ("notes", "the course notes': light is divided by the length of its path, up to 20 units")
+            fn all() -> Vec<Self> {
+                vec![$(Self::$Variant),*]
             }
-            Self::Free => ("free", "linear light that does not depend on the scale of the scene"),
-        })
-    }
+
+            fn option(&self) -> ChoiceName {
+                match self {
+                    $(Self::$Variant => named($name, $meaning),)*
+                }
+            }
+        }
+    )*};
 }
 
-impl Choice for Tone {
-    const WHAT: &'static str = "tone mapper";
-
-    fn all() -> Vec<Self> {
-        vec![Self::Clip, Self::Neutral]
+choices! {
+    Rules, "set of rules" {
+        Notes => "notes", "the course notes': light is divided by the length of its path, up to 20 units";
+        Free => "free", "linear light that does not depend on the scale of the scene";
     }
-
-    fn option(&self) -> ChoiceName {
-        named(match self {
-            Self::Clip => ("clip", "all of it is white"),
-            Self::Neutral => ("neutral", "compressed, by the Khronos PBR neutral tone mapper"),
-        })
+    Tone, "tone mapper" {
+        Clip => "clip", "all of it is white";
+        Neutral => "neutral", "compressed, by the Khronos PBR neutral tone mapper";
     }
-}
-
-impl Choice for Transfer {
-    const WHAT: &'static str = "transfer function";
-
-    fn all() -> Vec<Self> {
-        vec![Self::Srgb, Self::Linear]
+    Transfer, "transfer function" {
+        Srgb => "srgb", "the curve of sRGB, which screens expect";
+        Linear => "linear", "in proportion to the light";
     }
-
-    fn option(&self) -> ChoiceName {
-        named(match self {
-            Self::Srgb => ("srgb", "the curve of sRGB, which screens expect"),
-            Self::Linear => ("linear", "in proportion to the light"),
-        })
-    }
-}
-
-impl Choice for Falloff {
-    const WHAT: &'static str = "falloff";
-
-    fn all() -> Vec<Self> {
-        vec![Self::None, Self::Distance, Self::Square]
-    }
-
-    fn option(&self) -> ChoiceName {
-        named(match self {
-            Self::None => ("none", "as bright at any distance"),
-            Self::Distance => ("distance", "divided by the distance"),
-            Self::Square => ("square", "divided by the square of the distance, as that of a real lamp"),
-        })
+    Falloff, "falloff" {
+        None => "none", "as bright at any distance";
+        Distance => "distance", "divided by the distance";
+        Square => "square", "divided by the square of the distance, as that of a real lamp";
     }
 }

@@ -1,5 +1,7 @@
 //! Entity types: what a plugin registers, and what its constructor receives.
 
+pub use crate::scene::setting::{Refusal, Setting};
+
 use crate::scene::attribute::Attribute;
 use crate::scene::common::{
     ACCURACY, AT, BACKGROUND, EXPOSURE, FALLOFF, FILM, LIGHT, LIGHTS, MATERIAL, MATERIAL_OF_ALL, OBJECT,
@@ -18,10 +20,8 @@ use crate::world::material::Material;
 use crate::world::rules::{Fading, Rules};
 use crate::world::sensor::{AnyCamera, Sensor};
 use crate::world::texture::Texture;
-use std::collections::BTreeMap;
 use std::ops::Deref;
 use std::panic::Location;
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::{fmt, iter};
 
@@ -76,50 +76,39 @@ pub enum Construct {
     Background(fn(&Args) -> Result<AnyBackground, Refusal>),
 }
 
+/// Writes the functions that describe entity types, each by the kind of its constructor and what that makes.
+macro_rules! entity_types {
+    ($($(#[$doc:meta])* $name:ident: $Kind:ident($Made:ty);)*) => {$(
+        $(#[$doc])*
+        #[track_caller]
+        pub const fn $name(
+            name: &'static str,
+            meaning: &'static str,
+            tables: &'static [Table],
+            construct: fn(&Args) -> Result<$Made, Refusal>,
+        ) -> Self {
+            Self::new(name, meaning, tables, Construct::$Kind(construct))
+        }
+    )*};
+}
+
 impl Entity {
-    /// Describes a camera type. The attributes of every camera are added to its table: `pixeldim` before its own, and
-    /// those from `samples` on after them.
-    #[track_caller]
-    pub const fn camera(
-        name: &'static str,
-        meaning: &'static str,
-        tables: &'static [Table],
-        construct: fn(&Args) -> Result<AnyCamera, Refusal>,
-    ) -> Self {
-        Self::new(name, meaning, tables, Construct::Camera(construct))
-    }
-
-    /// Describes a material type.
-    #[track_caller]
-    pub const fn material(
-        name: &'static str,
-        meaning: &'static str,
-        tables: &'static [Table],
-        construct: fn(&Args) -> Result<Material, Refusal>,
-    ) -> Self {
-        Self::new(name, meaning, tables, Construct::Material(construct))
-    }
-
-    /// Describes a texture type.
-    #[track_caller]
-    pub const fn texture(
-        name: &'static str,
-        meaning: &'static str,
-        tables: &'static [Table],
-        construct: fn(&Args) -> Result<Texture, Refusal>,
-    ) -> Self {
-        Self::new(name, meaning, tables, Construct::Texture(construct))
-    }
-
-    /// Describes a type of shader.
-    #[track_caller]
-    pub const fn shader(
-        name: &'static str,
-        meaning: &'static str,
-        tables: &'static [Table],
-        construct: fn(&Args) -> Result<ShaderFactory, Refusal>,
-    ) -> Self {
-        Self::new(name, meaning, tables, Construct::Shader(construct))
+    entity_types! {
+        /// Describes a camera type. The attributes of every camera are added to its table: `pixeldim` before its own, and
+        /// those from `samples` on after them.
+        camera: Camera(AnyCamera);
+        /// Describes a material type.
+        material: Material(Material);
+        /// Describes a texture type.
+        texture: Texture(Texture);
+        /// Describes a type of shader.
+        shader: Shader(ShaderFactory);
+        /// Describes a shape. The attributes `material` and `shader` are added to its table.
+        shape: Object(Body);
+        /// Describes a light type. The attributes `falloff` and `at` are added to its table.
+        light: Light(AnyLight);
+        /// Describes a type of background. The attribute `lights` is added to its table.
+        background: Background(AnyBackground);
     }
 
     /// Sets the number that the notes give a shader on planes.
@@ -134,17 +123,6 @@ impl Entity {
         self
     }
 
-    /// Describes a shape. The attributes `material` and `shader` are added to its table.
-    #[track_caller]
-    pub const fn shape(
-        name: &'static str,
-        meaning: &'static str,
-        tables: &'static [Table],
-        construct: fn(&Args) -> Result<Body, Refusal>,
-    ) -> Self {
-        Self::new(name, meaning, tables, Construct::Object(construct))
-    }
-
     /// Describes an object that is made of others. The attribute `material`, which may be left out, is added to its table.
     #[track_caller]
     pub const fn of_objects(
@@ -156,33 +134,11 @@ impl Entity {
         Self { common: [OF_OBJECTS, &[]], ..Self::new(name, meaning, tables, Construct::Object(construct)) }
     }
 
-    /// Describes a light type. The attributes `falloff` and `at` are added to its table.
-    #[track_caller]
-    pub const fn light(
-        name: &'static str,
-        meaning: &'static str,
-        tables: &'static [Table],
-        construct: fn(&Args) -> Result<AnyLight, Refusal>,
-    ) -> Self {
-        Self::new(name, meaning, tables, Construct::Light(construct))
-    }
-
     /// Describes a type of light whose distance changes nothing but the angle at which it is seen: the attributes `falloff`
     /// and `at` are not added to its table.
     pub const fn without_falloff(mut self) -> Self {
         self.common = [&[], &[]];
         self
-    }
-
-    /// Describes a type of background. The attribute `lights` is added to its table.
-    #[track_caller]
-    pub const fn background(
-        name: &'static str,
-        meaning: &'static str,
-        tables: &'static [Table],
-        construct: fn(&Args) -> Result<AnyBackground, Refusal>,
-    ) -> Self {
-        Self::new(name, meaning, tables, Construct::Background(construct))
     }
 
     #[track_caller]
@@ -270,20 +226,6 @@ impl Entity {
     pub fn place(&self) -> String {
         text::place(self.place)
     }
-}
-
-/// The scene around an entity, as far as its constructor may know it.
-#[derive(Clone, Debug, Default)]
-pub struct Setting {
-    /// The scene's camera. Only objects and lights are certain to be constructed after it; other entities may see a
-    /// default camera.
-    pub camera: Sensor,
-    /// The folder to which the scene's file names are relative.
-    pub folder: PathBuf,
-    /// The scene's materials by their names; only objects and lights are certain to see all of them.
-    pub materials: Arc<BTreeMap<String, Arc<Material>>>,
-    /// The memory that an object may take beside the scene, in bytes.
-    pub memory: u64,
 }
 
 /// An entity of a scene as a constructor sees it: its type, its name and its checked values.
@@ -428,15 +370,4 @@ impl Deref for Args {
     fn deref(&self) -> &Attributes {
         &self.attributes
     }
-}
-
-/// The reason why a constructor refuses values that are valid one by one.
-#[derive(Debug)]
-pub struct Refusal {
-    /// The attribute to mark; if `None`, the entity's name is marked.
-    pub attribute: Option<&'static str>,
-    /// The error, phrased to follow the entity's name: "has an `xdir` parallel to its `normal`".
-    pub message: String,
-    /// How to correct it.
-    pub help: &'static str,
 }

@@ -13,6 +13,7 @@ pub mod procedural;
 pub mod profile;
 pub mod references;
 pub(crate) mod rotation;
+mod setting;
 pub mod store;
 pub mod value;
 

@@ -25,9 +25,9 @@ use tabray_exact::dual::Dual;
 use tabray_exact::formula::field::Field;
 use tabray_exact::interval::Interval;
 use tabray_exact::polynomial::{Coefficient, MOST, Polynomial};
+use tabray_exact::roots::Method;
 use tabray_exact::roots::stretch::Stretch;
 use tabray_exact::roots::taylor::{self, FirstRoot};
-use tabray_exact::roots::Method;
 use tabray_exact::scalar::Scalar;
 
 /// The number of plain rays that take as long as a search: that in a torus takes 25, that in a heart 60.

@@ -1,7 +1,7 @@
 //! The parser: from the text of a formula to its operations in postfix order.
 
 use super::function::{self, Meaning};
-use super::step::{Function, MAX_DEPTH, Step};
+use super::step::{Function, MAX_DEPTH, Step, deepest};
 use super::variables::SPACE;
 use super::words::{FormulaFault, SUPERSCRIPTS, is_in_name, language};
 use crate::decimal;
@@ -60,16 +60,6 @@ pub(super) fn parse(
         Some(')') => Err(parser.fault_here("unmatched `)`")),
         Some(_) => Err(parser.fault_here("expected an operator")),
     }
-}
-
-/// Returns the largest number of values that wait for an operation.
-fn deepest(steps: &[Step]) -> usize {
-    let (mut depth, mut deepest) = (0, 0);
-    for step in steps {
-        depth = depth + 1 - step.operands();
-        deepest = deepest.max(depth);
-    }
-    deepest
 }
 
 struct Parser<'t> {

@@ -133,3 +133,13 @@ pub(super) enum Function {
 
 /// The deepest nesting that a formula may have, in values that wait for an operation.
 pub(super) const MAX_DEPTH: usize = 32;
+
+/// Returns the largest number of values that wait for an operation.
+pub fn deepest(steps: &[Step]) -> usize {
+    let (mut depth, mut deepest) = (0, 0);
+    for step in steps {
+        depth = depth + 1 - step.operands();
+        deepest = deepest.max(depth);
+    }
+    deepest
+}

@@ -161,14 +161,11 @@ pub(super) fn panel(load: Load, progress: &mut dyn Progress) -> io::Result<Panel
             samples: one.most.unwrap_or(one.samples),
         }
     };
+    let Estimates { pixels, against, .. } = estimates;
+    let most = estimates.all.iter().map(|one| one.pixels).max().unwrap_or(0);
     Ok(Panel {
         title: "the whole image: accuracy and samples together".to_owned(),
-        note: format!(
-            "{} of {} pixels, against {} samples",
-            estimates.all.iter().map(|one| one.pixels).max().unwrap_or(0),
-            estimates.pixels,
-            estimates.against
-        ),
+        note: format!("{most} of {pixels} pixels, against {against} samples"),
         subject: Subject::Whole,
         points: estimates.all.iter().map(point).collect(),
     })

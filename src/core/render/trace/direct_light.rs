@@ -2,7 +2,7 @@
 
 use super::arrays::{VectorList, resized};
 use super::context::{LightDraws, LightScratch, Tracer};
-use super::light::{self, Colours, LitPoints, Reflectivities};
+use super::light::{self, Colours, LitPoints};
 use super::occlusion::LightPaths;
 use super::ray_group::RayGroup;
 use super::surface::Surface;
@@ -101,6 +101,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             }
             return;
         }
+        let (t_max, shines, blocked) =
+            (resized(t_max, count), resized(shines, count), resized(blocked, count));
         let paths = LightPaths { from: *around, to: source, toward };
         let uniform = light.uniform().filter(|_| !self.fades(light));
         let mut tint = Rgb::ONE;
@@ -132,13 +134,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 Some(sent) if !passes => Colours::Uniform(sent),
                 _ => Colours::Each(emissivity.view(count)),
             },
-            looks: match surface.look {
-                Some(look) => Reflectivities::Uniform(look),
-                None => Reflectivities::Each {
-                    diffuse: diffuse.view(count),
-                    specular: surface.specular.view(count),
-                },
-            },
+            looks: surface.reflectivities(diffuse, count),
         };
         let shows_highlights = light.emitter().is_none_or(|emitter| emitter.has_highlights());
         let material = &self.model.objects[surface.index].material;

@@ -155,10 +155,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         surface.mirror_rays(group.dir.view(count), dir);
         for lane in 0..group.len {
             let side = surface.sides[lane];
-            let tint = || {
-                let point = object.surface_point(surface.points.get(lane), side);
-                object.tint(&point)
-            };
+            let tint = || surface.tint(object, lane);
             let (through, onward, reflected) = match &crossings {
                 Some(crossings) => {
                     let Crossing { reflected, onward } = crossings[lane];

@@ -6,7 +6,6 @@ use super::context::{HitScratch, ShadingScratch, Tracer};
 use super::light;
 use super::ray_group::RayGroup;
 use super::surface::{Errors, SeenPatches, Surface};
-use crate::geometry::ray::Side;
 use crate::geometry::ray_packet::SurfaceInteraction;
 use crate::render::observer::{Count, DropReason, Event, Hit, RayKind, RayPurpose, TraceObserver};
 use crate::render::plan::depth::{Branch, STEPS, step};
@@ -183,7 +182,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let object = &self.model.objects[surface.index];
         let kept = 1.0 - object.material.transparency;
         if W::SEES {
-            let tint = object.tint(&object.surface_point(surface.points.get(0), surface.sides[0]));
+            let tint = surface.tint(object, 0);
             self.observer.see(Event::Begin(RayPurpose::Transmitted { tint, kept }));
         }
         let branch = self.plan.continuation(surface.index).through;
@@ -192,15 +191,13 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         group.leave_out(self.cpu, &branch, travelled, goes);
         self.end_bounces(goes);
         shading.dir.copy(group.dir.view(count));
-        let flip = |sides: &mut [Side]| sides.iter_mut().for_each(|side| *side = side.opposite());
-        flip(&mut surface.sides[..count]);
+        surface.flip_sides(count);
         self.trace_secondary(group, shading, RayKind::Transmitted, branch);
         let surface = &mut shading.surface;
-        flip(&mut surface.sides[..count]);
+        surface.flip_sides(count);
         for lane in 0..group.len {
-            let point = object.surface_point(surface.points.get(lane), surface.sides[lane]);
-            let tint = object.tint(&point);
             let (own, behind) = (colours.get(lane), shading.behind.get(lane));
+            let tint = surface.tint(object, lane);
             colours.set(lane, rules::transmitted(own, Rgb::splat(kept), behind, tint));
         }
     }
@@ -263,12 +260,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let (object, branches) = (&self.model.objects[surface.index], self.plan.continuation(surface.index));
         let kept = 1.0 - object.material.transparency;
         let crossings = surface.crossings(interface, group.dir.view(count));
-        let tints: Vec<Rgb> = (0..group.len)
-            .map(|lane| {
-                let point = object.surface_point(surface.points.get(lane), surface.sides[lane]);
-                object.tint(&point) * (Rgb::ONE - crossings[lane].reflected)
-            })
-            .collect();
+        let tint = |lane| surface.tint(object, lane) * (Rgb::ONE - crossings[lane].reflected);
+        let tints: Vec<Rgb> = (0..group.len).map(tint).collect();
         (0..group.len).for_each(|lane| colours.set(lane, kept * colours.get(lane)));
 
         let is_through = |lane: usize| crossings[lane].onward.is_some();
@@ -276,14 +269,13 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             if W::SEES {
                 self.observer.see(Event::Begin(RayPurpose::Transmitted { tint: tints[0], kept }));
             }
-            let flip = |sides: &mut [Side]| sides.iter_mut().for_each(|side| *side = side.opposite());
-            flip(&mut surface.sides[..count]);
+            surface.flip_sides(count);
             let mut dir = shading.dir.resized(count);
             for lane in 0..count {
                 dir.set(lane, crossings[lane].onward.unwrap_or(DVec3::NEG_Z));
             }
             self.go(group, shading, RayKind::Transmitted, branches.through, is_through);
-            flip(&mut shading.surface.sides[..count]);
+            shading.surface.flip_sides(count);
             for lane in 0..group.len {
                 colours.set(lane, colours.get(lane) + tints[lane] * shading.behind.get(lane));
             }

@@ -1,7 +1,7 @@
 //! The points where the rays of a packet hit one object, and the rays that continue from there.
 
 use super::arrays::VectorList;
-use super::light::Colours;
+use super::light::{Colours, Reflectivities};
 use super::tree::OpenRay;
 use crate::geometry::ray::Side;
 use crate::scene::model::Object;
@@ -143,6 +143,16 @@ impl Surface {
         }
     }
 
+    /// Turns to the other sides of the points.
+    pub fn flip_sides(&mut self, count: usize) {
+        self.sides[..count].iter_mut().for_each(|side| *side = side.opposite());
+    }
+
+    /// Returns the tint of the object of this surface at a point, as it is seen.
+    pub fn tint(&self, object: &Object, lane: usize) -> Rgb {
+        object.tint(&object.surface_point(self.points.get(lane), self.sides[lane]))
+    }
+
     /// Returns how rays along `dir` cross the surface, by its interface.
     pub fn crossings(&self, interface: &dyn Interface, dir: View) -> Vec<Crossing> {
         let crossing = |lane: usize| {
@@ -183,6 +193,16 @@ impl Surface {
     /// Returns the specular reflectivity at a point.
     pub fn mirror(&self, lane: usize) -> Rgb {
         self.look.map_or_else(|| self.specular.get(lane), |look| look.specular)
+    }
+
+    /// Returns the reflectivities at the points, given the diffuse ones where they differ.
+    pub fn reflectivities<'s>(&'s self, diffuse: &'s VectorList, count: usize) -> Reflectivities<'s> {
+        match self.look {
+            Some(look) => Reflectivities::Uniform(look),
+            None => {
+                Reflectivities::Each { diffuse: diffuse.view(count), specular: self.specular.view(count) }
+            }
+        }
     }
 
     /// Returns the specular reflectivities at the points.
