@@ -38,7 +38,8 @@ pub trait FunctionOnLine {
         false
     }
 
-    /// Returns the degree of the function, if it is a polynomial, less than [`MOST`]: that isolates roots with fewer operations.
+    /// Returns the degree of the function, if it is a polynomial, less than [`MOST`](crate::polynomial::MOST): that isolates
+    /// roots with fewer operations.
     fn degree(&self) -> Option<usize> {
         None
     }
