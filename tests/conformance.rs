@@ -5,11 +5,10 @@
 mod common;
 
 use assert_cmd::cargo::cargo_bin_cmd;
-use common::{model, model_in, render, root};
+use common::{course, model, model_in, render};
 use image::{Rgb, RgbImage};
 use std::fs;
-use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use tabray::geometry::{MISS, Ray, Sight};
 use tabray::render::{Event, Plan, TraceObserver, trace};
 use tabray::scene::{Model, Profile};
@@ -48,17 +47,6 @@ inventory::submit! {
     Profile::new("doubled_cone", "the course's cone, mistake and all", "-4/6 * (y - 6)").slope("-8/6")
 }
 
-/// Returns the course's folder of this name, if it exists.
-fn course() -> Option<PathBuf> {
-    let folder = root().join("../shared/conformance");
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    // Not `eprintln!`, which the test harness hides.
-    let _ = writeln!(io::stderr(), "SKIPPED: the course's scenes are not in {}", folder.display());
-    None
-}
-
 /// Renders a scene with the program.
 fn rendered(scene: &Path, options: &[&str]) -> RgbImage {
     let run =
@@ -85,7 +73,7 @@ fn percent_near(actual: &RgbImage, expected: &RgbImage) -> f64 {
 
 #[test]
 fn the_courses_pictures_come_out_the_same() {
-    let Some(folder) = course() else { return };
+    let Some(folder) = course("conformance", "the course's scenes") else { return };
     let mut short = Vec::new();
     for (scene, percent) in SCENES {
         let path = folder.join(scene);
@@ -101,7 +89,7 @@ fn the_courses_pictures_come_out_the_same() {
 
 #[test]
 fn the_classic_method_says_why_the_default_and_the_courses_picture_differ() {
-    let Some(folder) = course() else { return };
+    let Some(folder) = course("conformance", "the course's scenes") else { return };
     let default = "this is the course's own method; the default, exact, differs at ";
     let course = "the course's own image may differ at ";
     let lost = "silhouettes that the course's method loses";
@@ -140,7 +128,7 @@ fn the_classic_method_says_why_the_default_and_the_courses_picture_differ() {
 
 #[test]
 fn the_courses_cone_is_all_explained_by_its_wrong_slope() {
-    let Some(folder) = course() else { return };
+    let Some(folder) = course("conformance", "the course's scenes") else { return };
     let path = folder.join("revsurf/revsurfa");
     let text = fs::read_to_string(path.with_extension("txt")).expect("a scene");
     let actual = render(&model(
@@ -200,7 +188,7 @@ fn is_explained(classic: &Model, exact: &Model, x: usize, y: usize) -> bool {
 
 #[test]
 fn the_exact_method_differs_only_where_it_should() {
-    let Some(folder) = course() else { return };
+    let Some(folder) = course("conformance", "the course's scenes") else { return };
     for (scene, _) in SCENES {
         let path = folder.join(scene).with_extension("txt");
         let text = fs::read_to_string(&path).expect("a scene");
@@ -224,7 +212,7 @@ fn the_exact_method_differs_only_where_it_should() {
 
 #[test]
 fn the_courses_smoothed_pictures_agree_but_for_chance() {
-    let Some(folder) = course() else { return };
+    let Some(folder) = course("conformance", "the course's scenes") else { return };
     for scene in SMOOTHED {
         let path = folder.join(scene);
         let actual = rendered(
@@ -257,7 +245,7 @@ fn the_courses_smoothed_pictures_agree_but_for_chance() {
 
 #[test]
 fn the_courses_dumps_come_out_the_same() {
-    let Some(folder) = course() else { return };
+    let Some(folder) = course("conformance", "the course's scenes") else { return };
     for scene in SCENES.map(|(scene, _)| scene).into_iter().chain(SMOOTHED) {
         let path = folder.join(scene);
         let run = cargo_bin_cmd!("tabray").arg("dump").arg(path.with_extension("txt")).assert().success();
@@ -269,7 +257,7 @@ fn the_courses_dumps_come_out_the_same() {
 
 #[test]
 fn the_notes_program_logs_the_dump_and_nothing_else() {
-    let Some(folder) = course() else { return };
+    let Some(folder) = course("conformance", "the course's scenes") else { return };
     for scene in SCENES.map(|(scene, _)| scene).into_iter().chain(SMOOTHED) {
         let path = folder.join(scene);
         let text = fs::read(path.with_extension("txt")).expect("a scene");

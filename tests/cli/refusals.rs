@@ -1,9 +1,8 @@
 //! Messages where the program refuses a request, apart from the faults of scenes.
 
 use crate::common::program::{folder, outcome, scene, tabray};
-use crate::common::root;
+use crate::common::{root, snapshots};
 use image::DynamicImage;
-use insta::Settings;
 use std::fs;
 use tempfile::TempDir;
 
@@ -61,10 +60,7 @@ texplane wall { material white  normal 0 0 1  point 0 0 -8  xdir 1 0 0  dimensio
 
 /// Runs a command line that is refused, and compares the messages with the snapshot of this name.
 fn is_explained_as_before(name: &str, line: &str) {
-    let mut settings = Settings::clone_current();
-    settings.set_snapshot_path(root().join("snapshots/refusals"));
-    settings.set_prepend_module_to_snapshot(false);
-    settings.set_omit_expression(true);
+    let settings = snapshots("refusals");
     let folder = workplace();
     let (status, out, err) = outcome(tabray(&folder).args(line.split(' ')));
     assert!(status == 1 || status == 2, "{line}: {status}");

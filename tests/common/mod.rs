@@ -8,6 +8,7 @@ use image::RgbImage;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tabray::render::Plan;
 use tabray::scene::{self, Model, Registry};
@@ -22,6 +23,26 @@ pub fn registry() -> &'static Registry {
 /// Returns the folder of the package.
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Returns settings for snapshots that are in this folder of `snapshots/`.
+pub fn snapshots(folder: &str) -> insta::Settings {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path(root().join("snapshots").join(folder));
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings
+}
+
+/// Returns a folder of the course's scenes, `what` these are, if it exists.
+pub fn course(folder: &str, what: &str) -> Option<PathBuf> {
+    let folder = root().join("../shared").join(folder);
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    // Not `eprintln!`, which the test harness hides.
+    let _ = writeln!(io::stderr(), "SKIPPED: {what} are not in {}", folder.display());
+    None
 }
 
 /// Returns the model of a scene's text, which must have no faults.

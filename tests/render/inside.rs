@@ -1,9 +1,8 @@
 //! Inside a pixel: `probe`, the notes' debug lines, and the auxiliary images.
 
-use crate::common::{load, model, render, root, scenes};
+use crate::common::{load, model, render, root, scenes, snapshots};
 use assert_cmd::cargo::cargo_bin_cmd;
 use glam::DVec3;
-use insta::Settings;
 use std::fs;
 use std::path::Path;
 use tabray::render::{Plan, RayStats, Renderer, trace};
@@ -31,10 +30,7 @@ fn debugged(scene: &str, x: usize, y: usize, lines: &[LogLine]) -> String {
 
 #[test]
 fn pixels_are_explained_as_before() {
-    let mut settings = Settings::clone_current();
-    settings.set_snapshot_path(root().join("snapshots/probe"));
-    settings.set_prepend_module_to_snapshot(false);
-    settings.set_omit_expression(true);
+    let settings = snapshots("probe");
     settings.bind(|| {
         insta::assert_snapshot!("in-the-light", explained("sphere/in-front.ray", 80, 60));
         insta::assert_snapshot!("nothing", explained("sphere/in-front.ray", 0, 119));

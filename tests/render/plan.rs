@@ -1,9 +1,8 @@
 //! No more work than a scene needs: the plan says so, and the counts of rays and tests show it.
 
 use crate::common;
-use crate::common::{model, model_in, registry, root, scenes, small};
+use crate::common::{model, model_in, registry, root, scenes, small, snapshots};
 use assert_cmd::cargo::cargo_bin_cmd;
-use insta::Settings;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -196,10 +195,7 @@ fn no_ray_is_counted_twice() {
 
 #[test]
 fn plans_are_as_before() {
-    let mut settings = Settings::clone_current();
-    settings.set_snapshot_path(root().join("snapshots/plan"));
-    settings.set_prepend_module_to_snapshot(false);
-    settings.set_omit_expression(true);
+    let settings = snapshots("plan");
     settings.bind(|| {
         for scene in [
             "gallery/marbles",

@@ -3,7 +3,7 @@
 //! A new scene needs only its file. Look at the results with `cargo run --release -- review --serve`, and accept them
 //! there.
 
-use crate::common::{load, registry, render, root};
+use crate::common::{load, registry, render, root, snapshots};
 use image::RgbImage;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use insta::internals::SnapshotContents;
@@ -91,10 +91,7 @@ fn settings(path: &Path) -> Option<Settings> {
 }
 
 fn folder(subject: &str) -> Settings {
-    let mut settings = Settings::clone_current();
-    settings.set_snapshot_path(root().join("snapshots").join(subject));
-    settings.set_prepend_module_to_snapshot(false);
-    settings.set_omit_expression(true);
+    let mut settings = snapshots(subject);
     // `glob!` would make up a suffix that depends on which other files exist.
     settings.remove_snapshot_suffix();
     settings.remove_input_file();

@@ -1,11 +1,10 @@
 //! Older scenes of the course, which consist of numbers: which texts are taken for one, and what becomes of them.
 
 use crate::common::program::{folder, outcome, tabray};
-use crate::common::{model, registry, render, root};
+use crate::common::{course, model, registry, render};
 use image::RgbImage;
 use std::fs;
-use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use tabray::scene::{self, Loaded, Report, Severity, dump};
 use tabray::world::Accuracy;
 
@@ -157,17 +156,6 @@ const PICTURES: [(&str, [u32; 2]); 28] = [
     ("tiled-1", DOWN),
 ];
 
-/// Returns the folder of the course's older scenes, if it exists.
-fn course() -> Option<PathBuf> {
-    let folder = root().join("../shared/dialect");
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    // Not `eprintln!`, which the test harness hides.
-    let _ = writeln!(io::stderr(), "SKIPPED: the course's older scenes are not in {}", folder.display());
-    None
-}
-
 fn load(path: &Path) -> Result<Loaded, Report> {
     let bytes = fs::read(path).expect("a scene");
     let folder = path.parent().expect("a folder");
@@ -188,7 +176,7 @@ fn percent_near(actual: &RgbImage, expected: &RgbImage, [columns, rows]: [u32; 2
 
 #[test]
 fn the_courses_older_scenes_look_as_their_programs_drew_them() {
-    let Some(folder) = course() else { return };
+    let Some(folder) = course("dialect", "the course's older scenes") else { return };
     let mut wrong = Vec::new();
     for (name, shift) in PICTURES {
         let expected =
@@ -209,7 +197,7 @@ fn the_courses_older_scenes_look_as_their_programs_drew_them() {
 
 #[test]
 fn the_courses_older_scenes_load_but_for_another_numbering() {
-    let Some(folder) = course() else { return };
+    let Some(folder) = course("dialect", "the course's older scenes") else { return };
     let mut refused = Vec::new();
     for entry in fs::read_dir(folder.join("scenes")).expect("the scenes") {
         let path = entry.expect("an entry").path();

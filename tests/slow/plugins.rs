@@ -2,7 +2,7 @@
 //! mistakes, whose messages the docs quote; and a separate crate with a plugin of its own.
 
 use super::copy::{self, Built, Files};
-use crate::common::{block_with, root};
+use crate::common::{block_with, root, snapshots};
 use image::RgbImage;
 use serde_json::Value;
 use std::fs;
@@ -229,10 +229,7 @@ fn a_constructor_that_asks_for_another_type_is_told() {
 
 #[test]
 fn plugins_that_contradict_each_other_are_told_with_their_places() {
-    let mut settings = insta::Settings::clone_current();
-    settings.set_snapshot_path(root().join("snapshots/refusals"));
-    settings.set_prepend_module_to_snapshot(false);
-    settings.set_omit_expression(true);
+    let settings = snapshots("refusals");
     let told = BUILT.says_of("rival", &["list"], "");
     settings.bind(|| insta::assert_snapshot!("plugins-that-contradict-each-other", told));
 }

@@ -1,6 +1,6 @@
 //! What is proven of the pixels of every scene.
 
-use crate::common::{load, root, scenes};
+use crate::common::{load, root, scenes, snapshots};
 use rayon::prelude::*;
 use std::path::Path;
 use tabray::render::Plan;
@@ -35,10 +35,7 @@ const ERROR: f64 = 2.0 / 255.0;
 fn as_many_pixels_are_proven_as_before() {
     // Deep reflections take a stack as large as those of the program's threads.
     let table = renderer_with(2).expect("threads").run(table);
-    let mut settings = insta::Settings::clone_current();
-    settings.set_snapshot_path(root().join("snapshots/proofs"));
-    settings.set_prepend_module_to_snapshot(false);
-    settings.set_omit_expression(true);
+    let settings = snapshots("proofs");
     settings.bind(|| insta::assert_snapshot!("shares", table));
 }
 
