@@ -189,7 +189,7 @@ impl AttributeChecker<'_, '_> {
         if words.iter().any(|word| word.form == Form::Faulty) {
             return None;
         }
-        if let Err(fault) = are_values(attribute, title, word, words) {
+        if let Some(fault) = fault_of_values(attribute, title, word, words) {
             self.report.add(fault);
             return None;
         }
@@ -220,7 +220,7 @@ impl AttributeChecker<'_, '_> {
                 }
             },
         };
-        if let Err(fault) = keeps_rules(attribute, &datum, title, word, words) {
+        if let Some(fault) = fault_of_value(attribute, &datum, title, word, words) {
             self.report.add(fault);
             return None;
         }
@@ -246,20 +246,20 @@ impl AttributeChecker<'_, '_> {
     }
 }
 
-/// Checks that values can be those of an attribute at all, and are as many as it takes.
-fn are_values(
+/// Returns what is wrong if values cannot be those of an attribute at all, or are not as many as it takes.
+fn fault_of_values(
     attribute: &dyn Attribute,
     title: &str,
     word: &Word<'_>,
     words: &[Word<'_>],
-) -> Result<(), Fault> {
+) -> Option<Fault> {
     let truth = words.iter().find(|word| word.form == Form::Truth);
     if let (false, Some(truth)) = (matches!(attribute.value_type(), Type::Truth), truth) {
         let message = format!("`{}` cannot be the value of an attribute", truth.text);
-        return Err(Fault::error(truth.place.clone(), message).help(VALUES));
+        return Some(Fault::error(truth.place.clone(), message).help(VALUES));
     }
     if attribute.arity().allow(words.len()) {
-        return Ok(());
+        return None;
     }
     let more = if words.len() < MAX_VALUES { "" } else { " or more" };
     let count = format!("{}{more}", words.len());
@@ -268,27 +268,27 @@ fn are_values(
         _ => attribute.arity().not(&count),
     };
     let message = format!("`{}` of {title} takes {}, not {not}", word.text, attribute.takes());
-    Err(Fault::error(whole(word, words), message).help(meaning(attribute)))
+    Some(Fault::error(whole(word, words), message).help(meaning(attribute)))
 }
 
-/// Checks that an attribute's value satisfies its rule, and that squares of it do not overflow.
-fn keeps_rules(
+/// Returns what is wrong if an attribute's value breaks its rule, or if squares of it overflow.
+fn fault_of_value(
     attribute: &dyn Attribute,
     datum: &Datum,
     title: &str,
     word: &Word<'_>,
     words: &[Word<'_>],
-) -> Result<(), Fault> {
+) -> Option<Fault> {
     if !attribute.allows(datum) {
         let given = words.iter().map(|word| word.text.as_ref()).collect::<Vec<_>>().join(" ");
         let message = format!("`{}` of {title} must be {}, not {given}", word.text, attribute.rule());
         let place = words.first().map_or(word.place.clone(), |first| whole(first, words));
-        return Err(Fault::error(place, message).help(meaning(attribute)));
+        return Some(Fault::error(place, message).help(meaning(attribute)));
     }
-    let Some((index, why)) = attribute.beyond_squares(datum) else { return Ok(()) };
+    let (index, why) = attribute.beyond_squares(datum)?;
     let message = format!("`{}` of {title} is {why}", attribute.name());
     let place = words.get(index).map_or(word.place.clone(), |word| word.place.clone());
-    Err(Fault::error(place, message).help(format!(
+    Some(Fault::error(place, message).help(format!(
         "lengths and coordinates other than 0 must be between {MIN_LENGTH:e} and {MAX_LENGTH:e} world units"
     )))
 }

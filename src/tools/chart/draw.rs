@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::canvas::{Align, BLUE, Canvas, GREEN, GREY, LIGHT, Letters, Marker, ORANGE, PURPLE, VERMILION};
 use super::data::{Chart, Family, Panel, Point, Subject};
-use super::labels::{self, PlotArea};
+use super::labels::{self, PlotArea, Segment};
 use plotters::prelude::{BLACK, BitMapBackend, DrawingBackend, IntoDrawingArea, RGBColor, SVGBackend};
 use std::io;
 use std::iter;
@@ -199,7 +199,7 @@ fn draw_points<D: DrawingBackend>(
     canvas: &Canvas<D>,
     panel: &Panel,
     points: &[&Point],
-    lines: &[((f64, f64), (f64, f64))],
+    lines: &[Segment],
     axes: &Axes,
 ) -> io::Result<()> {
     let places: Vec<_> = points.iter().map(|point| axes.place(point)).collect();

@@ -1,6 +1,7 @@
 //! Tests of the search for roots.
 
 use super::*;
+use crate::polynomial::Polynomial;
 use std::cell::Cell;
 
 /// A double root at 1, and a single one at 3.
