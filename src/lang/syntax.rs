@@ -132,7 +132,7 @@ impl Syntax {
     }
 
     /// Writes a word that is a value. The notes' syntax needs quotes only where something else would be read.
-    fn word(self, word: &str) -> String {
+    pub(crate) fn word(self, word: &str) -> String {
         let splits = |c: char| c.is_whitespace() || c == '{' || c == '}';
         let bare = !word.is_empty() && !word.starts_with(['#', '"']) && !word.contains(splits);
         if self == Self::Notes && bare { word.to_owned() } else { quoted(word) }

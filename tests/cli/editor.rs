@@ -36,7 +36,8 @@ impl Client {
         let output = BufReader::new(program.stdout.take().expect("a pipe"));
         let mut client = Self { program, input, output, asked: 0, told: VecDeque::new() };
         let item = json!({ "completionItem": { "snippetSupport": true } });
-        let capabilities = json!({ "textDocument": { "completion": item } });
+        let action = json!({ "disabledSupport": true });
+        let capabilities = json!({ "textDocument": { "completion": item, "codeAction": action } });
         let begun = client.ask("initialize", json!({ "capabilities": capabilities })).expect("capabilities");
         assert_eq!(begun["serverInfo"]["name"], "tabray");
         client.note("initialized", json!({}));

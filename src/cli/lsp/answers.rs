@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use tabray_core::text::short;
 use tabray_lang::editor::{self, CompletionKind, Files, Group, Location, Position, View};
 use tabray_lang::syntax::Syntax;
 
@@ -20,6 +21,8 @@ pub struct Server<'r> {
     faults: &'r Faults,
     /// Whether the editor fills in places of what it completes.
     has_snippets: bool,
+    /// Whether the editor shows why an action is not possible.
+    has_disabled: bool,
 }
 
 /// A request about a text: its parameters, and the text.
@@ -45,7 +48,9 @@ impl<'r> Server<'r> {
     pub fn new(documents: Documents<'r>, faults: &'r Faults, parameters: &Value) -> Self {
         let item = &parameters["capabilities"]["textDocument"]["completion"]["completionItem"];
         let has_snippets = item["snippetSupport"].as_bool() == Some(true);
-        Self { documents, faults, has_snippets }
+        let action = &parameters["capabilities"]["textDocument"]["codeAction"];
+        let has_disabled = action["disabledSupport"].as_bool() == Some(true);
+        Self { documents, faults, has_snippets, has_disabled }
     }
 
     /// Takes note of what happens in the editor.
@@ -328,6 +333,31 @@ impl<'r> Server<'r> {
                 "edit": { "changes": { uri: [edit] } },
             }));
         }
+        actions.extend(self.look_at(request, &wanted));
         Ok(actions.into())
+    }
+
+    /// Offers to turn a `camera` into a `look_at`, or says why that is not possible.
+    fn look_at(&self, request: &TextRequest, wanted: &Range<usize>) -> Option<Value> {
+        let mut action =
+            json!({ "title": "turn into a `look_at` with the same view", "kind": "refactor.rewrite" });
+        match editor::look_at(&request.view, wanted)? {
+            Ok(turned) => {
+                let turn = turned.change.turn;
+                if turn > 0.0 {
+                    let turn = short(turn);
+                    action["title"] =
+                        format!("turn into a `look_at`: its view turns by {turn} degrees, to the middle of the image plane").into();
+                }
+                let edit = |(place, with): &(Range<usize>, String)| json!({ "range": range(&request.view.text, place), "newText": with });
+                let edits: Vec<_> = turned.edits.iter().map(edit).collect();
+                let uri = self.documents.uri(&request.path);
+                action["edit"] = json!({ "changes": { uri: edits } });
+            }
+            Err(reason) => {
+                action["disabled"] = json!({ "reason": reason });
+            }
+        }
+        (self.has_disabled || action.get("disabled").is_none()).then_some(action)
     }
 }

@@ -68,7 +68,7 @@ pub fn capabilities() -> Value {
         "referencesProvider": true,
         "documentHighlightProvider": true,
         "documentSymbolProvider": true,
-        "codeActionProvider": { "codeActionKinds": ["quickfix"] },
+        "codeActionProvider": { "codeActionKinds": ["quickfix", "refactor.rewrite"] },
         "colorProvider": true,
         "documentFormattingProvider": true,
         "foldingRangeProvider": true,

@@ -81,6 +81,7 @@ pub async fn answer(request: &Request<Bytes>, session: &Session, work: &Work) ->
         return match path[..] {
             ["try"] => session.try_out(request.body()),
             ["move"] => camera::move_by(session, request.body()),
+            ["turn"] => camera::turn(session),
             ["discard"] => session.discard(),
             ["write"] => session.write(),
             _ => serve::text(StatusCode::NOT_FOUND, "there is no such page\n"),

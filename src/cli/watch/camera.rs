@@ -2,7 +2,7 @@
 
 use super::fields;
 use super::frame::Frame;
-use super::session::Session;
+use super::session::{Session, refusal};
 use crate::serve::{self, Body};
 use glam::DVec3;
 use hyper::{Response, StatusCode};
@@ -10,10 +10,13 @@ use serde::{Deserialize, Serialize};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::trace;
 use tabray_core::scene::store::Record;
-use tabray_core::text;
-use tabray_lang::editor::{self, Text};
+use tabray_core::text::{self, short};
+use tabray_lang::editor::{self, Change, Text, View};
 use tabray_lang::registry::Registry;
 use tabray_tools::navigation::{self, CameraPose, Movement};
+
+/// Said before there is an image.
+const NO_CAMERA: &str = "there is no camera yet";
 
 /// The state of a camera that is about to be moved.
 #[derive(Serialize)]
@@ -24,6 +27,8 @@ struct CameraState<'c> {
     stand: CameraPose,
     /// Whether its image plane stays in its place when the viewer moves.
     is_window: bool,
+    /// Whether it is a `camera`, in place of which there may be a `look_at`.
+    turns: bool,
 }
 
 /// A movement of the camera, as a page sends it.
@@ -51,11 +56,11 @@ pub fn point(frame: &Frame, [x, y]: [usize; 2]) -> [f64; 3] {
 /// Tells where the camera stands, or why it cannot be moved.
 pub fn state(session: &Session) -> Response<Body> {
     let Some(frame) = session.feed.last() else {
-        return serve::text(StatusCode::CONFLICT, "there is no camera yet\n");
+        return refusal(NO_CAMERA);
     };
     let record = &frame.model.camera.args;
     if let Some(reason) = fixed(session.registry, &frame, record) {
-        return serve::text(StatusCode::CONFLICT, &format!("{reason}\n"));
+        return refusal(&reason);
     }
     let (name, camera) = (record.name(), record.args());
     let mut stand = navigation::camera_pose(&camera);
@@ -63,14 +68,20 @@ pub fn state(session: &Session) -> Response<Body> {
         let tried = session.trial_values.get(name, attribute);
         *values = tried.filter(|tried| tried.len() == values.len()).unwrap_or_else(|| values.clone());
     }
-    let state = CameraState { name, stand, is_window: navigation::is_window(&camera) };
+    let view = view(session.registry, &frame);
+    let turns = view.entity(name).is_some_and(|entity| editor::look_at(&view, &entity.place).is_some());
+    let state = CameraState { name, stand, is_window: navigation::is_window(&camera), turns };
     serve::content(StatusCode::OK, "application/json", text::json(&state))
+}
+
+fn view(registry: &Registry, frame: &Frame) -> View {
+    editor::read(registry, &frame.name, Text::new(frame.text.clone()))
 }
 
 /// Returns why a camera cannot be moved; `None` where it can be.
 fn fixed(registry: &Registry, frame: &Frame, camera: &Record) -> Option<String> {
     let (name, args) = (camera.name(), camera.args());
-    let view = editor::read(registry, &frame.name, Text::new(frame.text.clone()));
+    let view = view(registry, frame);
     let mut moves = navigation::attributes(&args).map(|(attribute, _)| attribute).peekable();
     if moves.peek().is_none() {
         return Some(format!(
@@ -97,7 +108,7 @@ pub fn move_by(session: &Session, body: &[u8]) -> Response<Body> {
     let movement = Movement { orbit, pan, dolly };
     let after = (dolly > 0.0).then(|| navigation::moved(&record.args(), &stand, &movement, around)).flatten();
     let Some(after) = after else {
-        return serve::text(StatusCode::CONFLICT, "the camera cannot go there\n");
+        return refusal("the camera cannot go there");
     };
     for (attribute, values) in &after {
         if stand.get(attribute) != Some(values)
@@ -107,4 +118,35 @@ pub fn move_by(session: &Session, body: &[u8]) -> Response<Body> {
         }
     }
     session.done("moved\n")
+}
+
+/// Turns the camera into a `look_at` in the scene's file, with the same view if there is one. What is tried out of the camera is lost.
+pub fn turn(session: &Session) -> Response<Body> {
+    let Some(frame) = session.feed.last() else { return refusal(NO_CAMERA) };
+    let (name, mut change) = (frame.model.camera.args.name(), Change::default());
+    let edited = session.edit(|text| {
+        let view = editor::read(session.registry, &frame.name, Text::new(text));
+        let camera =
+            view.entity(name).ok_or_else(|| format!("`{name}` is repeated or included: change the text"))?;
+        let turned = editor::look_at(&view, &camera.place).ok_or("only a `camera` can become a `look_at`")?;
+        let turned = turned.map_err(|reason| format!("the camera cannot become a `look_at`: {reason}"))?;
+        change = turned.change;
+        Ok(turned.applied(&view.text).as_str().to_owned())
+    });
+    match edited {
+        Ok(()) => {
+            session.trial_values.clear_of(name);
+            let Change { shift, turn } = change;
+            let view = match turn {
+                0.0 => format!("pixels shift by up to {}", short(shift)),
+                turn => {
+                    format!("the view turns by {} degrees, to the middle of the image plane", short(turn))
+                }
+            };
+            session.done(&format!(
+                "turned into a look_at: {view}, and planes and triangles do not end at the image plane\n"
+            ))
+        }
+        Err(reason) => refusal(&reason),
+    }
 }

@@ -79,32 +79,41 @@ impl Session {
 
     /// Writes the values that are tried out into the scene's file, unless the file is another than the page shows.
     pub fn write(&self) -> Response<Body> {
-        let refuse = |reason: String| serve::text(StatusCode::CONFLICT, &reason);
+        let file = self.path.display().to_string();
+        let written = |text: &str| {
+            let written = self.trial_values.written(self.registry, &file, text);
+            written.map_err(|name| format!("`{name}` has no place of its own in the text: change the text"))
+        };
+        match self.edit(written) {
+            Ok(()) => {
+                self.trial_values.clear();
+                self.done("written\n")
+            }
+            Err(reason) => refusal(&reason),
+        }
+    }
+
+    /// Edits the scene's file, unless it is another than the page shows.
+    ///
+    /// # Errors
+    /// Why it stays as it is.
+    pub fn edit(&self, edited: impl FnOnce(&str) -> Result<String, String>) -> Result<(), String> {
         let text = match fs::read(&self.path).map(String::from_utf8) {
             Ok(Ok(text)) => text,
-            Ok(Err(_)) => return refuse("the scene is not in UTF-8: change it in an editor\n".to_owned()),
+            Ok(Err(_)) => return Err("the scene is not in UTF-8: change it in an editor".to_owned()),
             Err(error) => {
-                return refuse(format!("the scene cannot be read: {}\n", tabray_core::text::reason(&error)));
+                return Err(format!("the scene cannot be read: {}", tabray_core::text::reason(&error)));
             }
         };
         let shown = self.feed.text();
         if shown.as_deref() != Some(text.strip_prefix('\u{feff}').unwrap_or(&text)) {
-            return refuse("the scene has changed meanwhile: try again\n".to_owned());
+            return Err("the scene has changed meanwhile: try again".to_owned());
         }
-        let file = self.path.display().to_string();
-        let written = match self.trial_values.written(self.registry, &file, &text) {
-            Ok(written) => written,
-            Err(name) => {
-                return refuse(format!("`{name}` has no place of its own in the text: change the text\n"));
-            }
-        };
-        match output::replace(&self.path, written.as_bytes()) {
-            Ok(()) => {}
-            Err(Failure::Failed(reason)) => return refuse(format!("{reason}\n")),
-            Err(_) => return refuse("the scene cannot be written\n".to_owned()),
+        match output::replace(&self.path, edited(&text)?.as_bytes()) {
+            Ok(()) => Ok(()),
+            Err(Failure::Failed(reason)) => Err(reason),
+            Err(_) => Err("the scene cannot be written".to_owned()),
         }
-        self.trial_values.clear();
-        self.done("written\n")
     }
 
     /// Tells the program that the values have changed, and the page that it was done.
@@ -112,4 +121,9 @@ impl Session {
         (self.changed)();
         serve::text(StatusCode::OK, what)
     }
+}
+
+/// Says why something is not done.
+pub fn refusal(reason: &str) -> Response<Body> {
+    serve::text(StatusCode::CONFLICT, &format!("{reason}\n"))
 }

@@ -48,6 +48,11 @@ impl TrialValues {
         values.iter().map(|value| value.parse().ok()).collect()
     }
 
+    /// Returns to the values of the text in one object.
+    pub fn clear_of(&self, name: &str) {
+        self.all().retain(|(of, _), _| of != name);
+    }
+
     /// Returns to the values of the text.
     pub fn clear(&self) {
         self.all().clear();
@@ -80,24 +85,8 @@ fn write(view: &View, name: &str, attribute: &str, values: &[String]) -> Option<
     let entity = view.entity(name)?;
     let is_meant = |given: &&editor::Attribute| given.known.is_some_and(|known| known.name() == attribute);
     let Some(given) = entity.attributes.iter().find(is_meant) else {
-        let usage = match (view.syntax, values) {
-            (Syntax::Notes, values) => format!("{attribute} {}", values.join(" ")),
-            (Syntax::Toml, [value]) => format!("{attribute} = {value}"),
-            (Syntax::Toml, values) => format!("{attribute} = [{}]", values.join(", ")),
-        };
-        let (at, is_first) = match entity.attributes.last() {
-            Some(last) => (last.end, false),
-            None => (entity.body.start, true),
-        };
-        let is_on_lines = view.slice(entity.place.clone()).contains('\n');
-        let before = view.slice(0..at);
-        let line = &before[before.rfind('\n').map_or(0, |end| end + 1)..];
-        let indent = &line[..line.len() - line.trim_start().len()];
-        let between = match view.syntax {
-            _ if is_on_lines => format!("\n{indent}"),
-            Syntax::Toml if !is_first => ", ".to_owned(),
-            _ => "  ".to_owned(),
-        };
+        let (at, between) = view.room(entity);
+        let usage = view.syntax.pair(attribute, values);
         return Some(view.text.edited(at..at, &format!("{between}{usage}")));
     };
     let (first, last) = (given.values.first()?, given.values.last()?);

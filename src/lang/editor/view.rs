@@ -202,6 +202,25 @@ impl View {
         found.next().filter(|_| found.next().is_none())
     }
 
+    /// Returns the place for one more attribute of an entity, and what must stand between it and those before.
+    pub fn room(&self, entity: &Entity) -> (usize, String) {
+        let (at, is_first) = match entity.attributes.last() {
+            Some(last) => (last.end, false),
+            None => (entity.body.start, true),
+        };
+        let (before, after) = self.text.as_str().split_at(at);
+        if self.slice(entity.place.clone()).contains('\n') {
+            let line = &before[before.rfind('\n').map_or(0, |end| end + 1)..];
+            let indent = &line[..line.len() - line.trim_start().len()];
+            // A comment stays with what it is about.
+            let rest = after.lines().next().unwrap_or_default();
+            let is_last = !is_first && (rest.trim().is_empty() || rest.trim_start().starts_with('#'));
+            return (at + if is_last { rest.len() } else { 0 }, format!("\n{indent}"));
+        }
+        let between = if self.syntax == Syntax::Toml && !is_first { ", " } else { "  " };
+        (at, between.to_owned())
+    }
+
     /// Tells whether a text computes a value of an attribute of numbers.
     pub fn computes(&self, entity: &Entity, attribute: &str) -> bool {
         let mut given = entity

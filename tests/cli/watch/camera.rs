@@ -52,6 +52,14 @@ pub fn numbers<const N: usize>(text: &str, attribute: &str) -> [f64; N] {
     })
 }
 
+/// Sends a body to a path, as a page does; returns the status and what is said.
+fn post(watching: &Watching, path: &str, body: &str) -> (u16, String) {
+    let origin = format!("http://127.0.0.1:{}", watching.port);
+    let mut answer =
+        client().post(watching.url(path)).header("Origin", origin).send(body).expect("an answer");
+    (answer.status().as_u16(), answer.body_mut().read_to_string().expect("text"))
+}
+
 pub fn distance(one: [f64; 3], other: [f64; 3]) -> f64 {
     one.iter().zip(other).map(|(one, other)| (one - other).powi(2)).sum::<f64>().sqrt()
 }
@@ -158,6 +166,66 @@ fn the_notes_camera_moves_before_its_image_plane() {
 }
 
 #[test]
+fn a_camera_that_turns_into_a_look_at_shows_the_same_view() {
+    for (pixels, plane) in [("60 60", "6 6  viewpoint 3 3 6"), ("80 60", "8 6  viewpoint 4 3 6")] {
+        let text = ball("9 0 0").replace("pixeldim 80 60", &format!("pixeldim {pixels}"));
+        let text = text.replace("8 6 viewpoint 4 3 6", plane);
+        let watching = Watching::text(&text);
+        watching.events().until("scene");
+        let (status, said) = post(&watching, "turn", "");
+        assert_eq!(status, 200, "{said}");
+        let after = fs::read_to_string(watching.scene()).expect("a scene");
+        assert!(after.starts_with("look_at eye {") && after.contains("rules notes }"), "{after}");
+        let [before, after] = [text, after].map(|text| render(&model(&text)));
+        let pixels = before.bytes().chunks_exact(3).zip(after.bytes().chunks_exact(3));
+        let others = pixels
+            .filter(|(before, after)| before.iter().zip(*after).any(|(one, other)| one.abs_diff(*other) > 1));
+        // Where the image is not square, its pixels shift by a fourteenth of one at the edges.
+        let most = if plane.starts_with('6') { 0 } else { 4 };
+        assert!(others.count() <= most);
+    }
+}
+
+#[test]
+fn a_camera_that_looks_from_aside_turns_to_the_middle_and_the_answer_says_by_how_much() {
+    let watching = Watching::text(&ball("9 0 0").replace("viewpoint 4 3", "viewpoint 4 3.5"));
+    watching.events().until("scene");
+    let (status, said) = post(&watching, "turn", "");
+    assert!(status == 200 && said.contains("the view turns by 4.76 degrees"), "{status} {said}");
+    let after = fs::read_to_string(watching.scene()).expect("a scene");
+    assert!(after.contains("target 4 3 0 position 4 3.5 6"), "{after}");
+}
+
+#[test]
+fn a_camera_that_no_look_at_replaces_stays_and_the_answer_says_why() {
+    for (text, reason) in [
+        (ball("9 0 0").replace("worlddim 8 6", "worlddim 8 8"), "as wide as high"),
+        (LOOK_AT.to_owned(), "only a `camera` can become a `look_at`"),
+    ] {
+        let watching = Watching::text(&text);
+        watching.events().until("scene");
+        let (status, said) = post(&watching, "turn", "");
+        assert!(status == 409 && said.contains(reason), "{status} {said}");
+        assert_eq!(fs::read_to_string(watching.scene()).expect("a scene"), text);
+    }
+}
+
+#[test]
+fn a_key_turns_the_notes_camera_into_one_that_orbits() {
+    let Some((watching, browser)) = opened(&ball("9 0 0")) else { return };
+    browser.press('c');
+    browser.wait("!document.querySelector('#turn').hidden");
+    browser.press('l');
+    browser.wait("document.querySelector('#fields p span').textContent.startsWith('turned')");
+    browser.wait("document.querySelector('#turn').hidden");
+    let [from, to] = [[0, 0], [100, 0]].map(|by| middle(&browser, by));
+    browser.drag(0, None, &[from, to]);
+    let text = written(&watching, &browser);
+    let position = numbers(&text, "position");
+    assert!(position[0] < 3.0 && (distance(position, [4.0, 3.0, -1.0]) - 7.0).abs() < 0.05, "{text}");
+}
+
+#[test]
 fn a_camera_that_is_computed_says_why_it_stays() {
     let text = LOOK_AT.replace("position 4", "position \"2+2\"");
     let Some((watching, browser)) = opened(&text) else { return };
@@ -196,11 +264,7 @@ fn outside_of_the_mode_a_drag_moves_the_sheet_alone() {
 fn what_is_no_movement_is_refused() {
     let watching = Watching::text(LOOK_AT);
     watching.events().until("scene");
-    let go = |body: &str| {
-        let post = client().post(watching.url("move"));
-        let origin = format!("http://127.0.0.1:{}", watching.port);
-        post.header("Origin", origin).send(body).expect("an answer").status().as_u16()
-    };
+    let go = |body: &str| post(&watching, "move", body).0;
     let by = |position: &str, dolly: &str| {
         format!(
             "{{\"stand\":{{\"position\":{position}}},\"around\":[4,3,-1],\"orbit\":[1,1],\"pan\":[0,0],\"dolly\":{dolly}}}"

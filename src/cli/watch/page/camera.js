@@ -4,8 +4,8 @@
 let steers = false
 // The point around which it goes, and whether it was clicked: the middle of the image is another one after a pan.
 let around = null, isClicked = false
-// Whether the camera's image plane stays in its place.
-let isWindow = false
+// The camera's name, whether its image plane stays in its place, and whether it can become a camera without one.
+let cameraName = '', isWindow = false, turns = false
 
 // By how many degrees the scene turns when the pointer moves by a pixel of the screen.
 const TURN = 0.3
@@ -15,13 +15,14 @@ const TOGETHER = 400
 // Why the camera stays where it is.
 let complaint = ''
 
-const WINDOW = '; the image plane stays: from nearer, more is seen through it'
+const WINDOW = '; the image plane stays, which shears what is seen from the side'
+const TURNS = ': key l turns the camera into a look_at'
 const hint = () => {
   if (complaint) return complaint
   const [click, more, zoom] = matchMedia('(pointer: coarse)').matches
     ? ['tap', 'with two fingers', 'pinch'] : ['click', 'with Shift', 'use the wheel']
   if (!steers) return `${click} a pixel to explain it, ${zoom} to zoom, drag to pan`
-  return `drag to orbit, ${more} to pan, ${zoom} to go nearer; ${click} the point to go around${isWindow ? WINDOW : ''}`
+  return `drag to orbit, ${more} to pan, ${zoom} to go nearer; ${click} the point to go around${isWindow ? WINDOW : ''}${turns ? TURNS : ''}`
 }
 
 /// The point that a pixel shows, or will show when the image that comes has come.
@@ -59,7 +60,6 @@ const send = async (gesture) => {
     gesture.isRefused = !answer?.ok
     if (gesture.isRefused) return complain(answer)
     gesture.from = await answer.json()
-    isWindow = gesture.from.is_window
     for (const attribute of Object.keys(gesture.from.stand)) tried.add(`${gesture.from.name} ${attribute}`)
   }
   while (gesture.wanted) {
@@ -108,12 +108,36 @@ const nudge = ({ key, shiftKey }) => {
   return true
 }
 
+/// Learns what the camera is, and offers one that orbits truly in place of one whose image plane stays.
+const learnCamera = async () => {
+  const answer = await fetch(`camera${token}`).catch(() => null)
+  const camera = answer?.ok ? await answer.json() : null
+  cameraName = camera?.name ?? ''
+  isWindow = camera?.is_window ?? false
+  turns = camera?.turns ?? false
+  $('#turn').hidden = !steers || !turns
+  $('#under').textContent = hint()
+}
+
+/// Turns the camera into one that orbits truly.
+const turnCamera = async () => {
+  if ($('#turn').hidden) return
+  await queue
+  const answer = await post('turn', '')
+  await complain(answer)
+  stage.focus()
+  if (!answer?.ok) return
+  $('#fields p span').textContent = (await answer.text()).trim()
+  for (const one of tried) if (one.startsWith(`${cameraName} `)) tried.delete(one)
+}
+
 const toggleSteering = () => {
   steers = !steers
   $('#steer').setAttribute('aria-pressed', steers)
   stage.classList.toggle('steers', steers)
   if (!isClicked) around = null
   complaint = ''
+  learnCamera()
   $('#under').textContent = hint()
   if (!steers) return
   // The camera's values are those that change.

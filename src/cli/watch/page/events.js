@@ -37,6 +37,7 @@ const follow = () => {
     renewTab()
     if (mark && !drag?.gesture) explain(mark)
     if (shown) refresh()
+    if (steers && !drag) learnCamera()
     if (layer !== 'picture') fetchLayer()
   })
   on('part', (data) => {

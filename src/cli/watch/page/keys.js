@@ -8,6 +8,7 @@ $('#fit').addEventListener('click', fit)
 $('#in').addEventListener('click', () => larger(1))
 $('#out').addEventListener('click', () => larger(-1))
 $('#steer').addEventListener('click', toggleSteering)
+$('#turn').addEventListener('click', turnCamera)
 $('#told button').addEventListener('click', close)
 $('#fields h2 button').addEventListener('click', close)
 
@@ -33,6 +34,7 @@ document.addEventListener('keydown', (event) => {
   else if (key === 'n') goOn(1)
   else if (key === 'p') goOn(-1)
   else if (key === 'c') toggleSteering()
+  else if (key === 'l') turnCamera()
   else if (steers && nudge(event)) { /* the camera moves */ }
   else if (key === '+') larger(1)
   else if (key === '-') larger(-1)
