@@ -81,6 +81,54 @@ fn a_new_scene_fits_its_mesh_at_any_scale() {
 }
 
 #[test]
+fn a_new_scene_of_any_format_looks_the_same_at_any_scale() {
+    let folder = folder();
+    for format in ["obj", "ply", "stl"] {
+        let picture = |scale: f64| {
+            // A tetrahedron.
+            let corners = [[3.0, 1.0, 2.0], [5.0, 1.0, 2.0], [3.0, 2.0, 2.0], [3.5, 1.5, 4.0]];
+            let corners = corners.map(|corner| corner.map(|side| (side * scale).to_string()).join(" "));
+            let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+            let of = |line: &dyn Fn([usize; 3]) -> String| {
+                faces.iter().map(|face| line(*face)).collect::<String>()
+            };
+            let text = match format {
+                "obj" => {
+                    corners.iter().map(|corner| format!("v {corner}\n")).collect::<String>()
+                        + &of(&|[a, b, c]| format!("f {} {} {}\n", a + 1, b + 1, c + 1))
+                }
+                "ply" => format!(
+                    "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\n\
+                     element face 4\nproperty list uchar int vertex_indices\nend_header\n{}\n{}",
+                    corners.join("\n"),
+                    of(&|[a, b, c]| format!("3 {a} {b} {c}\n"))
+                ),
+                _ => format!(
+                    "solid s\n{}endsolid s\n",
+                    of(&|face| {
+                        let lines = face.map(|corner| format!("vertex {}\n", corners[corner])).concat();
+                        format!("facet normal 0 0 0\nouter loop\n{lines}endloop\nendfacet\n")
+                    })
+                ),
+            };
+            let (file, name) = (format!("part.{format}"), format!("{format}-{scale}.ray"));
+            fs::write(folder.path().join(&file), text).expect("a file");
+            let (status, _, err) = outcome(tabray(&folder).args(["new", "scene", &name, "--mesh", &file]));
+            assert_eq!(status, 0, "{err}");
+            let mut model = load(&folder.path().join(name));
+            (model.camera.value.pixels, model.camera.value.samples) = ([40, 30], 1);
+            render(&model)
+        };
+        let [small, large] = [1e-3, 1e6].map(picture);
+        let differ =
+            small.iter().zip(large.iter()).filter(|(small, large)| small.abs_diff(**large) > 2).count();
+        // Coordinates have few digits.
+        assert!(differ <= small.len() / 100, "{format}: {differ} of {} bytes", small.len());
+        assert!(small.iter().any(|byte| *byte > 120), "{format}");
+    }
+}
+
+#[test]
 fn a_mesh_is_described() {
     let (folder, text) = (folder(), |out: Vec<u8>| String::from_utf8(out).expect("a text"));
     for (name, is_open) in [("closed.obj", false), ("open.obj", true)] {
