@@ -4,6 +4,7 @@ use crate::common::{model, render, root};
 use crate::watch::browser::Browser;
 use crate::watch::page::{canvas, click, opened, told};
 use crate::watch::program::{Watching, ball, client};
+use image::Rgb;
 use std::fs;
 use tempfile::TempDir;
 
@@ -177,12 +178,13 @@ fn a_camera_that_turns_into_a_look_at_shows_the_same_view() {
         let after = fs::read_to_string(watching.scene()).expect("a scene");
         assert!(after.starts_with("look_at eye {") && after.contains("rules notes }"), "{after}");
         let [before, after] = [text, after].map(|text| render(&model(&text)));
-        let pixels = before.bytes().chunks_exact(3).zip(after.bytes().chunks_exact(3));
-        let others = pixels
-            .filter(|(before, after)| before.iter().zip(*after).any(|(one, other)| one.abs_diff(*other) > 1));
+        let is_other = |(before, after): &(&Rgb<u8>, &Rgb<u8>)| {
+            before.0.iter().zip(after.0).any(|(one, other)| one.abs_diff(other) > 1)
+        };
+        let others = before.pixels().zip(after.pixels()).filter(is_other).count();
         // Where the image is not square, its pixels shift by a fourteenth of one at the edges.
         let most = if plane.starts_with('6') { 0 } else { 4 };
-        assert!(others.count() <= most);
+        assert!(others <= most, "{others}");
     }
 }
 
@@ -191,7 +193,7 @@ fn a_camera_that_looks_from_aside_turns_to_the_middle_and_the_answer_says_by_how
     let watching = Watching::text(&ball("9 0 0").replace("viewpoint 4 3", "viewpoint 4 3.5"));
     watching.events().until("scene");
     let (status, said) = post(&watching, "turn", "");
-    assert!(status == 200 && said.contains("the view turns by 4.76 degrees"), "{status} {said}");
+    assert!(status == 200 && said.contains("the view turns by 4.76"), "{status} {said}");
     let after = fs::read_to_string(watching.scene()).expect("a scene");
     assert!(after.contains("target 4 3 0 position 4 3.5 6"), "{after}");
 }
