@@ -108,7 +108,7 @@ fn angle(pixels: [f64; 2], size: [f64; 2], [x, y, z]: [f64; 3]) -> Result<(f64, 
     let [across, up] = [0, 1].map(|side| size[side] / (pixels[side] - 1.0).max(1.0));
     let pixel = (pixels[0] * across + pixels[1] * up) / (pixels[0] + pixels[1]);
     let shift = (pixels[0] * (across - pixel).abs()).max(pixels[1] * (up - pixel).abs()) / (2.0 * pixel);
-    if !(shift < SAME) {
+    if shift.is_nan() || shift >= SAME {
         let ratio = short(across / up);
         return Err(format!(
             "its pixels are {ratio} times as wide as high, and those of a `look_at` are square"
