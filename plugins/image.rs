@@ -68,26 +68,8 @@ impl Image {
 
     /// Returns the mean of a rectangle, given by its corners among the texels of all repetitions.
     fn mean(&self, low: DVec2, high: DVec2) -> Rgb {
-        let (size, whole) = (DVec2::from(self.texture.size().map(f64::from)), self.size());
-        let (low, high) = (low.clamp(DVec2::ZERO, whole), high.clamp(DVec2::ZERO, whole));
-        // Two runs of texels in one repetition, and their parts of the whole: what reaches beyond the end begins again.
-        let runs = |axis: usize| {
-            let (size, width) = (size[axis], high[axis] - low[axis]);
-            if width >= size {
-                return [(0.0, size, 1.0), (0.0, 0.0, 0.0)];
-            }
-            let from = low[axis] - size * (low[axis] / size).floor();
-            let over = (from + width - size).max(0.0);
-            let part = if over > 0.0 { over / width } else { 0.0 };
-            [(from, from + width - over, 1.0 - part), (0.0, over, part)]
-        };
-        let all = runs(0).into_iter().flat_map(|x| runs(1).map(|y| (x, y)));
-        let (mut sum, mut most) = (Rgb::ZERO, Rgb::ZERO);
-        for (x, y) in all.filter(|(x, y)| x.2 * y.2 > 0.0) {
-            let mean = self.texture.mean(DVec2::new(x.0, y.0), DVec2::new(x.1, y.1));
-            (sum, most) = (sum + x.2 * y.2 * mean, most.max(mean));
-        }
-        sum.min(most)
+        let whole = self.size();
+        self.texture.mean_repeated(low.clamp(DVec2::ZERO, whole), high.clamp(DVec2::ZERO, whole))
     }
 
     /// Encloses the colours at points with such u and v.

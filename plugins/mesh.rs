@@ -4,10 +4,11 @@ use std::panic::Location;
 use std::path::PathBuf;
 use std::sync::Arc;
 use tabray::prelude::*;
-use tabray::shapes::mesh::{Look, Mesh, Painted, Surface, SurfaceError, ToWorld, read};
+use tabray::shapes::mesh::read::{self, Wanted};
+use tabray::shapes::mesh::{Finished, Look, Mesh, Painted, Surface, ToWorld};
 
 static FILE: Pparm<PathBuf> =
-    Pparm::required("file", "an OBJ, PLY or STL file, relative to the scene's folder");
+    Pparm::required("file", "an OBJ, PLY, STL or glTF file, relative to the scene's folder");
 static SCALE: Pparm<DVec3> = Pparm::or("scale", "the scale factors along the file's x, y and z", DVec3::ONE)
     .must("other than 0 in each dimension", |scale: &DVec3| {
         scale.to_array().iter().all(|factor| *factor != 0.0)
@@ -27,9 +28,14 @@ static CREASE: Pparm<f64> =
     Pparm::or("crease", "the angle between faces up to which `smooth 1` shades across their edge", 30.0)
         .unit("degrees")
         .between(0.0, 180.0);
+static NORMALS: Pparm<Normals> =
+    Pparm::or("normals", "whose normals the mesh is shaded with", Normals::Faces).not_dumped();
+static MATERIALS: Pparm<Materials> =
+    Pparm::or("materials", "whose materials its faces have", Materials::Scene).not_dumped();
 static SIDES: Pparm<Sides> = Pparm::or("sides", "which sides of its faces are lit", Sides::Both);
 
-const TABLE: Table = &[&FILE, &SCALE, &ROTATION, &TRANSLATION, &SMOOTH, &CREASE, &SIDES];
+const TABLE: Table =
+    &[&FILE, &SCALE, &ROTATION, &TRANSLATION, &SMOOTH, &CREASE, &NORMALS, &MATERIALS, &SIDES];
 
 inventory::submit! {
     Entity::shape("mesh", "a surface of triangles from a file", &[TABLE], |args| {
@@ -44,7 +50,12 @@ inventory::submit! {
             help: remark.help.to_owned(),
         };
         let mut warnings: Vec<_> = surface.remarks.iter().map(told).collect();
-        let body = if surface.materials.is_empty() {
+        let body = if surface.has_looks() {
+            let finished = Finished::new(surface.clone());
+            let (material, warning) = finished.material(&args.material());
+            warnings.extend(warning);
+            Body { material: material.map(Arc::new), ..Body::shaded(shape, finished) }
+        } else if surface.materials.is_empty() || args.get(&MATERIALS) == Materials::File {
             Body::plain(shape)
         } else {
             let materials = surface.materials.iter().map(|name| args.setting.materials.get(name).cloned()).collect();
@@ -55,7 +66,58 @@ inventory::submit! {
         };
         Ok(Body { warnings, bytes: surface.bytes(), ..body })
     })
-    .known_as(&["obj", "stl", "ply", "model", "trimesh"])
+    .known_as(&["obj", "stl", "ply", "gltf", "glb", "model", "trimesh"])
+}
+
+/// Whose normals a mesh is shaded with.
+#[derive(Clone, Copy, PartialEq)]
+enum Normals {
+    Faces,
+    File,
+}
+
+impl Choice for Normals {
+    const WHAT: &'static str = "choice of normals";
+
+    fn all() -> Vec<Self> {
+        vec![Self::Faces, Self::File]
+    }
+
+    fn option(&self) -> ChoiceName {
+        const PLACE: &Location<'static> = Location::caller();
+        let (name, meaning) = match self {
+            Self::Faces => ("faces", "those of its faces, as `smooth` and `crease` say"),
+            Self::File => (
+                "file",
+                "the file's, and where it has none those of its faces as far as edges are no creases",
+            ),
+        };
+        ChoiceName { name, number: None, meaning, place: PLACE }
+    }
+}
+
+/// Whose materials faces have.
+#[derive(Clone, Copy, PartialEq)]
+enum Materials {
+    Scene,
+    File,
+}
+
+impl Choice for Materials {
+    const WHAT: &'static str = "choice of materials";
+
+    fn all() -> Vec<Self> {
+        vec![Self::Scene, Self::File]
+    }
+
+    fn option(&self) -> ChoiceName {
+        const PLACE: &Location<'static> = Location::caller();
+        let (name, meaning) = match self {
+            Self::Scene => ("scene", "the scene's, by the names that the file gives"),
+            Self::File => ("file", "the file's, with its images and colours"),
+        };
+        ChoiceName { name, number: None, meaning, place: PLACE }
+    }
 }
 
 /// Which sides of faces are lit.
@@ -88,27 +150,24 @@ impl Choice for Sides {
 fn surface(args: &Args) -> Result<Surface, Refusal> {
     let file = args.get(&FILE);
     let refusal = |message, help| Refusal { attribute: Some("file"), message, help };
-    let model = read::read(&args.setting.folder.join(&file), args.setting.memory).map_err(|broken| {
-        let read::ReadError { at, message } = broken;
-        let place = at.map_or(String::new(), |at| format!(", {at}"));
-        refusal(
-            format!("has a file that cannot be read, `{}`{place}: {message}", file.display()),
-            "a mesh is an OBJ, PLY or STL file, and its name is relative to the scene's folder",
-        )
-    })?;
+    let wanted = Wanted {
+        normals: args.get(&NORMALS) == Normals::File,
+        materials: (args.get(&MATERIALS) == Materials::File).then(|| args.setting.camera.display()),
+    };
+    let model =
+        read::read(&args.setting.folder.join(&file), wanted, args.setting.memory).map_err(|broken| {
+            let read::ReadError { at, message } = broken;
+            let place = at.map_or(String::new(), |at| format!(", {at}"));
+            refusal(
+                format!("has a file that cannot be read, `{}`{place}: {message}", file.display()),
+                "a mesh is an OBJ, PLY, STL or glTF file, and its name is relative to the scene's folder",
+            )
+        })?;
     let placement = ToWorld::new(args.get(&SCALE), args.get(&ROTATION), args.get(&TRANSLATION));
-    let crease = (args.get(&SMOOTH) == 1).then(|| args.get(&CREASE));
+    let crease = (args.get(&SMOOTH) == 1 || wanted.normals).then(|| args.get(&CREASE));
     let look = Look { crease, is_two_sided: args.get(&SIDES) == Sides::Both };
-    Surface::new(model, &placement, look).map_err(|error| match error {
-        SurfaceError::TooLarge => refusal(
-            "has coordinates so large that their squares overflow".to_owned(),
-            "the coordinates in the world must not exceed 1e152",
-        ),
-        SurfaceError::TooMany => {
-            refusal("has more than 2^28 faces".to_owned(), "split it into several meshes")
-        }
-        SurfaceError::NoArea => {
-            refusal("has no face with an area".to_owned(), "the corners of a face must not lie on one line")
-        }
+    Surface::new(model, &placement, look).map_err(|error| {
+        let (message, help) = error.message();
+        refusal(message.to_owned(), help)
     })
 }

@@ -41,15 +41,8 @@ impl Normals {
     /// Returns the parts of the normal at u and v: those of the four nearest texels, blended.
     fn parts(&self, uv: DVec2) -> DVec3 {
         let size = self.texture.size().map(f64::from);
-        let place = (uv * self.repeat).map(|along| along - along.floor()) * DVec2::from(size) - 0.5;
-        let (corner, part) = (place.floor(), place - place.floor());
-        // The image goes on where it ends.
-        let wrapped = |at: f64, axis: usize| at.rem_euclid(size[axis].max(1.0)) as u32;
-        let texel = |right: f64, up: f64| {
-            self.texture.numbers(wrapped(corner.x + right, 0), wrapped(corner.y + up, 1))
-        };
-        let row = |up: f64| texel(0.0, up).lerp(texel(1.0, up), part.x);
-        2.0 * row(0.0).lerp(row(1.0), part.y) - 1.0
+        let place = (uv * self.repeat).map(|along| along - along.floor()) * DVec2::from(size);
+        2.0 * self.texture.blended(place, |column, row| self.texture.numbers(column, row)) - 1.0
     }
 }
 

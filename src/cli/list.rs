@@ -7,6 +7,7 @@ use std::path::Path;
 use tabray_core::scene::attribute::Attribute;
 use tabray_core::scene::entity::Entity;
 use tabray_core::scene::value::Datum;
+use tabray_core::shapes::mesh::read::Wanted;
 use tabray_core::text;
 use tabray_lang::list_json::Tables;
 use tabray_lang::reference;
@@ -51,7 +52,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     };
     // A type's name has no ending.
     if registry.find(&name).is_none() && (name.contains('.') || Path::new(&name).is_file()) {
-        return print(&mesh::described(&mesh::read(Path::new(&name))?));
+        return print(&mesh::described(&mesh::read(Path::new(&name), Wanted::default())?));
     }
     let entity = registry.find(&name).ok_or_else(|| {
         let help = match registry.nearest(&name) {

@@ -129,6 +129,22 @@ fn a_new_scene_of_any_format_looks_the_same_at_any_scale() {
 }
 
 #[test]
+fn a_new_scene_shows_a_model_as_its_file_says() {
+    let folder = folder();
+    let model = format!("mtllib a.mtl\nusemtl a\n{}", block(-1.0, [2.0, 2.0, 2.0], false));
+    fs::write(folder.path().join("a.obj"), model).expect("a file");
+    for (looks, is_shown) in [("newmtl b\n", false), ("newmtl a\nKd 1 0 0\n", true)] {
+        fs::write(folder.path().join("a.mtl"), looks).expect("a file");
+        let name = if is_shown { "shown" } else { "plain" };
+        let (status, _, err) = outcome(tabray(&folder).args(["new", "scene", name, "--mesh", "a.obj"]));
+        assert_eq!(status, 0, "{err}");
+        let text = fs::read_to_string(folder.path().join(name).with_extension("ray")).expect("a scene");
+        assert_eq!(text.contains("    materials   file "), is_shown, "{text}");
+        assert!(!text.contains("normals     file"), "{text}");
+    }
+}
+
+#[test]
 fn a_mesh_is_described() {
     let (folder, text) = (folder(), |out: Vec<u8>| String::from_utf8(out).expect("a text"));
     for (name, is_open) in [("closed.obj", false), ("open.obj", true)] {

@@ -15,6 +15,7 @@ mod domains;
 mod double_double;
 mod implicit;
 mod mesh;
+mod models;
 mod notes;
 mod places;
 mod polynomials;

@@ -4,28 +4,23 @@ use crate::process::failure::Failure;
 use glam::DVec3;
 use std::path::Path;
 use tabray_core::geometry::Rotation;
-use tabray_core::shapes::mesh::{Look, Surface, SurfaceError, ToWorld, read};
+use tabray_core::shapes::mesh::read::{self, Wanted};
+use tabray_core::shapes::mesh::{Look, Surface, ToWorld};
 use tabray_core::text::{count, shortest};
 
 /// Reads the surface of a file as a mesh of a scene is read, in the file's own coordinates.
-pub fn read(path: &Path) -> Result<Surface, Failure> {
+pub fn read(path: &Path, wanted: Wanted) -> Result<Surface, Failure> {
     let refused = |what: String| {
-        let help = "a mesh is an OBJ, PLY or STL file".to_owned();
+        let help = "a mesh is an OBJ, PLY, STL or glTF file".to_owned();
         Failure::Usage(format!("cannot read `{}` as a mesh: {what}", path.display()), Some(help))
     };
-    let model = read::read(path, u64::MAX).map_err(|error| {
+    let model = read::read(path, wanted, u64::MAX).map_err(|error| {
         let place = error.at.map_or(String::new(), |at| format!("{at}: "));
         refused(format!("{place}{}", error.message))
     })?;
     let placement = ToWorld::new(DVec3::ONE, Rotation::NONE, DVec3::ZERO);
     let look = Look { crease: None, is_two_sided: true };
-    Surface::new(model, &placement, look).map_err(|error| {
-        refused(match error {
-            SurfaceError::TooLarge => "its coordinates exceed 1e152".to_owned(),
-            SurfaceError::TooMany => "it has more than 2^28 faces".to_owned(),
-            SurfaceError::NoArea => "no face of it has an area".to_owned(),
-        })
-    })
+    Surface::new(model, &placement, look).map_err(|error| refused(format!("it {}", error.message().0)))
 }
 
 /// The endings of the names of files of meshes.

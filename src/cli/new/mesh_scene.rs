@@ -5,7 +5,9 @@ use crate::process::failure::Failure;
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 use tabray_core::scene::value::Datum;
+use tabray_core::shapes::mesh::read::Wanted;
 use tabray_core::text::shortest;
+use tabray_core::world::sensor::Sensor;
 use tabray_lang::dump;
 use tabray_lang::reader;
 use tabray_lang::registry::Registry;
@@ -41,7 +43,14 @@ pub fn text(registry: &Registry, file: &Path, scene: &Path, syntax: Syntax) -> R
 }
 
 fn in_notes(file: &Path, scene: &Path) -> Result<String, Failure> {
-    let [low, high] = mesh::read(file)?.bounds();
+    let wanted = Wanted { normals: true, materials: Some(Sensor::default().display()) };
+    let surface = mesh::read(file, wanted)?;
+    let [low, high] = surface.bounds();
+    let own = [
+        ("    normals     file\n", surface.is_smooth()),
+        ("    materials   file          # what it does not say is that of `metal`\n", surface.has_looks()),
+    ];
+    let own: String = own.iter().filter(|(_, has)| *has).map(|(line, _)| *line).collect();
     // What draws parts to be made writes STL, and has z upward; what models for pictures has y.
     let is_upright = !file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("stl"));
     let turned = |at: DVec3| if is_upright { at } else { DVec3::new(at.x, at.z, -at.y) };
@@ -63,6 +72,7 @@ fn in_notes(file: &Path, scene: &Path) -> Result<String, Failure> {
         ("TARGET", point(target)),
         ("SCALE", [scale.as_str(); 3].join(" ")),
         ("ROTATION", if is_upright { "0 0 0" } else { "-90 0 0" }.to_owned()),
+        ("OWN", own),
         ("UP", if is_upright { "y" } else { "z" }.to_owned()),
         ("TRANSLATION", point(translation)),
         ("LAMP_AT", at(LAMP, FAR)),

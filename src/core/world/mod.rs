@@ -20,6 +20,7 @@ pub mod packets;
 pub mod panel;
 pub mod patch;
 pub mod pinhole;
+mod repeated;
 pub mod rules;
 pub mod sample;
 pub mod sensor;

@@ -15,7 +15,7 @@ use image::{
     Rgb32FImage, RgbImage,
 };
 use std::fs;
-use std::io::{self, BufReader, Read, Seek};
+use std::io::{self, BufReader, Cursor, Read, Seek};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use tabray_exact::interval::{Float, Interval};
@@ -31,6 +31,10 @@ const MOST_TEXELS: usize = 8;
 #[derive(Debug, Default)]
 pub struct Texture {
     path: PathBuf,
+    /// The contents of the file, where they are not to be read from the path.
+    contents: Option<Vec<u8>>,
+    /// Whether transparent texels show their colours as others do.
+    is_opaque: bool,
     /// How the image that is rendered shows light; unless that is known, by the notes' rules.
     display: OnceLock<Display>,
     picture: OnceLock<Result<Picture, String>>,
@@ -69,6 +73,12 @@ impl Texture {
         Self { path, ..Self::default() }
     }
 
+    /// Makes a texture of a model, which shows the colours of transparent texels as those of others. `contents` are those of the
+    /// image file, where they are not to be read from the path.
+    pub fn of_model(path: PathBuf, contents: Option<Vec<u8>>) -> Self {
+        Self { path, contents, is_opaque: true, ..Self::default() }
+    }
+
     /// Returns the path of the image file.
     pub fn path(&self) -> &Path {
         &self.path
@@ -97,20 +107,31 @@ impl Texture {
     }
 
     fn read(&self, most: u64) -> Result<Picture, String> {
-        let file = files::open(&self.path).map_err(|error| text::reason(&error))?;
+        let file = match &self.contents {
+            None => Some(files::open(&self.path).map_err(|error| text::reason(&error))?),
+            Some(_) => None,
+        };
         let too_much = || format!("it takes more than {} of memory", ByteSize(most));
         let cannot = |error: ImageError| match error {
             ImageError::Limits(_) => too_much(),
             _ => text::picture_reason(&error),
         };
-        let length = file.metadata().map_err(|error| text::reason(&error))?.len();
+        let contents = self.contents.as_deref().unwrap_or_default();
+        let length = match &file {
+            Some(file) => file.metadata().map_err(|error| text::reason(&error))?.len(),
+            None => contents.len() as u64,
+        };
         // Some decoders hold the whole file.
         if length > most {
             return Err(too_much());
         }
         let mut limits = Limits::no_limits();
         limits.max_alloc = Some(most.saturating_add(ASIDE));
-        let bytes: &mut dyn ImageBytes = &mut BufReader::new(file);
+        let (mut of_file, mut held) = (file.map(BufReader::new), Cursor::new(contents));
+        let bytes: &mut dyn ImageBytes = match &mut of_file {
+            Some(file) => file,
+            None => &mut held,
+        };
         let reader = ImageReader::new(bytes).with_guessed_format();
         let mut reader = reader.map_err(|error| text::reason(&error))?;
         reader.limits(limits);
@@ -148,9 +169,9 @@ impl Texture {
         if is_bright(&picture) && !is_light {
             remarks.push("has colours above 1, which are cut to 1");
         }
-        let mut image = match (is_light, colours.has_alpha()) {
+        let mut image = match (is_light, colours.has_alpha() && !self.is_opaque) {
             (true, true) => DynamicImage::ImageRgb32F(light_over_white(picture, &mut remarks)),
-            (true, false) => picture,
+            (true, false) => DynamicImage::ImageRgb32F(picture.into_rgb32f()),
             (false, true) => DynamicImage::ImageRgb8(over_white(picture, &mut remarks)),
             (false, false) => DynamicImage::ImageRgb8(picture.into_rgb8()),
         };
@@ -170,12 +191,14 @@ impl Texture {
     /// Returns the memory that the image takes, in bytes; 0 if it has not been read.
     pub fn bytes(&self) -> u64 {
         let picture = self.picture.get().and_then(|picture| picture.as_ref().ok());
-        picture.map_or(0, |picture| picture.texels.memory())
+        picture
+            .map_or(0, |picture| picture.texels.memory() + self.contents.as_ref().map_or(0, Vec::len) as u64)
     }
 
     /// Tells whether no file exists at the path.
     pub fn is_missing(&self) -> bool {
-        fs::metadata(&self.path).is_err_and(|error| error.kind() == io::ErrorKind::NotFound)
+        self.contents.is_none()
+            && fs::metadata(&self.path).is_err_and(|error| error.kind() == io::ErrorKind::NotFound)
     }
 
     /// Returns the width and height in texels; 0 and 0 where the image cannot be read.

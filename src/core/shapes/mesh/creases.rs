@@ -1,25 +1,19 @@
 //! The normals with which a mesh looks smooth: those of the faces around a corner, as far as edges are no creases.
 
 use super::edges::Edges;
-use super::face::in_order_of_use;
+use super::read::AtCorners;
 use crate::shapes::triangle::Triangle;
 use crate::world::accuracy::Exact;
 use glam::DVec3;
 use tabray_exact::double_double::{exponent_to_one, times_power_of_two};
 
-/// The normals of a mesh that looks smooth.
-#[derive(Default)]
-pub(super) struct Normals {
-    /// Unit normals, each once; 0 where those of the faces cancel.
-    pub normals: Vec<[f32; 3]>,
-    /// For each face, the indices of the normals at its corners.
-    pub corners: Vec<[u32; 3]>,
-}
+/// The unit normals of a mesh that looks smooth, 0 where those of the faces cancel. Each corner has one.
+pub(super) type Normals = AtCorners<[f32; 3]>;
 
 impl Normals {
     /// Computes the normals at the corners of faces, whose edges are these: the sums of the normals of the faces that hang
     /// together around a corner by edges at which they differ by at most `crease` degrees, weighted by their angles there.
-    pub fn of(vertices: &[DVec3], faces: &[[u32; 3]], edges: &Edges, crease: f64) -> Self {
+    pub(super) fn of(vertices: &[DVec3], faces: &[[u32; 3]], edges: &Edges, crease: f64) -> Self {
         let flat: Vec<DVec3> = faces.iter().map(|face| flat_normal(vertices, *face)).collect();
         let least = libm::cos(crease.to_radians());
         // For each corner, an earlier one with the same normal, or itself.
@@ -55,21 +49,12 @@ impl Normals {
             }));
         }
         let unit = |sum: DVec3| sum.normalize_or_zero().to_array().map(|part| part as f32);
-        Self { normals: sums.into_iter().map(unit).collect(), corners }
-    }
-
-    /// Sorts faces in this order, and normals by their first use.
-    pub fn sorted(self, order: &[u32]) -> Self {
-        if self.corners.is_empty() {
-            return self;
-        }
-        let mut corners: Vec<_> = order.iter().map(|face| self.corners[*face as usize]).collect();
-        Self { normals: in_order_of_use(&self.normals, &mut corners), corners }
+        Self { values: sums.into_iter().map(unit).collect(), faces: corners }
     }
 }
 
 /// Returns the normal of a face, 0 if it has none.
-fn flat_normal(vertices: &[DVec3], face: [u32; 3]) -> DVec3 {
+pub(super) fn flat_normal(vertices: &[DVec3], face: [u32; 3]) -> DVec3 {
     let triangle = Triangle::<Exact>::new(face.map(|corner| vertices[corner as usize]));
     triangle.map_or(DVec3::ZERO, |triangle| triangle.plane.normal)
 }
@@ -128,7 +113,7 @@ mod tests {
 
     #[test]
     fn edges_beyond_the_crease_stay_sharp() {
-        let (vertices, faces, Normals { normals, corners }) = normals(30.0);
+        let (vertices, faces, Normals { values: normals, faces: corners }) = normals(30.0);
         // Each corner of a rim has one for the sides and one for the end.
         assert_eq!(normals.len(), vertices.len() + 2 * SIDES as usize);
         for (face, normal) in faces.iter().zip(&corners) {
@@ -148,13 +133,13 @@ mod tests {
 
     #[test]
     fn a_crease_of_0_leaves_all_edges_sharp_but_those_in_a_plane() {
-        let (vertices, _, Normals { normals, .. }) = normals(0.0);
+        let (vertices, _, Normals { values: normals, .. }) = normals(0.0);
         assert!(normals.len() >= vertices.len() + 4 * SIDES as usize, "{}", normals.len());
     }
 
     #[test]
     fn no_crease_is_as_sharp_as_half_a_turn() {
-        let (vertices, _, Normals { normals, .. }) = normals(180.0);
+        let (vertices, _, Normals { values: normals, .. }) = normals(180.0);
         assert_eq!(normals.len(), vertices.len());
     }
 }

@@ -11,6 +11,8 @@ mod approach;
 mod creases;
 mod edges;
 mod face;
+mod finished;
+mod given_normals;
 mod hits;
 mod inside;
 mod known;
@@ -28,8 +30,10 @@ mod surface;
 #[cfg(test)]
 mod tests;
 mod to_world;
+mod uv;
 mod winding;
 
+pub use finished::Finished;
 pub use painted::Painted;
 pub use shape::Mesh;
 pub use surface::{Look, Surface, SurfaceError};

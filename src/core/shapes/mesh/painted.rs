@@ -80,7 +80,7 @@ impl Painted {
 }
 
 /// Lists the first few names.
-fn first_of(names: &[&String]) -> String {
+pub(super) fn first_of(names: &[&String]) -> String {
     const FEW: usize = 5;
     let shown: Vec<_> = names.iter().take(FEW).map(|name| text::abridged(name)).collect();
     let listed = text::list(shown.iter().map(|name| &**name));

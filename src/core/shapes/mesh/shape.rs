@@ -8,7 +8,6 @@ use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::facet::Facet;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
 use crate::geometry::sight::{Line, Sight};
-use crate::shapes::uv;
 use crate::simd::cpu::Cpu;
 use crate::text;
 use crate::world::accuracy::{Accuracy, Bounded};
@@ -115,7 +114,7 @@ impl<A: Bounded> Hittable for Mesh<A> {
     }
 
     fn uv(&self, at: DVec3) -> Option<DVec2> {
-        Some(uv::on_triangle(self.surface.corners(self.surface.face_at(at)), at))
+        Some(self.surface.uv_of(self.surface.face_at(at), at))
     }
 
     fn face(&self, at: DVec3) -> Option<u32> {
@@ -242,7 +241,7 @@ impl<A: Bounded, F: Precise> HitProofs<F> for Mesh<A> {
 
     fn uv_bounds(&self, at: [Interval<F>; 3], part: usize) -> Option<[Interval; 2]> {
         let (surface, at) = (&self.surface, at.map(Interval::coarse));
-        surface.is_alone(at, |face| face == part).then(|| uv::bounds_on_triangle(surface.corners(part), at))
+        if surface.is_alone(at, |face| face == part) { surface.uv_bounds(part, at) } else { None }
     }
 
     fn face(&self, at: [Interval<F>; 3], part: usize) -> Option<u32> {

@@ -53,14 +53,14 @@ impl Surface {
 
     /// Tells whether the mesh looks smooth.
     #[inline(always)]
-    pub(super) fn is_smooth(&self) -> bool {
-        !self.normals.corners.is_empty()
+    pub fn is_smooth(&self) -> bool {
+        !self.normals.is_empty()
     }
 
     /// Returns the normals at the corners of a face of a smooth mesh.
     #[inline(always)]
     pub(super) fn corner_normals(&self, face: usize) -> [[f64; 3]; 3] {
-        self.normals.corners[face].map(|normal| self.normals.normals[normal as usize].map(f64::from))
+        self.normals.faces[face].map(|normal| self.normals.values[normal as usize].map(f64::from))
     }
 
     fn interpolated(&self, face: usize, at: DVec3, flat: DVec3) -> DVec3 {

@@ -3,7 +3,7 @@
 use super::creases::Normals;
 use super::edges::Edges;
 use super::face;
-use super::read::{Model, Remark};
+use super::read::{AtCorners, Attributes, Finish, Map, Model, Remark};
 use super::to_world::ToWorld;
 use super::winding::{self, Openness};
 use crate::geometry::aabb::Aabb;
@@ -13,11 +13,11 @@ use crate::scene::attribute::MAX_LENGTH;
 use crate::simd::soa::{LANES, Vectors};
 use crate::text;
 use glam::DVec3;
-use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::collections::{BTreeMap, HashMap};
 use std::mem::take;
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
 
 /// The largest number of faces.
 const MAX_FACES: usize = 1 << 28;
@@ -44,6 +44,9 @@ pub struct Surface {
     pub(super) slots: Vec<u16>,
     /// The normals at the corners of faces, where the mesh looks smooth.
     pub(super) normals: Normals,
+    /// The texture coordinates and the colours at the corners of faces, where they are read.
+    pub(super) uv: AtCorners<[f32; 2]>,
+    pub(super) colours: AtCorners<[f32; 3]>,
     pub(super) tree: Bvh,
     /// A bounding box of the vertices, in world coordinates.
     pub(super) bounds: Aabb,
@@ -59,12 +62,15 @@ pub struct Surface {
     pub remarks: Vec<Remark>,
     /// The names of materials, as the file gives them.
     pub materials: Vec<String>,
+    /// What the file says of them, where that is read.
+    pub(super) finishes: Vec<Option<Finish>>,
 }
 
 /// How the triangles of a file become a surface.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Look {
-    /// The angle between faces, in degrees, up to which their edge looks smooth; `None` where faces are flat.
+    /// The angle between faces, in degrees, up to which their edge looks smooth; `None` where faces are flat. With the
+    /// normals of a file, it is that for corners without one.
     pub crease: Option<f64>,
     /// Whether faces are turned to agree, and are lit on both sides. Otherwise, an open surface is lit on the side from which
     /// the corners of a face run counterclockwise.
@@ -81,6 +87,20 @@ pub enum SurfaceError {
     NoArea,
 }
 
+impl SurfaceError {
+    /// Returns what is wrong, to follow the mesh's name, and its cure.
+    pub fn message(&self) -> (&'static str, &'static str) {
+        match self {
+            Self::TooLarge => (
+                "has coordinates so large that their squares overflow",
+                "the coordinates in the world must not exceed 1e152",
+            ),
+            Self::TooMany => ("has more than 2^28 faces", "split it into several meshes"),
+            Self::NoArea => ("has no face with an area", "the corners of a face must not lie on one line"),
+        }
+    }
+}
+
 impl Surface {
     /// Makes the surface of a file's triangles.
     ///
@@ -90,8 +110,10 @@ impl Surface {
         if model.faces.len() > MAX_FACES {
             return Err(SurfaceError::TooMany);
         }
-        let Model { vertices, mut faces, materials, slots, sides, mut remarks } = model;
+        let Model { vertices, mut faces, materials, slots, sides, finishes, mut attributes, mut remarks } =
+            model;
         let vertices = merge(vertices, &mut faces, placement);
+        attributes.turn(|_| placement.is_mirrored());
         let is_far = |at: DVec3| !at.is_finite() || at.abs().max_element() > MAX_LENGTH;
         if parallel::find_first(vertices.len(), |vertex| is_far(vertices[vertex])).is_some() {
             return Err(SurfaceError::TooLarge);
@@ -107,25 +129,38 @@ impl Surface {
         }
         remarks.extend(degenerate(total - order.len()));
         let mut kept: Vec<_> = order.iter().map(|face| faces[*face as usize]).collect();
-        drop(take(&mut faces));
+        attributes.keep(&order);
+        if attributes.is_empty() {
+            drop(take(&mut faces));
+        }
         let mut edges = Edges::of(&kept, vertices.len());
         if look.is_two_sided {
             let count = winding::turn(&vertices, &mut kept, &edges);
             remarks.extend(turned(count, kept.len()));
             if count > 0 {
                 edges = Edges::of(&kept, vertices.len());
+                attributes.turn(|face| kept[face] != faces[order[face] as usize]);
             }
         }
+        drop(take(&mut faces));
         let why_not_closed = winding::why_not_closed(&edges);
-        let normals =
-            look.crease.map_or_else(Normals::default, |crease| Normals::of(&vertices, &kept, &edges, crease));
+        let Attributes { normals, uv, colours } = attributes;
+        let of_faces = |crease| Normals::of(&vertices, &kept, &edges, crease);
+        let normals = if normals.is_empty() {
+            look.crease.map_or_else(Normals::default, of_faces)
+        } else {
+            let others = || of_faces(look.crease.unwrap_or(0.0));
+            let (normals, refused) = Normals::given(normals, &vertices, &kept, placement, others);
+            remarks.extend(unfit(refused));
+            normals
+        };
         drop(edges);
         let mut tree =
             Bvh::of(kept.len(), |face| Aabb::around(&kept[face].map(|corner| vertices[corner as usize])));
         let sorted = tree.take_order();
         let mut faces: Vec<_> = sorted.iter().map(|face| kept[*face as usize]).collect();
         let vertices = face::in_order_of_use(&vertices, &mut faces);
-        let normals = normals.sorted(&sorted);
+        let (normals, uv, colours) = (normals.sorted(&sorted), uv.sorted(&sorted), colours.sorted(&sorted));
         let mut order: Vec<_> = sorted.iter().map(|face| order[*face as usize]).collect();
         let slots =
             if slots.is_empty() { slots } else { order.iter().map(|face| slots[*face as usize]).collect() };
@@ -142,6 +177,8 @@ impl Surface {
             order,
             slots,
             normals,
+            uv,
+            colours,
             tree,
             bounds,
             planes: OnceLock::new(),
@@ -150,7 +187,23 @@ impl Surface {
             is_two_sided: look.is_two_sided,
             remarks,
             materials,
+            finishes,
         })
+    }
+
+    /// Tells whether the file says how its faces look, as far as that is read.
+    pub fn has_looks(&self) -> bool {
+        !self.colours.is_empty() || self.finishes.iter().any(Option::is_some)
+    }
+
+    /// Returns what the file says of a material, given by its index plus 1.
+    pub(super) fn finish(&self, slot: u16) -> Option<&Finish> {
+        self.finishes.get(usize::from(slot).checked_sub(1)?)?.as_ref()
+    }
+
+    /// Returns the images that its materials show, each as often as it is shown.
+    fn maps(&self) -> impl Iterator<Item = &Map> {
+        self.finishes.iter().flatten().flat_map(Finish::maps)
     }
 
     /// Tells whether each edge joins faces in pairs that are turned alike.
@@ -176,27 +229,39 @@ impl Surface {
 
     /// Returns the memory that the surface takes, in bytes.
     pub fn bytes(&self) -> u64 {
-        let Self { vertices, faces, order, slots, normals, tree, .. } = self;
+        let Self { vertices, faces, order, slots, normals, uv, colours, tree, .. } = self;
         let arrays = [
             size_of_val(&vertices[..]),
             size_of_val(&faces[..]),
             size_of_val(&order[..]),
             size_of_val(&slots[..]),
-            size_of_val(&normals.normals[..]),
-            size_of_val(&normals.corners[..]),
+            normals.bytes(),
+            uv.bytes(),
+            colours.bytes(),
         ];
-        (arrays.iter().sum::<usize>() + tree.bytes()) as u64
+        let textures: BTreeMap<_, _> =
+            self.maps().map(|map| (Arc::as_ptr(&map.texture), map.texture.bytes())).collect();
+        (arrays.iter().sum::<usize>() + tree.bytes()) as u64 + textures.values().sum::<u64>()
     }
 
     /// Passes on all that the surface was made of, as bytes.
     pub(super) fn bytes_of(&self, each: &mut dyn FnMut(&[u8])) {
-        let Self { vertices, faces, order, slots, normals, materials, .. } = self;
+        let Self { vertices, faces, order, slots, normals, uv, colours, materials, .. } = self;
         vertices.iter().flat_map(|at| at.to_array()).for_each(|part| each(&part.to_le_bytes()));
         faces.iter().flatten().chain(order).for_each(|index| each(&index.to_le_bytes()));
         slots.iter().for_each(|slot| each(&slot.to_le_bytes()));
-        normals.normals.iter().flatten().for_each(|part| each(&part.to_le_bytes()));
-        normals.corners.iter().flatten().for_each(|index| each(&index.to_le_bytes()));
+        for list in [&normals.values, &colours.values] {
+            list.iter().flatten().for_each(|part| each(&part.to_le_bytes()));
+        }
+        uv.values.iter().flatten().for_each(|part| each(&part.to_le_bytes()));
+        for list in [&normals.faces, &uv.faces, &colours.faces] {
+            list.iter().flatten().for_each(|index| each(&index.to_le_bytes()));
+        }
         materials.iter().for_each(|name| each(name.as_bytes()));
+        for finish in &self.finishes {
+            each(&[u8::from(finish.is_some())]);
+            finish.iter().for_each(|finish| finish.bytes_of(each));
+        }
     }
 
     /// Returns the corners of a face in world coordinates.
@@ -255,6 +320,14 @@ fn degenerate(count: usize) -> Option<Remark> {
     (count > 0).then(|| Remark {
         message: format!("leaves out {} without an area", text::count(count, "face")),
         help: "the corners of such a face lie on one line: no ray hits it",
+    })
+}
+
+/// Tells of normals of the file that are not used, if there are any.
+fn unfit(count: usize) -> Option<Remark> {
+    (count > 0).then(|| Remark {
+        message: format!("does not use the file's normals at {}", text::count(count, "corner")),
+        help: "they are 0, or point away from the face's side: there, normals are those of faces, as far as edges are no creases",
     })
 }
 

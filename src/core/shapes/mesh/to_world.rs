@@ -8,6 +8,8 @@ use glam::{DMat3, DVec3};
 pub struct ToWorld {
     /// Rotation and scale.
     linear: DMat3,
+    /// The inverse of the transpose of that, times a number.
+    of_normals: DMat3,
     translation: DVec3,
     /// Whether there is neither a rotation nor a scale, so that coordinates stay as they are.
     is_plain: bool,
@@ -16,8 +18,10 @@ pub struct ToWorld {
 impl ToWorld {
     /// Makes a placement.
     pub fn new(scale: DVec3, rotation: Rotation, translation: DVec3) -> Self {
-        let linear = turned(rotation) * DMat3::from_diagonal(scale);
-        Self { linear, translation, is_plain: linear == DMat3::IDENTITY }
+        let (rotation, least) = (turned(rotation), scale.abs().min_element());
+        let linear = rotation * DMat3::from_diagonal(scale);
+        let of_normals = rotation * DMat3::from_diagonal(least / scale);
+        Self { linear, of_normals, translation, is_plain: linear == DMat3::IDENTITY }
     }
 
     /// Transforms a point of a file to world coordinates.
@@ -25,6 +29,11 @@ impl ToWorld {
         let turned = if self.is_plain { at } else { self.linear * at };
         // The sum makes -0 to 0, so that equal coordinates have equal bits.
         turned + self.translation + 0.0
+    }
+
+    /// Transforms a normal of a file to world coordinates, up to its length.
+    pub fn place_normal(&self, normal: DVec3) -> DVec3 {
+        self.of_normals * normal
     }
 
     /// Tells whether points stay where they are.

@@ -3,6 +3,8 @@
 use super::model::ReadError;
 use crate::parallel;
 use memchr::{memchr, memchr_iter, memrchr};
+use std::mem::replace;
+use std::ops::Add;
 
 /// The length of a block in bytes, about.
 const BLOCK: usize = 1 << 17;
@@ -38,27 +40,28 @@ impl<'b> Iterator for Blocks<'b> {
 
 /// Reads a text block by block, some at a time on all cores: `count` counts something in a block, `read` reads a block,
 /// given how much was counted before it, and `take` gets what was read, in the order of the text.
-pub(super) fn read<T: Send>(
+pub(super) fn read<T: Send, C: Add<Output = C> + Copy + Default + Send + Sync>(
     text: &[u8],
     continues: fn(&[u8]) -> bool,
-    count: impl Fn(&[u8]) -> usize + Sync,
-    read: impl Fn(&[u8], usize) -> T + Sync,
+    count: impl Fn(&[u8]) -> C + Sync,
+    read: impl Fn(&[u8], C) -> T + Sync,
     mut take: impl FnMut(T) -> Result<(), ReadError>,
 ) -> Result<(), ReadError> {
     let mut blocks = Blocks { rest: text, continues };
-    let mut before = 0;
+    let mut before = C::default();
     loop {
         let some: Vec<_> = blocks.by_ref().take(BLOCKS_PER_THREAD * parallel::threads()).collect();
         if some.is_empty() {
             return Ok(());
         }
         let counts = parallel::map(some.len(), |block| count(some[block]));
-        let befores = counts.iter().scan(before, |sum, count| {
-            *sum += count;
-            Some(*sum - count)
-        });
-        let befores: Vec<_> = befores.collect();
-        before += counts.iter().sum::<usize>();
+        let befores: Vec<_> = counts
+            .into_iter()
+            .map(|count| {
+                let sum = before + count;
+                replace(&mut before, sum)
+            })
+            .collect();
         let parts = parallel::map(some.len(), |block| read(some[block], befores[block]));
         parts.into_iter().try_for_each(&mut take)?;
     }

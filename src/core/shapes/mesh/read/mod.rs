@@ -1,8 +1,11 @@
 //! Files of triangle meshes: OBJ, PLY and STL.
 
+mod at_corners;
 mod blocks;
+mod finish;
 mod format;
 mod model;
+mod mtl;
 mod obj;
 mod ply;
 mod ply_bytes;
@@ -12,10 +15,13 @@ mod polygons;
 mod stl;
 #[cfg(test)]
 mod tests;
+mod textures;
 
+pub use at_corners::{AtCorners, Attributes, NO_VALUE};
+pub use finish::{Finish, Map};
 use format::Format;
 use model::MemoryBudget;
-pub use model::{FilePosition, Model, ReadError, Remark};
+pub use model::{FilePosition, Model, ReadError, Remark, Wanted};
 
 use crate::files;
 use crate::memory;
@@ -24,12 +30,12 @@ use bytesize::ByteSize;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// Reads a file by how it begins or, where that tells nothing, by the ending of its name. Takes no more memory than so many
-/// bytes, roughly.
+/// Reads a file by how it begins or, where that tells nothing, by the ending of its name: its triangles, and what else is
+/// wanted. Takes no more memory than so many bytes, roughly.
 ///
 /// # Errors
 /// What is wrong, and where.
-pub fn read(path: &Path, memory: u64) -> Result<Model, ReadError> {
+pub fn read(path: &Path, wanted: Wanted, memory: u64) -> Result<Model, ReadError> {
     let cannot = |error: io::Error| {
         let is_missing = error.kind() == io::ErrorKind::NotFound;
         if is_missing && path.as_os_str().as_encoded_bytes().contains(&b'\\') {
@@ -42,7 +48,7 @@ pub fn read(path: &Path, memory: u64) -> Result<Model, ReadError> {
     };
     let mut file = files::open(path).map_err(cannot)?;
     let size = file.metadata().map_err(cannot)?.len();
-    let budget = MemoryBudget::new(memory, size).map_err(ReadError::file)?;
+    let budget = MemoryBudget::new(memory, size, wanted).map_err(ReadError::file)?;
     let mut bytes = Vec::new();
     let is_held =
         usize::try_from(size).is_ok_and(|size| memory::may_fail(|| bytes.try_reserve_exact(size).is_ok()));
@@ -51,11 +57,12 @@ pub fn read(path: &Path, memory: u64) -> Result<Model, ReadError> {
     }
     file.by_ref().take(size).read_to_end(&mut bytes).map_err(cannot)?;
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
-    model(bytes, &ending, &budget)
+    let folder = path.parent().unwrap_or(Path::new(""));
+    model(bytes, &ending, folder, &budget)
 }
 
-/// Reads the bytes of a file whose name has this ending, in lower case.
-fn model(mut bytes: Vec<u8>, ending: &str, budget: &MemoryBudget) -> Result<Model, ReadError> {
+/// Reads the bytes of a file in a folder, whose name has this ending, in lower case.
+fn model(mut bytes: Vec<u8>, ending: &str, folder: &Path, budget: &MemoryBudget) -> Result<Model, ReadError> {
     // A byte order mark is no part of a text.
     let start = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
     let bytes = &mut bytes[start..];
@@ -63,8 +70,8 @@ fn model(mut bytes: Vec<u8>, ending: &str, budget: &MemoryBudget) -> Result<Mode
     if format.is_text(bytes) {
         blocks::end_lines(bytes);
     }
-    let model = match format {
-        Format::Obj => obj::read(bytes, budget),
+    let mut model = match format {
+        Format::Obj => obj::read(bytes, folder, budget),
         Format::Ply => ply::read(bytes, budget),
         Format::Stl => stl::read(bytes, budget),
     }?;
@@ -74,6 +81,18 @@ fn model(mut bytes: Vec<u8>, ending: &str, budget: &MemoryBudget) -> Result<Mode
             _ => "none of its faces has three corners".to_owned(),
         };
         return Err(ReadError::file(reason));
+    }
+    if budget.wanted.normals && model.attributes.normals.is_empty() {
+        model.remarks.push(Remark {
+            message: "has a file without normals".to_owned(),
+            help: "its normals are those of its faces, as far as edges are no creases",
+        });
+    }
+    if budget.wanted.materials.is_some() && model.finishes.is_empty() && model.attributes.colours.is_empty() {
+        model.remarks.push(Remark {
+            message: "has a file without materials and colours".to_owned(),
+            help: "it has the material of the scene",
+        });
     }
     Ok(model)
 }

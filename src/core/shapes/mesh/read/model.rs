@@ -1,6 +1,9 @@
 //! What a file of a mesh holds, and how its faults are told.
 
+use super::at_corners::Attributes;
+use super::finish::Finish;
 use crate::text;
+use crate::world::display::Display;
 use bytesize::ByteSize;
 use glam::DVec3;
 use std::fmt;
@@ -21,8 +24,29 @@ pub struct Model {
     pub slots: Vec<u16>,
     /// The index of the flat side of which each triangle is a part, rising; empty where each is a side of its own.
     pub sides: Vec<u32>,
+    /// What the file says of each of these materials, where that is wanted and known.
+    pub finishes: Vec<Option<Finish>>,
+    /// What the corners of faces have, as far as it is wanted.
+    pub attributes: Attributes,
     /// What was not taken as the file says it.
     pub remarks: Vec<Remark>,
+}
+
+/// What is read of a file beside its triangles.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Wanted {
+    /// Its normals.
+    pub normals: bool,
+    /// Its materials, texture coordinates and colours: how the image shows light that is rendered, as bytes stand for the light
+    /// that it shows with them.
+    pub materials: Option<Display>,
+}
+
+impl Wanted {
+    /// Returns the number of lists that the corners of faces have, at most.
+    fn lists(self) -> u64 {
+        u64::from(self.normals) + 2 * u64::from(self.materials.is_some())
+    }
 }
 
 /// Something about a file that its user should know.
@@ -81,18 +105,26 @@ impl ReadError {
 /// The largest number of vertices: indices are 32 bits wide.
 pub(super) const MAX_VERTICES: usize = 1 << 31;
 
-/// How much memory a mesh may take while its file is read and its tree is built.
+/// What is wanted of a file, and how much memory its mesh may take while it is read and its tree is built.
 #[derive(Clone, Copy)]
 pub struct MemoryBudget {
+    /// What is read beside triangles.
+    pub wanted: Wanted,
     /// In bytes; the file's are included.
     memory: u64,
     /// The length of the file in bytes.
     file: u64,
+    /// What a vertex and a face take, in bytes.
+    taken: [u64; 2],
 }
 
 /// The memory that a vertex and a face take, in bytes: at most while the tree is built, which needs several lists of
 /// faces, their boxes and edges.
 const TAKEN: [u64; 2] = [48, 160];
+
+/// The memory that a list of values at the corners of faces takes for a vertex and a face, in bytes: such a list is put in
+/// another order.
+const TAKEN_BY_LIST: [u64; 2] = [24, 24];
 
 /// About the bytes of memory that a mesh takes, at least, for each byte of its file: those of a face in a wordy text, an
 /// STL, take 160 bytes and 48 for each corner, beside the file.
@@ -100,7 +132,7 @@ const LEAST: u64 = 3;
 
 impl MemoryBudget {
     /// Refuses a file whose mesh surely takes more memory than there is, before it is read.
-    pub fn new(memory: u64, file: u64) -> Result<Self, String> {
+    pub fn new(memory: u64, file: u64, wanted: Wanted) -> Result<Self, String> {
         if file.saturating_mul(LEAST) > memory {
             return Err(format!(
                 "it has {}, which may take more than the {} of memory that are left",
@@ -108,14 +140,23 @@ impl MemoryBudget {
                 ByteSize(memory)
             ));
         }
-        Ok(Self { memory, file })
+        let taken = [0, 1].map(|of| TAKEN[of] + wanted.lists() * TAKEN_BY_LIST[of]);
+        Ok(Self { wanted, memory, file, taken })
+    }
+
+    /// Returns the memory that is left beside the file, in bytes.
+    pub fn left(&self) -> u64 {
+        self.memory.saturating_sub(self.file)
     }
 
     /// Refuses more vertices and faces than there is memory for.
     #[inline]
     pub fn holds(&self, vertices: usize, faces: usize) -> Result<(), String> {
-        let taken = [vertices, faces].into_iter().zip(TAKEN).map(|(count, each)| count as u64 * each);
-        if self.file + taken.sum::<u64>() <= self.memory {
+        let [of_vertices, of_faces] = self.taken;
+        // What a header says may be any number.
+        let vertices_take = (vertices as u64).saturating_mul(of_vertices);
+        let taken = (faces as u64).saturating_mul(of_faces).saturating_add(vertices_take);
+        if self.file.saturating_add(taken) <= self.memory {
             Ok(())
         } else {
             Err(self.refusal(vertices, faces))

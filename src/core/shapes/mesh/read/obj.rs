@@ -1,13 +1,33 @@
-//! Wavefront OBJ: vertices, faces, and the names of their materials. All else is ignored.
+//! Wavefront OBJ: vertices, faces, the names of their materials, and normals and texture coordinates where they are wanted.
+//! All else is ignored.
 
-use super::blocks::{self, words};
+use super::at_corners::{Attributes, NO_VALUE};
+use super::blocks::{self, Words, words};
 use super::model::{MAX_VERTICES, MemoryBudget, Model, ReadError, coordinate, shown};
+use super::mtl;
 use super::polygons::Polygons;
 use glam::DVec3;
 use memchr::memchr;
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::ops::Add;
+use std::path::Path;
+
+/// What the lines `v`, `vt` and `vn` are, one and several.
+const NAMES: [[&str; 2]; 3] = [["vertex", "vertices"], ["`vt`", "`vt`"], ["`vn`", "`vn`"]];
+
+/// The numbers of lines `v`, `vt` and `vn`.
+#[derive(Clone, Copy, Default)]
+struct Counts([usize; 3]);
+
+impl Add for Counts {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self([0, 1, 2].map(|of| self.0[of] + other.0[of]))
+    }
+}
 
 /// What a block of a file holds.
 #[derive(Default)]
@@ -18,19 +38,23 @@ struct Part {
     /// The names of materials, each with the number of the block's triangles before it and its line; no name is that of
     /// the mesh's own material.
     uses: Vec<(usize, String, usize)>,
-    /// The largest number of a vertex that comes after its face, and the line.
-    ahead: Option<(u32, usize)>,
+    /// What follows `mtllib`, and its line.
+    libraries: Vec<(Vec<u8>, usize)>,
+    attributes: Attributes,
+    /// The largest number of a `v`, `vt` and `vn` that comes after its face, and the line.
+    ahead: [Option<(u32, usize)>; 3],
     lines: usize,
     /// The first fault, with its line.
     fault: Option<(usize, String)>,
 }
 
-/// Reads a file's text.
-pub fn read(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
+/// Reads the text of a file in a folder.
+pub fn read(bytes: &[u8], folder: &Path, budget: &MemoryBudget) -> Result<Model, ReadError> {
     let mut model = Model::default();
     let mut names = HashMap::new();
     let mut polygons = Polygons::default();
-    let (mut slot, mut line, mut ahead) = (0, 0, Vec::new());
+    let (mut slot, mut line, mut ahead) = (0, 0, [const { Vec::new() }; 3]);
+    let mut libraries = Vec::new();
     let take = |part: Part| {
         budget
             .holds(model.vertices.len() + part.vertices.len(), model.faces.len() + part.faces.len())
@@ -39,7 +63,11 @@ pub fn read(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
         model.vertices.extend(part.vertices);
         model.faces.extend(part.faces);
         polygons.append(part.polygons, before);
-        ahead.extend(part.ahead.map(|(vertex, number)| (vertex, line + number)));
+        model.attributes.extend(part.attributes);
+        for (all, found) in ahead.iter_mut().zip(part.ahead) {
+            all.extend(found.map(|(index, number)| (index, line + number)));
+        }
+        libraries.extend(part.libraries.into_iter().map(|(names, number)| (names, line + number)));
         for (faces, name, number) in part.uses {
             // Faces so far without a material keep none.
             model.slots.resize(before + faces, slot);
@@ -64,11 +92,22 @@ pub fn read(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
         line += part.lines;
         fault.map_or(Ok(()), Err)
     };
-    blocks::read(bytes, continues, vertices, |block, before| Part::read(block, before, budget), take)?;
-    let count = model.vertices.len();
-    if let Some((vertex, line)) = ahead.into_iter().find(|(vertex, _)| *vertex as usize >= count) {
-        let message = format!("there is no vertex {}: the file has {count}", u64::from(vertex) + 1);
-        return Err(ReadError::line(line, message));
+    let read = |block: &[u8], before| Part::read(block, before, budget);
+    blocks::read(bytes, continues, counts, read, take)?;
+    let Attributes { normals, uv, .. } = &model.attributes;
+    let counts = [model.vertices.len(), uv.values.len(), normals.values.len()];
+    for ((ahead, count), [name, _]) in ahead.into_iter().zip(counts).zip(NAMES) {
+        // Some programs refer to normals or texture coordinates in files that have none at all.
+        let is_told = count > 0 || name == NAMES[0][0];
+        let mut ahead = ahead.into_iter().filter(|_| is_told);
+        if let Some((index, line)) = ahead.find(|(index, _)| *index as usize >= count) {
+            let message = format!("there is no {name} {}: the file has {count}", u64::from(index) + 1);
+            return Err(ReadError::line(line, message));
+        }
+    }
+    model.attributes.drop_unused();
+    if budget.wanted.materials.is_some() {
+        mtl::furnish(&mut model, &libraries, folder, budget);
     }
     polygons.cut(&mut model);
     Ok(model)
@@ -126,23 +165,29 @@ fn each_line<'b, E>(
     Ok(count)
 }
 
-/// Returns the number of a block's vertices.
-fn vertices(block: &[u8]) -> usize {
-    let (mut count, mut is_continued) = (0, false);
+/// Counts a block's lines `v`, `vt` and `vn`.
+fn counts(block: &[u8]) -> Counts {
+    let (mut counts, mut is_continued) = (Counts::default(), false);
     for line in blocks::lines(block) {
-        count += usize::from(!is_continued && words(line).next() == Some(b"v"));
+        let of = match words(line).next() {
+            Some(b"v") => Some(0),
+            Some(b"vt") => Some(1),
+            Some(b"vn") => Some(2),
+            _ => None,
+        };
+        of.filter(|_| !is_continued).into_iter().for_each(|of| counts.0[of] += 1);
         is_continued = continues(line);
     }
-    count
+    counts
 }
 
 impl Part {
-    /// Reads a block with so many vertices before it, up to the first fault.
-    fn read(block: &[u8], before: usize, budget: &MemoryBudget) -> Self {
-        let mut part = Self::default();
-        let mut corners = Vec::new();
+    /// Reads a block with so much before it, up to the first fault.
+    fn read(block: &[u8], before: Counts, budget: &MemoryBudget) -> Self {
+        let (mut part, mut counts) = (Self::default(), before);
+        let mut corners = Default::default();
         let read = each_line(block, |number, line| {
-            part.line(number, &line, before, &mut corners, budget).map_err(|message| (number, message))
+            part.line(number, &line, &mut counts, &mut corners, budget).map_err(|message| (number, message))
         });
         match read {
             Ok(lines) => part.lines = lines,
@@ -155,10 +200,12 @@ impl Part {
         &mut self,
         number: usize,
         line: &[u8],
-        before: usize,
-        corners: &mut Vec<u32>,
+        Counts(counts): &mut Counts,
+        corners: &mut [Vec<u32>; 3],
         budget: &MemoryBudget,
     ) -> Result<(), String> {
+        let wanted = budget.wanted;
+        let Attributes { normals, uv, .. } = &mut self.attributes;
         let mut words = words(&line[..memchr(b'#', line).unwrap_or(line.len())]);
         match words.next() {
             Some(b"v") => {
@@ -166,27 +213,56 @@ impl Part {
                 for part in &mut at {
                     *part = coordinate(words.next().ok_or("a vertex needs three coordinates")?)?;
                 }
-                if before + self.vertices.len() == MAX_VERTICES {
+                if counts[0] == MAX_VERTICES {
                     return Err("there are more than 2^31 vertices".to_owned());
                 }
+                counts[0] += 1;
                 self.vertices.push(DVec3::from(at));
             }
+            Some(b"vt") => {
+                counts[1] += 1;
+                if wanted.materials.is_some() {
+                    // A texture may have one coordinate, or a third.
+                    let [u, v] = [part(&mut words)?, part(&mut words).unwrap_or(0.0)];
+                    uv.values.push([u, v]);
+                }
+            }
+            Some(b"vn") => {
+                counts[2] += 1;
+                if wanted.normals {
+                    normals.values.push([part(&mut words)?, part(&mut words)?, part(&mut words)?]);
+                }
+            }
             Some(b"f") => {
-                corners.clear();
-                let count = before + self.vertices.len();
+                corners.iter_mut().for_each(Vec::clear);
+                let is_wanted = [true, wanted.materials.is_some(), wanted.normals];
                 for word in words {
-                    let corner = corner(word, count)?;
-                    if corner as usize >= count && self.ahead.is_none_or(|(most, _)| most < corner) {
-                        self.ahead = Some((corner, number));
+                    let mut parts = word.split(|byte| *byte == b'/');
+                    for of in 0..3 {
+                        let part = parts.next().unwrap_or_default();
+                        if !is_wanted[of] {
+                            continue;
+                        }
+                        let index =
+                            if part.is_empty() && of > 0 { NO_VALUE } else { index(word, part, counts, of)? };
+                        let is_ahead = index as usize >= counts[of] && index != NO_VALUE;
+                        if is_ahead && self.ahead[of].is_none_or(|(most, _)| most < index) {
+                            self.ahead[of] = Some((index, number));
+                        }
+                        corners[of].push(index);
                     }
-                    corners.push(corner);
                     // A polygon may be as long as the file.
-                    if corners.len().is_multiple_of(1 << 16) {
-                        budget.holds(count, self.faces.len() + corners.len())?;
+                    if corners[0].len().is_multiple_of(1 << 16) {
+                        budget.holds(counts[0], self.faces.len() + corners[0].len())?;
                     }
                 }
-                budget.holds(count, self.faces.len() + corners.len())?;
-                self.polygons.add(corners, &mut self.faces);
+                budget.holds(counts[0], self.faces.len() + corners[0].len())?;
+                self.polygons.add(&corners[0], &mut self.faces);
+                Polygons::add_values(&corners[1], &mut uv.faces);
+                Polygons::add_values(&corners[2], &mut normals.faces);
+            }
+            Some(b"mtllib") if wanted.materials.is_some() => {
+                self.libraries.push((after_first_word(line).to_vec(), number))
             }
             Some(b"usemtl") => self.uses.push((self.faces.len(), material(line), number)),
             _ => {}
@@ -195,26 +271,40 @@ impl Part {
     }
 }
 
-/// Returns the name that follows `usemtl`. It may have a `#`, as in `Material #25`; one between blanks begins a comment.
-fn material(line: &[u8]) -> String {
+/// Returns the name that follows `usemtl` or `newmtl`. It may have a `#`, as in `Material #25`; one between blanks begins a comment.
+pub(super) fn material(line: &[u8]) -> String {
     let name = words(line).skip(1).take_while(|word| *word != b"#");
     name.map(String::from_utf8_lossy).collect::<Vec<_>>().join(" ")
 }
 
-/// Reads a corner of a face, `vertex/texture/normal`: its vertex counts from 1, or backward from -1 of those so far. A vertex
-/// may come after its faces.
-fn corner(word: &[u8], count: usize) -> Result<u32, String> {
-    let vertex = &word[..word.iter().position(|byte| *byte == b'/').unwrap_or(word.len())];
-    let index: Option<i64> = str::from_utf8(vertex).ok().and_then(|vertex| vertex.parse().ok());
+/// Returns what follows the first word of a line.
+fn after_first_word(line: &[u8]) -> &[u8] {
+    let mut words = words(line);
+    words.next();
+    words.rest
+}
+
+/// Reads a number that may be none, as some programs write them where they divide by 0.
+fn part(words: &mut Words) -> Result<f32, String> {
+    let word = words.next().ok_or("a number is missing")?;
+    let number = str::from_utf8(word).ok().and_then(|word| word.parse().ok());
+    number.ok_or_else(|| format!("`{}` is not a number", shown(word)))
+}
+
+/// Reads one of the parts of a corner of a face, `vertex/texture/normal`, each of which counts from 1, or backward from -1 of
+/// those so far. What it counts may come after its faces.
+fn index(word: &[u8], part: &[u8], counts: &[usize; 3], of: usize) -> Result<u32, String> {
+    let (count, [one, several]) = (counts[of], NAMES[of]);
+    let index: Option<i64> = str::from_utf8(part).ok().and_then(|part| part.parse().ok());
     let index = index.ok_or_else(|| format!("`{}` is not a vertex's number", shown(word)))?;
     let found = match index {
         1.. => usize::try_from(index - 1).ok().filter(|index| *index < MAX_VERTICES),
-        0 => return Err("vertices are counted from 1, so there is no vertex 0".to_owned()),
+        0 => return Err(format!("{several} are counted from 1, so there is no {one} 0")),
         _ => usize::try_from(index.unsigned_abs()).ok().and_then(|back| count.checked_sub(back)),
     };
     found.map(|index| index as u32).ok_or_else(|| {
         let before =
-            if count == 1 { "1 vertex precedes".to_owned() } else { format!("{count} vertices precede") };
-        format!("there is no vertex {index}: {before} this face")
+            if count == 1 { format!("1 {one} precedes") } else { format!("{count} {several} precede") };
+        format!("there is no {one} {index}: {before} this face")
     })
 }

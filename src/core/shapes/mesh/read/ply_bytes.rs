@@ -1,7 +1,8 @@
 //! The elements of a PLY in bytes of either order.
 
+use super::at_corners::Attributes;
 use super::model::{ENDS_EARLY, MemoryBudget, Model, ReadError};
-use super::ply_header::{Field, Kind, Number, Section};
+use super::ply_header::{Field, Kind, Number, Section, Vertex, coordinates, normal, uv};
 use super::polygons::Polygons;
 use crate::parallel;
 use glam::DVec3;
@@ -23,9 +24,18 @@ pub(super) fn read<const BIG: bool>(
             let (elements, after) = rest.split_at(length);
             if section.kind == Kind::Vertex {
                 budget.holds(section.count, model.faces.len()).map_err(ReadError::file)?;
-                model.vertices = vec![DVec3::ZERO; section.count];
                 let read = |index: usize| section.vertex::<BIG>(&elements[index * size..][..size]);
-                parallel::fill(&mut model.vertices, read);
+                let [has_normals, has_colours, has_uv] =
+                    section.reads().map(|reads| if reads { section.count } else { 0 });
+                let Attributes { normals, uv: at, colours } = &mut model.attributes;
+                model.vertices = vec![DVec3::ZERO; section.count];
+                normals.values = vec![[0.0; 3]; has_normals];
+                colours.values = vec![[0.0; 3]; has_colours];
+                at.values = vec![[0.0; 2]; has_uv];
+                parallel::fill(&mut model.vertices, |index| coordinates(&read(index)));
+                parallel::fill(&mut normals.values, |index| normal(&read(index)));
+                parallel::fill(&mut colours.values, |index| section.colour(&read(index)));
+                parallel::fill(&mut at.values, |index| uv(&read(index)));
                 if let Some(index) =
                     parallel::find_first(section.count, |index| !model.vertices[index].is_finite())
                 {
@@ -40,13 +50,14 @@ pub(super) fn read<const BIG: bool>(
         for index in 0..section.count {
             let byte = place(rest);
             let error = |message| ReadError::byte(byte, message);
-            let mut at = [0.0; 3];
+            let mut vertex = Vertex::default();
             given.clear();
             for field in &section.fields {
                 match *field {
                     Field::Number(number) => drop(take(&mut rest, number.size()).ok_or_else(early)?),
-                    Field::Coordinate(axis, number) => {
-                        at[axis] = scalar::<BIG>(take(&mut rest, number.size()).ok_or_else(early)?, number);
+                    Field::Vertex(place, number) => {
+                        vertex[place] =
+                            scalar::<BIG>(take(&mut rest, number.size()).ok_or_else(early)?, number);
                     }
                     Field::List(length, number) | Field::Corners(length, number) => {
                         let count = whole::<BIG>(take(&mut rest, length.size()).ok_or_else(early)?, length);
@@ -66,12 +77,11 @@ pub(super) fn read<const BIG: bool>(
             }
             match section.kind {
                 Kind::Vertex => {
-                    let at = DVec3::from(at);
-                    if !at.is_finite() {
+                    if !coordinates(&vertex).is_finite() {
                         return Err(error(format!("vertex {index} is not finite")));
                     }
                     budget.holds(model.vertices.len(), model.faces.len()).map_err(error)?;
-                    model.vertices.push(at);
+                    section.put(&vertex, &mut model.vertices, &mut model.attributes);
                 }
                 Kind::Face | Kind::Strips => {
                     section
@@ -96,7 +106,7 @@ impl Section {
     /// Returns the length of an element in bytes, if all have the same.
     fn size(&self) -> Option<usize> {
         let length = |field: &Field| match *field {
-            Field::Number(number) | Field::Coordinate(_, number) => Some(number.size()),
+            Field::Number(number) | Field::Vertex(_, number) => Some(number.size()),
             Field::List(..) | Field::Corners(..) => None,
         };
         // Elements without properties have no length; there are none of them.
@@ -104,16 +114,17 @@ impl Section {
     }
 
     /// Reads a vertex without lists.
-    fn vertex<const BIG: bool>(&self, element: &[u8]) -> DVec3 {
-        let (mut at, mut start) = ([0.0; 3], 0);
+    #[inline(always)]
+    fn vertex<const BIG: bool>(&self, element: &[u8]) -> Vertex {
+        let (mut vertex, mut start) = (Vertex::default(), 0);
         for field in &self.fields {
-            let (Field::Number(number) | Field::Coordinate(_, number)) = *field else { continue };
-            if let Field::Coordinate(axis, _) = *field {
-                at[axis] = scalar::<BIG>(&element[start..start + number.size()], number);
+            let (Field::Number(number) | Field::Vertex(_, number)) = *field else { continue };
+            if let Field::Vertex(place, _) = *field {
+                vertex[place] = scalar::<BIG>(&element[start..start + number.size()], number);
             }
             start += number.size();
         }
-        DVec3::from(at)
+        vertex
     }
 }
 

@@ -1,12 +1,45 @@
 //! Headers of PLY files: the elements of a file, and what is read of each.
 
+use super::at_corners::Attributes;
 use super::blocks::{is_blank, words};
-use super::model::{ENDS_EARLY, MAX_VERTICES, ReadError, coordinate, shown};
+use super::model::{ENDS_EARLY, MAX_VERTICES, ReadError, Wanted, coordinate, shown};
 use super::polygons::Polygons;
+use glam::DVec3;
 use memchr::memchr;
+use std::ops::Range;
 
 /// The names that programs give to the corners of faces.
 const CORNERS: [&str; 3] = ["vertex_indices", "vertex_index", "vertex_indexes"];
+
+/// The names that programs give to the numbers of a vertex, in their order.
+const NUMBERS: [&[&str]; NUMBERS_OF_VERTEX] = [
+    &["x"],
+    &["y"],
+    &["z"],
+    &["nx"],
+    &["ny"],
+    &["nz"],
+    &["red", "diffuse_red"],
+    &["green", "diffuse_green"],
+    &["blue", "diffuse_blue"],
+    &["s", "u", "texture_u"],
+    &["t", "v", "texture_v"],
+];
+
+/// Which of the numbers of a vertex are its coordinates, its normal, its colour and its texture coordinates.
+const COORDINATES: Range<usize> = 0..3;
+const NORMAL: Range<usize> = 3..6;
+const COLOUR: Range<usize> = 6..9;
+const UV: Range<usize> = 9..11;
+
+/// The brightest light of a colour: beyond, products of colours may overflow.
+const MOST_LIGHT: f64 = 1e6;
+
+/// How many numbers of a vertex are read.
+const NUMBERS_OF_VERTEX: usize = 11;
+
+/// The numbers of a vertex.
+pub(super) type Vertex = [f64; NUMBERS_OF_VERTEX];
 
 /// The longest header, in bytes.
 const LONGEST_HEADER: usize = 1 << 20;
@@ -47,6 +80,14 @@ impl Number {
         })
     }
 
+    /// Returns the greatest whole number that is one, as a colour counts to it.
+    fn greatest(self) -> Option<f64> {
+        match self {
+            Self::Signed(size) | Self::Unsigned(size) => Some(((1_u64 << (8 * size.min(4))) - 1) as f64),
+            Self::Float | Self::Double => None,
+        }
+    }
+
     fn is_whole(self) -> bool {
         matches!(self, Self::Signed(_) | Self::Unsigned(_))
     }
@@ -65,8 +106,8 @@ impl Number {
 /// What is read of a property. An element has its properties one after the other.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Field {
-    /// The coordinate along this axis.
-    Coordinate(usize, Number),
+    /// This one of the numbers of a vertex.
+    Vertex(usize, Number),
     /// The corners of a face: the type of their number, and their own.
     Corners(Number, Number),
     /// A number that is not needed.
@@ -84,6 +125,8 @@ pub(super) struct Section {
     pub kind: Kind,
     /// The number of vertices in the file.
     pub vertices: usize,
+    /// What is read beside triangles.
+    wanted: Wanted,
 }
 
 /// The elements that are read; others are skipped.
@@ -105,8 +148,23 @@ pub(super) struct Header<'h> {
     pub line: usize,
 }
 
+/// Returns the coordinates of a vertex.
+pub(super) fn coordinates(vertex: &Vertex) -> DVec3 {
+    DVec3::new(vertex[0], vertex[1], vertex[2])
+}
+
+/// Returns the normal of a vertex.
+pub(super) fn normal(vertex: &Vertex) -> [f32; 3] {
+    [0, 1, 2].map(|axis| vertex[NORMAL.start + axis] as f32)
+}
+
+/// Returns the texture coordinates of a vertex.
+pub(super) fn uv(vertex: &Vertex) -> [f32; 2] {
+    [0, 1].map(|axis| vertex[UV.start + axis] as f32)
+}
+
 /// Reads the header. Lines of other words than those of PLY are comments, as some programs write them.
-pub(super) fn header(bytes: &[u8]) -> Result<Header<'_>, ReadError> {
+pub(super) fn header(bytes: &[u8], wanted: Wanted) -> Result<Header<'_>, ReadError> {
     let first = &bytes[..bytes.len().min(LONGEST_HEADER)];
     // Lines end as the first one does: with a carriage return alone only if that does, since bytes may follow.
     let end = match first.iter().position(|byte| matches!(byte, b'\r' | b'\n')) {
@@ -140,7 +198,7 @@ pub(super) fn header(bytes: &[u8]) -> Result<Header<'_>, ReadError> {
                 let (name, count) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
                 let count = str::from_utf8(count).ok().and_then(|count| count.parse().ok());
                 let count = count.ok_or_else(|| error(unexpected(text, true)))?;
-                sections.push(Section::new(&String::from_utf8_lossy(name), count));
+                sections.push(Section::new(&String::from_utf8_lossy(name), count, wanted));
             }
             Some(b"property") => {
                 let section = sections.last_mut().ok_or_else(|| error(unexpected(text, true)))?;
@@ -168,14 +226,14 @@ pub(super) fn header(bytes: &[u8]) -> Result<Header<'_>, ReadError> {
 }
 
 impl Section {
-    fn new(name: &str, count: usize) -> Self {
+    fn new(name: &str, count: usize, wanted: Wanted) -> Self {
         let kind = match name {
             "vertex" => Kind::Vertex,
             "face" => Kind::Face,
             "tristrips" => Kind::Strips,
             _ => Kind::Other,
         };
-        Self { name: name.to_owned(), count, fields: Vec::new(), kind, vertices: 0 }
+        Self { name: name.to_owned(), count, fields: Vec::new(), kind, vertices: 0, wanted }
     }
 
     /// Reads what a property is; `None` where words are missing.
@@ -184,9 +242,17 @@ impl Section {
             matches!(self.kind, Kind::Face | Kind::Strips)
                 && CORNERS.iter().any(|known| known.as_bytes() == name)
         };
-        let axis = |name: &[u8]| {
-            [b"x", b"y", b"z"].iter().position(|axis| *axis == name).filter(|_| self.kind == Kind::Vertex)
+        let is_wanted = |place: &usize| {
+            self.kind == Kind::Vertex
+                && (COORDINATES.contains(place)
+                    || NORMAL.contains(place) && self.wanted.normals
+                    || *place >= COLOUR.start && self.wanted.materials.is_some())
         };
+        let place = |name: &[u8]| {
+            let is_name = |known: &&str| known.as_bytes() == name;
+            NUMBERS.iter().position(|names| names.iter().any(|known| is_name(known))).filter(is_wanted)
+        };
+        let is_coordinate = |name: &[u8]| place(name).is_some_and(|place| COORDINATES.contains(&place));
         let wrong = |name: &[u8], what: &str| {
             Err(format!("`{}` of its elements `{}` is not {what}", shown(name), self.name))
         };
@@ -195,7 +261,7 @@ impl Section {
                 let both = Number::of(length).and_then(|length| Ok((length, Number::of(number)?)));
                 match both {
                     Err(message) => Err(message),
-                    _ if axis(name).is_some() => wrong(name, "a number"),
+                    _ if is_coordinate(name) => wrong(name, "a number"),
                     Ok((length, _)) if !length.is_whole() => {
                         wrong(name, "a list with a whole number of values")
                     }
@@ -207,12 +273,56 @@ impl Section {
                 }
             }
             [number, name, ..] if is_corners(name) => Number::of(number).and_then(|_| wrong(name, "a list")),
-            [number, name, ..] => Number::of(number).map(|number| match axis(name) {
-                Some(axis) => Field::Coordinate(axis, number),
+            [number, name, ..] => Number::of(number).map(|number| match place(name) {
+                Some(place) => Field::Vertex(place, number),
                 None => Field::Number(number),
             }),
             _ => return None,
         })
+    }
+
+    /// Tells whether vertices have all of these numbers.
+    fn has(&self, mut numbers: Range<usize>) -> bool {
+        let is_field = |number| {
+            self.fields.iter().any(|field| matches!(field, Field::Vertex(place, _) if *place == number))
+        };
+        numbers.all(is_field)
+    }
+
+    /// Tells whether the normals, the colours and the texture coordinates of vertices are read.
+    pub fn reads(&self) -> [bool; 3] {
+        [NORMAL, COLOUR, UV].map(|numbers| self.has(numbers))
+    }
+
+    /// Returns the colour of a vertex. Whole numbers are those of an image, and others light.
+    pub fn colour(&self, vertex: &Vertex) -> [f32; 3] {
+        let number = self.fields.iter().find_map(|field| match field {
+            Field::Vertex(place, number) if *place == COLOUR.start => Some(*number),
+            _ => None,
+        });
+        let greatest = number.and_then(Number::greatest);
+        let colour = [0, 1, 2].map(|channel| vertex[COLOUR.start + channel]);
+        colour.map(|channel| match (greatest, self.wanted.materials) {
+            (Some(greatest), Some(display)) => {
+                display.light_of((255.0 * channel / greatest).round() as u8) as f32
+            }
+            _ => {
+                if channel > 0.0 {
+                    channel.min(MOST_LIGHT) as f32
+                } else {
+                    0.0
+                }
+            }
+        })
+    }
+
+    /// Adds a vertex, with what is read of it.
+    pub fn put(&self, vertex: &Vertex, vertices: &mut Vec<DVec3>, attributes: &mut Attributes) {
+        let [has_normals, has_colours, has_uv] = self.reads();
+        vertices.push(coordinates(vertex));
+        attributes.normals.values.extend(has_normals.then(|| normal(vertex)));
+        attributes.colours.values.extend(has_colours.then(|| self.colour(vertex)));
+        attributes.uv.values.extend(has_uv.then(|| uv(vertex)));
     }
 
     /// Adds the triangles of a face, or of strips, of this index; `corners` is room for its corners.
@@ -255,7 +365,8 @@ fn may_fit(sections: &[Section], size: usize) -> Result<(), String> {
     if sections.iter().filter(|section| section.kind == Kind::Vertex).count() > 1 {
         return Err("it has more than one list of elements `vertex`".to_owned());
     }
-    for Section { name, count, fields, kind, .. } in sections {
+    for section in sections {
+        let Section { name, count, fields, kind, .. } = section;
         if *count > left {
             return Err(format!(
                 "the header announces {count} elements `{name}`, more than the file has room for"
@@ -265,10 +376,7 @@ fn may_fit(sections: &[Section], size: usize) -> Result<(), String> {
             return Err(format!("its elements `{name}` have no properties"));
         }
         left -= count;
-        let has_axis = |wanted| {
-            fields.iter().any(|field| matches!(field, Field::Coordinate(axis, _) if *axis == wanted))
-        };
-        if *kind == Kind::Vertex && !(0..3).all(has_axis) {
+        if *kind == Kind::Vertex && !section.has(COORDINATES) {
             return Err("its vertices do not have `x`, `y` and `z`".to_owned());
         }
         let has_corners = fields.iter().any(|field| matches!(field, Field::Corners(..)));

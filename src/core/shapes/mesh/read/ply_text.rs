@@ -1,8 +1,9 @@
 //! The elements of a PLY in text: each has a line, but words may be laid out in any way.
 
+use super::at_corners::Attributes;
 use super::blocks::{self, Words, is_blank, never, words};
 use super::model::{ENDS_EARLY, MemoryBudget, Model, ReadError, coordinate};
-use super::ply_header::{Field, Kind, Number, Section, unexpected};
+use super::ply_header::{Field, Kind, Number, Section, Vertex, coordinates, unexpected};
 use super::polygons::Polygons;
 use glam::DVec3;
 use memchr::memchr_iter;
@@ -13,6 +14,7 @@ struct Part {
     vertices: Vec<DVec3>,
     faces: Vec<[u32; 3]>,
     polygons: Polygons,
+    attributes: Attributes,
     lines: usize,
     /// The first fault, with its line.
     fault: Option<(usize, String)>,
@@ -87,6 +89,7 @@ fn add(
         .map_err(ReadError::file)?;
     model.vertices.extend(part.vertices);
     model.faces.extend(part.faces);
+    model.attributes.extend(part.attributes);
     polygons.append(part.polygons, before);
     let fault = part.fault.map(|(number, message)| ReadError::line(*line + number, message));
     *line += part.lines;
@@ -141,14 +144,16 @@ impl Part {
         section: &Section,
         budget: &MemoryBudget,
     ) -> Result<(), String> {
-        let (start, mut at) = (words.rest, [0.0; 3]);
-        let is_whole = self.fields(words, section, &mut at, budget).is_some();
+        let (start, mut vertex) = (words.rest, Vertex::default());
+        let is_whole = self.fields(words, section, &mut vertex, budget).is_some();
         let text = || &start[..start.len() - words.rest.len()];
         if !is_whole {
             return Err(unexpected(text(), false));
         }
         match section.kind {
-            Kind::Vertex if DVec3::from(at).is_finite() => self.vertices.push(DVec3::from(at)),
+            Kind::Vertex if coordinates(&vertex).is_finite() => {
+                section.put(&vertex, &mut self.vertices, &mut self.attributes);
+            }
             Kind::Vertex => {
                 let wrong = blocks::words(text()).find_map(|word| coordinate(word).err());
                 return Err(wrong.unwrap_or_else(|| format!("vertex {index} is not finite")));
@@ -167,14 +172,14 @@ impl Part {
         &mut self,
         words: &mut Words,
         section: &Section,
-        at: &mut [f64; 3],
+        vertex: &mut Vertex,
         budget: &MemoryBudget,
     ) -> Option<()> {
         for field in &section.fields {
             let word = str::from_utf8(words.next()?).ok()?;
             match *field {
                 Field::Number(_) => {}
-                Field::Coordinate(axis, number) => at[axis] = scalar(word, number)?,
+                Field::Vertex(place, number) => vertex[place] = scalar(word, number)?,
                 Field::List(..) => {
                     if let Some(last) = word.parse::<usize>().ok()?.checked_sub(1) {
                         words.nth(last)?;

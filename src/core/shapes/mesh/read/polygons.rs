@@ -49,6 +49,13 @@ impl Polygons {
         faces.extend(rest.windows(2).map(|pair| [*first, pair[0], pair[1]]));
     }
 
+    /// Adds what the corners of a face have to a list for triangles.
+    pub fn add_values(values: &[u32], list: &mut Vec<[u32; 3]>) {
+        if let [first, rest @ ..] = values {
+            list.extend(rest.windows(2).map(|pair| [*first, pair[0], pair[1]]));
+        }
+    }
+
     /// Adds the polygons of triangles that follow so many others.
     pub fn append(&mut self, other: Self, before: usize) {
         self.fans.extend(other.fans.into_iter().map(|[first, count]| [first + before as u32, count]));
@@ -78,23 +85,21 @@ impl Polygons {
             .collect();
         let anew = parallel::map(dented.len(), |index| cut(&dented[index].1));
         if !anew.is_empty() {
-            let (mut faces, mut slots) = (Vec::with_capacity(model.faces.len()), Vec::new());
-            let mut next = 0;
-            for ((polygon, _), triangles) in dented.iter().zip(anew) {
-                let fan = self.fans[*polygon];
-                let [first, count] = fan.map(|at| at as usize);
-                let corners: Vec<_> = indices(model, fan).collect();
-                faces.extend_from_slice(&model.faces[next..first]);
-                faces.extend(triangles.iter().map(|face| face.map(|corner| corners[corner as usize])));
-                if let Some(slot) = model.slots.get(first) {
-                    slots.extend_from_slice(&model.slots[next..first]);
-                    slots.extend(triangles.iter().map(|_| *slot));
-                }
-                next = first + count;
+            let cuts: Vec<_> =
+                dented.iter().zip(anew).map(|((polygon, _), anew)| (self.fans[*polygon], anew)).collect();
+            let recut = |list: &[[u32; 3]]| {
+                pieced(&cuts, list, |fan, anew, all| {
+                    let corners: Vec<_> = indices(list, fan).collect();
+                    all.extend(anew.iter().map(|face| face.map(|corner| corners[corner as usize])));
+                })
+            };
+            model.attributes.lists().for_each(|list| *list = recut(list));
+            model.faces = recut(&model.faces);
+            if !model.slots.is_empty() {
+                model.slots = pieced(&cuts, &model.slots, |[first, _], anew, all| {
+                    all.extend(anew.iter().map(|_| model.slots[first as usize]));
+                });
             }
-            faces.extend_from_slice(&model.faces[next..]);
-            slots.extend_from_slice(model.slots.get(next..).unwrap_or_default());
-            (model.faces, model.slots) = (faces, slots);
         }
         if self.short > 0 {
             model.remarks.push(Remark {
@@ -114,9 +119,24 @@ impl Polygons {
     }
 }
 
+/// A polygon that was cut from its first corner, and how it is cut instead: for each triangle, which of its corners.
+type Cut = ([u32; 2], Vec<[u32; 3]>);
+
+/// Returns a list for triangles in which `add` replaces those of polygons.
+fn pieced<T: Copy>(cuts: &[Cut], list: &[T], add: impl Fn([u32; 2], &[[u32; 3]], &mut Vec<T>)) -> Vec<T> {
+    let (mut all, mut next) = (Vec::with_capacity(list.len()), 0);
+    for (fan, anew) in cuts {
+        all.extend_from_slice(&list[next..fan[0] as usize]);
+        add(*fan, anew, &mut all);
+        next = (fan[0] + fan[1]) as usize;
+    }
+    all.extend_from_slice(&list[next..]);
+    all
+}
+
 /// Returns the corners of a polygon that was cut from its first corner.
-fn indices(model: &Model, [first, count]: [u32; 2]) -> impl Iterator<Item = u32> {
-    let fan = &model.faces[first as usize..][..count as usize];
+fn indices(faces: &[[u32; 3]], [first, count]: [u32; 2]) -> impl Iterator<Item = u32> {
+    let fan = &faces[first as usize..][..count as usize];
     fan.iter().take(1).flat_map(|face| [face[0], face[1]]).chain(fan.iter().map(|face| face[2]))
 }
 
@@ -124,7 +144,7 @@ fn indices(model: &Model, [first, count]: [u32; 2]) -> impl Iterator<Item = u32>
 fn corners(model: &Model, fan: [u32; 2]) -> Vec<DVec3> {
     let at = |corner: u32| model.vertices[corner as usize];
     let origin = at(model.faces[fan[0] as usize][0]);
-    indices(model, fan).map(|corner| at(corner) - origin).collect()
+    indices(&model.faces, fan).map(|corner| at(corner) - origin).collect()
 }
 
 /// Returns the corners of a polygon in its plane if it has a dent, and tells whether it is not flat.

@@ -1,25 +1,33 @@
 //! What readers make of files, sound and broken.
 
+mod attributes;
 mod habits;
 
 use super::model::MemoryBudget;
-use super::{FilePosition, Model, ReadError};
+use super::{FilePosition, Model, ReadError, Wanted};
 use glam::DVec3;
 use proptest::prelude::*;
+use std::path::Path;
 
 macro_rules! readers {
-    ($($format:ident)*) => {$(
+    ($($format:ident($($folder:expr),*))*) => {$(
         /// Reads a file of this format, with room enough.
         mod $format {
-            use super::{ReadError, Model, MemoryBudget};
+            use super::{ReadError, Model, budget};
 
             pub fn read(bytes: &[u8]) -> Result<Model, ReadError> {
-                super::super::$format::read(bytes, &MemoryBudget::new(1 << 30, 0).map_err(ReadError::file)?)
+                let budget = budget(1 << 30, 0).map_err(ReadError::file)?;
+                super::super::$format::read(bytes, $($folder,)* &budget)
             }
         }
     )*};
 }
-readers!(obj ply stl);
+readers!(obj(std::path::Path::new("")) ply() stl());
+
+/// Makes a budget for a file of this length of which triangles alone are wanted.
+fn budget(memory: u64, file: u64) -> Result<MemoryBudget, String> {
+    MemoryBudget::new(memory, file, Wanted::default())
+}
 
 const CORNERS: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.5], [0.25, 1.0, 0.0], [0.0, 0.5, 2.0]];
 const FACES: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
@@ -281,8 +289,8 @@ fn an_stl_may_be_in_capitals_and_in_one_line() {
 
 /// Reads a file whose name has this ending.
 fn named(ending: &str, bytes: impl AsRef<[u8]>) -> Result<Model, ReadError> {
-    let budget = MemoryBudget::new(1 << 30, 0).map_err(ReadError::file)?;
-    super::model(bytes.as_ref().to_vec(), ending, &budget)
+    let budget = budget(1 << 30, 0).map_err(ReadError::file)?;
+    super::model(bytes.as_ref().to_vec(), ending, Path::new(""), &budget)
 }
 
 fn all() -> [(&'static str, Vec<u8>); 6] {
@@ -351,12 +359,13 @@ fn a_long_text_is_read_as_a_short_one_is() {
 fn a_model_takes_no_more_memory_than_there_is() {
     let fan = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf{}\n", " 1 2 3".repeat(40_000));
     let faces = 3 * 40_000 - 2;
-    let budget = |memory: u64| MemoryBudget::new(memory, fan.len() as u64).expect("room for the file");
+    let budget = |memory: u64| budget(memory, fan.len() as u64).expect("room for the file");
     let enough = 160 * (faces + 2) + 48 * 3 + fan.len() as u64;
-    assert!(super::obj::read(fan.as_bytes(), &budget(enough)).is_ok());
-    let error = super::obj::read(fan.as_bytes(), &budget(enough - 400)).expect_err("too little");
+    assert!(super::obj::read(fan.as_bytes(), Path::new(""), &budget(enough)).is_ok());
+    let error =
+        super::obj::read(fan.as_bytes(), Path::new(""), &budget(enough - 400)).expect_err("too little");
     assert!(error.message.starts_with("it has at least 3 vertices and 120000 faces, which may take more"));
-    assert!(MemoryBudget::new(2999, 1000).is_err());
+    assert!(self::budget(2999, 1000).is_err());
 }
 
 proptest! {

@@ -1,0 +1,120 @@
+//! What the corners of faces have beside their places: normals, texture coordinates and colours.
+
+use crate::shapes::mesh::face::in_order_of_use;
+
+/// The index of a corner that has no value.
+pub const NO_VALUE: u32 = u32::MAX;
+
+/// Values of one kind at the corners of faces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AtCorners<T> {
+    /// The values.
+    pub values: Vec<T>,
+    /// For each face, the indices of the values at its corners, or [`NO_VALUE`]. Empty where no corner has a value.
+    pub faces: Vec<[u32; 3]>,
+}
+
+impl<T> Default for AtCorners<T> {
+    fn default() -> Self {
+        Self { values: Vec::new(), faces: Vec::new() }
+    }
+}
+
+impl<T: Copy> AtCorners<T> {
+    /// Makes values of vertices, each of which has one, those of the faces between them; none of no values.
+    pub fn of_vertices(values: Vec<T>, faces: &[[u32; 3]]) -> Self {
+        let faces = if values.is_empty() { Vec::new() } else { faces.to_vec() };
+        Self { values, faces }
+    }
+
+    /// Tells whether no corner has a value.
+    #[inline(always)]
+    pub fn is_empty(&self) -> bool {
+        self.faces.is_empty()
+    }
+
+    /// Returns the values at the corners of a face; `None` where one has none.
+    #[inline]
+    pub fn at(&self, face: usize) -> Option<[T; 3]> {
+        let [a, b, c] = self.faces.get(face)?.map(|corner| self.values.get(corner as usize).copied());
+        Some([a?, b?, c?])
+    }
+
+    /// Sorts faces in this order, and values by their first use.
+    pub fn sorted(self, order: &[u32]) -> Self {
+        if self.is_empty() {
+            return self;
+        }
+        let mut faces: Vec<_> = order.iter().map(|face| self.faces[*face as usize]).collect();
+        Self { values: in_order_of_use(&self.values, &mut faces), faces }
+    }
+
+    fn extend(&mut self, other: Self) {
+        self.values.extend(other.values);
+        self.faces.extend(other.faces);
+    }
+
+    fn drop_unused(&mut self) {
+        if self.values.is_empty() {
+            self.faces = Vec::new();
+        }
+    }
+
+    /// Returns the memory that they take, in bytes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.values[..]) + size_of_val(&self.faces[..])
+    }
+}
+
+/// All that the corners of faces have. What a file does not have, or is not asked for, is empty.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Attributes {
+    /// Normals of any length, in the file's own coordinates.
+    pub normals: AtCorners<[f32; 3]>,
+    /// Texture coordinates: from the left, and from the bottom.
+    pub uv: AtCorners<[f32; 2]>,
+    /// Colours of light.
+    pub colours: AtCorners<[f32; 3]>,
+}
+
+impl Attributes {
+    /// Tells whether no corner has any.
+    pub fn is_empty(&self) -> bool {
+        self.normals.is_empty() && self.uv.is_empty() && self.colours.is_empty()
+    }
+
+    /// Returns the lists of those attributes that there are, with an entry for each face.
+    pub fn lists(&mut self) -> impl Iterator<Item = &mut Vec<[u32; 3]>> {
+        let lists = [&mut self.normals.faces, &mut self.uv.faces, &mut self.colours.faces];
+        lists.into_iter().filter(|list| !list.is_empty())
+    }
+
+    /// Adds those of faces that follow.
+    pub fn extend(&mut self, Self { normals, uv, colours }: Self) {
+        self.normals.extend(normals);
+        self.uv.extend(uv);
+        self.colours.extend(colours);
+    }
+
+    /// Leaves out the lists of attributes that have no values.
+    pub fn drop_unused(&mut self) {
+        self.normals.drop_unused();
+        self.uv.drop_unused();
+        self.colours.drop_unused();
+    }
+
+    /// Leaves these faces.
+    pub fn keep(&mut self, kept: &[u32]) {
+        for list in self.lists() {
+            *list = kept.iter().map(|face| list[*face as usize]).collect();
+        }
+    }
+
+    /// Turns the faces for which that is said.
+    pub fn turn(&mut self, is_turned: impl Fn(usize) -> bool) {
+        for list in self.lists() {
+            let faces = list.iter_mut().enumerate().filter(|(face, _)| is_turned(*face));
+            faces.for_each(|(_, corners)| corners.swap(1, 2));
+        }
+    }
+}

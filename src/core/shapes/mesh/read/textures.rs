@@ -1,0 +1,85 @@
+//! The images that the materials of a file name.
+
+use super::model::{MemoryBudget, Remark};
+use crate::text;
+use crate::world::texture::Texture;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The most images that a message names.
+const FEW: usize = 5;
+
+/// Images, each read once.
+pub struct Textures<'f> {
+    /// Names of files are relative to this, or to that of the model.
+    pub folder: PathBuf,
+    of_model: &'f Path,
+    budget: &'f MemoryBudget,
+    /// The memory that is left, in bytes.
+    memory: u64,
+    known: BTreeMap<PathBuf, Option<Arc<Texture>>>,
+    /// Which cannot be read, and why.
+    broken: Vec<String>,
+}
+
+impl<'f> Textures<'f> {
+    /// Prepares to read the images of a file in this folder.
+    pub fn new(folder: &'f Path, budget: &'f MemoryBudget) -> Self {
+        Self {
+            folder: folder.to_owned(),
+            of_model: folder,
+            budget,
+            memory: budget.left(),
+            known: BTreeMap::new(),
+            broken: Vec::new(),
+        }
+    }
+
+    /// Reads the image in a file of this name, which comes from that place. Folders may be separated by `\`. Where a name leads
+    /// nowhere, as that of another machine, the file itself is looked for there.
+    pub fn named(&mut self, name: &str, place: &str) -> Option<Arc<Texture>> {
+        let name = name.replace('\\', "/");
+        let last = Path::new(&name).file_name().unwrap_or_default();
+        let names = [Path::new(&name), Path::new(last)];
+        let paths = names.into_iter().flat_map(|name| [self.folder.join(name), self.of_model.join(name)]);
+        let path = paths.into_iter().find(|path| path.is_file()).unwrap_or(self.folder.join(&name));
+        if let Some(known) = self.known.get(&path) {
+            return known.clone();
+        }
+        let texture = self.read(Texture::of_model(path.clone(), None), &name, place);
+        self.known.insert(path, texture.clone());
+        texture
+    }
+
+    /// Reads the image whose file has these bytes.
+    pub fn within(&mut self, bytes: &[u8], name: &str, place: &str) -> Option<Arc<Texture>> {
+        self.read(Texture::of_model(PathBuf::from(name), Some(bytes.to_vec())), name, place)
+    }
+
+    fn read(&mut self, texture: Texture, name: &str, place: &str) -> Option<Arc<Texture>> {
+        self.budget.wanted.materials.into_iter().for_each(|display| texture.decode_by(display));
+        let reason = texture.load_within(self.memory).err().map(str::to_owned);
+        self.memory = self.memory.saturating_sub(texture.bytes());
+        let Some(reason) = reason else { return Some(Arc::new(texture)) };
+        let near = if texture.is_missing() { text::nearest_file(texture.path()) } else { None };
+        let reason = near.map_or(reason, |near| format!("it does not exist, but `{near}` does"));
+        self.broken.push(format!("`{}` ({place}: {reason})", text::abridged(name)));
+        None
+    }
+
+    /// Tells of images that cannot be read, if there are any.
+    pub fn remark(self) -> Option<Remark> {
+        let count = self.broken.len();
+        (count > 0).then(|| Remark {
+            message: format!("has materials whose images cannot be read: {}", first_of(&self.broken)),
+            help: "there, the materials have their plain colours",
+        })
+    }
+}
+
+/// Lists the first few.
+pub(super) fn first_of(all: &[String]) -> String {
+    let few = all[..all.len().min(FEW)].join(", ");
+    if all.len() > FEW { format!("{few} and {} more", all.len() - FEW) } else { few }
+}
