@@ -1,7 +1,8 @@
 //! The formats of meshes, told apart by how files begin.
 
 use super::blocks::{self, words};
-use super::{obj, ply, stl};
+use super::{gltf, obj, ply, stl};
+use memchr::memmem;
 
 /// A format that is read.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,30 +10,33 @@ pub(super) enum Format {
     Obj,
     Ply,
     Stl,
+    Gltf,
 }
 
 /// How other files begin, what they are, and what to do about them.
-const OTHERS: [(&[u8], &str); 17] = [
+const OTHERS: [(&[u8], &str); 16] = [
     (b"\x1f\x8b", "it is compressed with gzip: decompress it first"),
     (b"BZh", "it is compressed with bzip2: decompress it first"),
     (b"\xfd7zXZ", "it is compressed with xz: decompress it first"),
     (b"\x28\xb5\x2f\xfd", "it is compressed with zstd: decompress it first"),
     (b"7z\xbc\xaf", "it is a 7z archive: unpack it first"),
     (b"Rar!", "it is a RAR archive: unpack it first"),
-    (b"PK\x03\x04", "it is a ZIP archive, as 3MF and USDZ are: unpack it, or export it as OBJ, PLY or STL"),
-    (b"glTF", "it is a binary glTF: export it as OBJ, PLY or STL"),
-    (b"Kaydara FBX", "it is an FBX: export it as OBJ, PLY or STL"),
-    (b"BLENDER", "it is a scene of Blender: export it as OBJ, PLY or STL"),
-    (b"ISO-10303", "it is a STEP: export it as OBJ, PLY or STL"),
-    (b"#VRML", "it is a VRML: export it as OBJ, PLY or STL"),
-    (b"OFF", "it is an OFF: export it as OBJ, PLY or STL"),
+    (
+        b"PK\x03\x04",
+        "it is a ZIP archive, as 3MF and USDZ are: unpack it, or export it as OBJ, PLY, STL or glTF",
+    ),
+    (b"Kaydara FBX", "it is an FBX: export it as OBJ, PLY, STL or glTF"),
+    (b"BLENDER", "it is a scene of Blender: export it as OBJ, PLY, STL or glTF"),
+    (b"ISO-10303", "it is a STEP: export it as OBJ, PLY, STL or glTF"),
+    (b"#VRML", "it is a VRML: export it as OBJ, PLY, STL or glTF"),
+    (b"OFF", "it is an OFF: export it as OBJ, PLY, STL or glTF"),
     (
         b"version https://git-lfs",
         "it only stands for a file that Git LFS stores: fetch that with `git lfs pull`",
     ),
     (b"<!DOCTYPE", "it is a page of HTML, not the file that was to be downloaded"),
     (b"<html", "it is a page of HTML, not the file that was to be downloaded"),
-    (b"<", "it is XML, as Collada and X3D are: export it as OBJ, PLY or STL"),
+    (b"<", "it is XML, as Collada and X3D are: export it as OBJ, PLY, STL or glTF"),
 ];
 
 impl Format {
@@ -58,13 +62,14 @@ impl Format {
             return Err((*what).to_owned());
         }
         Ok(match ending {
+            _ if is_gltf(bytes) => Self::Gltf,
             _ if first.eq_ignore_ascii_case(b"ply") => Self::Ply,
             _ if stl::is_text(bytes) => Self::Stl,
             _ if is_obj(bytes) => Self::Obj,
             "obj" => Self::Obj,
             "ply" => Self::Ply,
             "stl" => Self::Stl,
-            _ => return Err("it is no OBJ, PLY or STL, by its name and by how it begins".to_owned()),
+            _ => return Err("it is no OBJ, PLY, STL or glTF, by its name and by how it begins".to_owned()),
         })
     }
 
@@ -74,6 +79,7 @@ impl Format {
             Self::Obj => true,
             Self::Ply => ply::is_text(bytes),
             Self::Stl => stl::is_text(bytes),
+            Self::Gltf => false,
         }
     }
 
@@ -83,7 +89,7 @@ impl Format {
             Self::Obj => obj::without_faces(bytes),
             Self::Ply if vertices > 0 => "it has vertices and no faces: it is a cloud of points".to_owned(),
             Self::Ply => "it has no faces".to_owned(),
-            Self::Stl => "it has no triangles".to_owned(),
+            Self::Stl | Self::Gltf => "it has no triangles".to_owned(),
         }
     }
 }
@@ -97,6 +103,12 @@ fn is_utf_16(bytes: &[u8]) -> bool {
             && pairs.all(|pair| pair[zero] == 0 && pair[1 - zero].is_ascii() && pair[1 - zero] != 0)
     };
     begins.starts_with(b"\xff\xfe") || begins.starts_with(b"\xfe\xff") || is_wide(0) || is_wide(1)
+}
+
+/// Tells whether a file is a GLB, or JSON of a glTF.
+fn is_gltf(bytes: &[u8]) -> bool {
+    let is_json = bytes.trim_ascii_start().starts_with(b"{");
+    bytes.starts_with(gltf::MAGIC) || is_json && memmem::find(bytes, b"\"asset\"").is_some()
 }
 
 /// Tells whether the first line of a text that is no comment begins with a word of OBJ.

@@ -1,9 +1,10 @@
-//! Files of triangle meshes: OBJ, PLY and STL.
+//! Files of triangle meshes: OBJ, PLY, STL and glTF.
 
 mod at_corners;
 mod blocks;
 mod finish;
 mod format;
+mod gltf;
 mod model;
 mod mtl;
 mod obj;
@@ -74,6 +75,7 @@ fn model(mut bytes: Vec<u8>, ending: &str, folder: &Path, budget: &MemoryBudget)
         Format::Obj => obj::read(bytes, folder, budget),
         Format::Ply => ply::read(bytes, budget),
         Format::Stl => stl::read(bytes, budget),
+        Format::Gltf => gltf::read(bytes, folder, budget),
     }?;
     if model.faces.is_empty() {
         let reason = match &model.remarks[..] {

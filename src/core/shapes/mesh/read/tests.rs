@@ -1,6 +1,7 @@
 //! What readers make of files, sound and broken.
 
 mod attributes;
+mod gltf;
 mod habits;
 
 use super::model::MemoryBudget;

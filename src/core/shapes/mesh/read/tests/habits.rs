@@ -159,10 +159,10 @@ fn files_of_other_kinds_are_named() {
         (utf_16(false, &format!("\u{feff}{text}")), "it is a text in UTF-16: save it in UTF-8"),
         (utf_16(true, &format!("\u{feff}{text}")), "it is a text in UTF-16: save it in UTF-8"),
         (utf_16(false, &text), "it is a text in UTF-16: save it in UTF-8"),
-        (b"glTF\x02\0\0\0".to_vec(), "it is a binary glTF: export it as OBJ, PLY or STL"),
+        (b"OFF\n3 1 0\n".to_vec(), "it is an OFF: export it as OBJ, PLY, STL or glTF"),
         (
             b"<?xml version='1.0'?>".to_vec(),
-            "it is XML, as Collada and X3D are: export it as OBJ, PLY or STL",
+            "it is XML, as Collada and X3D are: export it as OBJ, PLY, STL or glTF",
         ),
         (b"  \n".to_vec(), "it is empty"),
         (b"v 0 0 0\nv 1 1 1\n".to_vec(), "it has vertices and no faces: it is a cloud of points"),
@@ -174,7 +174,7 @@ fn files_of_other_kinds_are_named() {
     }
     assert_eq!(
         named("txt", "one"),
-        Err(ReadError::file("it is no OBJ, PLY or STL, by its name and by how it begins"))
+        Err(ReadError::file("it is no OBJ, PLY, STL or glTF, by its name and by how it begins"))
     );
 }
 

@@ -1,0 +1,183 @@
+//! The JSON of glTF, as far as it is read. Its names are those of the specification.
+
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+use std::collections::BTreeMap;
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Gltf {
+    pub asset: Asset,
+    pub extensions_required: Vec<String>,
+    pub scene: Option<usize>,
+    pub scenes: Vec<Scene>,
+    pub nodes: Vec<Node>,
+    pub meshes: Vec<Mesh>,
+    pub accessors: Vec<Accessor>,
+    pub buffer_views: Vec<BufferView>,
+    pub buffers: Vec<Buffer>,
+    pub materials: Vec<Material>,
+    pub textures: Vec<Texture>,
+    pub images: Vec<Image>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub struct Asset {
+    pub version: String,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub struct Scene {
+    pub nodes: Vec<usize>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub struct Node {
+    pub children: Vec<usize>,
+    pub mesh: Option<usize>,
+    pub skin: Option<usize>,
+    pub matrix: Option<[f64; 16]>,
+    pub translation: Option<[f64; 3]>,
+    pub rotation: Option<[f64; 4]>,
+    pub scale: Option<[f64; 3]>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub struct Mesh {
+    pub primitives: Vec<Primitive>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub struct Primitive {
+    pub attributes: BTreeMap<String, usize>,
+    pub indices: Option<usize>,
+    pub material: Option<usize>,
+    pub mode: Option<u32>,
+    pub targets: Vec<IgnoredAny>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Accessor {
+    pub buffer_view: Option<usize>,
+    pub byte_offset: usize,
+    pub component_type: u32,
+    pub normalized: bool,
+    pub count: usize,
+    #[serde(rename = "type")]
+    pub shape: String,
+    pub sparse: Option<Sparse>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub struct Sparse {
+    pub count: usize,
+    pub indices: SparseList,
+    pub values: SparseList,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct SparseList {
+    pub buffer_view: usize,
+    pub byte_offset: usize,
+    pub component_type: u32,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct BufferView {
+    pub buffer: usize,
+    pub byte_offset: usize,
+    pub byte_length: usize,
+    pub byte_stride: Option<usize>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Buffer {
+    pub uri: Option<String>,
+    pub byte_length: usize,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Material {
+    pub name: Option<String>,
+    pub pbr_metallic_roughness: Pbr,
+    pub normal_texture: Option<TextureInfo>,
+    pub occlusion_texture: Option<IgnoredAny>,
+    pub emissive_texture: Option<TextureInfo>,
+    pub emissive_factor: [f64; 3],
+    pub alpha_mode: Option<String>,
+    pub extensions: BTreeMap<String, serde_json::Value>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Pbr {
+    pub base_color_factor: [f64; 4],
+    pub base_color_texture: Option<TextureInfo>,
+    pub metallic_factor: f64,
+    pub roughness_factor: f64,
+    pub metallic_roughness_texture: Option<TextureInfo>,
+}
+
+impl Default for Pbr {
+    fn default() -> Self {
+        Self {
+            base_color_factor: [1.0; 4],
+            base_color_texture: None,
+            metallic_factor: 1.0,
+            roughness_factor: 1.0,
+            metallic_roughness_texture: None,
+        }
+    }
+}
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct TextureInfo {
+    pub index: usize,
+    pub tex_coord: u32,
+    /// The factor of a normal map's slopes.
+    pub scale: Option<f64>,
+    pub extensions: TextureExtensions,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub struct TextureExtensions {
+    #[serde(rename = "KHR_texture_transform")]
+    pub transform: Option<Transform>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Transform {
+    pub offset: [f64; 2],
+    pub scale: Option<[f64; 2]>,
+    pub rotation: f64,
+    pub tex_coord: Option<u32>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub struct Texture {
+    pub source: Option<usize>,
+    pub extensions: BTreeMap<String, serde_json::Value>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Image {
+    pub uri: Option<String>,
+    pub buffer_view: Option<usize>,
+    pub name: Option<String>,
+}
