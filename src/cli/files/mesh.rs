@@ -24,7 +24,7 @@ pub fn read(path: &Path, wanted: Wanted) -> Result<Surface, Failure> {
 }
 
 /// The endings of the names of files of meshes.
-const ENDINGS: [&str; 3] = ["obj", "ply", "stl"];
+const ENDINGS: [&str; 5] = ["glb", "gltf", "obj", "ply", "stl"];
 
 /// Tells by its name whether a file holds a mesh.
 pub fn is_one(path: &Path) -> bool {

@@ -7,6 +7,7 @@ use crate::process::failure::Failure;
 use std::path::Path;
 use tabray_core::scene::model::Model;
 use tabray_core::scene::value::Datum;
+use tabray_core::shapes::mesh::read::Wanted;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::reader::{Loaded, NO_CAMERA, ReadOptions, Report};
 use tabray_lang::registry::Registry;
@@ -32,7 +33,7 @@ pub fn load(
     let loaded = if mesh::is_one(path) {
         of_mesh(path, sets).load_by(registry, options).map_err(|report| {
             // That names the file of the mesh and the place in it.
-            mesh::read(path).err().unwrap_or(Failure::Scene(report))
+            mesh::read(path, Wanted::default()).err().unwrap_or(Failure::Scene(report))
         })?
     } else {
         let source = Source::read(path, sets)?;
