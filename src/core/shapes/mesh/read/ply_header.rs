@@ -250,7 +250,7 @@ impl Section {
         };
         let place = |name: &[u8]| {
             let is_name = |known: &&str| known.as_bytes() == name;
-            NUMBERS.iter().position(|names| names.iter().any(|known| is_name(known))).filter(is_wanted)
+            NUMBERS.iter().position(|names| names.iter().any(&is_name)).filter(is_wanted)
         };
         let is_coordinate = |name: &[u8]| place(name).is_some_and(|place| COORDINATES.contains(&place));
         let wrong = |name: &[u8], what: &str| {
