@@ -86,7 +86,7 @@ pub struct Args {
 
 const EXAMPLES: &str = "\
 Examples:
-  echo '0 0 9  0 0 -1' | tabray hits ball.ray
+  tabray hits ball.ray < rays.txt
   tabray hits part.stl rays.csv -o answers.csv
   tabray hits part.stl rays.npy -o answers.npy --fast
   tabray hits ball.ray --from-camera --to csv";

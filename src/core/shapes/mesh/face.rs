@@ -1,6 +1,5 @@
 //! One face of a mesh: what plain arithmetic tells of a ray's hit, and its equation.
 
-use super::read::NO_VALUE;
 use crate::geometry::aabb::{Aabb, larger};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayError};
 use crate::shapes::triangle::{Triangle, UNDERFLOW, largest, passed};
@@ -189,19 +188,4 @@ pub(super) fn distance_to(corners: [DVec3; 3], at: DVec3) -> f64 {
         (from + part * along).length()
     };
     from_edge(a, b).min(from_edge(b, c)).min(from_edge(c, a))
-}
-
-/// Sorts what the corners of faces refer to in the order in which faces use it, so that what belongs to a node of the tree
-/// lies close together in memory. What is not used is left out.
-pub(super) fn in_order_of_use<T: Copy>(all: &[T], faces: &mut [[u32; 3]]) -> Vec<T> {
-    let (mut places, mut sorted) = (vec![u32::MAX; all.len()], Vec::with_capacity(all.len()));
-    for corner in faces.iter_mut().flatten().filter(|corner| **corner != NO_VALUE) {
-        let place = &mut places[*corner as usize];
-        if *place == u32::MAX {
-            *place = sorted.len() as u32;
-            sorted.push(all[*corner as usize]);
-        }
-        *corner = *place;
-    }
-    sorted
 }

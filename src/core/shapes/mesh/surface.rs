@@ -3,7 +3,7 @@
 use super::creases::Normals;
 use super::edges::Edges;
 use super::face;
-use super::read::{AtCorners, Attributes, Finish, Map, Model, Remark};
+use super::read::{AtCorners, Attributes, Finish, Map, Model, Remark, in_order_of_use};
 use super::to_world::ToWorld;
 use super::winding::{self, Openness};
 use crate::geometry::aabb::Aabb;
@@ -159,7 +159,7 @@ impl Surface {
             Bvh::of(kept.len(), |face| Aabb::around(&kept[face].map(|corner| vertices[corner as usize])));
         let sorted = tree.take_order();
         let mut faces: Vec<_> = sorted.iter().map(|face| kept[*face as usize]).collect();
-        let vertices = face::in_order_of_use(&vertices, &mut faces);
+        let vertices = in_order_of_use(&vertices, &mut faces);
         let (normals, uv, colours) = (normals.sorted(&sorted), uv.sorted(&sorted), colours.sorted(&sorted));
         let mut order: Vec<_> = sorted.iter().map(|face| order[*face as usize]).collect();
         let slots =

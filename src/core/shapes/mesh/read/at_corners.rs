@@ -1,7 +1,5 @@
 //! What the corners of faces have beside their places: normals, texture coordinates and colours.
 
-use crate::shapes::mesh::face::in_order_of_use;
-
 /// The index of a corner that has no value.
 pub const NO_VALUE: u32 = u32::MAX;
 
@@ -117,4 +115,19 @@ impl Attributes {
             faces.for_each(|(_, corners)| corners.swap(1, 2));
         }
     }
+}
+
+/// Sorts what the corners of faces refer to in the order in which faces use it, so that what belongs to a node of the tree
+/// lies close together in memory. What is not used is left out.
+pub fn in_order_of_use<T: Copy>(all: &[T], faces: &mut [[u32; 3]]) -> Vec<T> {
+    let (mut places, mut sorted) = (vec![u32::MAX; all.len()], Vec::with_capacity(all.len()));
+    for corner in faces.iter_mut().flatten().filter(|corner| **corner != NO_VALUE) {
+        let place = &mut places[*corner as usize];
+        if *place == u32::MAX {
+            *place = sorted.len() as u32;
+            sorted.push(all[*corner as usize]);
+        }
+        *corner = *place;
+    }
+    sorted
 }

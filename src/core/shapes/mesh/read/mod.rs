@@ -18,6 +18,7 @@ mod stl;
 mod tests;
 mod textures;
 
+pub(super) use at_corners::in_order_of_use;
 pub use at_corners::{AtCorners, Attributes, NO_VALUE};
 pub use finish::{Finish, Map};
 use format::Format;
