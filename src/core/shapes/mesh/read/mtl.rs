@@ -3,7 +3,6 @@
 use super::blocks::{self, Words, words};
 use super::finish::{Finish, Map};
 use super::model::{MemoryBudget, Model, Remark};
-use super::obj::material;
 use super::textures::{Textures, first_of};
 use crate::files;
 use crate::text;
@@ -311,4 +310,10 @@ fn is_grey(texture: &Arc<Texture>) -> bool {
         let texel = texture.numbers(column, row);
         texel.x == texel.y && texel.y == texel.z
     })
+}
+
+/// Returns the name that follows `usemtl` or `newmtl`. It may have a `#`, as in `Material #25`; one between blanks begins a comment.
+pub(super) fn material(line: &[u8]) -> String {
+    let name = words(line).skip(1).take_while(|word| *word != b"#");
+    name.map(String::from_utf8_lossy).collect::<Vec<_>>().join(" ")
 }

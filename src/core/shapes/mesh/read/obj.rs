@@ -264,17 +264,11 @@ impl Part {
             Some(b"mtllib") if wanted.materials.is_some() => {
                 self.libraries.push((after_first_word(line).to_vec(), number))
             }
-            Some(b"usemtl") => self.uses.push((self.faces.len(), material(line), number)),
+            Some(b"usemtl") => self.uses.push((self.faces.len(), mtl::material(line), number)),
             _ => {}
         }
         Ok(())
     }
-}
-
-/// Returns the name that follows `usemtl` or `newmtl`. It may have a `#`, as in `Material #25`; one between blanks begins a comment.
-pub(super) fn material(line: &[u8]) -> String {
-    let name = words(line).skip(1).take_while(|word| *word != b"#");
-    name.map(String::from_utf8_lossy).collect::<Vec<_>>().join(" ")
 }
 
 /// Returns what follows the first word of a line.
