@@ -1,8 +1,11 @@
 //! NumPy arrays of rays and of answers.
 
-use super::rays::{Numbers, reason};
 use npyz::{DType, NpyFile, NpyReader, Order, TypeChar};
 use std::io::BufRead;
+use tabray_core::text::reason;
+
+/// The origin, the direction and the end of a ray.
+pub(super) type Numbers = ([f64; 6], Option<f64>);
 
 /// The rows of an array of rays.
 pub(super) struct Rows<'r> {

@@ -1,11 +1,12 @@
 //! Reads rays.
 
-use super::npy;
+use super::npy::{self, Numbers};
 use glam::DVec3;
 use serde::Deserialize;
 use std::fmt;
-use std::io::{self, BufRead, Read};
+use std::io::{BufRead, Read};
 use tabray_core::query::ExactRay;
+use tabray_core::text::reason;
 
 /// The maximum length of a line, in bytes: more than any six numbers have.
 const LONGEST: u64 = 1 << 12;
@@ -162,9 +163,6 @@ impl<'r> RayReader<'r> {
     }
 }
 
-/// The origin, the direction and the end of a ray.
-pub(super) type Numbers = ([f64; 6], Option<f64>);
-
 impl Iterator for RayReader<'_> {
     type Item = Result<RayRow, BadRay>;
 
@@ -210,10 +208,6 @@ fn line(input: &mut dyn BufRead) -> Option<Result<String, (String, bool)>> {
         Ok(_) => Some(String::from_utf8(bytes).map_err(|_| ("it is not UTF-8".to_owned(), false))),
         Err(error) => Some(Err((reason(&error), true))),
     }
-}
-
-pub(super) fn reason(error: &io::Error) -> String {
-    tabray_core::text::reason(error)
 }
 
 fn of_words<'w>(words: impl Iterator<Item = &'w str>) -> Result<Numbers, String> {
