@@ -48,7 +48,7 @@ fn write_map(folder: &Path) {
 /// Returns a scene: a floor, a wall, some bodies, and one to three of the lights.
 fn scene(seed: u64) -> String {
     let mut draw = Draw(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x1234_5678);
-    (0..4).for_each(|_| drop(draw.part()));
+    (0..4).for_each(|_| _ = draw.part());
     let [width, height] = SIZE;
     let mut text = format!(
         "look_at eye {{ pixeldim {width} {height} position {:.3} {:.3} 6 target 0 0.6 0 angle 40 }}
