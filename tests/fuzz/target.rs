@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 use tabray::cli::fuzz::{Image, Server};
 use tabray::exact::double_double::DoubleDouble;
 use tabray::exact::{Dual, Formula, Interval, Jet, Scalar, Wide};
-use tabray::render::{Plan, Renderer, to_byte, trace};
+use tabray::render::{Plan, Renderer, trace};
 use tabray::scene::{self, Loaded, Registry, Syntax, dump};
 use tabray::simd::Cpu;
 use tabray::tools::threads::renderer_with;
@@ -167,7 +167,7 @@ pub fn render(bytes: &[u8]) {
     let pixel = |x, y| {
         let colour = trace::pixel(&plan, x, y);
         assert!(!colour.is_nan(), "pixel {x} {y} has the colour {colour}");
-        colour.to_array().map(to_byte)
+        plan.camera.display().bytes(colour)
     };
     // The pixels are computed on a renderer's thread, whose stack has room for deep reflections.
     let alone = RENDERERS[0].run(|| {
