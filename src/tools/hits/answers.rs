@@ -1,7 +1,6 @@
 //! Writes answers.
 
 use super::npy;
-use npyz::WriterBuilder;
 use serde::Serialize;
 use std::io::{self, Write};
 use tabray_core::query::{Answer, Surroundings, Verdict};
@@ -123,10 +122,7 @@ impl<'m> Answered<'m> {
             proof: bits(answer.proof),
             object: answer.object.map_or(-1, |index| index as i32),
             face: surface.and_then(|surface| surface.face).map_or(-1, |face| face as i32),
-            t: answer.t,
-            t_low: answer.bounds.low,
-            t_high: answer.bounds.high,
-            distance: answer.distance,
+            along: [answer.t, answer.bounds.low, answer.bounds.high, answer.distance],
             point: surface.map_or(none, |surface| surface.point.to_array()),
             normal: surface.map_or(none, |surface| surface.normal.to_array()),
             uv: surface.and_then(|surface| surface.uv).map_or([f64::NAN; 2], |uv| uv.to_array()),
@@ -143,12 +139,7 @@ impl AnswerFormat {
         match (self, count) {
             (Self::JsonLines, _) => Ok(()),
             (Self::Csv, _) => writeln!(out, "{}", COLUMNS.join(",")),
-            (Self::Npy, Some(count)) => npyz::WriteOptions::<npy::Record>::new()
-                .default_dtype()
-                .shape(&[count])
-                .writer(out)
-                .begin_nd()
-                .map(drop),
+            (Self::Npy, Some(count)) => npy::begin(count, out),
             (Self::Npy, None) => {
                 Err(io::Error::new(io::ErrorKind::InvalidInput, "an array needs its length first"))
             }
@@ -173,13 +164,7 @@ impl AnswerFormat {
                 out.flush()?;
                 drop(out);
             }
-            Self::Npy => {
-                let dtype = <npy::Record as npyz::AutoSerialize>::default_dtype();
-                let writer = <npy::Record as npyz::Serialize>::writer(&dtype).map_err(io::Error::other)?;
-                for answer in answers {
-                    npyz::TypeWrite::write_one(&writer, &mut bytes, &answer.record())?;
-                }
-            }
+            Self::Npy => answers.for_each(|answer| answer.record().write(&mut bytes)),
         }
         Ok(bytes)
     }

@@ -1,53 +1,59 @@
-//! NumPy arrays of rays and of answers.
+//! NumPy arrays of rays and of answers, in NumPy's own format ("NPY format", versions 1 to 3). The crates that read it bring
+//! a parser of Python's literals that needs a C compiler.
 
-use npyz::{DType, NpyFile, NpyReader, Order, TypeChar};
-use std::io::BufRead;
+use std::io::{self, BufRead, Read, Write};
 use tabray_core::text::reason;
 
 /// The origin, the direction and the end of a ray.
 pub(super) type Numbers = ([f64; 6], Option<f64>);
 
+/// How each file begins.
+pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
+
+/// The maximum length of a head, in bytes.
+const LONGEST: usize = 1 << 12;
+
 /// The rows of an array of rays.
 pub(super) struct Rows<'r> {
-    numbers: NumberReader<'r>,
-    columns: u64,
+    input: Box<dyn BufRead + 'r>,
+    /// The size of a number in bytes, 4 or 8, and whether its first byte is the lowest.
+    size: usize,
+    is_little: bool,
+    columns: usize,
     count: u64,
-}
-
-enum NumberReader<'r> {
-    F64(NpyReader<f64, Box<dyn BufRead + 'r>>),
-    F32(NpyReader<f32, Box<dyn BufRead + 'r>>),
+    left: u64,
 }
 
 impl<'r> Rows<'r> {
     /// Reads the head of an array.
-    pub fn new(input: Box<dyn BufRead + 'r>) -> Result<Self, String> {
-        let file = NpyFile::new(input).map_err(|error| reason(&error))?;
-        let [count, columns @ (6 | 7)] = *file.shape() else {
-            let shape: Vec<_> = file.shape().iter().map(u64::to_string).collect();
-            return Err(format!(
-                "rays are an array of shape (n, 6) or (n, 7); this one's is ({})",
-                shape.join(", ")
-            ));
+    pub fn new(mut input: Box<dyn BufRead + 'r>) -> Result<Self, String> {
+        let head = head(&mut input).map_err(|error| match error.kind() {
+            io::ErrorKind::UnexpectedEof | io::ErrorKind::InvalidData => "it is no NumPy array".to_owned(),
+            _ => reason(&error),
+        })?;
+        let (is_little, size) = match value(&head, "descr") {
+            Some("'<f8'") => (true, 8),
+            Some("'<f4'") => (true, 4),
+            Some("'>f8'") => (false, 8),
+            Some("'>f4'") => (false, 4),
+            other => {
+                let other = other.unwrap_or("of another one");
+                return Err(format!("rays are of type `f8` or `f4`; these are {other}"));
+            }
         };
-        if file.order() == Order::Fortran && count > 1 {
+        let shape = value(&head, "shape").unwrap_or_default();
+        let sides: Vec<Option<u64>> =
+            shape.trim_matches(['(', ')', ',']).split(',').map(|side| side.trim().parse().ok()).collect();
+        let (count, columns) = match sides[..] {
+            [Some(count), Some(columns @ (6 | 7))] => (count, columns as usize),
+            _ => return Err(format!("rays are an array of shape (n, 6) or (n, 7); this one's is {shape}")),
+        };
+        if value(&head, "fortran_order") == Some("True") && count > 1 {
             return Err(
                 "its columns are stored one after the other; save `numpy.ascontiguousarray(rays)`".to_owned()
             );
         }
-        let dtype = file.dtype();
-        let is = |size| match &dtype {
-            DType::Plain(of) => of.type_char() == TypeChar::Float && of.num_bytes() == Some(size),
-            _ => false,
-        };
-        let numbers = match (is(8), is(4)) {
-            (true, _) => file.data().ok().map(NumberReader::F64),
-            (_, true) => file.data().ok().map(NumberReader::F32),
-            _ => None,
-        };
-        let numbers =
-            numbers.ok_or_else(|| format!("rays are of type `f8` or `f4`; these are {}", dtype.descr()))?;
-        Ok(Self { numbers, columns, count })
+        Ok(Self { input, size, is_little, columns, count, left: count })
     }
 
     /// Returns the number of rays.
@@ -57,34 +63,144 @@ impl<'r> Rows<'r> {
 
     /// Returns the next ray; `None` at the end.
     pub fn next(&mut self) -> Option<Result<Numbers, (String, bool)>> {
-        let mut ray = [0.0; 7];
-        for number in &mut ray[..self.columns as usize] {
-            let read = match &mut self.numbers {
-                NumberReader::F64(numbers) => numbers.next()?,
-                NumberReader::F32(numbers) => numbers.next()?.map(f64::from),
-            };
-            match read {
-                Ok(read) => *number = read,
-                Err(error) => return Some(Err((reason(&error), true))),
+        self.left = self.left.checked_sub(1)?;
+        let mut bytes = [0; 7 * 8];
+        let bytes = &mut bytes[..self.columns * self.size];
+        if let Err(error) = self.input.read_exact(bytes) {
+            let is_short = error.kind() == io::ErrorKind::UnexpectedEof;
+            let why = if is_short { "the array ends before it".to_owned() } else { reason(&error) };
+            return Some(Err((why, true)));
+        }
+        let mut ray = [f64::INFINITY; 7];
+        for (number, bytes) in ray.iter_mut().zip(bytes.chunks_exact_mut(self.size)) {
+            if !self.is_little {
+                bytes.reverse();
             }
+            *number = match *bytes {
+                [a, b, c, d] => f64::from(f32::from_le_bytes([a, b, c, d])),
+                [a, b, c, d, e, f, g, h] => f64::from_le_bytes([a, b, c, d, e, f, g, h]),
+                _ => f64::NAN,
+            };
         }
         let [a, b, c, d, e, f, end] = ray;
-        Some(Ok(([a, b, c, d, e, f], (self.columns == 7 && end != f64::INFINITY).then_some(end))))
+        Some(Ok(([a, b, c, d, e, f], (end != f64::INFINITY).then_some(end))))
     }
 }
 
+/// Reads the head of a file: the text of a Python dictionary.
+fn head(input: &mut dyn BufRead) -> io::Result<String> {
+    let invalid = || io::Error::from(io::ErrorKind::InvalidData);
+    let mut start = [0; 8];
+    input.read_exact(&mut start)?;
+    if !start.starts_with(MAGIC) {
+        return Err(invalid());
+    }
+    let mut length = [0; 4];
+    input.read_exact(&mut length[..if start[6] == 1 { 2 } else { 4 }])?;
+    let length = usize::try_from(u32::from_le_bytes(length)).ok().filter(|length| *length <= LONGEST);
+    let mut text = vec![0; length.ok_or_else(invalid)?];
+    input.read_exact(&mut text)?;
+    String::from_utf8(text).map_err(|_| invalid())
+}
+
+/// Returns the text of a value in a head.
+fn value<'h>(head: &'h str, key: &str) -> Option<&'h str> {
+    let (_, rest) = head.split_once(&format!("'{key}':"))?;
+    let rest = rest.trim_start();
+    let end = if rest.starts_with('(') { rest.find(')')? + 1 } else { rest.find([',', '}'])? };
+    Some(rest[..end].trim())
+}
+
+/// The type of an answer's record, as NumPy writes it.
+const RECORD: &str = "[('verdict', '|u1'), ('proof', '|u1'), ('object', '<i4'), ('face', '<i4'), ('t', '<f8'), \
+    ('t_low', '<f8'), ('t_high', '<f8'), ('distance', '<f8'), ('point', '<f8', (3,)), ('normal', '<f8', (3,)), \
+    ('uv', '<f8', (2,))]";
+
 /// An answer as a record of an array.
-#[derive(npyz::AutoSerialize, npyz::Serialize)]
 pub(super) struct Record {
     pub verdict: u8,
     pub proof: u8,
     pub object: i32,
     pub face: i32,
-    pub t: f64,
-    pub t_low: f64,
-    pub t_high: f64,
-    pub distance: f64,
+    /// t, its bounds, and the distance.
+    pub along: [f64; 4],
     pub point: [f64; 3],
     pub normal: [f64; 3],
     pub uv: [f64; 2],
+}
+
+impl Record {
+    /// Appends the bytes of the record.
+    pub fn write(&self, out: &mut Vec<u8>) {
+        out.extend([self.verdict, self.proof]);
+        out.extend(self.object.to_le_bytes());
+        out.extend(self.face.to_le_bytes());
+        let numbers = self.along.iter().chain(&self.point).chain(&self.normal).chain(&self.uv);
+        numbers.for_each(|number| out.extend(number.to_le_bytes()));
+    }
+}
+
+/// Writes what comes before so many records.
+pub(super) fn begin(count: u64, out: &mut dyn Write) -> io::Result<()> {
+    let head = format!("{{'descr': {RECORD}, 'fortran_order': False, 'shape': ({count},), }}");
+    // The records begin at a multiple of 64 bytes.
+    let length = (MAGIC.len() + 4 + head.len() + 1).next_multiple_of(64) - MAGIC.len() - 4;
+    out.write_all(MAGIC)?;
+    out.write_all(&[1, 0])?;
+    out.write_all(&(length as u16).to_le_bytes())?;
+    writeln!(out, "{head:0$}", length - 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn array(head: &str, bytes: &[u8]) -> Vec<u8> {
+        [MAGIC, &[1, 0], &(head.len() as u16).to_le_bytes(), head.as_bytes(), bytes].concat()
+    }
+
+    fn rows(array: &[u8]) -> Result<Rows<'_>, String> {
+        Rows::new(Box::new(array))
+    }
+
+    #[test]
+    fn numbers_of_any_size_and_order_of_bytes_are_read() {
+        let numbers = [1.0, 2.0, 3.0, 0.0, 0.0, -1.5_f32];
+        for (descr, bytes) in [
+            ("<f4", numbers.map(f32::to_le_bytes).concat()),
+            (">f4", numbers.map(f32::to_be_bytes).concat()),
+            ("<f8", numbers.map(|number| f64::from(number).to_le_bytes()).concat()),
+            (">f8", numbers.map(|number| f64::from(number).to_be_bytes()).concat()),
+        ] {
+            let head = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': (1, 6), }}\n");
+            let array = array(&head, &bytes);
+            let mut rows = rows(&array).expect("an array");
+            assert_eq!(rows.count(), 1);
+            assert_eq!(rows.next(), Some(Ok((numbers.map(f64::from), None))), "{descr}");
+            assert_eq!(rows.next(), None);
+        }
+    }
+
+    #[test]
+    fn what_is_no_array_of_rays_is_refused_with_the_reason() {
+        for (head, says) in [
+            ("{'descr': '<i8', 'fortran_order': False, 'shape': (1, 6), }", "these are '<i8'"),
+            ("{'descr': '<f8', 'fortran_order': False, 'shape': (6,), }", "this one's is (6,)"),
+            ("{'descr': '<f8', 'fortran_order': True, 'shape': (2, 6), }", "numpy.ascontiguousarray"),
+            ("{}", "these are of another one"),
+        ] {
+            let said = rows(&array(head, &[])).err().expect("a reason");
+            assert!(said.contains(says), "{said}");
+        }
+        for bytes in [
+            &b"\x93NUMPY"[..],
+            b"\x93NUMPY\x01\x00\xff\xff",
+            b"\x93NUMPY\x03\x00\xff\xff\xff\xff",
+            b"none of it",
+        ] {
+            assert_eq!(rows(bytes).err().as_deref(), Some("it is no NumPy array"));
+        }
+        let short = array("{'descr': '<f8', 'fortran_order': False, 'shape': (9, 6), }", &[0; 47]);
+        assert!(rows(&short).expect("a head").next().is_some_and(|row| row.is_err()));
+    }
 }

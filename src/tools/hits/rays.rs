@@ -185,7 +185,7 @@ impl Iterator for RayReader<'_> {
 
 /// Returns the format that the first bytes of rays show.
 fn of_content(head: &[u8]) -> RayFormat {
-    if head.starts_with(b"\x93NUMPY") {
+    if head.starts_with(npy::MAGIC) {
         return RayFormat::Npy;
     }
     let text = String::from_utf8_lossy(head);
