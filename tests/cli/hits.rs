@@ -3,6 +3,8 @@
 use crate::common::program::{folder, outcome, scene, tabray};
 use serde_json::Value;
 use std::fs;
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Command, Stdio};
 use tempfile::TempDir;
 
 /// A ball of radius 5, and one within it, which is hit second.
@@ -183,6 +185,28 @@ fn answers_depend_on_the_rays_alone() {
     let found =
         |text: &str| -> Vec<_> { lines(text).iter().map(|line| line.get("object").cloned()).collect() };
     assert!(found(&one) == found(&answers(&["--fast"])));
+}
+
+#[test]
+fn who_asks_through_a_pipe_has_an_answer_before_the_next_question() {
+    let folder = with_balls();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_tabray"))
+        .current_dir(folder.path())
+        .args(["hits", "balls.ray", "-q"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("it starts");
+    let mut rays = child.stdin.take().expect("a pipe");
+    let mut answers = BufReader::new(child.stdout.take().expect("a pipe")).lines();
+    for verdict in ["hit", "miss", "hit"] {
+        let ray = if verdict == "hit" { "10 0 0  -1 0 0" } else { "10 0 0  1 0 0" };
+        writeln!(rays, "{ray}").expect("it reads");
+        let answer = answers.next().expect("an answer").expect("text");
+        assert!(answer.contains(&format!("\"verdict\":\"{verdict}\"")), "{answer}");
+    }
+    drop(rays);
+    assert!(child.wait().expect("it ends").success());
 }
 
 #[test]

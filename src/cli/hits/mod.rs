@@ -12,7 +12,7 @@ use crate::process::interrupt::{self, InterruptAction};
 use crate::process::messages;
 use crate::process::progress::Progress;
 use clap::ValueEnum;
-use std::io::{self, BufRead, BufReader, BufWriter, IsTerminal, Write};
+use std::io::{self, BufReader, BufWriter, IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
 use tabray_core::query::Query;
 use tabray_core::text::{self, count};
@@ -134,6 +134,9 @@ impl To {
     }
 }
 
+/// How much is read at a time, in bytes: many lines, so that all threads have work.
+const BUFFER: usize = 1 << 20;
+
 /// Reads the t at which rays end.
 fn end(text: &str) -> Result<f64, String> {
     let end = text.parse().ok().filter(|end: &f64| *end > 0.0);
@@ -240,16 +243,17 @@ fn of_name(path: &Path) -> Result<AnswerFormat, Failure> {
 }
 
 fn open<'r>(rays: &Path, format: Option<RayFormat>) -> Result<RayReader<'r>, Failure> {
-    let input: Box<dyn BufRead> = if is_standard(rays) {
+    let input: Box<dyn Read> = if is_standard(rays) {
         if io::stdin().is_terminal() {
             messages::note("reading rays from the terminal: six numbers a line; Ctrl-D ends them");
         }
-        Box::new(BufReader::new(io::stdin()))
+        Box::new(io::stdin())
     } else {
         let file = open_stream(rays).map_err(|error| {
             Failure::Unread(format!("cannot read `{}`: {}", rays.display(), text::reason(&error)), None)
         })?;
-        Box::new(BufReader::new(file))
+        Box::new(file)
     };
-    RayReader::new(input, format).map_err(|bad| Failure::Usage(format!("`{}`, {bad}", name(rays)), None))
+    RayReader::new(BufReader::with_capacity(BUFFER, input), format)
+        .map_err(|bad| Failure::Usage(format!("`{}`, {bad}", name(rays)), None))
 }

@@ -70,32 +70,33 @@ pub fn read(
 ) -> Result<Tally, Ended> {
     let (mut tally, mut bad) = (Tally::default(), Vec::new());
     loop {
-        let mut part: Vec<Ray> = Vec::with_capacity(TOGETHER);
-        let mut is_over = false;
-        for row in rays.by_ref().take(TOGETHER) {
-            match row {
-                Ok(RayRow { ray, t_max }) => part.push((ray, t_max.unwrap_or(asked.t_max))),
-                Err(fault) => {
+        let (mut part, mut is_over): (Vec<Ray>, bool) = (Vec::new(), false);
+        // Who asks through a pipe may wait for an answer before the next ray.
+        while part.len() < TOGETHER && bad.len() < TOLD && (part.is_empty() || rays.has_more()) {
+            match rays.next() {
+                None => {
+                    is_over = true;
+                    break;
+                }
+                Some(Ok(RayRow { ray, t_max })) => part.push((ray, t_max.unwrap_or(asked.t_max))),
+                Some(Err(fault)) => {
                     tally.bad += 1;
-                    is_over |= fault.is_last;
                     if !asked.skip_bad || fault.is_last {
                         bad.push(fault);
                     }
                 }
             }
-            if bad.len() == TOLD {
-                break;
-            }
         }
         if !bad.is_empty() {
             return Err(Ended::Bad(bad));
         }
-        if part.is_empty() && !is_over {
-            return Ok(tally);
-        }
-        answer(renderer, query, asked, &part, (format, out)).map_err(Ended::Unwritten)?;
+        let answered = answer(renderer, query, asked, &part, (format, out)).and_then(|()| out.flush());
+        answered.map_err(Ended::Unwritten)?;
         tally.answered += part.len() as u64;
         step(part.len());
+        if is_over {
+            return Ok(tally);
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use super::npy::{self, Numbers};
 use glam::DVec3;
 use serde::Deserialize;
 use std::fmt;
-use std::io::{BufRead, Read};
+use std::io::{BufRead, BufReader, Read};
 use tabray_core::query::ExactRay;
 use tabray_core::text::reason;
 
@@ -59,11 +59,14 @@ pub struct RayReader<'r> {
     is_over: bool,
 }
 
+/// What rays are read from.
+pub type Input<'r> = BufReader<Box<dyn Read + 'r>>;
+
 enum Rows<'r> {
-    Text(Box<dyn BufRead + 'r>),
+    Text(Input<'r>),
     /// Lines of CSV, and in which columns the numbers are.
-    Csv(Box<csv::Reader<Box<dyn BufRead + 'r>>>, Box<[Option<usize>; 7]>),
-    JsonLines(Box<dyn BufRead + 'r>),
+    Csv(Box<csv::Reader<Input<'r>>>, Box<[Option<usize>; 7]>),
+    JsonLines(Input<'r>),
     Npy(npy::Rows<'r>),
 }
 
@@ -75,7 +78,7 @@ impl<'r> RayReader<'r> {
     ///
     /// # Errors
     /// Where the input cannot be read, or where its head is none of the format.
-    pub fn new(mut input: Box<dyn BufRead + 'r>, format: Option<RayFormat>) -> Result<Self, BadRay> {
+    pub fn new(mut input: Input<'r>, format: Option<RayFormat>) -> Result<Self, BadRay> {
         let head = |message: String| BadRay { number: 1, unit: "line", message, is_last: true };
         let format = match format {
             Some(format) => format,
@@ -84,9 +87,9 @@ impl<'r> RayReader<'r> {
         let rows = match format {
             RayFormat::Text => Rows::Text(input),
             RayFormat::JsonLines => Rows::JsonLines(input),
-            RayFormat::Npy => {
-                Rows::Npy(npy::Rows::new(input).map_err(|message| BadRay { unit: "row", ..head(message) })?)
-            }
+            RayFormat::Npy => Rows::Npy(
+                npy::Rows::new(Box::new(input)).map_err(|message| BadRay { unit: "row", ..head(message) })?,
+            ),
             RayFormat::Csv => {
                 let mut reader =
                     csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(input);
@@ -111,6 +114,14 @@ impl<'r> RayReader<'r> {
         match &self.rows {
             Rows::Npy(rows) => Some(rows.count()),
             _ => None,
+        }
+    }
+
+    /// Tells whether more can be read without waiting for it, as far as that is known.
+    pub fn has_more(&self) -> bool {
+        match &self.rows {
+            Rows::Text(input) | Rows::JsonLines(input) => !input.buffer().is_empty(),
+            Rows::Csv(..) | Rows::Npy(_) => true,
         }
     }
 
