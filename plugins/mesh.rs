@@ -1,6 +1,5 @@
 //! A mesh of triangles from a file.
 
-use std::panic::Location;
 use std::path::PathBuf;
 use std::sync::Arc;
 use tabray::prelude::*;
@@ -55,7 +54,7 @@ inventory::submit! {
             let (material, warning) = finished.material(&args.material());
             warnings.extend(warning);
             Body { material: material.map(Arc::new), ..Body::shaded(shape, finished) }
-        } else if surface.materials.is_empty() || args.get(&MATERIALS) == Materials::File {
+        } else if surface.materials.is_empty() || args.setting.only_rays || args.get(&MATERIALS) == Materials::File {
             Body::plain(shape)
         } else {
             let materials = surface.materials.iter().map(|name| args.setting.materials.get(name).cloned()).collect();
@@ -76,48 +75,11 @@ enum Normals {
     File,
 }
 
-impl Choice for Normals {
-    const WHAT: &'static str = "choice of normals";
-
-    fn all() -> Vec<Self> {
-        vec![Self::Faces, Self::File]
-    }
-
-    fn option(&self) -> ChoiceName {
-        const PLACE: &Location<'static> = Location::caller();
-        let (name, meaning) = match self {
-            Self::Faces => ("faces", "those of its faces, as `smooth` and `crease` say"),
-            Self::File => (
-                "file",
-                "the file's, and where it has none those of its faces as far as edges are no creases",
-            ),
-        };
-        ChoiceName { name, number: None, meaning, place: PLACE }
-    }
-}
-
 /// Whose materials faces have.
 #[derive(Clone, Copy, PartialEq)]
 enum Materials {
     Scene,
     File,
-}
-
-impl Choice for Materials {
-    const WHAT: &'static str = "choice of materials";
-
-    fn all() -> Vec<Self> {
-        vec![Self::Scene, Self::File]
-    }
-
-    fn option(&self) -> ChoiceName {
-        const PLACE: &Location<'static> = Location::caller();
-        let (name, meaning) = match self {
-            Self::Scene => ("scene", "the scene's, by the names that the file gives"),
-            Self::File => ("file", "the file's, with its images and colours"),
-        };
-        ChoiceName { name, number: None, meaning, place: PLACE }
-    }
 }
 
 /// Which sides of faces are lit.
@@ -127,22 +89,18 @@ enum Sides {
     One,
 }
 
-impl Choice for Sides {
-    const WHAT: &'static str = "choice of sides";
-
-    fn all() -> Vec<Self> {
-        vec![Self::Both, Self::One]
+choices! {
+    Normals, "choice of normals" {
+        Faces => "faces", "those of its faces, as `smooth` and `crease` say";
+        File => "file", "the file's, and where it has none those of its faces as far as edges are no creases";
     }
-
-    fn option(&self) -> ChoiceName {
-        const PLACE: &Location<'static> = Location::caller();
-        let (name, meaning) = match self {
-            Self::Both => ("both", "both, after faces are turned to agree"),
-            Self::One => {
-                ("one", "of an open mesh the side from which the file's corners run counterclockwise")
-            }
-        };
-        ChoiceName { name, number: None, meaning, place: PLACE }
+    Materials, "choice of materials" {
+        Scene => "scene", "the scene's, by the names that the file gives";
+        File => "file", "the file's, with its images and colours";
+    }
+    Sides, "choice of sides" {
+        Both => "both", "both, after faces are turned to agree";
+        One => "one", "of an open mesh the side from which the file's corners run counterclockwise";
     }
 }
 

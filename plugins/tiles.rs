@@ -1,6 +1,5 @@
 //! The notes' tiled shading: cyan and yellow tiles half a unit wide, along x and z.
 
-use std::panic::Location;
 use tabray::prelude::*;
 
 pub static WIDTH: Pparm<f64> = Pparm::or("width", "the width of a tile", 0.5).unit("world units").positive();
@@ -38,21 +37,11 @@ impl Wall {
     }
 }
 
-impl Choice for Wall {
-    const WHAT: &'static str = "wall";
-
-    fn all() -> Vec<Self> {
-        vec![Self::Floor, Self::Backwall, Self::Sidewall]
-    }
-
-    fn option(&self) -> ChoiceName {
-        const PLACE: &Location<'static> = Location::caller();
-        let (name, meaning) = match self {
-            Self::Floor => ("floor", "along x and z"),
-            Self::Backwall => ("backwall", "along x and y"),
-            Self::Sidewall => ("sidewall", "along z and y"),
-        };
-        ChoiceName { name, number: None, meaning, place: PLACE }
+choices! {
+    Wall, "wall" {
+        Floor => "floor", "along x and z";
+        Backwall => "backwall", "along x and y";
+        Sidewall => "sidewall", "along z and y";
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::files::output::{self, Output};
 use crate::files::paths::are_same;
-use crate::options::number::whole;
+use crate::options::threads;
 use crate::process::failure::Failure;
 use crate::process::progress::Progress;
 use crate::process::{memory, messages};
@@ -22,7 +22,6 @@ use tabray_core::render::renderer::Renderer;
 use tabray_core::render::tiles::TILE;
 use tabray_core::text;
 use tabray_tools::part::{self, PixelFormat, Reader};
-use tabray_tools::threads::renderer_with;
 
 /// The maximum number of parts that are named in a message.
 const NAMED: usize = 12;
@@ -41,9 +40,8 @@ pub struct Args {
     /// Remove the parts once the image is written
     #[arg(long)]
     remove_parts: bool,
-    /// The number of threads; by default one per core
-    #[arg(long, value_name = "N", value_parser = whole::<u16>(1..=1024))]
-    threads: Option<u16>,
+    #[command(flatten)]
+    threads: threads::Args,
 }
 
 const EXAMPLES: &str = "\
@@ -54,7 +52,7 @@ Examples:
 
 pub fn run(args: &Args) -> Result<(), Failure> {
     let is_full_range = FullRange::of(&args.image).is_some();
-    let renderer = renderer_with(args.threads.unwrap_or(0).into())?;
+    let renderer = args.threads.renderer()?;
     let is_main = |what: PixelFormat| !matches!(what, PixelFormat::Beside(..));
     let main = Parts::gather(&args.image, &args.parts, is_main)?;
     main.refuse_name(&args.image)?;

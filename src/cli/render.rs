@@ -5,10 +5,9 @@ use crate::files::input::Source;
 use crate::files::output::{Output, format_of};
 use crate::files::{input, output, provenance, several};
 use crate::options::named::by_name;
-use crate::options::number::whole;
 use crate::options::size::Region;
 use crate::options::stop::{self, Stop};
-use crate::options::{cpu, frames, keep, method, samples, set, size};
+use crate::options::{cpu, frames, keep, method, samples, set, size, threads};
 use crate::process::failure::Failure;
 use crate::process::{messages, progress};
 use crate::rendering::job::{self, Job};
@@ -29,7 +28,6 @@ use tabray_lang::reader::{self, Loaded, ReadOptions};
 use tabray_lang::registry::Registry;
 use tabray_tools::diagnosis;
 use tabray_tools::part::PixelFormat;
-use tabray_tools::threads::renderer_with;
 
 /// Render scenes to images
 #[derive(clap::Args)]
@@ -74,10 +72,8 @@ pub struct Args {
     frames: frames::Args,
     #[command(flatten)]
     stop: stop::Args,
-    /// The number of threads; by default one per core
-    #[arg(long, value_name = "N", value_parser = whole::<u16>(1..=1024))]
-    #[arg(help_heading = "Speed")]
-    threads: Option<u16>,
+    #[command(flatten, next_help_heading = "Speed")]
+    threads: threads::Args,
     #[command(flatten)]
     cpu: cpu::Args,
     #[command(flatten)]
@@ -284,11 +280,10 @@ impl ImageRender<'_> {
         }
         let begun = ResumedImage::open(args.continues(path), &model, &region, path, &output)?;
         debug::print(&model, &args.debug)?;
-        let threads = args.threads.unwrap_or(0).into();
         let start = Instant::now();
         let plan = args.keep.plan(&model);
         stats.building += start.elapsed();
-        let renderer = renderer_with(threads)?.on(self.cpu);
+        let renderer = args.threads.renderer()?.on(self.cpu);
         let whole = Instant::now();
         if let Some(format) = self.full_range {
             args.stop.refuse_too_large(full_range::PIXEL * region.columns.len() * region.rows.len())?;
@@ -311,7 +306,7 @@ impl ImageRender<'_> {
         args.stats.print(&stats, &model);
         let Some(source) = source else { return Ok(()) };
         stop.exit_on_interrupt()?;
-        aov::write(&plan, || read_exact(&source, registry, &model, memory), threads, format, beside)
+        aov::write(&plan, || read_exact(&source, registry, &model, memory), args.threads, format, beside)
     }
 
     /// Renders a part of the image into a file of its own.
@@ -334,7 +329,7 @@ impl ImageRender<'_> {
             made: &self.made,
             plan: &plan,
             region,
-            renderer: &renderer_with(args.threads.unwrap_or(0).into())?.on(self.cpu),
+            renderer: &args.threads.renderer()?.on(self.cpu),
             paths: [path, &main],
             what: self.full_range.map_or(PixelFormat::picture(*format), PixelFormat::full_range),
             beside: &beside,

@@ -5,8 +5,7 @@ mod form;
 mod objects;
 
 use crate::files::output::{self, Output, format_by_name};
-use crate::options::number::whole;
-use crate::options::{method, scene};
+use crate::options::{method, scene, threads};
 use crate::process::failure::Failure;
 use crate::process::interrupt::{self, InterruptAction};
 use crate::process::progress::Progress;
@@ -15,7 +14,6 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 use tabray_core::render::plan::Plan;
 use tabray_lang::registry::Registry;
-use tabray_tools::threads::renderer_with;
 use tabray_tools::verify;
 
 /// Prove for each pixel which object is seen, or the bytes of its colour
@@ -55,9 +53,8 @@ pub struct Args {
     json: bool,
     #[command(flatten)]
     method: method::Args,
-    /// The number of threads; by default one per core
-    #[arg(long, value_name = "N", value_parser = whole::<u16>(1..=1024))]
-    threads: Option<u16>,
+    #[command(flatten)]
+    threads: threads::Args,
 }
 
 const EXAMPLES: &str = "\
@@ -81,7 +78,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     };
     let size = model.camera.value.pixels;
     let progress = Progress::new(size[1]);
-    let renderer = renderer_with(args.threads.unwrap_or(0).into())?;
+    let renderer = args.threads.renderer()?;
     let plan = Plan::new(&model);
     let premises = Premises::of(&plan, args.colours);
     let form = Form { size, premises, is_json: args.json };

@@ -34,6 +34,7 @@ pub use crate::world::shader::{Anchor, LookBounds, PointBounds, Shader, ShaderIn
 pub use crate::world::texture::Texture;
 
 // What a scene selects by name: shaders, profiles and other alternatives.
+pub use crate::choices;
 pub use crate::scene::choice::{Choice, ChoiceName};
 pub use crate::scene::procedural::{OnPlane, OnSphere};
 pub use crate::scene::profile::{Profile, ProfileLine};

@@ -63,6 +63,10 @@ fn what_rounding_decides_wrongly_is_decided_or_said_to_be_open() {
     let (status, out, _) = asked(&folder, &["three.ray"], rays);
     let verdicts: Vec<_> = lines(&out).iter().map(|answer| answer["verdict"].to_string()).collect();
     assert_eq!(status, 0);
+    // That something is hit is certain where it is not what.
+    let (_, any, _) = asked(&folder, &["three.ray", "--any"], rays);
+    let any: Vec<_> = lines(&any).iter().map(|answer| answer["verdict"].to_string()).collect();
+    assert_eq!(any[1..], ["\"miss\"", "\"hit\"", "\"hit\""]);
     assert_ne!(verdicts[0], "\"miss\"", "{out}");
     assert_eq!(verdicts[1..], ["\"miss\"", "\"tie\"", "\"tie\""], "{out}");
 }
@@ -93,6 +97,7 @@ fn all_forms_of_rays_and_answers_say_the_same() {
     let texts = [
         "10 3 0 -1 0 0\n10 7 0 -1 0 0 5\n",
         "ox,oy,oz,dx,dy,dz,t_max\n10,3,0,-1,0,0,\n10, 7, 0, -1, 0, 0, 5\n",
+        "# rays\n\"ox\",\"oy\",\"oz\",\"dx\",\"dy\",\"dz\",\"t_max\"\r\n10,3,0,-1,0,0,\r\n10,7,0,-1,0,0,5\r\n",
         "{\"origin\": [10, 3, 0], \"direction\": [-1, 0, 0]}\n[10, 7, 0, -1, 0, 0, 5]\n",
     ];
     let answers = texts.map(|rays| asked(&folder, &["balls.ray"], rays));
@@ -162,6 +167,12 @@ fn a_mesh_is_asked_without_a_scene_and_names_its_faces() {
         assert_eq!((&answer["verdict"], &answer["t"]), (&"edge".into(), &1.0.into()), "no gap along an edge");
     }
     assert!(answers.iter().all(|answer| answer["object"] == "my part"));
+    assert_eq!(err, "");
+    let named = fs::read_to_string(folder.path().join("my part.obj"))
+        .expect("a file")
+        .replace("f 1", "usemtl red\nf 1");
+    fs::write(folder.path().join("red.obj"), named).expect("a file");
+    assert_eq!(asked(&folder, &["red.obj"], rays).2, "", "colours are of no interest");
     fs::write(folder.path().join("bad.obj"), "v 0 0\n").expect("a file");
     let (status, _, err) = asked(&folder, &["bad.obj"], rays);
     assert!(status == 2 && err.contains("cannot read `bad.obj` as a mesh: line 1"), "{err}");
@@ -212,6 +223,7 @@ fn who_asks_through_a_pipe_has_an_answer_before_the_next_question() {
 #[test]
 fn what_makes_no_sense_is_refused() {
     let folder = with_balls();
+    fs::write(folder.path().join("long.csv"), "ox,".repeat(1 << 20)).expect("a file");
     for (options, says) in [
         (&["-"][..], "standard input cannot be both"),
         (&["balls.ray", "--to", "npy"], "an array needs to know the number of its answers first"),
@@ -221,6 +233,7 @@ fn what_makes_no_sense_is_refused() {
         (&["balls.ray", "--from", "csv"], "the first line lacks `ox`"),
         (&["balls.ray", "--from", "npy"], "row 1: "),
         (&["balls.ray", "none.txt"], "cannot read `none.txt`"),
+        (&["balls.ray", "long.csv"], "it is longer than 4096 bytes"),
     ] {
         let (status, out, err) = asked(&folder, options, "1 2 3 4 5 6\n");
         assert!(out.is_empty() && [1, 2].contains(&status) && err.contains(says), "{options:?}: {err}");

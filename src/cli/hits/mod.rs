@@ -5,8 +5,7 @@ mod model;
 use crate::files::input::is_standard;
 use crate::files::output::{self, Output};
 use crate::files::paths::open_stream;
-use crate::options::number::whole;
-use crate::options::{method, set};
+use crate::options::{method, set, threads};
 use crate::process::failure::Failure;
 use crate::process::interrupt::{self, InterruptAction};
 use crate::process::messages;
@@ -21,7 +20,6 @@ use tabray_lang::registry::Registry;
 use tabray_tools::hits::answers::AnswerFormat;
 use tabray_tools::hits::rays::{RayFormat, RayReader};
 use tabray_tools::hits::{self, Asked, Ended, Tally};
-use tabray_tools::threads::renderer_with;
 
 /// Answer what rays hit first, each with a proof
 ///
@@ -30,10 +28,10 @@ use tabray_tools::threads::renderer_with;
 /// there are some, u, v and the number of the face. The scene needs no camera, and may be the file of a mesh.
 ///
 /// The proof is about the real ray through the numbers that are given and the scene's numbers as they are read, as `verify`
-/// has it. The verdicts are `hit`; `miss`; `edge`, where the ray passes exactly through an edge, of a
-/// surface or between two faces; `tie`, where
-/// several objects are hit at once; and `undecided`, where 237 bits do not tell, or a shape has no equation. Of several
-/// objects the first in the scene is named; where it is undecided, the one that the tracer finds.
+/// has it. The verdicts are `hit`; `miss`; `edge`, where the ray passes through an edge, of a surface or between two faces, as
+/// far as 237 bits tell; `tie`, where several objects are hit at once, as far as they tell; and `undecided`, where they do not
+/// tell, or a shape has no equation. Of several objects the first in the scene is named; where it is undecided, the one that
+/// the tracer finds.
 ///
 /// Rays are lines of six numbers, the origin and the direction, which need not be a unit vector, and perhaps a seventh, the t
 /// at which the ray ends; or CSV with the columns ox, oy, oz, dx, dy, dz and t_max; or JSON lines; or a NumPy array of shape
@@ -79,9 +77,8 @@ pub struct Args {
     skip_bad: bool,
     #[command(flatten)]
     method: method::Args,
-    /// The number of threads; by default one per core
-    #[arg(long, value_name = "N", value_parser = whole::<u16>(1..=1024))]
-    threads: Option<u16>,
+    #[command(flatten)]
+    threads: threads::Args,
 }
 
 const EXAMPLES: &str = "\
@@ -188,7 +185,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         t_max: args.t_max.unwrap_or(f64::INFINITY),
         skip_bad: args.skip_bad,
     };
-    let renderer = renderer_with(args.threads.unwrap_or(0).into())?;
+    let renderer = args.threads.renderer()?;
     let query = Query::new(&model);
     let progress = known.map(|known| Progress::new(known as usize));
     let mut step = |done: usize| progress.iter().for_each(|progress| progress.advance(done));

@@ -12,3 +12,4 @@ pub mod scene;
 pub mod set;
 pub mod size;
 pub mod stop;
+pub mod threads;

@@ -2,6 +2,7 @@
 
 use crate::files::output::{self, Output};
 use crate::options::named::by_name;
+use crate::options::threads;
 use crate::process::failure::Failure;
 use crate::process::messages;
 use crate::process::progress::Progress;
@@ -16,7 +17,6 @@ use tabray_core::render::plan::Plan;
 use tabray_core::scene::model::Model;
 use tabray_core::text::Named;
 use tabray_core::world::sample::{SCRAMBLE, Sampler};
-use tabray_tools::threads::renderer_with;
 
 /// The maximum number of pixels of an image with auxiliary images: unlike the main image, they are held in memory as a
 /// whole.
@@ -135,7 +135,7 @@ pub fn with_truth<T>(
 pub fn write(
     plan: &Plan,
     exact: impl FnOnce() -> Result<Model, Failure>,
-    threads: usize,
+    threads: threads::Args,
     format: Format,
     files: Vec<Files>,
 ) -> Result<(), Failure> {
@@ -143,8 +143,14 @@ pub fn write(
     with_truth(plan, requested, exact, |truth| all(plan, truth, threads, format, files))
 }
 
-fn all(plan: &Plan, truth: &Plan, threads: usize, format: Format, files: Vec<Files>) -> Result<(), Failure> {
-    let renderer = renderer_with(threads)?;
+fn all(
+    plan: &Plan,
+    truth: &Plan,
+    threads: threads::Args,
+    format: Format,
+    files: Vec<Files>,
+) -> Result<(), Failure> {
+    let renderer = threads.renderer()?;
     let size = plan.camera.pixels;
     for Files { aov, picture, exact } in files {
         let progress = Progress::new(size[1]);

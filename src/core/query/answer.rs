@@ -58,7 +58,7 @@ impl Answer {
 
     /// Returns the answer with a hit at a t, as near as its bounds allow.
     pub(super) fn near(self, t: f64, distance: f64) -> Self {
-        Self { t: t.clamp(self.bounds.low, self.bounds.high), distance, ..self }
+        Self { t: t.max(self.bounds.low).min(self.bounds.high), distance, ..self }
     }
 
     /// Returns the answer with no hit that lies beyond a t, in the ray's unit.
@@ -74,5 +74,14 @@ impl Answer {
             _ if is_beyond => Self::miss(self.proof),
             _ => Self { verdict: Verdict::Undecided, ..self },
         }
+    }
+
+    /// Returns only whether anything is hit before a t, in the ray's unit: what is hit first need not be decided for that.
+    #[must_use]
+    pub fn any_within(self, t_max: f64) -> Self {
+        let is_certain =
+            matches!(self.verdict, Verdict::Tie | Verdict::Undecided) && self.bounds.high < t_max;
+        let verdict = if is_certain { Verdict::Hit } else { self.verdict };
+        Self { object: None, ..Self { verdict, ..self }.within(t_max) }
     }
 }

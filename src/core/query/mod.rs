@@ -23,4 +23,4 @@ mod scene;
 
 pub use answer::{Answer, Surroundings, Verdict};
 pub use ray::ExactRay;
-pub use scene::{FirstHit, Query};
+pub use scene::Query;

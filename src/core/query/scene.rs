@@ -5,6 +5,7 @@ use super::first::{FirstHits, first_of, last_end};
 use super::ray::ExactRay;
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::sight::Line;
+use crate::render::observer::Hit;
 use crate::render::plan::Plan;
 use crate::render::trace;
 use crate::scene::model::Model;
@@ -16,15 +17,6 @@ use tabray_exact::interval::{Float, Interval, Wide};
 /// A scene that is asked what rays hit.
 pub struct Query<'m> {
     plan: Plan<'m>,
-}
-
-/// The first hit of a ray, as the tracer finds it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FirstHit {
-    /// The index of the object in the scene.
-    pub object: usize,
-    /// The distance, in world units, rounded.
-    pub distance: f64,
 }
 
 impl<'m> Query<'m> {
@@ -44,10 +36,9 @@ impl<'m> Query<'m> {
     }
 
     /// Finds the first hit of each ray as the tracer does, many rays at a time.
-    pub fn first_hits(&self, rays: &[ExactRay]) -> Vec<Option<FirstHit>> {
+    pub fn first_hits(&self, rays: &[ExactRay]) -> Vec<Option<Hit<'m>>> {
         let sights: Vec<_> = rays.iter().map(|ray| ray.sight().clone()).collect();
-        let hits = trace::first_hits(&self.plan, &sights).into_iter();
-        hits.map(|hit| hit.map(|hit| FirstHit { object: hit.index, distance: hit.distance })).collect()
+        trace::first_hits(&self.plan, &sights)
     }
 
     /// Proves what a ray hits first. `found` is what the tracer finds, where that is known; the proof does not depend on
@@ -55,11 +46,11 @@ impl<'m> Query<'m> {
     ///
     /// A proof is about the real numbers of the scene and of the ray ([`certify`](crate::world::certify)). Where a scene has
     /// many objects, those are left out whose bounding boxes the ray certainly misses or meets later.
-    pub fn first(&self, ray: &ExactRay, found: Option<FirstHit>) -> (FirstHits, Precision) {
+    pub fn first(&self, ray: &ExactRay, found: Option<&Hit>) -> (FirstHits, Precision) {
         let (plan, sight) = (&self.plan, ray.sight());
         let shape = |index: usize| (index, &plan.model.objects[index].shape);
         let Some(tree) = &plan.tree else { return first_of((0..plan.model.objects.len()).map(shape), sight) };
-        let end = found.map_or(f256::INFINITY, |hit| last_end([shape(hit.object)], sight));
+        let end = found.map_or(f256::INFINITY, |hit| last_end([shape(hit.index)], sight));
         let line = sight.line::<Interval>();
         let mut near = plan.unbounded.clone();
         tree.within(|bounds| enters(&line, bounds).is_some_and(|from| from <= end), |index| near.push(index));
@@ -77,12 +68,12 @@ impl<'m> Query<'m> {
 impl Query<'_> {
     /// Returns the first hits of rays as the tracer finds them, without a proof.
     pub fn traced(&self, rays: &[ExactRay]) -> Vec<Answer> {
-        let answer = |(ray, hit): (&ExactRay, Option<FirstHit>)| match hit {
+        let answer = |(ray, hit): (&ExactRay, Option<Hit>)| match hit {
             None => Answer::miss(None),
-            Some(FirstHit { object, distance }) => Answer {
+            Some(Hit { index, distance, .. }) => Answer {
                 verdict: Verdict::Hit,
                 proof: None,
-                object: Some(object),
+                object: Some(index),
                 t: ray.t_at(distance),
                 bounds: Interval { low: f64::NEG_INFINITY, high: f64::INFINITY },
                 distance,
@@ -95,10 +86,10 @@ impl Query<'_> {
     /// wide; `is_tight` narrows them with 237 bits, in many times the time.
     pub fn proven(&self, rays: &[ExactRay], is_tight: bool) -> Vec<Answer> {
         let found = self.first_hits(rays);
-        rays.iter().zip(found).map(|(ray, found)| self.proof(ray, found, is_tight)).collect()
+        rays.iter().zip(found).map(|(ray, found)| self.proof(ray, found.as_ref(), is_tight)).collect()
     }
 
-    fn proof(&self, ray: &ExactRay, found: Option<FirstHit>, is_tight: bool) -> Answer {
+    fn proof(&self, ray: &ExactRay, found: Option<&Hit>, is_tight: bool) -> Answer {
         let (first, precision) = self.first(ray, found);
         let answer = |verdict, object: Option<usize>, at: Wide, precision| {
             let bounds = ray.t(at);
@@ -116,7 +107,7 @@ impl Query<'_> {
                     return answer(Verdict::Hit, Some(object), at, Precision::Octuple);
                 }
                 let known = answer(Verdict::Hit, Some(object), at, precision);
-                let same = found.filter(|hit| hit.object == object && precision == Precision::Double);
+                let same = found.filter(|hit| hit.index == object && precision == Precision::Double);
                 // The tracer's distance is more accurate than the middle of bounds by 53 bits.
                 return same.map_or(known, |hit| known.near(ray.t_at(hit.distance), hit.distance));
             }
@@ -136,11 +127,11 @@ impl Query<'_> {
             return answer(Verdict::Tie, first, Wide { low, high: end }, precision);
         }
         // What the tracer finds is one of those in question.
-        let (object, at) = (found.map(|hit| hit.object), Wide { low, high: end });
+        let (object, at) = (found.map(|hit| hit.index), Wide { low, high: end });
         let open = answer(Verdict::Undecided, object, at, precision);
         match found {
             None => open,
-            Some(FirstHit { distance, .. }) => open.near(ray.t_at(distance), distance),
+            Some(Hit { distance, .. }) => open.near(ray.t_at(*distance), *distance),
         }
     }
 

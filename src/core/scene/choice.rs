@@ -35,6 +35,14 @@ pub struct ChoiceName {
     pub place: &'static Location<'static>,
 }
 
+impl ChoiceName {
+    /// Names an alternative that the notes give no number.
+    #[track_caller]
+    pub const fn of(name: &'static str, meaning: &'static str) -> Self {
+        Self { name, number: None, meaning, place: Location::caller() }
+    }
+}
+
 /// The alternatives of one type, with the type erased.
 #[derive(Clone, Copy, Debug)]
 pub struct Choices {
@@ -104,12 +112,6 @@ pub fn contradictions<T: Choice>() -> Vec<String> {
     faults
 }
 
-/// Returns an alternative that only its name chooses.
-const fn named(name: &'static str, meaning: &'static str) -> ChoiceName {
-    const PLACE: &Location<'static> = Location::caller();
-    ChoiceName { name, number: None, meaning, place: PLACE }
-}
-
 impl Choice for Accuracy {
     const WHAT: &'static str = "accuracy";
 
@@ -119,23 +121,43 @@ impl Choice for Accuracy {
 
     fn option(&self) -> ChoiceName {
         let (name, meaning) = self.named();
-        named(name, meaning)
+        ChoiceName::of(name, meaning)
     }
 }
 
-/// Makes types choices: each with its noun, and its alternatives with their names and meanings.
+/// Makes enums choices: each with its noun, and its alternatives with their names and meanings.
+///
+/// ```
+/// use tabray_core::prelude::*;
+///
+/// #[derive(Clone, Copy)]
+/// enum Weave {
+///     Plain,
+///     Twill,
+/// }
+///
+/// choices! {
+///     Weave, "weave" {
+///         Plain => "plain", "each thread over every other one";
+///         Twill => "twill", "in diagonal ribs";
+///     }
+/// }
+///
+/// assert_eq!(Weave::Twill.option().name, "twill");
+/// ```
+#[macro_export]
 macro_rules! choices {
     ($($Type:ident, $what:literal { $($Variant:ident => $name:literal, $meaning:literal;)* })*) => {$(
-        impl Choice for $Type {
+        impl $crate::scene::choice::Choice for $Type {
             const WHAT: &'static str = $what;
 
-            fn all() -> Vec<Self> {
-                vec![$(Self::$Variant),*]
+            fn all() -> ::std::vec::Vec<Self> {
+                ::std::vec![$(Self::$Variant),*]
             }
 
-            fn option(&self) -> ChoiceName {
+            fn option(&self) -> $crate::scene::choice::ChoiceName {
                 match self {
-                    $(Self::$Variant => named($name, $meaning),)*
+                    $(Self::$Variant => $crate::scene::choice::ChoiceName::of($name, $meaning),)*
                 }
             }
         }

@@ -16,6 +16,8 @@ pub struct Setting {
     pub folder: PathBuf,
     /// The scene's materials by their names; only objects and lights are certain to see all of them.
     pub materials: Arc<BTreeMap<String, Arc<Material>>>,
+    /// Whether only rays are asked about, so that the looks of objects are of no interest.
+    pub only_rays: bool,
     /// The memory that an object may take beside the scene, in bytes.
     pub memory: u64,
 }

@@ -119,7 +119,8 @@ impl<'r, 't> Check<'r, 't> {
     ) -> Self {
         let camera = Sensor { accuracy: accuracy.by_default, ..Sensor::default() };
         let memory = accuracy.memory.unwrap_or(u64::MAX);
-        let setting = Setting { camera, folder: folder.to_owned(), materials: Arc::default(), memory };
+        let (folder, only_rays) = (folder.to_owned(), accuracy.only_rays);
+        let setting = Setting { camera, folder, materials: Arc::default(), only_rays, memory };
         Self {
             registry,
             report,

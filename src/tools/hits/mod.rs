@@ -132,9 +132,11 @@ fn answer(
     let packet = |rays: &[Ray]| -> io::Result<Vec<u8>> {
         let (of, ends): (Vec<_>, Vec<_>) = rays.iter().cloned().unzip();
         let answers = if asked.fast { query.traced(&of) } else { query.proven(&of, asked.tight) };
-        let ended = answers.into_iter().zip(&ends).map(|(answer, end)| answer.within(*end));
+        let ended = answers.into_iter().zip(&ends).map(|(answer, end)| match asked.any {
+            true => answer.any_within(*end),
+            false => answer.within(*end),
+        });
         let shown = |(ray, answer): (&ExactRay, Answer)| {
-            let answer = if asked.any { Answer { object: None, ..answer } } else { answer };
             let surface = query.surroundings(ray, &answer);
             Answered { model: query.model(), answer, surface }
         };

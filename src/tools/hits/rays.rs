@@ -55,6 +55,7 @@ impl fmt::Display for BadRay {
 /// Reads rays one after the other, in memory that does not grow with their number.
 pub struct RayReader<'r> {
     rows: Rows<'r>,
+    /// The number of the last line or row.
     number: u64,
     is_over: bool,
 }
@@ -63,11 +64,16 @@ pub struct RayReader<'r> {
 pub type Input<'r> = BufReader<Box<dyn Read + 'r>>;
 
 enum Rows<'r> {
-    Text(Input<'r>),
-    /// Lines of CSV, and in which columns the numbers are.
-    Csv(Box<csv::Reader<Input<'r>>>, Box<[Option<usize>; 7]>),
-    JsonLines(Input<'r>),
+    Lines(Input<'r>, LineForm),
     Npy(npy::Rows<'r>),
+}
+
+/// How a line stands for a ray.
+enum LineForm {
+    Text,
+    /// In which columns the numbers of [`COLUMNS`] are.
+    Csv([Option<usize>; 7]),
+    Json,
 }
 
 /// The columns of a CSV.
@@ -79,98 +85,65 @@ impl<'r> RayReader<'r> {
     /// # Errors
     /// Where the input cannot be read, or where its head is none of the format.
     pub fn new(mut input: Input<'r>, format: Option<RayFormat>) -> Result<Self, BadRay> {
-        let head = |message: String| BadRay { number: 1, unit: "line", message, is_last: true };
+        let bad = |number, unit, message| BadRay { number, unit, message, is_last: true };
         let format = match format {
             Some(format) => format,
-            None => of_content(input.fill_buf().map_err(|error| head(error.to_string()))?),
+            None => of_content(input.fill_buf().map_err(|error| bad(1, "line", reason(&error)))?),
         };
+        let mut number = 0;
         let rows = match format {
-            RayFormat::Text => Rows::Text(input),
-            RayFormat::JsonLines => Rows::JsonLines(input),
-            RayFormat::Npy => Rows::Npy(
-                npy::Rows::new(Box::new(input)).map_err(|message| BadRay { unit: "row", ..head(message) })?,
-            ),
+            RayFormat::Text => Rows::Lines(input, LineForm::Text),
+            RayFormat::JsonLines => Rows::Lines(input, LineForm::Json),
+            RayFormat::Npy => {
+                Rows::Npy(npy::Rows::new(Box::new(input)).map_err(|message| bad(1, "row", message))?)
+            }
             RayFormat::Csv => {
-                let mut reader =
-                    csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(input);
-                let names = reader.headers().map_err(|error| head(error.to_string()))?.clone();
-                let columns = COLUMNS.map(|column| names.iter().position(|name| name == column));
-                let missing = COLUMNS[..6].iter().zip(&columns).filter(|(_, at)| at.is_none());
-                let missing: Vec<_> = missing.map(|(name, _)| format!("`{name}`")).collect();
-                if !missing.is_empty() {
-                    return Err(head(format!(
-                        "the first line lacks {}: it names the columns, `ox,oy,oz,dx,dy,dz` and perhaps `t_max`",
-                        missing.join(", ")
-                    )));
-                }
-                Rows::Csv(Box::new(reader), Box::new(columns))
+                let names = match next_line(&mut input, &mut number, true) {
+                    None => String::new(),
+                    Some(names) => names.map_err(|(message, _)| bad(number, "line", message))?,
+                };
+                let columns = columns(&names).map_err(|message| bad(number, "line", message))?;
+                Rows::Lines(input, LineForm::Csv(columns))
             }
         };
-        Ok(Self { rows, number: 0, is_over: false })
+        Ok(Self { rows, number, is_over: false })
     }
 
     /// Returns the number of rays, where the input says it.
     pub fn count(&self) -> Option<u64> {
         match &self.rows {
             Rows::Npy(rows) => Some(rows.count()),
-            _ => None,
+            Rows::Lines(..) => None,
         }
     }
 
     /// Tells whether more can be read without waiting for it, as far as that is known.
     pub fn has_more(&self) -> bool {
         match &self.rows {
-            Rows::Text(input) | Rows::JsonLines(input) => !input.buffer().is_empty(),
-            Rows::Csv(..) | Rows::Npy(_) => true,
+            Rows::Lines(input, _) => !input.buffer().is_empty(),
+            Rows::Npy(_) => true,
         }
     }
 
-    /// Returns the numbers of the next ray; `None` at the end.
+    /// Returns the numbers of the next ray; `None` at the end. A fault says whether it is the last.
     fn numbers(&mut self) -> Option<Result<Numbers, (String, bool)>> {
-        match &mut self.rows {
+        let (input, form) = match &mut self.rows {
+            Rows::Lines(input, form) => (input, &*form),
             Rows::Npy(rows) => {
                 self.number += 1;
-                rows.next()
+                return rows.next();
             }
-            Rows::Csv(reader, columns) => {
-                let mut record = csv::StringRecord::new();
-                match reader.read_record(&mut record) {
-                    Ok(false) => None,
-                    Ok(true) => {
-                        self.number = record.position().map_or(self.number + 1, csv::Position::line);
-                        Some(of_record(&record, columns).map_err(|message| (message, false)))
-                    }
-                    Err(error) => {
-                        self.number = error.position().map_or(self.number + 1, csv::Position::line);
-                        let is_last = matches!(error.kind(), csv::ErrorKind::Io(_));
-                        Some(Err((error.to_string(), is_last)))
-                    }
-                }
-            }
-            Rows::Text(input) => loop {
-                self.number += 1;
-                let line = match line(input)? {
-                    Ok(line) => line,
-                    Err(fault) => return Some(Err(fault)),
-                };
-                let text = line.split('#').next().unwrap_or_default().trim();
-                if !text.is_empty() {
-                    let words =
-                        text.split(|c: char| c.is_whitespace() || c == ',').filter(|word| !word.is_empty());
-                    return Some(of_words(words).map_err(|message| (message, false)));
-                }
-            },
-            Rows::JsonLines(input) => loop {
-                self.number += 1;
-                let line = match line(input)? {
-                    Ok(line) => line,
-                    Err(fault) => return Some(Err(fault)),
-                };
-                if !line.trim().is_empty() {
-                    return Some(of_json(&line).map_err(|message| (message, false)));
-                }
-            },
-        }
+        };
+        let line = match next_line(input, &mut self.number, !matches!(form, LineForm::Json))? {
+            Ok(line) => line,
+            Err(fault) => return Some(Err(fault)),
+        };
+        let numbers = match form {
+            LineForm::Text => of_words(line.split(|c: char| c.is_whitespace() || c == ',')),
+            LineForm::Csv(columns) => of_record(&fields(&line).collect::<Vec<_>>(), columns),
+            LineForm::Json => of_json(&line),
+        };
+        Some(numbers.map_err(|message| (message, false)))
     }
 }
 
@@ -203,27 +176,62 @@ fn of_content(head: &[u8]) -> RayFormat {
     let first = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
     match first {
         Some(line) if line.starts_with(['{', '[']) => RayFormat::JsonLines,
-        Some(line) if line.split(',').any(|name| COLUMNS.contains(&name.trim())) => RayFormat::Csv,
+        Some(line) if fields(line).any(|name| COLUMNS.contains(&name)) => RayFormat::Csv,
         _ => RayFormat::Text,
     }
 }
 
-/// Reads a line; `None` at the end.
-fn line(input: &mut dyn BufRead) -> Option<Result<String, (String, bool)>> {
-    let mut bytes = Vec::new();
-    match input.take(LONGEST).read_until(b'\n', &mut bytes) {
-        Ok(0) => None,
-        Ok(read) if read as u64 == LONGEST && !bytes.ends_with(b"\n") => {
-            Some(Err((format!("it is longer than {LONGEST} bytes"), true)))
+/// Reads the next line that is not empty, and counts all; `None` at the end. `#` may begin a comment. A fault says whether it is
+/// the last.
+fn next_line(
+    input: &mut impl BufRead,
+    number: &mut u64,
+    may_have_comments: bool,
+) -> Option<Result<String, (String, bool)>> {
+    loop {
+        *number += 1;
+        let mut bytes = Vec::new();
+        match input.take(LONGEST).read_until(b'\n', &mut bytes) {
+            Ok(0) => return None,
+            Ok(read) if read as u64 == LONGEST && !bytes.ends_with(b"\n") => {
+                return Some(Err((format!("it is longer than {LONGEST} bytes"), true)));
+            }
+            Ok(_) => {}
+            Err(error) => return Some(Err((reason(&error), true))),
         }
-        Ok(_) => Some(String::from_utf8(bytes).map_err(|_| ("it is not UTF-8".to_owned(), false))),
-        Err(error) => Some(Err((reason(&error), true))),
+        let Ok(text) = str::from_utf8(&bytes) else {
+            return Some(Err(("it is not UTF-8".to_owned(), false)));
+        };
+        let text = if may_have_comments { text.split('#').next().unwrap_or_default() } else { text };
+        let text = text.trim_start_matches('\u{feff}').trim();
+        if !text.is_empty() {
+            return Some(Ok(text.to_owned()));
+        }
     }
+}
+
+/// Returns the fields of a line of CSV. Numbers and their names need no quotes, but may have them.
+fn fields(line: &str) -> impl Iterator<Item = &str> {
+    line.split(',').map(|field| field.trim().trim_matches('"'))
+}
+
+/// Returns in which columns numbers are, by the names of the columns.
+fn columns(names: &str) -> Result<[Option<usize>; 7], String> {
+    let columns = COLUMNS.map(|column| fields(names).position(|name| name == column));
+    let missing = COLUMNS[..6].iter().zip(&columns).filter(|(_, at)| at.is_none());
+    let missing: Vec<_> = missing.map(|(name, _)| format!("`{name}`")).collect();
+    if missing.is_empty() {
+        return Ok(columns);
+    }
+    Err(format!(
+        "the first line lacks {}: it names the columns, `ox,oy,oz,dx,dy,dz` and perhaps `t_max`",
+        missing.join(", ")
+    ))
 }
 
 fn of_words<'w>(words: impl Iterator<Item = &'w str>) -> Result<Numbers, String> {
     let mut numbers = Vec::with_capacity(7);
-    for word in words.take(8) {
+    for word in words.filter(|word| !word.is_empty()).take(8) {
         numbers.push(word.parse().map_err(|_| format!("`{}` is no number", short(word)))?);
     }
     of_list(&numbers)
@@ -244,11 +252,11 @@ fn of_list(numbers: &[f64]) -> Result<Numbers, String> {
     }
 }
 
-fn of_record(record: &csv::StringRecord, columns: &[Option<usize>; 7]) -> Result<Numbers, String> {
+fn of_record(record: &[&str], columns: &[Option<usize>; 7]) -> Result<Numbers, String> {
     let mut numbers = [f64::INFINITY; 7];
     for (number, (column, name)) in numbers.iter_mut().zip(columns.iter().zip(COLUMNS)) {
         let Some(column) = column else { continue };
-        let word = record.get(*column).unwrap_or_default();
+        let word = record.get(*column).copied().unwrap_or_default();
         if !(word.is_empty() && name == "t_max") {
             *number = word.parse().map_err(|_| format!("`{}` is no number for `{name}`", short(word)))?;
         }

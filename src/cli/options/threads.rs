@@ -1,0 +1,26 @@
+//! `--threads`: on how many threads a command works.
+
+use super::number::whole;
+use std::io;
+use tabray_core::render::renderer::Renderer;
+use tabray_tools::threads::renderer_with;
+
+#[derive(clap::Args, Clone, Copy)]
+#[group(skip)]
+pub struct Args {
+    /// The number of threads; by default one per core
+    #[arg(long, value_name = "N", value_parser = whole::<u16>(1..=1024))]
+    threads: Option<u16>,
+}
+
+impl Args {
+    /// Returns the number of threads, 0 for one per core.
+    pub fn count(self) -> usize {
+        self.threads.unwrap_or(0).into()
+    }
+
+    /// Starts the threads.
+    pub fn renderer(self) -> io::Result<Renderer> {
+        renderer_with(self.count())
+    }
+}
