@@ -18,6 +18,7 @@ pub mod renderer;
 pub mod tiles;
 pub mod trace;
 
+pub use bytes::to_byte;
 pub use flaws::{BudgetCuts, FarPaths, Flaws, Undecided};
 pub use observer::{Count, DropReason, Event, Hit, LightOutcome, RayKind, RayPurpose, TraceObserver};
 pub use plan::Plan;
