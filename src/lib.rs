@@ -19,7 +19,7 @@
 //! same, and calls [`cli::run`] from its own `main` (see `docs/plugins.md`).
 
 pub use tabray_cli as cli;
-pub use tabray_core::{geometry, glam, output, prelude, render, shapes, simd, world};
+pub use tabray_core::{geometry, glam, output, prelude, query, render, shapes, simd, world};
 pub use tabray_exact as exact;
 pub use tabray_tools as tools;
 

@@ -19,5 +19,6 @@ mod models;
 mod notes;
 mod places;
 mod polynomials;
+mod query;
 mod solids;
 mod stability;
