@@ -164,7 +164,7 @@ fn a_mesh_is_asked_without_a_scene_and_names_its_faces() {
     let answers = lines(&out);
     assert_eq!((&answers[0]["face"], &answers[1]["face"]), (&0.into(), &1.into()));
     for answer in &answers[2..] {
-        assert_eq!((&answer["verdict"], &answer["t"]), (&"edge".into(), &1.0.into()), "no gap along an edge");
+        assert_eq!((&answer["verdict"], &answer["t"]), (&"hit".into(), &1.0.into()), "no gap along an edge");
     }
     assert!(answers.iter().all(|answer| answer["object"] == "my part"));
     assert_eq!(err, "");
@@ -238,4 +238,133 @@ fn what_makes_no_sense_is_refused() {
         let (status, out, err) = asked(&folder, options, "1 2 3 4 5 6\n");
         assert!(out.is_empty() && [1, 2].contains(&status) && err.contains(says), "{options:?}: {err}");
     }
+}
+
+#[test]
+fn all_surfaces_that_a_ray_crosses_are_told_in_their_order() {
+    let rays = "10 0 0  -1 0 0\n10 5 0  -1 0 0\n10 4 0  -1 0 0  9\n";
+    let (status, out, err) = asked(&with_balls(), &["balls.ray", "--all"], rays);
+    assert_eq!((status, err.as_str()), (0, ""));
+    let found: Vec<_> = lines(&out)
+        .iter()
+        .map(|answer| {
+            let word = |name: &str| answer[name].as_str().unwrap_or("-").to_owned();
+            format!("{} {} {} {}", answer["ray"], word("verdict"), word("object"), answer["enters"])
+        })
+        .collect();
+    let right = [
+        "0 hit ball true",
+        "0 hit core true",
+        "0 hit core false",
+        "0 hit ball false",
+        "0 miss - null",
+        "1 undecided - null",
+        "2 hit ball true",
+        "2 miss - null",
+    ];
+    assert_eq!(found, right, "{out}");
+    let (_, csv, _) = asked(&with_balls(), &["balls.ray", "--all", "--to", "csv"], rays);
+    assert!(
+        csv.starts_with("ray,enters,verdict,")
+            && csv.lines().nth(1).is_some_and(|line| line.starts_with("0,true,hit,"))
+    );
+    let (status, _, err) = asked(&with_balls(), &["balls.ray", "--all", "-o", "a.npy"], rays);
+    assert!(status == 2 && err.contains("leave out `--all`"), "{err}");
+}
+
+/// Judges answers that are piped in. Returns the status, the report and the messages.
+fn judged(folder: &TempDir, options: &[&str], answers: &str) -> (i32, String, String) {
+    let (status, out, err) =
+        outcome(tabray(folder).args(["judge", "balls.ray"]).args(options).write_stdin(answers));
+    (status, String::from_utf8(out).expect("text"), err)
+}
+
+#[test]
+fn answers_of_another_tracer_are_judged_each_for_what_it_is() {
+    let folder = with_balls();
+    let answers = "ox,oy,oz,dx,dy,dz,hit,t,object\n\
+        10,3,0,-1,0,0,hit,6,ball\n\
+        10,0,0,-2,0,0,1,2.5000001,0\n\
+        10,6,0,-1,0,0,miss,,\n\
+        10,3,0,-1,0,0,miss,,\n\
+        10,6,0,-1,0,0,hit,9,ball\n\
+        10,0,0,-1,0,0,hit,7,core\n\
+        10,0,0,-1,0,0,hit,15,ball\n\
+        10,0,0,-1,0,0,hit,6,ball\n\
+        10,0,0,-1,0,0,hit,5,core\n\
+        10,5,0,-1,0,0,miss,,\n";
+    let (status, out, err) = judged(&folder, &["--json"], answers);
+    assert_eq!((status, err.as_str()), (1, "error: 6 answers are wrong\n"));
+    let report: Value = serde_json::from_str(&out).expect("JSON");
+    for (name, count) in [
+        ("answers", 10),
+        ("right", 3),
+        ("missed", 1),
+        ("invented", 1),
+        ("later", 2),
+        ("inaccurate", 1),
+        ("other_object", 1),
+        ("open", 1),
+    ] {
+        assert_eq!(report[name], count, "{name}: {out}");
+    }
+    // The worst is repeated by the line that it names.
+    let repeat = report["worst"][0]["repeat"].as_str().expect("a command");
+    assert_eq!(repeat, "echo '10 3 0 -1 0 0' | tabray hits balls.ray");
+    // Below the tolerance nothing is wrong, and JSON says the same.
+    let right = "{\"origin\": [10, 0, 0], \"direction\": [-1, 0, 0], \"t\": 5.00001, \"object\": \"ball\"}\n";
+    assert_eq!(judged(&folder, &[], right).0, 0);
+    assert_eq!(judged(&folder, &["--tolerance", "1e-9"], right).0, 1);
+    let (status, _, err) = judged(&folder, &[], "ox,oy,oz,dx,dy,dz\n1,2,3,4,5,6\n");
+    assert!(status == 2 && err.contains("line 1: the first line lacks `t` or `hit`"), "{err}");
+    let (status, _, err) = judged(&folder, &[], "ox,oy,oz,dx,dy,dz,t\n1,2,3,0,0,0,6\n1,2,3,4,x,6,1\n");
+    assert_eq!(status, 2);
+    assert!(
+        err.contains("line 2: its direction is 0") && err.contains("line 3: `x` is no number for `dy`"),
+        "{err}"
+    );
+}
+
+#[test]
+fn wrong_answers_are_shown_where_they_lie() {
+    let folder = with_balls();
+    let answers = "ox,oy,oz,dx,dy,dz,t\n10,0,0,-1,0,0,\n";
+    let (status, _, err) = judged(&folder, &["-o", "wrong.png"], answers);
+    assert!(status == 2 && err.contains("the scene has no camera to show it"), "{err}");
+    let eye = "look_at eye { pixeldim 41 31 position 20 0 0 target 0 0 0 angle 40 }";
+    fs::write(folder.path().join("balls.ray"), format!("{eye} {BALLS}")).expect("a file");
+    assert_eq!(judged(&folder, &["-o", "wrong.png"], answers).0, 1);
+    let picture = image::open(folder.path().join("wrong.png")).expect("an image").to_rgb8();
+    let red: Vec<_> = picture.enumerate_pixels().filter(|(.., pixel)| pixel.0 == [255, 40, 40]).collect();
+    assert!(red.len() == 9 && red.iter().any(|(x, y, _)| [*x, *y] == [20, 15]), "{red:?}");
+}
+
+#[test]
+fn hard_rays_reach_edges_corners_and_seams_and_are_the_same_for_any_number_of_threads() {
+    let folder = folder();
+    let scene = "material m { } box b { material m center 0 0 0 size 2 3 4 } sphere s { material m center 1 0 0 radius 1 }";
+    fs::write(folder.path().join("hard.ray"), scene).expect("a file");
+    let rays = |threads: &str, seed: &str| {
+        let args = ["hard", "hard.ray", "-n", "600", "--threads", threads, "--seed", seed];
+        let (status, out, err) = outcome(tabray(&folder).args(args));
+        assert_eq!((status, err.as_str()), (0, ""));
+        String::from_utf8(out).expect("text")
+    };
+    let one = rays("1", "1");
+    assert_eq!(one, rays("3", "1"));
+    assert_ne!(one, rays("1", "2"));
+    assert_eq!(one.lines().count(), 601);
+    for place in ["outline", "edge", "corner", "seam"] {
+        assert!(one.lines().any(|line| line.contains(&format!(",{place},"))), "no {place}");
+    }
+    let (status, out, err) = asked(&folder, &["hard.ray", "--to", "csv"], &one);
+    assert_eq!((status, err.as_str(), out.lines().count()), (0, "", 601));
+    // A plane alone has nothing to be aimed at.
+    fs::write(
+        folder.path().join("plane.ray"),
+        "material m { } plane p { material m normal 0 1 0 point 0 0 0 }",
+    )
+    .expect("a file");
+    let (status, _, err) = outcome(tabray(&folder).args(["hard", "plane.ray", "-n", "10"]));
+    assert!(status == 0 || err.contains("no ray is hard"), "{status} {err}");
 }

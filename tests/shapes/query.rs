@@ -67,3 +67,71 @@ fn what_is_hit_is_certain_where_it_is_not_which() {
         assert_eq!(answer.any_within(t_max).verdict, verdict, "{t_max}");
     }
 }
+
+/// A ray that starts inside or outside enters and leaves each ball in turns, at the roots of its equation.
+#[test]
+fn all_crossings_of_balls_are_the_roots_in_their_order() {
+    let mut random = Random(Pcg64::new(2, 5));
+    let mut scene =
+        "look_at eye { pixeldim 4 3 position 0 0 9 target 0 0 0 angle 40 } material m { }\n".to_owned();
+    let balls: Vec<_> = (0..30).map(|_| (3.0 * random.vector(), 0.2 + 2.0 * random.part().abs())).collect();
+    for (index, (DVec3 { x, y, z }, radius)) in balls.iter().enumerate() {
+        writeln!(scene, "sphere s{index} {{ material m center {x} {y} {z} radius {radius} }}").expect("text");
+    }
+    let model = model(&scene);
+    let query = Query::new(&model);
+    let mut crossed = 0;
+    for _ in 0..200 {
+        let (origin, dir) = (5.0 * random.vector(), random.vector());
+        let mut roots: Vec<(f64, usize, bool)> = Vec::new();
+        for (index, (center, radius)) in balls.iter().enumerate() {
+            let (a, b) = (dir.length_squared(), dir.dot(origin - center));
+            let c = (origin - center).length_squared() - radius * radius;
+            let root = (b * b - a * c).sqrt();
+            let both = [((-b - root) / a, index, true), ((-b + root) / a, index, false)];
+            roots.extend(both.into_iter().filter(|(t, ..)| *t > 0.0));
+        }
+        roots.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let ray = ExactRay::new(origin, dir).expect("a ray");
+        let mut crossings = query.crossings(&ray, f64::INFINITY, false);
+        let last = crossings.pop().expect("what is behind").answer;
+        assert_eq!((last.verdict, last.object), (Verdict::Miss, None));
+        assert_eq!(crossings.len(), roots.len(), "{ray:?}");
+        for (crossing, (t, object, enters)) in crossings.iter().zip(&roots) {
+            assert_eq!((crossing.answer.object, crossing.enters), (Some(*object), Some(*enters)));
+            assert!((crossing.answer.t - t).abs() < 1e-9 * (1.0 + t), "{t}");
+        }
+        if let [.., (end, ..), _] = roots[..] {
+            let before = query.crossings(&ray, end, false);
+            assert!(
+                before.len() < roots.len()
+                    && before.last().is_some_and(|last| last.answer.verdict != Verdict::Hit)
+            );
+        }
+        crossed += crossings.len();
+    }
+    assert!(crossed > 500, "{crossed}");
+}
+
+/// The sides of a box are cut into triangles, which an answer must not depend on.
+#[test]
+fn a_ray_through_the_middle_of_a_box_enters_and_leaves_it() {
+    let model = model(
+        "look_at eye { pixeldim 4 3 position 0 0 9 target 0 0 0 angle 40 } material m { }
+         box b { material m center 0 0 0 size 2 3 4 }",
+    );
+    let query = Query::new(&model);
+    for (dir, half) in [(DVec3::NEG_X, 1.0), (DVec3::NEG_Y, 1.5), (DVec3::NEG_Z, 2.0)] {
+        let ray = ExactRay::new(-10.0 * dir, dir).expect("a ray");
+        let [answer] = query.proven(std::slice::from_ref(&ray), false)[..] else { panic!("one answer") };
+        assert_eq!((answer.verdict, answer.t), (Verdict::Hit, 10.0 - half), "{dir}");
+        let crossings = query.crossings(&ray, f64::INFINITY, false);
+        let found: Vec<_> = crossings.iter().map(|of| (of.answer.verdict, of.enters)).collect();
+        let right = [(Verdict::Hit, Some(true)), (Verdict::Hit, Some(false)), (Verdict::Miss, None)];
+        assert_eq!(found, right, "{dir}");
+        assert_eq!(crossings[1].answer.t, 10.0 + half);
+    }
+    // Along an edge, which the ray touches, nothing is said of what is in or out.
+    let ray = ExactRay::new(DVec3::new(1.0, 9.0, 2.0), DVec3::NEG_Y).expect("a ray");
+    assert_eq!(query.proven(&[ray], false)[0].verdict, Verdict::Edge);
+}

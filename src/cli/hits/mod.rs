@@ -1,20 +1,20 @@
 //! `tabray hits`: answers what rays hit.
 
+mod files;
+pub mod hard;
+pub mod judge;
 mod model;
 
-use crate::files::input::is_standard;
 use crate::files::output::{self, Output};
-use crate::files::paths::open_stream;
 use crate::options::{method, set, threads};
 use crate::process::failure::Failure;
 use crate::process::interrupt::{self, InterruptAction};
-use crate::process::messages;
 use crate::process::progress::Progress;
 use clap::ValueEnum;
-use std::io::{self, BufReader, BufWriter, IsTerminal, Read, Write};
+use files::{To, name, of_name, open, refuse, refuse_two_on_standard_input, tell_of_bad};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tabray_core::query::Query;
-use tabray_core::text::{self, count};
 use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::registry::Registry;
 use tabray_tools::hits::answers::AnswerFormat;
@@ -28,8 +28,7 @@ use tabray_tools::hits::{self, Asked, Ended, Tally};
 /// there are some, u, v and the number of the face. The scene needs no camera, and may be the file of a mesh.
 ///
 /// The proof is about the real ray through the numbers that are given and the scene's numbers as they are read, as `verify`
-/// has it. The verdicts are `hit`; `miss`; `edge`, where the ray passes through an edge, of a surface or between two faces, as
-/// far as 237 bits tell; `tie`, where several objects are hit at once, as far as they tell; and `undecided`, where they do not
+/// has it. The verdicts are `hit`; `miss`; `edge`, where the ray passes through the edge of a surface, as far as 237 bits tell; `tie`, where several objects are hit at once, as far as they tell; and `undecided`, where they do not
 /// tell, or a shape has no equation. Of several objects the first in the scene is named; where it is undecided, the one that
 /// the tracer finds.
 ///
@@ -66,6 +65,11 @@ pub struct Args {
     /// Narrow the bounds of t to about a unit in its last place, in many times the time
     #[arg(long, conflicts_with = "fast")]
     tight: bool,
+    /// Answer with all surfaces that a ray crosses, in their order, a record each: `ray` is the number of the ray, from 0, and
+    /// `enters` tells whether it enters a closed shape there. The last record of a ray is a `miss`, or `undecided` from
+    /// `t_low` on, as where the ray touches a surface or passes through an edge
+    #[arg(long, conflicts_with_all = ["fast", "any"])]
+    all: bool,
     /// Say only whether something is hit, as for shadows: no object is named
     #[arg(long)]
     any: bool,
@@ -85,6 +89,7 @@ const EXAMPLES: &str = "\
 Examples:
   tabray hits ball.ray < rays.txt
   tabray hits part.stl rays.csv -o answers.csv
+  tabray hits part.stl rays.csv --all
   tabray hits part.stl rays.npy -o answers.npy --fast
   tabray hits ball.ray --from-camera --to csv";
 
@@ -100,16 +105,6 @@ enum From {
     Npy,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum To {
-    /// A JSON object a line
-    Jsonl,
-    /// A line of names, and lines of values
-    Csv,
-    /// A structured NumPy array
-    Npy,
-}
-
 impl From {
     fn format(self) -> RayFormat {
         match self {
@@ -120,19 +115,6 @@ impl From {
         }
     }
 }
-
-impl To {
-    fn format(self) -> AnswerFormat {
-        match self {
-            Self::Jsonl => AnswerFormat::JsonLines,
-            Self::Csv => AnswerFormat::Csv,
-            Self::Npy => AnswerFormat::Npy,
-        }
-    }
-}
-
-/// How much is read at a time, in bytes: many lines, so that all threads have work.
-const BUFFER: usize = 1 << 20;
 
 /// Reads the t at which rays end.
 fn end(text: &str) -> Result<f64, String> {
@@ -146,27 +128,31 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         Some(path) => of_name(path)?,
     };
     let rays = args.rays.as_deref().unwrap_or(Path::new("-"));
-    if is_standard(&args.scene) && is_standard(rays) && !args.from_camera {
-        let help = "give the rays in a file, or the scene";
-        return Err(Failure::Usage("standard input cannot be both".to_owned(), Some(help.to_owned())));
+    if !args.from_camera {
+        refuse_two_on_standard_input(&args.scene, rays, "rays")?;
     }
     let accuracy = args.method.accuracy()?.or(Some(Accuracy::Exact));
     let model = model::load(registry, &args.scene, &args.set, accuracy)?;
     interrupt::catch(InterruptAction::Exit("the answers were not finished"))?;
     let mut reader = match args.from_camera {
         true => None,
-        false => Some(open(rays, args.from.map(From::format))?),
+        false => {
+            let input = open(rays, "rays, six numbers a line,")?;
+            let reader = RayReader::new(input, args.from.map(From::format));
+            Some(reader.map_err(|bad| Failure::Usage(format!("`{}`, {bad}", name(rays)), None))?)
+        }
     };
     let [width, height] = model.camera.value.pixels;
     let known = match &reader {
         None => Some((width * height) as u64),
         Some(reader) => reader.count().filter(|_| !args.skip_bad),
     };
-    if format == AnswerFormat::Npy && known.is_none() {
+    if format == AnswerFormat::Npy && (known.is_none() || args.all) {
         let what = "an array needs to know the number of its answers first, which only an array of rays says";
-        let help = match args.skip_bad {
-            true => "write .jsonl or .csv, or leave out `--skip-bad`",
-            false => "write .jsonl or .csv, or give the rays as a .npy file",
+        let help = match (args.skip_bad, args.all) {
+            (_, true) => "write .jsonl or .csv, or leave out `--all`",
+            (true, _) => "write .jsonl or .csv, or leave out `--skip-bad`",
+            (false, _) => "write .jsonl or .csv, or give the rays as a .npy file",
         };
         return Err(Failure::Usage(what.to_owned(), Some(help.to_owned())));
     }
@@ -181,6 +167,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let asked = Asked {
         fast: args.fast,
         tight: args.tight,
+        all: args.all,
         any: args.any,
         t_max: args.t_max.unwrap_or(f64::INFINITY),
         skip_bad: args.skip_bad,
@@ -189,11 +176,12 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let query = Query::new(&model);
     let progress = known.map(|known| Progress::new(known as usize));
     let mut step = |done: usize| progress.iter().for_each(|progress| progress.advance(done));
-    let answered = format.begin(known, &mut out).map_err(Ended::Unwritten).and_then(|()| match &mut reader {
-        None => hits::of_camera(&renderer, &query, &asked, (&format, &mut out), &mut step)
-            .map_err(Ended::Unwritten),
-        Some(reader) => hits::read(&renderer, &query, &asked, reader, (&format, &mut out), &mut step),
-    });
+    let answered =
+        format.begin(known, args.all, &mut out).map_err(Ended::Unwritten).and_then(|()| match &mut reader {
+            None => hits::of_camera(&renderer, &query, &asked, (&format, &mut out), &mut step)
+                .map_err(Ended::Unwritten),
+            Some(reader) => hits::read(&renderer, &query, &asked, reader, (&format, &mut out), &mut step),
+        });
     if let Some(progress) = &progress {
         progress.end();
     }
@@ -205,52 +193,11 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         Err(Ended::Bad(bad)) => {
             // What was answered before stays, where it goes to a reader.
             let _ = out.flush();
-            let lines: Vec<_> = bad.iter().map(|bad| format!("`{}`, {bad}", name(rays))).collect();
-            let help = "`--skip-bad` leaves such rays out, and counts them";
-            return Err(Failure::Usage(lines.join("\nerror: "), Some(help.to_owned())));
+            return Err(refuse(rays, &bad, "rays"));
         }
     };
     let written = out.flush();
     output::finished(path, written, out)?;
-    if bad > 0 {
-        let were = if bad == 1 { "is no ray and was" } else { "are no rays and were" };
-        messages::warning(&format!("{} {were} left out", count(bad as usize, "line")), None);
-    }
+    tell_of_bad(bad, "ray");
     Ok(())
-}
-
-/// Returns the name of the rays in messages.
-fn name(rays: &Path) -> String {
-    if is_standard(rays) { "<stdin>".to_owned() } else { rays.display().to_string() }
-}
-
-/// Returns the format of a file of answers, by its name.
-fn of_name(path: &Path) -> Result<AnswerFormat, Failure> {
-    let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-    match ending.as_deref() {
-        Some("jsonl" | "ndjson") => Ok(AnswerFormat::JsonLines),
-        Some("csv") => Ok(AnswerFormat::Csv),
-        Some("npy") => Ok(AnswerFormat::Npy),
-        _ if is_standard(path) => Ok(AnswerFormat::JsonLines),
-        _ => {
-            let help = "end it in .jsonl, .csv or .npy";
-            Err(Failure::Usage(format!("`{}` has no known format", path.display()), Some(help.to_owned())))
-        }
-    }
-}
-
-fn open<'r>(rays: &Path, format: Option<RayFormat>) -> Result<RayReader<'r>, Failure> {
-    let input: Box<dyn Read> = if is_standard(rays) {
-        if io::stdin().is_terminal() {
-            messages::note("reading rays from the terminal: six numbers a line; Ctrl-D ends them");
-        }
-        Box::new(io::stdin())
-    } else {
-        let file = open_stream(rays).map_err(|error| {
-            Failure::Unread(format!("cannot read `{}`: {}", rays.display(), text::reason(&error)), None)
-        })?;
-        Box::new(file)
-    };
-    RayReader::new(BufReader::with_capacity(BUFFER, input), format)
-        .map_err(|bad| Failure::Usage(format!("`{}`, {bad}", name(rays)), None))
 }

@@ -13,14 +13,11 @@ use tabray_lang::reader::{Loaded, NO_CAMERA, ReadOptions, Report};
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
 
-/// A camera for scenes that have none. No answer depends on it.
-const CAMERA: &str =
-    "look_at \"a camera that is not used\" { pixeldim 1 1 position 0 0 1 target 0 0 0 angle 40 }";
-const CAMERA_IN_TOML: &str = "[look_at.\"a camera that is not used\"]
-pixeldim = [1, 1]
-position = [0, 0, 1]
-target = [0, 0, 0]
-angle = 40";
+/// The name of the camera of scenes that have none. No answer depends on it.
+pub const UNUSED: &str = "a camera that is not used";
+
+const CAMERA: &str = "{ pixeldim 1 1 position 0 0 1 target 0 0 0 angle 40 }";
+const CAMERA_IN_TOML: &str = "\npixeldim = [1, 1]\nposition = [0, 0, 1]\ntarget = [0, 0, 0]\nangle = 40";
 
 /// Reads a scene, or makes one of a mesh, and prints its warnings.
 pub fn load(
@@ -53,15 +50,18 @@ fn with_camera(
     if !report.faults().iter().any(|fault| fault.message == NO_CAMERA) {
         return Err(report);
     }
-    let camera = if source.syntax() == Syntax::Toml { CAMERA_IN_TOML } else { CAMERA };
-    source.and(camera).load_by(registry, options)
+    let camera = match source.syntax() {
+        Syntax::Toml => format!("[look_at.\"{UNUSED}\"]{CAMERA_IN_TOML}"),
+        Syntax::Notes => format!("look_at \"{UNUSED}\" {CAMERA}"),
+    };
+    source.and(&camera).load_by(registry, options)
 }
 
 fn of_mesh(path: &Path, sets: &set::Args) -> Source {
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let text = format!(
-        "{CAMERA}\nmaterial grey {{ }}\nmesh {} {{ material grey file {} }}\n",
+        "look_at \"{UNUSED}\" {CAMERA}\nmaterial grey {{ }}\nmesh {} {{ material grey file {} }}\n",
         Syntax::Notes.key(&name),
         Syntax::Notes.values(&Datum::Word(file)).concat()
     );

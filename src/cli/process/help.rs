@@ -5,10 +5,11 @@ use clap::builder::StyledStr;
 use std::fmt::Write;
 
 /// The commands by their purpose, as `--help` lists them.
-const GROUPS: [(&str, &[&str]); 5] = [
+const GROUPS: [(&str, &[&str]); 6] = [
     ("Rendering", &["render", "watch", "merge", "film", "farm"]),
     ("Scenes", &["new", "list", "check", "fmt", "convert", "dump"]),
-    ("Looking inside", &["plan", "probe", "hits", "diff", "review"]),
+    ("Looking inside", &["plan", "probe", "diff", "review"]),
+    ("Rays", &["hits", "judge", "hard"]),
     ("Speed and accuracy", &["choose", "chart", "verify", "bench"]),
     ("Tools", &["lsp", "schema", "grammar", "completions", "man", "help"]),
 ];

@@ -1,8 +1,9 @@
 //! What is known about the first hit of a ray.
 
-use crate::world::certify::Precision;
+use super::ray::ExactRay;
+use crate::world::certify::{self, Precision};
 use glam::{DVec2, DVec3};
-use tabray_exact::interval::Interval;
+use tabray_exact::interval::{Interval, Wide};
 
 /// What is proven about a ray's first hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -54,6 +55,20 @@ impl Answer {
     pub(super) fn miss(proof: Option<Precision>) -> Self {
         let bounds = Interval { low: f64::NAN, high: f64::NAN };
         Self { verdict: Verdict::Miss, proof, object: None, t: f64::NAN, bounds, distance: f64::NAN }
+    }
+
+    /// Returns what is proven about a hit in these bounds, in lengths of the sight's direction.
+    pub(super) fn at(
+        ray: &ExactRay,
+        verdict: Verdict,
+        object: Option<usize>,
+        at: Wide,
+        precision: Precision,
+    ) -> Self {
+        let bounds = ray.t(at);
+        let t = if at.high.is_finite() { ray.rounded_t(at.middle()) } else { f64::NAN };
+        let distance = certify::in_world_units(at, ray.sight()).high;
+        Self { verdict, proof: Some(precision), object, t, bounds, distance }
     }
 
     /// Returns the answer with a hit at a t, as near as its bounds allow.

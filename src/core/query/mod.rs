@@ -17,10 +17,12 @@
 //! ```
 
 pub mod answer;
+mod crossings;
 pub mod first;
 mod ray;
 mod scene;
 
 pub use answer::{Answer, Surroundings, Verdict};
+pub use crossings::Crossing;
 pub use ray::ExactRay;
 pub use scene::Query;

@@ -10,7 +10,7 @@ use crate::render::plan::Plan;
 use crate::render::trace;
 use crate::scene::model::Model;
 use crate::world::any_shape::AnyShape;
-use crate::world::certify::{self, Enclosure, Precision};
+use crate::world::certify::{Enclosure, Precision};
 use f256::f256;
 use tabray_exact::interval::{Float, Interval, Wide};
 
@@ -47,16 +47,24 @@ impl<'m> Query<'m> {
     /// A proof is about the real numbers of the scene and of the ray ([`certify`](crate::world::certify)). Where a scene has
     /// many objects, those are left out whose bounding boxes the ray certainly misses or meets later.
     pub fn first(&self, ray: &ExactRay, found: Option<&Hit>) -> (FirstHits, Precision) {
-        let (plan, sight) = (&self.plan, ray.sight());
-        let shape = |index: usize| (index, &plan.model.objects[index].shape);
-        let Some(tree) = &plan.tree else { return first_of((0..plan.model.objects.len()).map(shape), sight) };
-        let end = found.map_or(f256::INFINITY, |hit| last_end([shape(hit.index)], sight));
-        let line = sight.line::<Interval>();
+        let shape = |index: usize| (index, self.shape(index));
+        let end = match (&self.plan.tree, found) {
+            (Some(_), Some(hit)) => last_end([shape(hit.index)], ray.sight()),
+            _ => f256::INFINITY,
+        };
+        first_of(self.near(ray, end).into_iter().map(shape), ray.sight())
+    }
+
+    /// Returns the objects that a ray may meet at or before a distance in lengths of the sight's direction, in the order of the
+    /// scene; all of them where there are few.
+    pub(super) fn near(&self, ray: &ExactRay, end: f256) -> Vec<usize> {
+        let plan = &self.plan;
+        let Some(tree) = &plan.tree else { return (0..plan.model.objects.len()).collect() };
+        let line = ray.sight().line::<Interval>();
         let mut near = plan.unbounded.clone();
         tree.within(|bounds| enters(&line, bounds).is_some_and(|from| from <= end), |index| near.push(index));
-        // Of objects in one place, those that come first in the scene do so in the answer.
         near.sort_unstable();
-        first_of(near.into_iter().map(shape), sight)
+        near
     }
 
     /// Returns the shape of an object.
@@ -91,12 +99,7 @@ impl Query<'_> {
 
     fn proof(&self, ray: &ExactRay, found: Option<&Hit>, is_tight: bool) -> Answer {
         let (first, precision) = self.first(ray, found);
-        let answer = |verdict, object: Option<usize>, at: Wide, precision| {
-            let bounds = ray.t(at);
-            let t = if at.high.is_finite() { ray.rounded_t(at.middle()) } else { f64::NAN };
-            let distance = certify::in_world_units(at, ray.sight()).high;
-            Answer { verdict, proof: Some(precision), object, t, bounds, distance }
-        };
+        let answer = |verdict, object, at, precision| Answer::at(ray, verdict, object, at, precision);
         let (any, end) = match first {
             FirstHits::Certain(None) => return Answer::miss(Some(precision)),
             FirstHits::Certain(Some((object, at))) => {

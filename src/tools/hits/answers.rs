@@ -21,13 +21,18 @@ pub enum AnswerFormat {
 /// An answer to be written.
 pub(super) struct Answered<'m> {
     pub model: &'m Model,
+    /// The index of the ray, where a ray may have several answers.
+    pub ray: Option<u64>,
     pub answer: Answer,
+    pub enters: Option<bool>,
     pub surface: Option<Surroundings>,
 }
 
 /// An answer, as JSON has it.
 #[derive(Serialize)]
 struct Line<'m> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ray: Option<u64>,
     verdict: &'static str,
     proof: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -36,6 +41,8 @@ struct Line<'m> {
     number: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     face: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    enters: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
     t: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -53,10 +60,10 @@ struct Line<'m> {
 }
 
 /// The columns of answers as CSV.
-const COLUMNS: [&str; 17] = [
-    "verdict", "proof", "object", "number", "face", "t", "t_low", "t_high", "distance", "x", "y", "z", "nx",
-    "ny", "nz", "u", "v",
-];
+const COLUMNS: &str = "verdict,proof,object,number,face,t,t_low,t_high,distance,x,y,z,nx,ny,nz,u,v";
+
+/// The columns before these where a ray may have several answers.
+const COLUMNS_OF_ALL: &str = "ray,enters";
 
 /// Returns the name of a verdict.
 pub fn name(verdict: Verdict) -> &'static str {
@@ -91,7 +98,7 @@ fn bits(proof: Option<Precision>) -> u8 {
 
 impl<'m> Answered<'m> {
     fn line(&self) -> Line<'m> {
-        let Self { model, answer, surface } = self;
+        let Self { model, ray, answer, enters, surface } = self;
         let there = |number: f64| number.is_finite().then_some(number);
         let proof = match answer.proof {
             None => "none",
@@ -99,6 +106,8 @@ impl<'m> Answered<'m> {
             Some(Precision::Octuple) => "237 bits",
         };
         Line {
+            ray: *ray,
+            enters: *enters,
             verdict: name(answer.verdict),
             proof,
             object: answer.object.map(|index| model.objects[index].args.name()),
@@ -131,15 +140,16 @@ impl<'m> Answered<'m> {
 }
 
 impl AnswerFormat {
-    /// Writes what comes before the answers. An array needs their number.
+    /// Writes what comes before the answers. An array needs their number. `are_all` says whether a ray may have several.
     ///
     /// # Errors
     /// Those of `out`; and for an array, where the number is not known.
-    pub fn begin(self, count: Option<u64>, out: &mut dyn Write) -> io::Result<()> {
+    pub fn begin(self, count: Option<u64>, are_all: bool, out: &mut dyn Write) -> io::Result<()> {
         match (self, count) {
             (Self::JsonLines, _) => Ok(()),
-            (Self::Csv, _) => writeln!(out, "{}", COLUMNS.join(",")),
-            (Self::Npy, Some(count)) => npy::begin(count, out),
+            (Self::Csv, _) if are_all => writeln!(out, "{COLUMNS_OF_ALL},{COLUMNS}"),
+            (Self::Csv, _) => writeln!(out, "{COLUMNS}"),
+            (Self::Npy, Some(count)) => npy::begin(npy::RECORD, &format!("({count},)"), out),
             (Self::Npy, None) => {
                 Err(io::Error::new(io::ErrorKind::InvalidInput, "an array needs its length first"))
             }
@@ -174,8 +184,14 @@ impl AnswerFormat {
 fn fields(line: &Line) -> Vec<String> {
     let number = |of: Option<f64>| of.map_or(String::new(), |of| of.to_string());
     let index = |of: Option<usize>| of.map_or(String::new(), |of| of.to_string());
-    let mut fields =
-        vec![line.verdict.to_owned(), line.proof.to_owned(), line.object.unwrap_or_default().to_owned()];
+    let of_all =
+        line.ray.map(|ray| [ray.to_string(), line.enters.map_or(String::new(), |enters| enters.to_string())]);
+    let mut fields: Vec<_> = of_all.into_iter().flatten().collect();
+    fields.extend([
+        line.verdict.to_owned(),
+        line.proof.to_owned(),
+        line.object.unwrap_or_default().to_owned(),
+    ]);
     fields.extend([index(line.number), index(line.face.map(|face| face as usize))]);
     fields.extend([line.t, line.t_low, line.t_high, line.distance].map(number));
     for vector in [line.point, line.normal] {

@@ -2,8 +2,11 @@
 //! a NumPy array.
 
 pub mod answers;
+pub mod hard;
+pub mod judge;
 mod npy;
 pub mod rays;
+pub mod theirs;
 
 use answers::{AnswerFormat, Answered};
 use rayon::prelude::*;
@@ -26,6 +29,8 @@ pub struct Asked {
     pub fast: bool,
     /// Whether bounds are narrowed with 237 bits.
     pub tight: bool,
+    /// Whether each ray has an answer for each surface that it crosses, and one for what is behind the last.
+    pub all: bool,
     /// Whether it is only of interest that something is hit, not what.
     pub any: bool,
     /// The end of rays that have none of their own, in the unit of their t.
@@ -90,7 +95,9 @@ pub fn read(
         if !bad.is_empty() {
             return Err(Ended::Bad(bad));
         }
-        let answered = answer(renderer, query, asked, &part, (format, out)).and_then(|()| out.flush());
+        let first = tally.answered;
+        let answered =
+            answer(renderer, query, asked, (first, &part), (format, out)).and_then(|()| out.flush());
         answered.map_err(Ended::Unwritten)?;
         tally.answered += part.len() as u64;
         step(part.len());
@@ -115,33 +122,42 @@ pub fn of_camera(
     let mut tally = Tally::default();
     for y in (0..height).rev() {
         let part: Vec<Ray> = (0..width).map(|x| (query.camera_ray(x, y), asked.t_max)).collect();
-        answer(renderer, query, asked, &part, (format, out))?;
+        answer(renderer, query, asked, (tally.answered, &part), (format, out))?;
         tally.answered += width as u64;
         step(width);
     }
     Ok(tally)
 }
 
+/// Answers rays; `first` is the number of the first of them.
 fn answer(
     renderer: &Renderer,
     query: &Query,
     asked: &Asked,
-    rays: &[Ray],
+    (first, rays): (u64, &[Ray]),
     (format, out): (&AnswerFormat, &mut dyn Write),
 ) -> io::Result<()> {
-    let packet = |rays: &[Ray]| -> io::Result<Vec<u8>> {
+    let packet = |(index, rays): (usize, &[Ray])| -> io::Result<Vec<u8>> {
+        let shown = |ray: &ExactRay, number: Option<u64>, answer: Answer, enters: Option<bool>| {
+            let surface = query.surroundings(ray, &answer);
+            Answered { model: query.model(), ray: number, answer, enters, surface }
+        };
+        if asked.all {
+            let first = first + (index * PACKET_SIZE) as u64;
+            let of_ray = |(number, (ray, end)): (u64, &Ray)| {
+                let crossings = query.crossings(ray, *end, asked.tight).into_iter();
+                crossings.map(|of| shown(ray, Some(number), of.answer, of.enters)).collect::<Vec<_>>()
+            };
+            return format.written((first..).zip(rays).flat_map(of_ray));
+        }
         let (of, ends): (Vec<_>, Vec<_>) = rays.iter().cloned().unzip();
         let answers = if asked.fast { query.traced(&of) } else { query.proven(&of, asked.tight) };
         let ended = answers.into_iter().zip(&ends).map(|(answer, end)| match asked.any {
             true => answer.any_within(*end),
             false => answer.within(*end),
         });
-        let shown = |(ray, answer): (&ExactRay, Answer)| {
-            let surface = query.surroundings(ray, &answer);
-            Answered { model: query.model(), answer, surface }
-        };
-        format.written(of.iter().zip(ended).map(shown))
+        format.written(of.iter().zip(ended).map(|(ray, answer)| shown(ray, None, answer, None)))
     };
-    let packets: Vec<_> = renderer.run(|| rays.par_chunks(PACKET_SIZE).map(packet).collect());
+    let packets: Vec<_> = renderer.run(|| rays.par_chunks(PACKET_SIZE).enumerate().map(packet).collect());
     packets.into_iter().try_for_each(|bytes| out.write_all(&bytes?))
 }

@@ -112,7 +112,7 @@ fn value<'h>(head: &'h str, key: &str) -> Option<&'h str> {
 }
 
 /// The type of an answer's record, as NumPy writes it.
-const RECORD: &str = "[('verdict', '|u1'), ('proof', '|u1'), ('object', '<i4'), ('face', '<i4'), ('t', '<f8'), \
+pub(super) const RECORD: &str = "[('verdict', '|u1'), ('proof', '|u1'), ('object', '<i4'), ('face', '<i4'), ('t', '<f8'), \
     ('t_low', '<f8'), ('t_high', '<f8'), ('distance', '<f8'), ('point', '<f8', (3,)), ('normal', '<f8', (3,)), \
     ('uv', '<f8', (2,))]";
 
@@ -140,9 +140,9 @@ impl Record {
     }
 }
 
-/// Writes what comes before so many records.
-pub(super) fn begin(count: u64, out: &mut dyn Write) -> io::Result<()> {
-    let head = format!("{{'descr': {RECORD}, 'fortran_order': False, 'shape': ({count},), }}");
+/// Writes what comes before the numbers of an array of this type and shape, both as NumPy writes them.
+pub(super) fn begin(descr: &str, shape: &str, out: &mut dyn Write) -> io::Result<()> {
+    let head = format!("{{'descr': {descr}, 'fortran_order': False, 'shape': {shape}, }}");
     // The records begin at a multiple of 64 bytes.
     let length = (MAGIC.len() + 4 + head.len() + 1).next_multiple_of(64) - MAGIC.len() - 4;
     out.write_all(MAGIC)?;

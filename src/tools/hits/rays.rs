@@ -183,7 +183,7 @@ fn of_content(head: &[u8]) -> RayFormat {
 
 /// Reads the next line that is not empty, and counts all; `None` at the end. `#` may begin a comment. A fault says whether it is
 /// the last.
-fn next_line(
+pub(super) fn next_line(
     input: &mut impl BufRead,
     number: &mut u64,
     may_have_comments: bool,
@@ -211,12 +211,12 @@ fn next_line(
 }
 
 /// Returns the fields of a line of CSV. Numbers and their names need no quotes, but may have them.
-fn fields(line: &str) -> impl Iterator<Item = &str> {
+pub(super) fn fields(line: &str) -> impl Iterator<Item = &str> {
     line.split(',').map(|field| field.trim().trim_matches('"'))
 }
 
 /// Returns in which columns numbers are, by the names of the columns.
-fn columns(names: &str) -> Result<[Option<usize>; 7], String> {
+pub(super) fn columns(names: &str) -> Result<[Option<usize>; 7], String> {
     let columns = COLUMNS.map(|column| fields(names).position(|name| name == column));
     let missing = COLUMNS[..6].iter().zip(&columns).filter(|(_, at)| at.is_none());
     let missing: Vec<_> = missing.map(|(name, _)| format!("`{name}`")).collect();
@@ -252,7 +252,7 @@ fn of_list(numbers: &[f64]) -> Result<Numbers, String> {
     }
 }
 
-fn of_record(record: &[&str], columns: &[Option<usize>; 7]) -> Result<Numbers, String> {
+pub(super) fn of_record(record: &[&str], columns: &[Option<usize>; 7]) -> Result<Numbers, String> {
     let mut numbers = [f64::INFINITY; 7];
     for (number, (column, name)) in numbers.iter_mut().zip(columns.iter().zip(COLUMNS)) {
         let Some(column) = column else { continue };
@@ -289,7 +289,7 @@ fn of_json(line: &str) -> Result<Numbers, String> {
     }
 }
 
-fn of_numbers([a, b, c, d, e, f]: [f64; 6], t_max: Option<f64>) -> Result<RayRow, String> {
+pub(super) fn of_numbers([a, b, c, d, e, f]: [f64; 6], t_max: Option<f64>) -> Result<RayRow, String> {
     let (origin, dir) = (DVec3::new(a, b, c), DVec3::new(d, e, f));
     if t_max.is_some_and(|end| end.is_nan() || end <= 0.0) {
         return Err("a ray ends at a positive t".to_owned());
@@ -299,6 +299,6 @@ fn of_numbers([a, b, c, d, e, f]: [f64; 6], t_max: Option<f64>) -> Result<RayRow
     ray.map(|ray| RayRow { ray, t_max }).ok_or_else(|| why.to_owned())
 }
 
-fn short(word: &str) -> String {
+pub(super) fn short(word: &str) -> String {
     word.chars().take(20).collect()
 }

@@ -13,11 +13,11 @@ use crate::shapes::plane::Plane;
 use crate::shapes::triangle::{Triangle, plane_for_distances};
 use crate::simd::cpu::Cpu;
 use crate::world::accuracy::Bounded;
-use crate::world::certify::{self, Enclosure, Precision};
+use crate::world::certify::{self, Enclosure, HitEnclosure, Precision};
 use crate::world::coincidence::{CLOSE, close};
 use f256::f256;
 use glam::DVec3;
-use tabray_exact::interval::{Float, Interval, Wide};
+use tabray_exact::interval::{Float, Fraction, Interval, Wide};
 
 impl Surface {
     /// Finds a bracket of a ray's first hit in a range. If `is_any`, any certain hit in the range will do.
@@ -257,6 +257,14 @@ impl Surface {
             // It is hit there, or a certain hit overlaps it: then the first hit is in both together.
             Some((low, Enclosure::Edge(at) | Enclosure::Hits(at))) if end <= at.high => {
                 Enclosure::Hits(Wide { low, high: end })
+            }
+            // Fractions see that a ray passes exactly through an edge, which belongs to the mesh.
+            Some((_, open @ Enclosure::Edge(_))) if precision == Precision::Octuple => {
+                match self.first_along::<A, Fraction>(&sight.line(), None).0 {
+                    HitEnclosure::Hits(at) => Enclosure::Hits(at.wide()),
+                    HitEnclosure::Misses => Enclosure::Misses,
+                    _ => open,
+                }
             }
             Some((_, first)) => first,
         }

@@ -17,5 +17,5 @@ mod packets;
 mod shader;
 mod solid_part;
 
-pub(crate) use crossings::Crossings;
+pub(crate) use crossings::{Crossing, Crossings};
 pub use make::{Objects, combined};

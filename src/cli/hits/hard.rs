@@ -1,0 +1,79 @@
+//! `tabray hard`: writes rays that are hard to decide.
+
+use super::files::{To, of_name};
+use super::model;
+use crate::files::output::{self, Output};
+use crate::options::number::whole;
+use crate::options::{set, threads};
+use crate::process::failure::Failure;
+use crate::process::interrupt::{self, InterruptAction};
+use crate::process::messages;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+use tabray_core::query::Query;
+use tabray_core::text::count;
+use tabray_core::world::accuracy::Accuracy;
+use tabray_lang::registry::Registry;
+use tabray_tools::hits::answers::AnswerFormat;
+use tabray_tools::hits::hard;
+
+/// Write rays that are hard to decide
+///
+/// The rays are aimed at the outlines of objects, where smooth surfaces are touched, at the edges between faces, at seams
+/// between objects and at corners, and pass them at distances of 1e-2 to 1e-15 of the size of what they are aimed at, or at
+/// none, up to rounding. `hits` answers them, and `judge` judges what another tracer answers.
+#[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
+pub struct Args {
+    /// The scene, or the file of a mesh; `-` reads a scene from standard input
+    #[arg(value_name = "SCENE")]
+    scene: PathBuf,
+    #[command(flatten)]
+    set: set::Args,
+    /// The number of rays
+    #[arg(short = 'n', long = "count", value_name = "N", default_value = "1000", value_parser = whole::<u32>(1..=100_000_000))]
+    count: u32,
+    /// Another number gives other rays
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Write the rays to this file; its ending, .csv, .jsonl or .npy, is their format
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// The format on standard output
+    #[arg(long, value_name = "FORM", default_value = "csv", conflicts_with = "output")]
+    to: To,
+    #[command(flatten)]
+    threads: threads::Args,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray hard ball.ray -n 100000 -o rays.csv
+  tabray hard part.stl | tabray hits part.stl";
+
+pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+    let format = match &args.output {
+        None => args.to.format(),
+        Some(path) => of_name(path)?,
+    };
+    let model = model::load(registry, &args.scene, &args.set, Some(Accuracy::Exact))?;
+    interrupt::catch(InterruptAction::Exit("the rays were not finished"))?;
+    let path = args.output.as_deref().unwrap_or(Path::new("-"));
+    if args.output.is_some() {
+        output::refuse_source(path, &args.scene, &model)?;
+    }
+    let wanted = args.count as usize;
+    let rays = hard::rays(&args.threads.renderer()?, &Query::new(&model), wanted, args.seed);
+    if rays.is_empty() {
+        let help = "the scene has no edge, outline, seam or corner that rays from around its objects find";
+        return Err(Failure::Usage("no ray is hard to decide".to_owned(), Some(help.to_owned())));
+    }
+    let is_text = args.output.is_none() && format != AnswerFormat::Npy;
+    let mut out = BufWriter::new(if is_text { Output::Standard } else { Output::open(path)? });
+    let written = hard::write(format, &rays, &mut out).and_then(|()| out.flush());
+    output::finished(path, written, out)?;
+    if rays.len() < wanted {
+        messages::warning(&format!("only {} were found", count(rays.len(), "hard ray")), None);
+    }
+    Ok(())
+}
