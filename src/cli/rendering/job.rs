@@ -18,6 +18,7 @@ use std::thread;
 use std::time::Instant;
 use tabray_core::output::packing::PIECE;
 use tabray_core::output::picture::Format;
+use tabray_core::render::Levels;
 use tabray_core::render::flaws::{BudgetCuts, FarPaths, Flaws, Undecided};
 use tabray_core::render::limits::{MAX_DIST, MAX_RAYS, MAX_TREE};
 use tabray_core::render::plan::Plan;
@@ -28,7 +29,6 @@ use tabray_core::scene::model::Model;
 use tabray_core::text::{count, short};
 use tabray_core::world::certify::Doubt;
 use tabray_core::world::rules::Rules;
-use tabray_tools::diagnosis::Levels;
 
 /// The maximum number of blank pixels that are written in place of missing ones. If more are missing, the file ends at
 /// the first row of which nothing is rendered.

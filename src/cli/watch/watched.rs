@@ -15,12 +15,13 @@ use std::sync::mpsc::{self, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Instant, SystemTime};
+use tabray_core::render::Levels;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::progressive::{self, Area};
 use tabray_core::scene::model::Model;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::reader::{self, Loaded, ReadOptions};
-use tabray_tools::diagnosis::{self, Levels};
+use tabray_tools::diagnosis;
 use tabray_tools::threads::renderer_with;
 
 /// The maximum number of pixels of an image on a page: all of it is in memory, here and in the browser.

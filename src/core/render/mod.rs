@@ -9,6 +9,7 @@ mod features;
 pub mod flaws;
 pub mod footprint;
 mod frusta;
+mod levels;
 pub mod limits;
 pub mod observer;
 pub mod plan;
@@ -20,6 +21,7 @@ pub mod trace;
 
 pub use bytes::to_byte;
 pub use flaws::{BudgetCuts, FarPaths, Flaws, Undecided};
+pub use levels::Levels;
 pub use observer::{Count, DropReason, Event, Hit, LightOutcome, RayKind, RayPurpose, TraceObserver};
 pub use plan::Plan;
 pub use ray_stats::{RayStats, TestCounts};

@@ -7,6 +7,7 @@ use glam::DVec3;
 use std::ops::Range;
 use survey::Survey;
 use tabray_core::geometry::aabb::Aabb;
+use tabray_core::render::Levels;
 use tabray_core::render::flaws::Flaws;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::trace::{self, Scratch, Tracer};
@@ -49,27 +50,6 @@ pub struct Remark {
     pub help: String,
 }
 
-/// The brightness of an image, as its bytes have it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Levels {
-    brightest: u8,
-    white: usize,
-    pixels: usize,
-}
-
-impl Levels {
-    /// Adds pixels: red, green and blue of each.
-    pub fn add(&mut self, bytes: &[u8]) {
-        self.brightest = bytes.iter().copied().fold(self.brightest, u8::max);
-        self.white += bytes.chunks_exact(3).filter(|pixel| *pixel == [u8::MAX; 3]).count();
-        self.pixels += bytes.len() / 3;
-    }
-
-    fn is_burnt(&self) -> bool {
-        self.white as f64 > BURNT * self.pixels as f64
-    }
-}
-
 /// Returns what is to be said of a part of an image with these levels: at most one thing. Columns count from the left and
 /// rows from the top.
 pub fn remark(plan: &Plan, part: [&Range<usize>; 2], levels: &Levels) -> Option<Remark> {
@@ -79,7 +59,7 @@ pub fn remark(plan: &Plan, part: [&Range<usize>; 2], levels: &Levels) -> Option<
     let places = places(&plan.camera, part);
     empty(plan, &places).or_else(|| {
         let is_black = levels.brightest < DARK;
-        if !is_black && !levels.is_burnt() {
+        if !is_black && !is_burnt(levels) {
             return flat(plan.model);
         }
         // The plan of a picture leaves out lights.
@@ -87,6 +67,10 @@ pub fn remark(plan: &Plan, part: [&Range<usize>; 2], levels: &Levels) -> Option<
         let survey = Survey::of(&plan, &places);
         if is_black { Some(black(&plan, &survey, levels.brightest)) } else { burnt(&plan, &survey, levels) }
     })
+}
+
+fn is_burnt(levels: &Levels) -> bool {
+    levels.white as f64 > BURNT * levels.pixels as f64
 }
 
 /// Says that a background lights the scene from one direction, or that what is rough is smooth, where pixels have one sample.
