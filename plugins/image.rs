@@ -55,14 +55,18 @@ impl Image {
                 return self.mean(low, high);
             }
         }
-        let place = self.place(at);
+        self.blend(self.place(at), |column, row| self.texture.texel(column, row))
+    }
+
+    /// Returns what `of` returns for the column and the row of the texel at a place, or if colours are interpolated the blend of
+    /// the four around it.
+    fn blend(&self, place: DVec2, of: impl Fn(u32, u32) -> DVec3) -> DVec3 {
+        let of = |at: DVec2| of(self.wrapped(at.x, 0), self.wrapped(at.y, 1));
         if !self.smooth {
-            return self.texel(place.floor());
+            return of(place.floor());
         }
         let (corner, part) = ((place - 0.5).floor(), (place - 0.5).fract_gl());
-        let row = |y: f64| {
-            self.texel(corner + DVec2::new(0.0, y)).lerp(self.texel(corner + DVec2::new(1.0, y)), part.x)
-        };
+        let row = |y: f64| of(corner + DVec2::new(0.0, y)).lerp(of(corner + DVec2::new(1.0, y)), part.x);
         row(0.0).lerp(row(1.0), part.y)
     }
 
@@ -108,6 +112,14 @@ impl Shader for Image {
 
     fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
         material.diffuse * self.colour(at)
+    }
+
+    fn cuts_out(&self) -> bool {
+        self.texture.cuts_out()
+    }
+
+    fn is_cut_out(&self, at: &SurfacePoint) -> bool {
+        self.blend(self.place(at), |column, row| DVec3::splat(self.texture.alpha(column, row))).x < CUTOFF
     }
 
     fn tile(&self, at: &SurfacePoint) -> DVec2 {

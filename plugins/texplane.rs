@@ -129,6 +129,15 @@ impl Shader for Textured {
         material.diffuse * self.0.colour(at.position)
     }
 
+    fn cuts_out(&self) -> bool {
+        self.0.texture.cuts_out()
+    }
+
+    fn is_cut_out(&self, at: &SurfacePoint) -> bool {
+        let [column, row] = self.0.texel(at.position);
+        self.0.texture.alpha(column, row) < CUTOFF
+    }
+
     #[inline]
     fn tile(&self, at: &SurfacePoint) -> DVec2 {
         let [column, row] = self.0.texel(at.position);

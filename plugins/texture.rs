@@ -7,10 +7,19 @@ static FILENAME: Pparm<String> = Pparm::required(
     "an image, relative to the scene's folder: PNG, JPEG, WebP, TIFF, BMP, PPM, Radiance HDR or OpenEXR",
 );
 
-const TABLE: Table = &[&FILENAME];
+static CUTOUT: Pparm<bool> = Pparm::or(
+    "cutout",
+    "whether what an `image` or a `texplane` shows is not there where the image is less than half opaque; otherwise it has its own \
+     colour there",
+    false,
+)
+.not_dumped();
+
+const TABLE: Table = &[&FILENAME, &CUTOUT];
 
 inventory::submit! {
     Entity::texture("texture", "an image for texplanes, projectors, shaders and environments", &[TABLE], |args| {
-        Ok(Texture::new(args.setting.folder.join(args.get(&FILENAME))))
+        let path = args.setting.folder.join(args.get(&FILENAME));
+        Ok(if args.get(&CUTOUT) { Texture::cutout(path) } else { Texture::new(path) })
     })
 }

@@ -31,7 +31,7 @@ pub use crate::world::rules::Rules;
 pub use crate::world::sample::Sampler;
 pub use crate::world::sensor::AnyCamera;
 pub use crate::world::shader::{Anchor, LookBounds, PointBounds, Shader, ShaderInputs, SurfacePoint};
-pub use crate::world::texture::Texture;
+pub use crate::world::texture::{CUTOFF, Texture};
 
 // What a scene selects by name: shaders, profiles and other alternatives.
 pub use crate::choices;

@@ -11,6 +11,7 @@ mod arithmetic;
 mod cameras;
 mod contract;
 mod costs;
+mod cutouts;
 mod domains;
 mod double_double;
 mod implicit;

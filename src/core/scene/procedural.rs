@@ -30,7 +30,7 @@ pub fn types() -> impl Iterator<Item = &'static Entity> {
     inventory::iter::<Entity>().filter(|entity| has_defaults(entity))
 }
 
-/// Makes the body of an object, with the look of the shader that it names.
+/// Makes the body of an object, with the look of the shader that it names, and without what its shader cuts out.
 ///
 /// # Errors
 /// If the constructor refuses the object.
@@ -41,10 +41,11 @@ pub fn body(args: &Args, construct: fn(&Args) -> Result<Body, Refusal>) -> Resul
         Some(Datum::Choice(choice)) => of_type(choice.name),
         _ => None,
     };
-    Ok(match paint {
+    let body = match paint {
         Some(paint) => body.painted(paint),
         None => body,
-    })
+    };
+    Ok(body.cut_out())
 }
 
 fn has_defaults(entity: &Entity) -> bool {

@@ -35,6 +35,14 @@ impl<B: Bend> Shader for Bent<B> {
         self.bend.bent(at, self.colours.bend(at))
     }
 
+    fn cuts_out(&self) -> bool {
+        self.colours.cuts_out()
+    }
+
+    fn is_cut_out(&self, at: &SurfacePoint) -> bool {
+        self.colours.is_cut_out(at)
+    }
+
     fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
         self.colours.ambient(material, at)
     }

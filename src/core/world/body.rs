@@ -1,6 +1,7 @@
 //! What an object's constructor returns.
 
 use crate::world::any_shape::AnyShape;
+use crate::world::cutout::Cutout;
 use crate::world::material::Material;
 use crate::world::packets::light::PacketLight;
 use crate::world::packets::shader::PacketShader;
@@ -10,8 +11,8 @@ use glam::DVec3;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
-/// Any [`Shader`]: `Box::new(shader)` makes one.
-pub type AnyShader = Box<dyn PacketShader>;
+/// Any [`Shader`]: `Arc::new(shader)` makes one.
+pub type AnyShader = Arc<dyn PacketShader>;
 
 /// What a shader entity of a scene makes: a function that makes the shader of each object that names the entity.
 #[derive(Clone)]
@@ -21,7 +22,7 @@ impl ShaderFactory {
     /// Makes a factory of a function, which is called for each object with the origin and the unit of length of the
     /// pattern on it.
     pub fn new<S: Shader + 'static>(make: impl Fn(Anchor) -> S + Send + Sync + 'static) -> Self {
-        Self(Arc::new(move |anchor| Box::new(make(anchor))))
+        Self(Arc::new(move |anchor| Arc::new(make(anchor))))
     }
 
     /// Makes the shader of one object.
@@ -167,7 +168,7 @@ impl Body {
     pub fn shaded(shape: impl Into<AnyShape>, shader: impl Shader + 'static) -> Self {
         Self {
             shape: shape.into(),
-            shader: Box::new(shader),
+            shader: Arc::new(shader),
             anchor: None,
             to_object_space: None,
             warnings: Vec::new(),
@@ -208,6 +209,16 @@ impl Body {
         let mut body = Self { shader, ..self };
         body.warn_of_what_it_lacks();
         body
+    }
+
+    /// Takes from the shape what the shader cuts out.
+    pub fn cut_out(self) -> Self {
+        let more = self.more.into_iter().map(Self::cut_out).collect();
+        if !self.shader.cuts_out() {
+            return Self { more, ..self };
+        }
+        let shape = Cutout::shape(self.shape, self.shader.clone()).into();
+        Self { shape, solid: None, more, ..self }
     }
 
     /// Warns if the shader needs coordinates or faces that the shape does not have.

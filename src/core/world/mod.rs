@@ -9,6 +9,7 @@ pub mod body;
 pub mod camera;
 pub mod certify;
 pub mod coincidence;
+mod cutout;
 pub mod display;
 pub mod emitter;
 pub mod hittable;

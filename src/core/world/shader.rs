@@ -211,6 +211,18 @@ pub trait Shader: Send + Sync {
         at.normal
     }
 
+    /// Tells whether the shader cuts parts out of the surface. It is the same in every call.
+    #[inline(always)]
+    fn cuts_out(&self) -> bool {
+        false
+    }
+
+    /// Tells whether the surface is not there at a point, if the shader [cuts parts out](Self::cuts_out): rays pass.
+    #[inline]
+    fn is_cut_out(&self, _at: &SurfacePoint) -> bool {
+        false
+    }
+
     /// Returns the three reflectivities, if each is the same at every point. Then only [`bend`](Self::bend) is called
     /// for each point, not the methods above. `None` is always correct.
     fn uniform(&self, _material: &Material) -> Option<Look> {

@@ -3,7 +3,7 @@
 use crate::world::display::Display;
 use crate::world::material::Rgb;
 use glam::{DVec2, DVec3};
-use image::{Rgb32FImage, RgbImage};
+use image::{GrayImage, Rgb32FImage, RgbImage};
 use std::borrow::Cow;
 
 /// The texels of an image.
@@ -12,6 +12,8 @@ pub struct Texels {
     pixels: Pixels,
     /// The light of each byte.
     light: [f64; 256],
+    /// How far each texel is opaque, where any is not, if that is kept.
+    alpha: Option<GrayImage>,
 }
 
 #[derive(Debug)]
@@ -23,16 +25,17 @@ enum Pixels {
 
 impl Texels {
     /// Makes texels of bytes. Their light is that which an image would show with the same bytes.
-    pub(super) fn of_bytes(image: RgbImage, display: &Display) -> Self {
-        Self { pixels: Pixels::Bytes(image), light: std::array::from_fn(|byte| display.light_of(byte as u8)) }
+    pub(super) fn of_bytes(image: RgbImage, alpha: Option<GrayImage>, display: &Display) -> Self {
+        let light = std::array::from_fn(|byte| display.light_of(byte as u8));
+        Self { pixels: Pixels::Bytes(image), light, alpha }
     }
 
     /// Makes texels of light. What is no number, or below 0, is 0.
-    pub(super) fn of_light(mut image: Rgb32FImage) -> Self {
+    pub(super) fn of_light(mut image: Rgb32FImage, alpha: Option<GrayImage>) -> Self {
         image
             .iter_mut()
             .for_each(|channel| *channel = if *channel > 0.0 { channel.min(f32::MAX) } else { 0.0 });
-        Self { pixels: Pixels::Floats(image), light: [0.0; 256] }
+        Self { pixels: Pixels::Floats(image), light: [0.0; 256], alpha }
     }
 
     /// Returns the width and height; neither is 0.
@@ -55,10 +58,27 @@ impl Texels {
         self.texel(column, row, |byte| f64::from(byte) / 255.0)
     }
 
+    /// Returns how far a texel is opaque, from 0 to 1, as [`light`](Self::light) does; 1 where that is not kept.
+    pub fn alpha(&self, column: u32, row: u32) -> f64 {
+        let (column, row) = self.place(column, row);
+        self.alpha.as_ref().map_or(1.0, |alpha| f64::from(alpha.get_pixel(column, row).0[0]) / 255.0)
+    }
+
+    /// Tells whether any texel is not opaque, and that is kept.
+    pub fn has_alpha(&self) -> bool {
+        self.alpha.is_some()
+    }
+
+    /// Returns the column and the row from the top of a texel, or of that at the edge.
+    #[inline]
+    fn place(&self, column: u32, row: u32) -> (u32, u32) {
+        let [width, height] = self.size();
+        (column.min(width - 1), height - 1 - row.min(height - 1))
+    }
+
     #[inline]
     fn texel(&self, column: u32, row: u32, of_byte: impl Fn(u8) -> f64) -> DVec3 {
-        let [width, height] = self.size();
-        let (column, row) = (column.min(width - 1), height - 1 - row.min(height - 1));
+        let (column, row) = self.place(column, row);
         DVec3::from_array(match &self.pixels {
             Pixels::Bytes(image) => image.get_pixel(column, row).0.map(of_byte),
             Pixels::Floats(image) => image.get_pixel(column, row).0.map(f64::from),
@@ -99,17 +119,22 @@ impl Texels {
 
     /// Returns the numbers of all texels as bytes.
     pub fn raw(&self) -> Cow<'_, [u8]> {
-        match &self.pixels {
-            Pixels::Bytes(image) => Cow::Borrowed(image.as_raw()),
+        let mut numbers = match &self.pixels {
+            Pixels::Bytes(image) => Cow::Borrowed(&image.as_raw()[..]),
             Pixels::Floats(image) => image.iter().flat_map(|channel| channel.to_le_bytes()).collect(),
+        };
+        if let Some(alpha) = &self.alpha {
+            numbers.to_mut().extend(alpha.as_raw());
         }
+        numbers
     }
 
     /// Returns the memory that they take, in bytes.
     pub(super) fn memory(&self) -> u64 {
-        match &self.pixels {
-            Pixels::Bytes(image) => image.as_raw().len() as u64,
-            Pixels::Floats(image) => 4 * image.as_raw().len() as u64,
-        }
+        let pixels = match &self.pixels {
+            Pixels::Bytes(image) => image.as_raw().len(),
+            Pixels::Floats(image) => 4 * image.as_raw().len(),
+        };
+        (pixels + self.alpha.as_ref().map_or(0, |alpha| alpha.as_raw().len())) as u64
     }
 }

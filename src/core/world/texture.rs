@@ -11,8 +11,8 @@ use bytesize::ByteSize;
 use glam::{DVec2, DVec3};
 use image::metadata::Orientation;
 use image::{
-    ColorType, DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, Rgb as Texel,
-    Rgb32FImage, RgbImage,
+    ColorType, DynamicImage, GrayImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, Luma,
+    Rgb as Texel, Rgb32FImage, RgbImage,
 };
 use std::fs;
 use std::io::{self, BufReader, Cursor, Read, Seek};
@@ -24,6 +24,9 @@ use tabray_exact::scalar::{Scalar, constants, per_axis};
 /// The memory that a decoder may take beside the image, in bytes.
 const ASIDE: u64 = 1 << 20;
 
+/// How far a place of an image must be opaque for a surface to be there, where nothing else is said.
+pub const CUTOFF: f64 = 0.5;
+
 /// The number of columns or rows from which on an enclosure no longer examines each texel.
 const MOST_TEXELS: usize = 8;
 
@@ -33,8 +36,9 @@ pub struct Texture {
     path: PathBuf,
     /// The contents of the file, where they are not to be read from the path.
     contents: Option<Vec<u8>>,
-    /// Whether transparent texels show their colours as others do.
+    /// Whether transparent texels show their colours as others do, and how far each is opaque is kept.
     is_opaque: bool,
+    cuts_out: bool,
     /// How the image that is rendered shows light; unless that is known, by the notes' rules.
     display: OnceLock<Display>,
     picture: OnceLock<Result<Picture, String>>,
@@ -60,10 +64,10 @@ const OTHERS: [(&[u8], usize, &str); 7] = [
     (b"%PDF", 0, "a PDF"),
 ];
 
-/// Textures are equal if their paths are.
+/// Textures are equal if their paths are, and both cut surfaces out or none does.
 impl PartialEq for Texture {
     fn eq(&self, other: &Self) -> bool {
-        self.path == other.path
+        self.path == other.path && self.cuts_out == other.cuts_out
     }
 }
 
@@ -77,6 +81,16 @@ impl Texture {
     /// image file, where they are not to be read from the path.
     pub fn of_model(path: PathBuf, contents: Option<Vec<u8>>) -> Self {
         Self { path, contents, is_opaque: true, ..Self::default() }
+    }
+
+    /// Makes a texture of an image file that is [cut out](Self::cuts_out).
+    pub fn cutout(path: PathBuf) -> Self {
+        Self { path, is_opaque: true, cuts_out: true, ..Self::default() }
+    }
+
+    /// Tells whether surfaces that show the texture are not there where its [`alpha`](Self::alpha) is below [`CUTOFF`].
+    pub fn cuts_out(&self) -> bool {
+        self.cuts_out
     }
 
     /// Returns the path of the image file.
@@ -151,7 +165,7 @@ impl Texture {
         // As it is decoded, as red, green and blue, and turned.
         let copies = match colours {
             ColorType::Rgb8 => 0,
-            colours if colours.has_alpha() => each * (4 + 3),
+            colours if colours.has_alpha() => each * (4 + 3) + 3,
             _ => each * 3,
         };
         let turned = if orientation == Orientation::NoTransforms { 0 } else { each * 3 };
@@ -169,6 +183,7 @@ impl Texture {
         if is_bright(&picture) && !is_light {
             remarks.push("has colours above 1, which are cut to 1");
         }
+        let alpha = (self.is_opaque && colours.has_alpha()).then(|| alpha_of(&picture)).flatten();
         let mut image = match (is_light, colours.has_alpha() && !self.is_opaque) {
             (true, true) => DynamicImage::ImageRgb32F(light_over_white(picture, &mut remarks)),
             (true, false) => DynamicImage::ImageRgb32F(picture.into_rgb32f()),
@@ -176,9 +191,14 @@ impl Texture {
             (false, false) => DynamicImage::ImageRgb8(picture.into_rgb8()),
         };
         image.apply_orientation(orientation);
+        let alpha = alpha.map(|alpha| {
+            let mut alpha = DynamicImage::ImageLuma8(alpha);
+            alpha.apply_orientation(orientation);
+            alpha.into_luma8()
+        });
         let texels = match is_light {
-            true => Texels::of_light(image.into_rgb32f()),
-            false => Texels::of_bytes(image.into_rgb8(), display),
+            true => Texels::of_light(image.into_rgb32f(), alpha),
+            false => Texels::of_bytes(image.into_rgb8(), alpha, display),
         };
         Ok(Picture { texels, sums: OnceLock::new(), remarks })
     }
@@ -232,6 +252,17 @@ impl Texture {
         self.load().map_or(DVec3::new(0.5, 0.5, 1.0), |texels| texels.numbers(column, row))
     }
 
+    /// Returns how far a texel is opaque, from 0 to 1, as [`texel`](Self::texel) does: 1 unless the texture is
+    /// [cut out](Self::cuts_out), or is one of a model.
+    pub fn alpha(&self, column: u32, row: u32) -> f64 {
+        self.load().map_or(1.0, |texels| texels.alpha(column, row))
+    }
+
+    /// Tells whether [`alpha`](Self::alpha) is below 1 anywhere.
+    pub fn has_alpha(&self) -> bool {
+        self.load().is_ok_and(Texels::has_alpha)
+    }
+
     /// Bounds the light of a channel of any texel: 1, unless the file has colours above 1 and the rules of light show them.
     pub fn brightest(&self) -> f64 {
         self.load().map_or(1.0, Texels::brightest)
@@ -274,6 +305,14 @@ fn is_bright(picture: &DynamicImage) -> bool {
         DynamicImage::ImageRgba32F(image) => image.iter().any(|channel| *channel > 1.0),
         _ => false,
     }
+}
+
+/// Returns how far the pixels of an image are opaque, if any of them is not.
+fn alpha_of(picture: &DynamicImage) -> Option<GrayImage> {
+    let picture = picture.to_luma_alpha8();
+    let is_opaque = picture.pixels().all(|pixel| pixel.0[1] == u8::MAX);
+    let alpha = |x, y| Luma([picture.get_pixel(x, y).0[1]]);
+    (!is_opaque).then(|| GrayImage::from_fn(picture.width(), picture.height(), alpha))
 }
 
 const SEES_THROUGH: &str =
@@ -370,6 +409,18 @@ mod tests {
         let texture = texture(&folder, "a.png", &bytes.into_inner());
         assert_eq!([0, 1].map(|x| bytes_at(&texture, [x, 0])), [[255; 3], [244, 224, 204]]);
         assert_eq!(texture.remarks().len(), 1);
+    }
+
+    #[test]
+    fn texels_of_a_cut_out_image_keep_their_colours_and_their_alpha() {
+        let folder = TempDir::new().expect("a folder");
+        let image = RgbaImage::from_fn(2, 1, |x, _| image::Rgba([200, 100, 0, if x == 0 { 0 } else { 51 }]));
+        let path = folder.path().join("a.png");
+        image.save(&path).expect("an image");
+        let texture = Texture::cutout(path);
+        assert_eq!([0, 1].map(|x| bytes_at(&texture, [x, 0])), [[200, 100, 0]; 2]);
+        assert_eq!([0, 1].map(|x| texture.alpha(x, 0)), [0.0, 0.2]);
+        assert!(texture.remarks().is_empty());
     }
 
     #[test]

@@ -94,8 +94,8 @@ pub(super) struct Check<'r, 't> {
     pub(super) camera: Option<(usize, Sensor)>,
     pub(super) materials: Vec<(usize, Arc<Material>)>,
     pub(super) textures: Vec<(usize, Arc<Texture>)>,
-    /// The textures by the paths of their files.
-    files: HashMap<PathBuf, Arc<Texture>>,
+    /// The textures by the paths of their files, and whether they cut surfaces out.
+    files: HashMap<(PathBuf, bool), Arc<Texture>>,
     pub(super) shaders: Vec<(usize, ShaderFactory)>,
     /// How many more bytes the images of textures may take.
     pub(super) texture_memory: u64,
@@ -293,8 +293,8 @@ impl Check<'_, '_> {
             Construct::Texture(construct) => {
                 if let Some(texture) = self.made(parsed, args, construct) {
                     self.report.add_file(texture.path().to_owned());
-                    // Textures with the same file share one image, so that the file is read once.
-                    let texture = match self.files.entry(texture.path().to_owned()) {
+                    // Equal textures share one image, so that its file is read once.
+                    let texture = match self.files.entry((texture.path().to_owned(), texture.cuts_out())) {
                         Entry::Occupied(known) => known.get().clone(),
                         Entry::Vacant(free) => free.insert(Arc::new(texture)).clone(),
                     };

@@ -20,6 +20,7 @@ pub struct Finished {
     surface: Arc<Surface>,
     has_images: bool,
     bends: bool,
+    cuts_out: bool,
 }
 
 /// A point of a face.
@@ -44,7 +45,9 @@ impl Finished {
         let any = |is: fn(&Finish) -> bool| surface.finishes.iter().flatten().any(is);
         let has_images = any(|finish| finish.maps().next().is_some());
         let bends = any(|finish| finish.normals.is_some());
-        Self { surface, has_images, bends }
+        let is_cut = |slot: &u16| surface.finish(*slot).is_some_and(|finish| finish.mask.is_some());
+        let cuts_out = any(|finish| finish.mask.is_some()) && surface.slots.iter().any(is_cut);
+        Self { surface, has_images, bends, cuts_out }
     }
 
     fn spot(&self, at: DVec3) -> Spot<'_> {
@@ -224,6 +227,16 @@ impl Shader for Finished {
         let upright = |along: DVec3| (along - along.dot(at.normal) * at.normal).normalize_or_zero();
         let bent = *strength * (x * upright(along_u) + y * upright(along_v)) + z.max(0.0) * at.normal;
         bent.try_normalize().unwrap_or(at.normal)
+    }
+
+    fn cuts_out(&self) -> bool {
+        self.cuts_out
+    }
+
+    fn is_cut_out(&self, at: &SurfacePoint) -> bool {
+        let spot = self.spot(at.position);
+        let mask = spot.finish.and_then(|finish| finish.mask.as_ref());
+        mask.is_some_and(|mask| mask.cuts_out(|map| self.place(&spot, map, None).map(|[place, _]| place)))
     }
 
     fn tile(&self, at: &SurfacePoint) -> DVec2 {

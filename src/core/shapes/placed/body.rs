@@ -23,7 +23,7 @@ impl Placed {
         let copy = if is_plain { Body::plain(shape) } else { shaded(shape) };
         let original = Arc::clone(body);
         let to_object_space = move |shader: AnyShader| -> AnyShader {
-            Box::new(PlacedShader::new(&original, placement, Some(shader)))
+            Arc::new(PlacedShader::new(&original, placement, Some(shader)))
         };
         Body {
             depth: body.depth + 1,
@@ -94,6 +94,15 @@ impl Shader for PlacedShader {
     fn bend(&self, at: &SurfacePoint) -> DVec3 {
         let own = self.own().bend(&self.object_point(at));
         (self.placed.to_object_space.transpose() * own).try_normalize().unwrap_or(at.normal)
+    }
+
+    // What the shader of the object cuts out, its shape does not have.
+    fn cuts_out(&self) -> bool {
+        self.shader.as_ref().is_some_and(|shader| shader.cuts_out())
+    }
+
+    fn is_cut_out(&self, at: &SurfacePoint) -> bool {
+        self.own().is_cut_out(&self.object_point(at))
     }
 
     fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {

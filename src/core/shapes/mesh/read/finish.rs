@@ -2,7 +2,7 @@
 
 use crate::world::material::Rgb;
 use crate::world::texture::Texture;
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
 /// An image on a surface, by its texture coordinates. Beyond 0 and 1, it repeats.
@@ -14,6 +14,44 @@ pub struct Map {
     pub scale: DVec2,
     /// What is added to them then.
     pub offset: DVec2,
+}
+
+/// Where a surface is not there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mask {
+    /// The image that says how far the surface is opaque; without it, it is everywhere.
+    map: Option<Map>,
+    /// How far it must be opaque to be there.
+    least: f64,
+}
+
+impl Mask {
+    /// Makes a mask of an image, which must be as opaque as that for a surface to be there; `None` where nothing is cut out.
+    pub fn new(map: Option<Map>, least: f64) -> Option<Self> {
+        let [width, height] = map.as_ref().map_or([1, 1], |map| map.texture.size());
+        let mask = Self { map, least };
+        let mut texels = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
+        texels.any(|(column, row)| mask.opacity(column, row) < least).then_some(mask)
+    }
+
+    /// Returns how far a texel is opaque: its alpha, or in an image that is opaque its brightness.
+    fn opacity(&self, column: u32, row: u32) -> f64 {
+        let Some(Map { texture, .. }) = &self.map else { return 1.0 };
+        if texture.has_alpha() {
+            texture.alpha(column, row)
+        } else {
+            texture.numbers(column, row).element_sum() / 3.0
+        }
+    }
+
+    /// Tells whether a surface is not there. `place` returns where in an image, in texels.
+    pub fn cuts_out(&self, place: impl FnOnce(&Map) -> Option<DVec2>) -> bool {
+        let blended = |map: &Map| {
+            let opacity = |column, row| DVec3::splat(self.opacity(column, row));
+            place(map).map(|place| map.texture.blended(place, opacity).x)
+        };
+        self.map.as_ref().and_then(blended).unwrap_or(1.0) < self.least
+    }
 }
 
 /// A material of a file.
@@ -37,6 +75,8 @@ pub struct Finish {
     pub shininess: f64,
     /// The fraction of light that passes through.
     pub transparency: f64,
+    /// Where it is cut out.
+    pub mask: Option<Mask>,
 }
 
 impl Default for Finish {
@@ -51,6 +91,7 @@ impl Default for Finish {
             normals: None,
             shininess: 0.0,
             transparency: 0.0,
+            mask: None,
         }
     }
 }
@@ -59,7 +100,8 @@ impl Finish {
     /// Returns the images that it shows.
     pub fn maps(&self) -> impl Iterator<Item = &Map> {
         let normals = self.normals.iter().map(|(map, _)| map);
-        self.colours.iter().chain(&self.emissions).chain(normals)
+        let masks = self.mask.iter().flat_map(|mask| &mask.map);
+        self.colours.iter().chain(&self.emissions).chain(normals).chain(masks)
     }
 
     /// Passes on all that it shows, as bytes.
@@ -67,10 +109,13 @@ impl Finish {
         let Self { colour, metal, specular, emission, shininess, transparency, .. } = self;
         let colours = [colour, specular, emission].into_iter().flat_map(|colour| colour.to_array());
         let slopes = self.normals.as_ref().map_or(0.0, |(_, slopes)| *slopes);
-        let numbers = colours.chain([*metal, *shininess, *transparency, slopes]);
+        let mask = self.mask.as_ref();
+        let least = mask.map_or(0.0, |mask| mask.least);
+        let numbers = colours.chain([*metal, *shininess, *transparency, slopes, least]);
         numbers.for_each(|number| each(&number.to_le_bytes()));
-        for map in [self.colours.as_ref(), self.emissions.as_ref(), self.normals.as_ref().map(|(map, _)| map)]
-        {
+        let normals = self.normals.as_ref().map(|(map, _)| map);
+        let masks = mask.and_then(|mask| mask.map.as_ref());
+        for map in [self.colours.as_ref(), self.emissions.as_ref(), normals, masks] {
             each(&[u8::from(map.is_some())]);
             let Some(Map { texture, scale, offset }) = map else { continue };
             let numbers = scale.to_array().into_iter().chain(offset.to_array());

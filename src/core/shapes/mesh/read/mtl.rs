@@ -1,13 +1,13 @@
 //! Material files of OBJ.
 
 use super::blocks::{self, Words, words};
-use super::finish::{Finish, Map};
+use super::finish::{Finish, Map, Mask};
 use super::model::{MemoryBudget, Model, Remark};
 use super::textures::{Textures, first_of};
 use crate::files;
 use crate::text;
 use crate::world::material::Rgb;
-use crate::world::texture::Texture;
+use crate::world::texture::{CUTOFF, Texture};
 use glam::DVec2;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Read;
@@ -18,7 +18,7 @@ use std::sync::Arc;
 const LONGEST: u64 = 1 << 26;
 
 /// The words of a material that are shown, or say nothing of how it looks here: ambient light is the scene's.
-const KNOWN: [&str; 20] = [
+const KNOWN: [&str; 21] = [
     "newmtl",
     "illum",
     "Ka",
@@ -34,6 +34,7 @@ const KNOWN: [&str; 20] = [
     "map_Ka",
     "map_Kd",
     "map_Ke",
+    "map_d",
     "map_Bump",
     "map_bump",
     "bump",
@@ -204,6 +205,9 @@ impl Raw {
             "Tr" => finish.transparency = number(&mut words)?.clamp(0.0, 1.0),
             "map_Kd" => finish.colours = map(words, place, textures)?.map(|(map, _)| map),
             "map_Ke" => finish.emissions = map(words, place, textures)?.map(|(map, _)| map),
+            "map_d" => {
+                finish.mask = map(words, place, textures)?.and_then(|(map, _)| Mask::new(Some(map), CUTOFF));
+            }
             "map_Bump" | "map_bump" | "bump" | "norm" => {
                 let bumps = map(words, place, textures)?;
                 // Programs write normal maps, too, as what the format means for heights.

@@ -116,6 +116,7 @@ pub struct Material {
     pub emissive_texture: Option<TextureInfo>,
     pub emissive_factor: [f64; 3],
     pub alpha_mode: Option<String>,
+    pub alpha_cutoff: Option<f64>,
     pub extensions: BTreeMap<String, serde_json::Value>,
 }
 

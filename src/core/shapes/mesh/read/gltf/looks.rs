@@ -2,12 +2,12 @@
 
 use super::buffers::{Buffers, data, unescaped};
 use super::json::{self, Gltf, Transform};
-use crate::shapes::mesh::read::finish::{Finish, Map};
+use crate::shapes::mesh::read::finish::{Finish, Map, Mask};
 use crate::shapes::mesh::read::model::{MemoryBudget, Model, Remark};
 use crate::shapes::mesh::read::textures::{Textures, first_of};
 use crate::text;
 use crate::world::material::Rgb;
-use crate::world::texture::Texture;
+use crate::world::texture::{CUTOFF, Texture};
 use glam::{DVec2, DVec3};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -88,7 +88,6 @@ impl Looks<'_> {
             }
         };
         let mode = material.alpha_mode.as_deref().unwrap_or("OPAQUE");
-        hide(mode == "MASK", "alphaMode MASK");
         hide(mode == "BLEND" && base_color_texture.is_some(), "the alpha of images");
         hide(material.occlusion_texture.is_some(), "occlusionTexture");
         let extension = |name: &str, number: &str| material.extensions.get(name)?.get(number)?.as_f64();
@@ -112,6 +111,10 @@ impl Looks<'_> {
         let normals = self.map(material.normal_texture.as_ref())?;
         let slopes = material.normal_texture.as_ref().and_then(|normals| normals.scale).unwrap_or(1.0);
         finish.normals = normals.map(|map| (map, slopes));
+        if mode == "MASK" {
+            let map = finish.colours.clone().filter(|map| map.texture.has_alpha());
+            finish.mask = Mask::new(map, material.alpha_cutoff.unwrap_or(CUTOFF) / alpha);
+        }
         let (mut metal, mut roughness) = (*metallic_factor, *roughness_factor);
         if let Some(map) = self.map(metallic_roughness_texture.as_ref())? {
             let DVec3 { y, z, .. } = mean(&map.texture);
