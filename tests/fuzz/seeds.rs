@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             }
             Some(kind @ ("obj" | "ply" | "stl")) if bytes.len() < 1 << 14 => {
                 let format = target::MESHES.iter().position(|format| *format == kind).unwrap_or(0) as u8;
-                for (first, name) in [(format, 2 * index), (format + 3, 2 * index + 1)] {
+                for (first, name) in [(format, 2 * index), (format + 5, 2 * index + 1)] {
                     write("mesh", name, &[&[first], &bytes[..bytes.len().min(2000)]].concat())?;
                 }
             }
@@ -66,6 +66,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         1001,
         &[&[2][..], &[b' '; 80], &1_u32.to_le_bytes(), &[0; 12], &corners, &[0; 2]].concat(),
     )?;
+    for (index, bytes) in target::triangle().into_iter().enumerate() {
+        let kind = 3 + index as u8;
+        for (first, name) in [(kind, 1002 + 2 * index), (kind + 5, 1003 + 2 * index)] {
+            write("mesh", name, &[&[first], &bytes[..]].concat())?;
+        }
+    }
     for (index, formula) in formulas.iter().enumerate() {
         write("formula", index, formula.as_bytes())?;
     }
@@ -82,7 +88,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         words.insert(entity.name.to_owned());
         words.extend(entity.attributes().map(|attribute| attribute.name().to_owned()));
     }
-    let functions = "sin cos tan exp ln sqrt abs floor min max 1e300 1e-320 -0 nan inf let include repeat count".split(' ');
+    let functions =
+        "sin cos tan exp ln sqrt abs floor min max 1e300 1e-320 -0 nan inf let include repeat count"
+            .split(' ');
     words.extend(functions.map(str::to_owned));
     let meshes = "v f usemtl solid facet normal outer loop vertex endloop endfacet endsolid ply format ascii \
                   binary_little_endian binary_big_endian element face property list uchar int float double \

@@ -109,19 +109,46 @@ pub fn texture(bytes: &[u8]) {
 }
 
 /// The formats of meshes, as file names end.
-pub const MESHES: [&str; 3] = ["obj", "ply", "stl"];
+pub const MESHES: [&str; 5] = ["obj", "ply", "stl", "glb", "gltf"];
 
-/// Reads the file of a mesh, which is accepted or refused with a reason. The first byte chooses the format, and
-/// whether an OBJ is read again with comments after it that make it many blocks, which changes nothing.
+/// Returns a triangle in glTF, as a GLB and as text.
+pub fn triangle() -> [Vec<u8>; 2] {
+    let corners: Vec<u8> =
+        [0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.5].into_iter().flat_map(f32::to_le_bytes).collect();
+    let json = |uri: &str| {
+        let text = format!(
+            r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0,"scale":[1,2,1]}}],
+            "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"NORMAL":0}},"material":0}}]}}],
+            "materials":[{{"name":"a","alphaMode":"MASK","pbrMetallicRoughness":{{"baseColorFactor":[1,0.5,0,1]}}}}],
+            "accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}}],
+            "bufferViews":[{{"buffer":0,"byteLength":36}}],"buffers":[{{{uri}"byteLength":36}}]}}"#
+        );
+        let padded = text.len().next_multiple_of(4);
+        format!("{text:padded$}").into_bytes()
+    };
+    let (text, kinds) = (json(""), [u32::from_le_bytes(*b"JSON"), u32::from_le_bytes(*b"BIN\0")]);
+    let mut glb = [&b"glTF"[..], &2_u32.to_le_bytes(), &(28 + text.len() as u32 + 36).to_le_bytes()].concat();
+    for (kind, chunk) in kinds.into_iter().zip([&text, &corners]) {
+        glb.extend([&(chunk.len() as u32).to_le_bytes(), &kind.to_le_bytes(), &chunk[..]].concat());
+    }
+    // 36 bytes of corners in base64.
+    let uri = "data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAA/";
+    [glb, json(&format!(r#""uri":"{uri}","#))]
+}
+
+/// Reads the file of a mesh, which is accepted or refused with a reason. The first byte chooses the format, whether all that
+/// the file has is asked for, and whether an OBJ is read again with comments after it that make it many blocks, which changes
+/// nothing.
 pub fn mesh(bytes: &[u8]) {
     let [kind, file @ ..] = bytes else { return };
-    let format = MESHES[usize::from(kind % 3)];
+    let format = MESHES[usize::from(kind % 5)];
+    let own = if kind / 5 % 2 == 0 { "" } else { "normals file materials file" };
     let path = memory().join(format!("tabray-fuzz-{}.{format}", std::process::id()));
     let read = |file: &[u8]| {
         fs::write(&path, file).expect("it is written");
         let scene = format!(
             "camera eye {{ pixeldim 2 2 worlddim 2 2 viewpoint 0 0 1 }} material plain {{ ambient 1 1 1 }} \
-             mesh surface {{ material plain file {} }}",
+             mesh surface {{ material plain file {} {own} }}",
             path.display()
         );
         match scene::read(&REGISTRY, "scene.ray", Path::new(""), scene.as_bytes(), None) {
@@ -131,7 +158,7 @@ pub fn mesh(bytes: &[u8]) {
     };
     let said = read(file);
     // Blank lines after the first ones change nothing in an OBJ but the numbers of later lines.
-    if kind / 3 == 0 && format == "obj" && file.len() < 1 << 10 {
+    if kind / 5 < 2 && format == "obj" && file.len() < 1 << 10 {
         let blank = [file, &b"\n"[..], &b"# a comment\n".repeat(1 << 15)].concat();
         let is_continued = file.ends_with(b"\\") || file.ends_with(b"\\\r");
         assert!(

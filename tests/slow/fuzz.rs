@@ -5,7 +5,8 @@ use rand_pcg::Pcg32;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::fs;
 use target::{
-    MESHES, TO_REVIEW, TO_WATCH, checkpoint, formula, mesh, notes, render, review, texture, toml, watch,
+    MESHES, TO_REVIEW, TO_WATCH, checkpoint, formula, mesh, notes, render, review, texture, toml, triangle,
+    watch,
 };
 
 #[path = "../fuzz/target.rs"]
@@ -80,7 +81,13 @@ fn meshes_are_refused_or_read() {
         let format = MESHES.iter().position(|format| name.ends_with(format)).expect("a format") as u8;
         [&[format], &bytes[..bytes.len().min(2000)]].concat()
     };
-    run(mesh, &names.map(seed), 2000);
+    let gltf = triangle()
+        .into_iter()
+        .zip(3_u8..)
+        .flat_map(|(bytes, kind)| [kind, kind + 5].map(|kind| [&[kind], &bytes[..]].concat()));
+    let seeds: Vec<_> = names.map(seed).into_iter().chain(gltf).collect();
+    seeds.iter().for_each(|seed| mesh(seed));
+    run(mesh, &seeds, 2000);
 }
 
 #[test]
