@@ -1,11 +1,12 @@
-//! Wavefront OBJ: vertices, faces, the names of their materials, and normals and texture coordinates where they are wanted.
-//! All else is ignored.
+//! Wavefront OBJ: vertices, faces, the names of their materials, and normals, texture coordinates and colours where they are
+//! wanted. All else is ignored.
 
-use super::at_corners::{Attributes, NO_VALUE};
+use super::at_corners::{AtCorners, Attributes, NO_VALUE};
 use super::blocks::{self, Words, words};
 use super::model::{MAX_VERTICES, MemoryBudget, Model, ReadError, coordinate, shown};
 use super::mtl;
 use super::polygons::Polygons;
+use crate::world::display::Display;
 use glam::DVec3;
 use memchr::memchr;
 use std::borrow::Cow;
@@ -41,6 +42,8 @@ struct Part {
     /// What follows `mtllib`, and its line.
     libraries: Vec<(Vec<u8>, usize)>,
     attributes: Attributes,
+    /// The colours of vertices, as far as the last one that has one, as they are written; NaN for one that has none.
+    colours: Vec<[f32; 3]>,
     /// The largest number of a `v`, `vt` and `vn` that comes after its face, and the line.
     ahead: [Option<(u32, usize)>; 3],
     lines: usize,
@@ -54,12 +57,16 @@ pub fn read(bytes: &[u8], folder: &Path, budget: &MemoryBudget) -> Result<Model,
     let mut names = HashMap::new();
     let mut polygons = Polygons::default();
     let (mut slot, mut line, mut ahead) = (0, 0, [const { Vec::new() }; 3]);
-    let mut libraries = Vec::new();
+    let (mut libraries, mut colours) = (Vec::new(), Vec::new());
     let take = |part: Part| {
         budget
             .holds(model.vertices.len() + part.vertices.len(), model.faces.len() + part.faces.len())
             .map_err(ReadError::file)?;
         let before = model.faces.len();
+        if !part.colours.is_empty() {
+            colours.resize(model.vertices.len(), NO_COLOUR);
+            colours.extend(part.colours);
+        }
         model.vertices.extend(part.vertices);
         model.faces.extend(part.faces);
         polygons.append(part.polygons, before);
@@ -110,7 +117,26 @@ pub fn read(bytes: &[u8], folder: &Path, budget: &MemoryBudget) -> Result<Model,
         mtl::furnish(&mut model, &libraries, folder, budget);
     }
     polygons.cut(&mut model);
+    if let Some(display) = budget.wanted.materials.filter(|_| !colours.is_empty()) {
+        colours.resize(model.vertices.len(), NO_COLOUR);
+        model.attributes.colours = AtCorners::of_vertices(lights(colours, display), &model.faces);
+    }
     Ok(model)
+}
+
+/// The colour of a vertex that has none.
+const NO_COLOUR: [f32; 3] = [f32::NAN; 3];
+
+/// Returns the light that the colours of vertices stand for, as bytes of an image do: they are from 0 to 1 or, if one is above
+/// that, from 0 to 255. A vertex without one is white.
+fn lights(mut colours: Vec<[f32; 3]>, display: Display) -> Vec<[f32; 3]> {
+    let greatest = colours.iter().flatten().fold(0.0, |most: f32, channel| most.max(*channel));
+    let bytes = if greatest > 1.0 { 1.0 } else { 255.0 };
+    for channel in colours.iter_mut().flatten() {
+        let byte = if channel.is_nan() { 255.0 } else { (bytes * *channel).round() };
+        *channel = display.light_of(byte as u8) as f32;
+    }
+    colours
 }
 
 /// Says why a file without faces has none.
@@ -218,6 +244,13 @@ impl Part {
                 }
                 counts[0] += 1;
                 self.vertices.push(DVec3::from(at));
+                if wanted.materials.is_some()
+                    && let [Ok(red), Ok(green), Ok(blue)] =
+                        [part(&mut words), part(&mut words), part(&mut words)]
+                {
+                    self.colours.resize(self.vertices.len() - 1, NO_COLOUR);
+                    self.colours.push([red, green, blue]);
+                }
             }
             Some(b"vt") => {
                 counts[1] += 1;
