@@ -7,7 +7,6 @@ use std::path::Path;
 use tabray_core::scene::attribute::Attribute;
 use tabray_core::scene::entity::Entity;
 use tabray_core::scene::value::Datum;
-use tabray_core::shapes::mesh::read::Wanted;
 use tabray_core::text;
 use tabray_lang::list_json::Tables;
 use tabray_lang::reference;
@@ -19,7 +18,7 @@ use tabray_lang::syntax::Syntax;
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
     /// The entity type whose attributes to list, or the file of a mesh: its bounds, faces and parts, whether it is closed,
-    /// and a guess of its unit
+    /// a guess of its unit, and which normals, texture coordinates, colours and materials it has
     entity: Option<String>,
     /// Print the whole reference of the language as Markdown
     #[arg(long, conflicts_with = "entity")]
@@ -52,7 +51,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     };
     // A type's name has no ending.
     if registry.find(&name).is_none() && (name.contains('.') || Path::new(&name).is_file()) {
-        return print(&mesh::described(&mesh::read(Path::new(&name), Wanted::default())?));
+        return print(&mesh::described(Path::new(&name))?);
     }
     let entity = registry.find(&name).ok_or_else(|| {
         let help = match registry.nearest(&name) {

@@ -152,11 +152,22 @@ fn a_mesh_is_described() {
     }
     let (status, out, _) = outcome(tabray(&folder).args(["list", "closed.obj"]));
     let expected = "bounds  -1 -1 -1 to 1 39 -0.9\nsize    2 x 40 x 0.1\nfaces   12 triangles\nparts   1\nclosed  yes\n\
-        units   not in the file; by its size perhaps millimetres\n";
+        units   not in the file; by its size perhaps millimetres\nnormals none\nuv      none\ncolours none\nlooks   none\n";
     assert_eq!((status, text(out).as_str()), (0, expected));
     let (_, out, _) = outcome(tabray(&folder).args(["list", "open.obj"]));
     let out = text(out);
     assert!(out.contains("\nclosed  no: open at 4 edges\n"), "{out}");
+    let text_of = "mtllib a.mtl\nv 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvn 0 0 1\nusemtl a\nf 1/1/1 2/1/1 3//1\nusemtl b\nf 2//1 4//1 3//1\n";
+    fs::write(folder.path().join("whole.obj"), text_of).expect("a file");
+    fs::write(folder.path().join("a.mtl"), "newmtl a\nKd 1 0 0\nmap_Kd a.png\n").expect("a file");
+    let (_, out, _) = outcome(tabray(&folder).args(["list", "whole.obj"]));
+    let out = text(out);
+    let own = "normals at all corners\nuv      at 2 of 6 corners\ncolours at all corners\n\
+        looks   of 1 of 2 materials, with 0 images\nnames   a, b\n";
+    assert!(
+        out.contains(own) && out.contains("note    it has materials whose images cannot be read"),
+        "{out}"
+    );
     let (status, _, err) = outcome(tabray(&folder).args(["list", "no.obj"]));
     assert_eq!(status, 2, "{err}");
 }

@@ -4,23 +4,32 @@ use crate::process::failure::Failure;
 use glam::DVec3;
 use std::path::Path;
 use tabray_core::geometry::Rotation;
-use tabray_core::shapes::mesh::read::{self, Wanted};
+use tabray_core::shapes::mesh::read::{self, Attributes, Model, Remark, Wanted};
 use tabray_core::shapes::mesh::{Look, Surface, ToWorld};
 use tabray_core::text::{count, shortest};
+use tabray_core::world::sensor::Sensor;
 
 /// Reads the surface of a file as a mesh of a scene is read, in the file's own coordinates.
 pub fn read(path: &Path, wanted: Wanted) -> Result<Surface, Failure> {
-    let refused = |what: String| {
-        let help = "a mesh is an OBJ, PLY, STL or glTF file".to_owned();
-        Failure::Usage(format!("cannot read `{}` as a mesh: {what}", path.display()), Some(help))
-    };
-    let model = read::read(path, wanted, u64::MAX).map_err(|error| {
+    surface(path, model(path, wanted)?)
+}
+
+fn model(path: &Path, wanted: Wanted) -> Result<Model, Failure> {
+    read::read(path, wanted, u64::MAX).map_err(|error| {
         let place = error.at.map_or(String::new(), |at| format!("{at}: "));
-        refused(format!("{place}{}", error.message))
-    })?;
+        refused(path, &format!("{place}{}", error.message))
+    })
+}
+
+fn refused(path: &Path, what: &str) -> Failure {
+    let help = "a mesh is an OBJ, PLY, STL or glTF file".to_owned();
+    Failure::Usage(format!("cannot read `{}` as a mesh: {what}", path.display()), Some(help))
+}
+
+fn surface(path: &Path, model: Model) -> Result<Surface, Failure> {
     let placement = ToWorld::new(DVec3::ONE, Rotation::NONE, DVec3::ZERO);
     let look = Look { crease: None, is_two_sided: true };
-    Surface::new(model, &placement, look).map_err(|error| refused(format!("it {}", error.message().0)))
+    Surface::new(model, &placement, look).map_err(|error| refused(path, &format!("it {}", error.message().0)))
 }
 
 /// The endings of the names of files of meshes.
@@ -32,7 +41,13 @@ pub fn is_one(path: &Path) -> bool {
 }
 
 /// Describes what a file holds: a line for each fact.
-pub fn described(surface: &Surface) -> String {
+///
+/// # Errors
+/// If it cannot be read.
+pub fn described(path: &Path) -> Result<String, Failure> {
+    let model = model(path, Wanted { normals: true, materials: Some(Sensor::default().display()) })?;
+    let looks = looks(&model);
+    let surface = surface(path, model)?;
     let [low, high] = surface.bounds();
     let sides = |at: DVec3, between: &str| at.to_array().map(six_digits).join(between);
     let mut open = Vec::new();
@@ -52,11 +67,40 @@ pub fn described(surface: &Surface) -> String {
         count(surface.face_count(), "triangle"),
         surface.count_parts(),
     );
-    if !surface.materials.is_empty() {
-        text += &format!("names   {}\n", surface.materials.join(", "));
-    }
-    for remark in &surface.remarks {
+    text += &looks;
+    // The lines say so.
+    let is_said = |remark: &&Remark| [read::NO_NORMALS, read::NO_LOOKS].contains(&&remark.message[..]);
+    for remark in surface.remarks.iter().filter(|remark| !is_said(remark)) {
         text += &format!("note    it {}\n", remark.message);
+    }
+    Ok(text)
+}
+
+/// Describes what a file has beside its faces.
+fn looks(model: &Model) -> String {
+    let Attributes { normals, uv, colours } = &model.attributes;
+    let all = 3 * model.faces.len();
+    let corners = |some: usize| match some {
+        0 => "none".to_owned(),
+        _ if some == all => "at all corners".to_owned(),
+        _ => format!("at {some} of {}", count(all, "corner")),
+    };
+    let looks = model.finishes.iter().flatten();
+    let images: usize = looks.clone().map(|finish| finish.maps().count()).sum();
+    let materials = match model.materials.len() {
+        0 => "none".to_owned(),
+        names => {
+            format!("of {} of {}, with {}", looks.count(), count(names, "material"), count(images, "image"))
+        }
+    };
+    let mut text = format!(
+        "normals {}\nuv      {}\ncolours {}\nlooks   {materials}\n",
+        corners(normals.count()),
+        corners(uv.count()),
+        corners(colours.count()),
+    );
+    if !model.materials.is_empty() {
+        text += &format!("names   {}\n", model.materials.join(", "));
     }
     text
 }

@@ -38,6 +38,11 @@ impl<T: Copy> AtCorners<T> {
         Some([a?, b?, c?])
     }
 
+    /// Counts the corners that have a value.
+    pub fn count(&self) -> usize {
+        self.faces.iter().flatten().filter(|corner| **corner != NO_VALUE).count()
+    }
+
     /// Sorts faces in this order, and values by their first use.
     pub fn sorted(self, order: &[u32]) -> Self {
         if self.is_empty() {

@@ -32,6 +32,12 @@ use bytesize::ByteSize;
 use std::io::{self, Read};
 use std::path::Path;
 
+/// What is told of a file that has no normals, although they are wanted.
+pub const NO_NORMALS: &str = "has a file without normals";
+
+/// What is told of a file that has no materials and no colours, although they are wanted.
+pub const NO_LOOKS: &str = "has a file without materials and colours";
+
 /// Reads a file by how it begins or, where that tells nothing, by the ending of its name: its triangles, and what else is
 /// wanted. Takes no more memory than so many bytes, roughly.
 ///
@@ -87,15 +93,12 @@ fn model(mut bytes: Vec<u8>, ending: &str, folder: &Path, budget: &MemoryBudget)
     }
     if budget.wanted.normals && model.attributes.normals.is_empty() {
         model.remarks.push(Remark {
-            message: "has a file without normals".to_owned(),
+            message: NO_NORMALS.to_owned(),
             help: "its normals are those of its faces, as far as edges are no creases",
         });
     }
     if budget.wanted.materials.is_some() && model.finishes.is_empty() && model.attributes.colours.is_empty() {
-        model.remarks.push(Remark {
-            message: "has a file without materials and colours".to_owned(),
-            help: "it has the material of the scene",
-        });
+        model.remarks.push(Remark { message: NO_LOOKS.to_owned(), help: "it has the material of the scene" });
     }
     Ok(model)
 }
