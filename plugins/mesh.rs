@@ -63,7 +63,7 @@ inventory::submit! {
             warnings.extend(painted.unlike_materials(&args.material()));
             Body::shaded(shape, painted)
         };
-        Ok(Body { warnings, bytes: surface.bytes(), ..body })
+        Ok(Body { warnings, files: surface.files.clone(), bytes: surface.bytes(), ..body })
     })
     .known_as(&["obj", "stl", "ply", "gltf", "glb", "model", "trimesh"])
 }

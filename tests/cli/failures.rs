@@ -125,14 +125,14 @@ fn an_image_does_not_replace_what_it_is_made_from() {
         ("bricks.png", &[], "`bricks.png` is the image of texture `bricks`"),
         ("other.png", &[], "`other.png` is the image of texture `bricks`"),
         ("wall.png", &["--aov", "depth"], "`wall-depth.png` is the image of texture `bricks`"),
-        ("white.ray", &[], "`white.ray` is a file that the scene includes"),
-        ("e.png", &["--aov", "depth,normal"], "`e-normal.exr` is a file that the scene includes"),
+        ("white.ray", &[], "`white.ray` is a file that the scene is read from"),
+        ("e.png", &["--aov", "depth,normal"], "`e-normal.exr` is a file that the scene is read from"),
     ] {
         refused(&[&["--format", "png", "-o", output], more].concat(), what, "the image");
     }
     refused(
         &["-o", "e.exr", "--aov", "normal"],
-        "`e-normal.exr` is a file that the scene includes",
+        "`e-normal.exr` is a file that the scene is read from",
         "the image",
     );
     for (output, more, name, by) in [

@@ -157,3 +157,52 @@ fn colours_of_vertices_are_blended_between_them() {
     }
     nothing_is_contradicted(&model);
 }
+
+#[test]
+fn colours_of_vertices_of_an_obj_are_those_of_bytes() {
+    let face = "usemtl plain\nf 1 2 3 4\n";
+    let bright =
+        format!("mtllib plain.mtl\nv 0 0 0 0 0 0\nv 4 0 0 0.5 0 0\nv 4 4 0\nv 0 4 0 0 1 0 1\n{face}");
+    // As other programs write them; the last vertex has a weight.
+    let bytes = format!(
+        "mtllib plain.mtl\nv 0 0 0 0 0 0\nv 4 0 0 128 0 0\nv 4 4 0 255 255 255\nv 0 4 0 0 255 0\n{face}"
+    );
+    for text in [bright, bytes] {
+        let folder = folder(&[("wall.obj", &text), ("plain.mtl", "newmtl plain\nKd 1 1 0.5\n")]);
+        let (model, warnings) = read(folder.path(), "file wall.obj materials file");
+        assert!(warnings.is_empty(), "{warnings}");
+        // By the notes' rules, bytes are divided by 256; the first edge between triangles is from the first to the third corner.
+        let [all, half] = [255.0, 128.0].map(|byte| byte / 256.0);
+        for (at, [red, green, blue]) in [
+            ([4.0, 0.0, 0.0], [half, 0.0, 0.0]),
+            ([0.0, 4.0, 0.0], [0.0, all, 0.0]),
+            ([2.0, 2.0, 0.0], [0.5 * all; 3]),
+        ] {
+            let diffuse = [red, green, 0.5 * blue];
+            is_near(&model, at, [diffuse.map(|channel| 0.5 * channel), diffuse, [0.0; 3]]);
+        }
+    }
+    let (model, warnings) = read(
+        folder(&[("wall.obj", "v 0 0 0 1\nv 4 0 0 1\nv 0 4 0 1\nf 1 2 3\n")]).path(),
+        "file wall.obj materials file",
+    );
+    assert!(warnings.contains("has a file without materials and colours"), "{warnings}");
+    assert_eq!(look(&model, [1.0, 1.0, 0.0])[1], [0.125, 0.25, 0.5]);
+}
+
+#[test]
+fn a_scene_is_read_from_the_files_that_its_models_name() {
+    let folder = folder(&[("wall.obj", WALL), ("my looks.mtl", LOOKS)]);
+    let named = |mesh: &str| {
+        let files = read(folder.path(), mesh).0.files;
+        let relative = files
+            .iter()
+            .map(|file| file.strip_prefix(folder.path()).expect("a file of the folder").display());
+        relative.map(|file| file.to_string()).collect::<Vec<_>>()
+    };
+    assert_eq!(named("file wall.obj"), ["wall.obj"]);
+    assert_eq!(
+        named("file wall.obj materials file"),
+        ["wall.obj", "my looks.mtl", "other.mtl", "images/two colours.png"]
+    );
+}

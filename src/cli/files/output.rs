@@ -158,7 +158,7 @@ pub fn source(path: &Path, scene: &Path, model: &Model) -> Option<String> {
         return Some(format!("the file of {} `{}`", record.entity().name, record.name()));
     }
     let is_included = model.files.iter().any(|file| are_same(file, path));
-    is_included.then(|| "a file that the scene includes".to_owned())
+    is_included.then(|| "a file that the scene is read from".to_owned())
 }
 
 impl Output {

@@ -9,6 +9,7 @@ use crate::world::shader::{Anchor, Plain, Shader};
 use crate::world::solid::{Operation, Tree};
 use glam::DVec3;
 use std::fmt;
+use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 
 /// Any [`Shader`]: `Arc::new(shader)` makes one.
@@ -99,6 +100,8 @@ pub struct Body {
     pub to_object_space: Option<ToObjectSpace>,
     /// What the user should know about the object, although it can be rendered.
     pub warnings: Vec<Warning>,
+    /// The files that it was read from beside those that its attributes name, whether they exist or not.
+    pub files: Vec<PathBuf>,
     /// The memory that the object takes beside the scene, in bytes.
     pub bytes: u64,
     /// The number of objects nested in it: 1 for a copy of a shape, 2 for a copy of a copy.
@@ -172,6 +175,7 @@ impl Body {
             anchor: None,
             to_object_space: None,
             warnings: Vec::new(),
+            files: Vec::new(),
             bytes: 0,
             depth: 0,
             name: None,

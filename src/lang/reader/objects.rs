@@ -140,6 +140,7 @@ impl Check<'_, '_> {
             .map_err(|refusal| self.refused(&args, refusal, source))
             .ok()?;
         self.warn(&args, &body.warnings, source);
+        body.files.iter().for_each(|file| self.report.add_file(file.clone()));
         if body.bytes > 0 {
             let setting = Arc::make_mut(&mut self.setting);
             setting.memory = setting.memory.saturating_sub(body.bytes);

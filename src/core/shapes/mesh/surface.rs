@@ -16,6 +16,7 @@ use glam::DVec3;
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, HashMap};
 use std::mem::take;
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
@@ -64,6 +65,8 @@ pub struct Surface {
     pub materials: Vec<String>,
     /// What the file says of them, where that is read.
     pub(super) finishes: Vec<Option<Finish>>,
+    /// The files that its file names, whether they exist or not.
+    pub files: Vec<PathBuf>,
 }
 
 /// How the triangles of a file become a surface.
@@ -110,8 +113,17 @@ impl Surface {
         if model.faces.len() > MAX_FACES {
             return Err(SurfaceError::TooMany);
         }
-        let Model { vertices, mut faces, materials, slots, sides, finishes, mut attributes, mut remarks } =
-            model;
+        let Model {
+            vertices,
+            mut faces,
+            materials,
+            slots,
+            sides,
+            finishes,
+            mut attributes,
+            mut remarks,
+            files,
+        } = model;
         let vertices = merge(vertices, &mut faces, placement);
         attributes.turn(|_| placement.is_mirrored());
         let is_far = |at: DVec3| !at.is_finite() || at.abs().max_element() > MAX_LENGTH;
@@ -188,6 +200,7 @@ impl Surface {
             remarks,
             materials,
             finishes,
+            files,
         })
     }
 

@@ -7,6 +7,7 @@ use crate::world::display::Display;
 use bytesize::ByteSize;
 use glam::DVec3;
 use std::fmt;
+use std::path::PathBuf;
 
 /// What is wrong with a file that was cut.
 pub(super) const ENDS_EARLY: &str = "the file ends before all of its elements";
@@ -30,6 +31,8 @@ pub struct Model {
     pub attributes: Attributes,
     /// What was not taken as the file says it.
     pub remarks: Vec<Remark>,
+    /// The files that it names, whether they exist or not.
+    pub files: Vec<PathBuf>,
 }
 
 /// What is read of a file beside its triangles.

@@ -62,6 +62,7 @@ pub fn furnish(model: &mut Model, libraries: &[(Vec<u8>, usize)], folder: &Path,
             let (whole, beside) =
                 (folder.join(&name), folder.join(Path::new(&name).file_name().unwrap_or_default()));
             let path = if !whole.is_file() && beside.is_file() { beside } else { whole };
+            model.files.push(path.clone());
             match text_of(&path) {
                 Ok(bytes) => {
                     textures.folder = path.parent().unwrap_or(folder).to_owned();
@@ -90,7 +91,7 @@ pub fn furnish(model: &mut Model, libraries: &[(Vec<u8>, usize)], folder: &Path,
     tell(&found.wrong, "has material files with lines that are not understood", "these lines are left out");
     let unseen: Vec<_> = found.unseen.into_iter().collect();
     tell(&unseen, "has materials with properties that are not shown", "the rest of the materials is shown");
-    model.remarks.extend(textures.remark());
+    textures.finish(model);
 }
 
 /// The most words of a name with blanks.

@@ -1,6 +1,6 @@
 //! The images that the materials of a file name.
 
-use super::model::{MemoryBudget, Remark};
+use super::model::{MemoryBudget, Model, Remark};
 use crate::text;
 use crate::world::texture::Texture;
 use std::collections::BTreeMap;
@@ -68,13 +68,15 @@ impl<'f> Textures<'f> {
         None
     }
 
-    /// Tells of images that cannot be read, if there are any.
-    pub fn remark(self) -> Option<Remark> {
-        let count = self.broken.len();
-        (count > 0).then(|| Remark {
-            message: format!("has materials whose images cannot be read: {}", first_of(&self.broken)),
-            help: "there, the materials have their plain colours",
-        })
+    /// Adds their files to those that a model names, and tells of images that cannot be read, if there are any.
+    pub fn finish(self, model: &mut Model) {
+        model.files.extend(self.known.into_keys());
+        if !self.broken.is_empty() {
+            model.remarks.push(Remark {
+                message: format!("has materials whose images cannot be read: {}", first_of(&self.broken)),
+                help: "there, the materials have their plain colours",
+            });
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use base64::engine::general_purpose::STANDARD;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The bytes of a file's buffers.
 pub struct Buffers<'f> {
@@ -207,6 +207,12 @@ pub fn contents(uri: &str, folder: &Path, most: u64) -> Result<Vec<u8>, String> 
         return Err(cannot("there is no memory for it".to_owned()));
     }
     Ok(bytes)
+}
+
+/// Returns the files of the buffers that a model in a folder names.
+pub fn files(json: &Gltf, folder: &Path) -> Vec<PathBuf> {
+    let uris = json.buffers.iter().filter_map(|buffer| buffer.uri.as_deref());
+    uris.filter(|uri| data(uri).is_none()).map(|uri| folder.join(&*unescaped(uri))).collect()
 }
 
 /// Returns the bytes that a URI holds itself, if it does.

@@ -59,7 +59,7 @@ pub fn furnish(
             help: "the rest of the materials is shown",
         });
     }
-    model.remarks.extend(textures.remark());
+    textures.finish(model);
     Ok(())
 }
 

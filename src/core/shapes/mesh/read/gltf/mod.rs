@@ -101,6 +101,7 @@ fn model(json: &Gltf, own: Option<&[u8]>, folder: &Path, budget: &MemoryBudget) 
     }
     let Reading { mut model, left_out, posed, .. } = reading;
     model.attributes.drop_unused();
+    model.files = buffers::files(json, folder);
     looks::furnish(&mut model, json, &buffers, folder, budget)?;
     if left_out > 0 {
         let message =
