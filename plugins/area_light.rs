@@ -25,7 +25,7 @@ static UP: Pparm<DVec3> = Pparm::or(
     DVec3::Y,
 )
 .nonzero();
-static VISIBLE: Pparm<bool> = Pparm::or(
+pub static VISIBLE: Pparm<bool> = Pparm::or(
     "visible",
     "whether it is seen, also in mirrors; if it is not, shiny surfaces have highlights of it",
     true,

@@ -35,16 +35,16 @@ inventory::submit! {
 /// Makes the object of an entity whose table has the rows of [`TABLE`].
 pub fn body(args: &Args) -> Body {
     let (center, radius) = center_and_radius(args);
-    Body::plain(shape(args)).anchored(center, 2.0 * radius)
+    Body::plain(shape(center, radius, args.accuracy())).anchored(center, 2.0 * radius)
 }
 
-/// Makes the sphere of an entity whose table has the rows of [`TABLE`].
-fn shape(args: &Args) -> AnyShape {
-    match args.accuracy() {
-        Accuracy::Classic => Shape::new(Sphere::<Classic>::new(args)).classic().into(),
-        Accuracy::Draft => Shape::new(Sphere::<Draft>::new(args)).bracketed().certified().into(),
-        Accuracy::Exact => Shape::new(Sphere::<Exact>::new(args)).bracketed().certified().into(),
-        Accuracy::Strict => Shape::new(Sphere::<Strict>::new(args)).bracketed().certified().into(),
+/// Makes the shape of a sphere.
+pub fn shape(center: DVec3, radius: f64, accuracy: Accuracy) -> AnyShape {
+    match accuracy {
+        Accuracy::Classic => Shape::new(Sphere::<Classic>::new(center, radius)).classic().into(),
+        Accuracy::Draft => Shape::new(Sphere::<Draft>::new(center, radius)).bracketed().certified().into(),
+        Accuracy::Exact => Shape::new(Sphere::<Exact>::new(center, radius)).bracketed().certified().into(),
+        Accuracy::Strict => Shape::new(Sphere::<Strict>::new(center, radius)).bracketed().certified().into(),
     }
 }
 
@@ -60,8 +60,7 @@ struct Sphere<A> {
 }
 
 impl<A> Sphere<A> {
-    fn new(args: &Args) -> Self {
-        let (center, radius) = center_and_radius(args);
+    fn new(center: DVec3, radius: f64) -> Self {
         Self { center, radius, accuracy: PhantomData }
     }
 }

@@ -16,6 +16,7 @@ pub use inventory;
 pub use crate::world::accuracy::{Accuracy, AccuracyTag, Bounded, Classic, Draft, Exact, Strict};
 pub use crate::world::any_shape::AnyShape;
 pub use crate::world::background::Background;
+pub use crate::world::ball::{Ball, BallSample};
 pub use crate::world::bent::{Bend, Bent};
 pub use crate::world::body::{AnyShader, Body, NamedBody, ShaderFactory, Warning};
 pub use crate::world::camera::{Camera, Origins, Projected};

@@ -86,6 +86,57 @@ fn a_disc_lights_as_its_form_factor_says() {
     }
 }
 
+/// Returns what a ball of radiance 1 adds to a surface of diffuse colour 1 that sees its middle at this cosine, where `square`
+/// is the square of its radius over its distance, also where it is partly below the horizon (Lagarde and de Rousiers, "Moving
+/// Frostbite to Physically Based Rendering", 2014, listing 7, over pi).
+fn from_ball(cosine: f64, square: f64) -> f64 {
+    if cosine * cosine > square {
+        return square * cosine.max(0.0);
+    }
+    let sine = (1.0 - cosine * cosine).sqrt();
+    let x = (1.0 / square - 1.0).sqrt();
+    let y = -x * cosine / sine;
+    let root = sine * (1.0 - y * y).sqrt();
+    ((cosine * y.acos() - x * root) * square + (root / x).atan()).max(0.0) / PI
+}
+
+#[test]
+fn a_sphere_lights_as_its_form_factor_says() {
+    // Facing, tilted, touching the horizon, partly below it, nearly all below it, near, and far away.
+    for (middle, radius) in [
+        (DVec3::new(0.0, 2.0, 0.0), 1.0),
+        (DVec3::new(3.0, 2.0, -1.0), 0.8),
+        (DVec3::new(3.0, 1.0, -1.0), 1.0),
+        (DVec3::new(1.0, 0.3, 0.5), 0.9),
+        (DVec3::new(1.0, -0.5, 0.5), 0.9),
+        (DVec3::new(0.0, 1.01, 0.0), 1.0),
+        (DVec3::new(0.3, 0.0, 0.1), 0.25),
+        (DVec3::new(-2e4, 3e4, 1e4), 1.0),
+    ] {
+        for visible in ["yes", "no"] {
+            let scene = at_origin(
+                DVec3::Y,
+                &format!(
+                    "sphere_light a {{ location {} {} {} radius {radius} emissivity 3 3 3 visible {visible} }}",
+                    middle.x, middle.y, middle.z
+                ),
+            );
+            let square = radius * radius / middle.length_squared();
+            let expected = 3.0 * from_ball(middle.normalize().y, square) * DVec3::new(0.8, 0.4, 0.2);
+            let found = seen(&model(&scene), 4096);
+            let off = (found - expected).abs().max_element() / expected.max_element();
+            assert!(off < 2e-3, "{middle}, {radius}: {found}, not {expected}");
+        }
+    }
+}
+
+#[test]
+fn inside_a_sphere_of_light_a_surface_shows_its_radiance() {
+    let scene = at_origin(DVec3::Y, "sphere_light a { location 0.3 0.2 0 radius 1 emissivity 0.5 0.5 0.5 }");
+    let found = seen(&model(&scene), 4096);
+    assert!((found - 0.5 * DVec3::new(0.8, 0.4, 0.2)).length() < 1e-3, "{found}");
+}
+
 #[test]
 fn a_sun_adds_its_emissivity_to_what_faces_it() {
     for (angle, direction) in
@@ -176,7 +227,13 @@ fn an_environment_lights_as_the_sum_over_its_map_says() {
 
 #[test]
 fn threads_change_no_byte_of_spread_out_light() {
-    for name in ["entities/area_light.ray", "entities/sun.ray", "sky/lights.ray", "environment/lights.ray"] {
+    for name in [
+        "entities/area_light.ray",
+        "entities/sphere_light.ray",
+        "entities/sun.ray",
+        "sky/lights.ray",
+        "environment/lights.ray",
+    ] {
         let path = root().join("scenes").join(name);
         let mut model = crate::common::load(&path);
         model.camera.value.pixels = [48, 36];
@@ -198,6 +255,7 @@ fn scaled(s: f64) -> String {
          sphere ball {{ material matt center {} radius {} }}
          area_light a {{ location {} target 0 0 0 dimensions {} emissivity 6 6 6 visible no }}
          area_light b {{ location {} target 0 0 0 radius {} emissivity 6 6 6 }}
+         sphere_light c {{ location {} radius {} emissivity 2 2 2 }}
          sun s {{ direction 1 2 3 angle 3 emissivity 0.3 0.3 0.3 }}",
         l(&[2.7, 2.0, 3.9]),
         l(&[0.0, 0.4, 0.0]),
@@ -207,7 +265,9 @@ fn scaled(s: f64) -> String {
         l(&[-2.0, 2.0, 0.5]),
         l(&[0.7, 0.4]),
         l(&[0.5, 1.5, -1.5]),
-        l(&[0.3])
+        l(&[0.3]),
+        l(&[-0.7, 0.3, 0.9]),
+        l(&[0.2])
     )
 }
 

@@ -5,6 +5,7 @@
 //! seen, where V tells whether anything is in the way. Each sample of a pixel sees one of its points, and the mean of the
 //! samples tends to the integral.
 
+use crate::world::ball::Ball;
 use crate::world::material::Rgb;
 use crate::world::panel::{Panel, on_disc};
 use glam::{DVec2, DVec3};
@@ -44,6 +45,8 @@ pub struct LightSample {
 pub enum Extent {
     /// The points of a flat panel.
     Panel(Panel),
+    /// The points of a ball's surface.
+    Ball(Ball),
     /// Any points.
     Unknown,
 }

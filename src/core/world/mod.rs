@@ -4,6 +4,7 @@
 pub mod accuracy;
 pub mod any_shape;
 pub mod background;
+pub mod ball;
 pub mod bent;
 pub mod body;
 pub mod camera;
@@ -35,6 +36,7 @@ pub mod texture;
 pub use accuracy::{Accuracy, AccuracyTag, Bounded, Classic, Draft, Exact, Strict};
 pub use any_shape::AnyShape;
 pub use background::{AnyBackground, Background};
+pub use ball::{Ball, BallSample};
 pub use bent::{Bend, Bent};
 pub use body::{AnyLight, AnyShader, Body, NamedBody, Part, ShaderFactory, Solid, Warning};
 pub use camera::{Camera, Origins, Projected};

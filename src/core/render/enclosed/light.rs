@@ -69,7 +69,7 @@ pub(super) fn shine<N: Number>(
     }
     let path = Path { line: Line { origin: surface.at, dir: toward }, leaves: Some(surface.place) };
     let full = per_axis(|channel| scattered[channel] * sent[channel]);
-    let lit = passed(scene, &path, index).lit(scene, &full, above)?;
+    let lit = passed(scene, &path, index, N::of(1.0)).lit(scene, &full, above)?;
     Some(lit.map(N::mean_over_light))
 }
 
@@ -86,10 +86,6 @@ fn toward<N: Number>(
     if size == 0.0 {
         return Some(toward);
     }
-    let unit = |vector: [N; 3]| {
-        let length = dot(vector, vector).sqrt();
-        per_axis(|axis| vector[axis] / length)
-    };
     let (place, [across, up]) = match seen {
         LightPoints::Middle => return Some(toward),
         LightPoints::Of(sample) => {
@@ -98,18 +94,29 @@ fn toward<N: Number>(
             let radius = n(draw.x).sqrt();
             ([radius * cos, radius * sin], orthonormal_pair(unit(toward))?)
         }
-        // The mean over the disc does not depend on how it is turned, so any two vectors do that are perpendicular.
-        LightPoints::All => {
-            let magnitude = |axis: &usize| toward[*axis].coarse().middle().abs();
-            let farthest = (0..3).min_by(|one, other| magnitude(one).total_cmp(&magnitude(other)));
-            let axis = per_axis(|axis| n(if Some(axis) == farthest { 1.0 } else { 0.0 }));
-            let sight = unit(toward);
-            let across = unit(cross(sight, axis));
-            ([0, 1].map(N::on_light), [across, cross(sight, across)])
-        }
+        LightPoints::All => return Some(on_disc(toward, n(size))),
     };
     let [x, y] = place.map(|coordinate| n(size) * coordinate);
     Some(per_axis(|axis| toward[axis] + (x * across[axis] + y * up[axis])))
+}
+
+/// Encloses the vectors to all points of a disc of this radius that faces the points from which `toward` leads to its middle.
+pub(super) fn on_disc<N: Number>(toward: [N; 3], radius: N) -> [N; 3] {
+    let magnitude = |axis: &usize| toward[*axis].coarse().middle().abs();
+    let farthest = (0..3).min_by(|one, other| magnitude(one).total_cmp(&magnitude(other)));
+    let axis = per_axis(|axis| N::constant(if Some(axis) == farthest { 1.0 } else { 0.0 }));
+    // A mean over the disc does not depend on how it is turned, so any two vectors do that are perpendicular.
+    let sight = unit(toward);
+    let across = unit(cross(sight, axis));
+    let up = cross(sight, across);
+    let [x, y] = [0, 1].map(|coordinate| radius * N::on_light(coordinate));
+    per_axis(|axis| toward[axis] + (x * across[axis] + y * up[axis]))
+}
+
+/// Encloses the unit vectors along vectors.
+pub(super) fn unit<N: Number>(vector: [N; 3]) -> [N; 3] {
+    let length = dot(vector, vector).sqrt();
+    per_axis(|axis| vector[axis] / length)
 }
 
 /// Encloses the two vectors perpendicular to a unit vector that `glam` chooses; `None` where they are open.

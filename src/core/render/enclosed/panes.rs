@@ -49,20 +49,26 @@ impl<N: Number> Passes<N> {
     }
 }
 
-/// Tells how much of the light of this index passes along lines from t = 0 to t = 1, where they end on it.
-pub(super) fn passed<N: Number>(scene: &EnclosedScene, path: &Path<N>, light: usize) -> Passes<N> {
+/// Tells how much of the light of this index passes along lines from t = 0 to the points of it where they end: at t = 1, or
+/// anywhere from `nearest` on.
+pub(super) fn passed<N: Number>(
+    scene: &EnclosedScene,
+    path: &Path<N>,
+    light: usize,
+    nearest: N::End,
+) -> Passes<N> {
     let (objects, one) = (&scene.model.objects, N::of(1.0));
     let coarse = coarse(&path.line);
     let is_glass = |object: &usize| objects[*object].material.transparency != 0.0;
     let mut panes = Panes { at: Vec::new(), passed: None };
     let (mut open, mut is_blocked) = (Vec::new(), false);
     for object in (0..objects.len()).filter(is_glass) {
-        if let Err(low) = panes.add(scene, path, object) {
+        if let Err(low) = panes.add(scene, path, object, nearest) {
             panes.at.push(Interval { low, high: N::of(scene.leaves(&coarse, object)) });
             open.push(object);
         }
     }
-    // The object as which a light is seen is flat, and not in its way.
+    // The object as which a light is seen is convex, and not in the way of its points.
     let source = &scene.model.lights[light].args;
     let is_source = |object: &usize| {
         let body = &objects[*object].args;
@@ -71,7 +77,9 @@ pub(super) fn passed<N: Number>(scene: &EnclosedScene, path: &Path<N>, light: us
     for object in (0..objects.len()).filter(|object| !is_glass(object) && !is_source(object)) {
         scene.hits(path, &coarse, object, &mut |hit, _| {
             match hit {
-                Hit::Certain(at) if at.range().high < one && !panes.are_at(at.range()) => is_blocked = true,
+                Hit::Certain(at) if at.range().high < nearest && !panes.are_at(at.range()) => {
+                    is_blocked = true
+                }
                 hit if hit.low() < one => open.push(object),
                 _ => {}
             }
@@ -103,11 +111,18 @@ impl<N: Number> Panes<N> {
         self.at.iter().any(|pane| pane.low <= t.high && t.low <= pane.high)
     }
 
-    /// Adds each wall of a transparent object that the lines pass through before t = 1.
+    /// Adds each wall of a transparent object that the lines pass through before they end: at t = 1, or anywhere from
+    /// `nearest` on.
     ///
     /// # Errors
     /// The t before which all are added, where it is open which follow.
-    fn add(&mut self, scene: &EnclosedScene, path: &Path<N>, object: usize) -> Result<(), N::End> {
+    fn add(
+        &mut self,
+        scene: &EnclosedScene,
+        path: &Path<N>,
+        object: usize,
+        nearest: N::End,
+    ) -> Result<(), N::End> {
         let one = N::of(1.0);
         let (mut onward, mut start) = (*path, N::constant(0.0));
         for _ in 0..MAX_PANES {
@@ -138,7 +153,7 @@ impl<N: Number> Panes<N> {
             };
             let range = at.range();
             // Of panes in one place, one stands for all: that is not decided here.
-            if range.high >= one || self.are_at(range) {
+            if range.high >= nearest || self.are_at(range) {
                 return Err(range.low);
             }
             let point = path.line.at(at);
