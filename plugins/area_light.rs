@@ -132,7 +132,7 @@ impl Emitter for AreaLight {
         Some(LightSample { toward: toward.try_normalize()?, distance, light })
     }
 
-    fn extent(&self) -> Extent {
+    fn extent(&self) -> Extent<'_> {
         Extent::Panel(self.panel)
     }
 

@@ -33,4 +33,18 @@ impl Bend for Bumps {
         let bent = normal - (gradient - gradient.dot(normal) * normal);
         if bent.is_finite() { bent.try_normalize().unwrap_or(normal) } else { normal }
     }
+
+    fn enclose<F: Precise>(&self, at: &PointBounds<F>, normal: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
+        let n = Interval::<F>::constant;
+        let slope = |axis: usize| {
+            let along = |other| Dual { value: at.position[other], slope: n(f64::from(other == axis)) };
+            self.0.at(per_axis(along)).slope
+        };
+        let gradient = per_axis(slope);
+        let rise = dot(gradient, normal);
+        let bent = per_axis(|axis| normal[axis] - (gradient[axis] - rise * normal[axis]));
+        let length = dot(bent, bent).sqrt();
+        let is_known = self.0.is_enclosed() && length.is_bounded() && length.low > n(0.0).low;
+        is_known.then(|| per_axis(|axis| bent[axis] / length))
+    }
 }

@@ -100,6 +100,10 @@ impl Interface for Glass {
         self.medium
     }
 
+    fn law(&self) -> Law {
+        Law::Fresnel(self.index)
+    }
+
     fn roughness(&self) -> f64 {
         self.roughness
     }

@@ -79,23 +79,14 @@ impl Image {
     /// Encloses the colours at points with such u and v.
     fn enclosed<F: Precise>(&self, uv: [Interval; 2]) -> [Interval<F>; 3] {
         let (size, n) = (self.size(), Interval::constant);
-        let half = n(if self.smooth { 0.5 } else { 0.0 });
-        let place = [uv[0] * n(size.x) - half, uv[1] * n(size.y) - half];
-        if let (true, [Some(x), Some(y)]) = (self.smooth, place.map(Interval::certain_floor)) {
-            let part = [place[0] - n(x), place[1] - n(y)].map(Interval::<F>::from_f64);
-            let texel = |right: f64, up: f64| constants(self.texel(DVec2::new(x + right, y + up)));
-            let blend = |one: [Interval<F>; 3], other: [Interval<F>; 3], part: Interval<F>| {
-                per_axis(|channel| one[channel] + part * (other[channel] - one[channel]))
-            };
-            let row = |up: f64| blend(texel(0.0, up), texel(1.0, up), part[0]);
-            return blend(row(0.0), row(1.0), part[1]);
+        let place = [uv[0] * n(size.x), uv[1] * n(size.y)];
+        if self.smooth {
+            let most = Interval::constant(0.0).hull(Interval::constant(self.texture.brightest()));
+            return self.texture.enclose_blended(place, |at| self.texel(at)).unwrap_or([most; 3]);
         }
-        // Blended colours lie among those of the texels around.
-        let last = if self.smooth { 1 } else { 0 };
         let range = |axis: usize| {
             let Interval { low, high } = place[axis];
-            (low.floor() as i64..=(high.floor() as i64).saturating_add(last))
-                .map(move |at| self.wrapped(at as f64, axis))
+            (low.floor() as i64..=high.floor() as i64).map(move |at| self.wrapped(at as f64, axis))
         };
         self.texture.enclose(range(0), range(1))
     }

@@ -46,6 +46,10 @@ impl Interface for Metal {
         Crossing { reflected: self.colour + (Rgb::ONE - self.colour) * grazing, onward: None }
     }
 
+    fn law(&self) -> Law {
+        Law::Schlick(self.colour)
+    }
+
     fn roughness(&self) -> f64 {
         self.roughness
     }

@@ -73,7 +73,7 @@ impl Emitter for SphereLight {
         })
     }
 
-    fn extent(&self) -> Extent {
+    fn extent(&self) -> Extent<'_> {
         Extent::Ball(self.ball)
     }
 

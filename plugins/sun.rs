@@ -59,9 +59,7 @@ impl Light for Sun {
     }
 
     fn enclose<F: Precise>(&self, _toward: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
-        let light = constants::<Interval<F>>(self.emissivity);
-        let more = Interval::<F>::constant(2.0) / Interval::constant(2.0 - self.height);
-        Some(per_axis(|channel| light[channel].hull(light[channel] * more)))
+        Some(constants(self.emissivity))
     }
 
     fn brightest(&self) -> Option<Rgb> {
@@ -78,5 +76,9 @@ impl Emitter for Sun {
     fn sample(&self, _at: DVec3, _normal: DVec3, numbers: DVec2) -> Option<LightSample> {
         let toward = emitter::in_cone(self.direction, self.height, numbers);
         Some(LightSample { toward, distance: f64::INFINITY, light: self.light() })
+    }
+
+    fn extent(&self) -> Extent<'_> {
+        Extent::Cone { axis: self.direction, height: self.height }
     }
 }

@@ -22,7 +22,7 @@ pub use crate::world::body::{AnyShader, Body, NamedBody, ShaderFactory, Warning}
 pub use crate::world::camera::{Camera, Origins, Projected};
 pub use crate::world::emitter::{self, Emitter, Extent, LightSample};
 pub use crate::world::hittable::{Bracketed, Certified, Facts, Hittable, Shape, Sides};
-pub use crate::world::interface::{AnyInterface, Crossing, Interface, Medium};
+pub use crate::world::interface::{AnyInterface, Crossing, Interface, Law, Medium};
 pub use crate::world::light::Light;
 pub use crate::world::material::{Look, Material, Rgb};
 pub use crate::world::panel::Panel;

@@ -1,4 +1,4 @@
-//! What `--max-error` promises where areas, the sun and the sky light a scene, on scenes made at random.
+//! What `--max-error` promises where areas, spheres, the sun and the sky light a scene, on scenes made at random.
 //!
 //! `cargo test --release --test slow emitted -- --ignored --nocapture` measures 30 scenes, or as many as TABRAY_SCENES says,
 //! and prints a table.
@@ -77,10 +77,14 @@ fn scene(seed: u64) -> String {
     }
     let kinds = 1 + (seed % 7) as u32;
     if kinds & 1 != 0 {
-        let shape = if draw.part() < 0.5 { "radius 0.6" } else { "dimensions 1.4 0.8" };
+        let (kind, shape) = match draw.part() {
+            part if part < 0.33 => ("area_light", "target 0 0 0 radius 0.6"),
+            part if part < 0.66 => ("area_light", "target 0 0 0 dimensions 1.4 0.8"),
+            _ => ("sphere_light", "radius 0.5"),
+        };
         let visible = if draw.part() < 0.5 { "yes" } else { "no" };
         let (x, y) = (draw.between(-2.5, 2.5), draw.between(1.5, 3.5));
-        writeln!(text, "area_light a {{ location {x:.3} {y:.3} 1 target 0 0 0 {shape} visible {visible} emissivity 4 4 4 }}")
+        writeln!(text, "{kind} a {{ location {x:.3} {y:.3} 1 {shape} visible {visible} emissivity 4 4 4 }}")
             .expect("text");
     }
     if kinds & 2 != 0 {

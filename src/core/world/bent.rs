@@ -1,9 +1,11 @@
 //! Shaders that bend normals, and leave the colours to another one.
 
 use crate::world::body::AnyShader;
+use crate::world::certify::Precise;
 use crate::world::material::{Look, Material, Rgb};
-use crate::world::shader::{Shader, ShaderInputs, SurfacePoint};
+use crate::world::shader::{PointBounds, Shader, ShaderInputs, SurfacePoint};
 use glam::{DVec2, DVec3};
+use tabray_exact::interval::Interval;
 
 /// How normals are bent.
 pub trait Bend: Send + Sync {
@@ -12,6 +14,16 @@ pub trait Bend: Send + Sync {
 
     /// Returns the outward unit normal with which a point is shaded, in place of this one.
     fn bent(&self, at: &SurfacePoint, normal: DVec3) -> DVec3;
+
+    /// Encloses the unit normals that [`bent`](Self::bent) returns in place of these, before any rounding, at every point of a
+    /// box; `None` where they are not known. `None` is always correct.
+    fn enclose<F: Precise>(
+        &self,
+        _at: &PointBounds<F>,
+        _normal: [Interval<F>; 3],
+    ) -> Option<[Interval<F>; 3]> {
+        None
+    }
 }
 
 /// A shader that bends the normals of another one.
@@ -41,6 +53,18 @@ impl<B: Bend> Shader for Bent<B> {
 
     fn is_cut_out(&self, at: &SurfacePoint) -> bool {
         self.colours.is_cut_out(at)
+    }
+
+    fn enclose_bend<F: Precise>(
+        &self,
+        at: &PointBounds<F>,
+        normal: [Interval<F>; 3],
+    ) -> Option<[Interval<F>; 3]> {
+        self.bend.enclose(at, normal)
+    }
+
+    fn colours(&self) -> Option<&AnyShader> {
+        Some(&self.colours)
     }
 
     fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {

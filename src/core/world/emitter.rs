@@ -8,6 +8,7 @@
 use crate::world::ball::Ball;
 use crate::world::material::Rgb;
 use crate::world::panel::{Panel, on_disc};
+use crate::world::sky_light::SkyLight;
 use glam::{DVec2, DVec3};
 
 /// A light that is spread out.
@@ -16,8 +17,8 @@ pub trait Emitter: Send + Sync {
     /// the numbers stand for no point of it.
     fn sample(&self, at: DVec3, normal: DVec3, numbers: DVec2) -> Option<LightSample>;
 
-    /// Describes all of its points, for proofs. The default is always correct.
-    fn extent(&self) -> Extent {
+    /// Describes all of its points, for proofs, and how they are chosen. The default is always correct.
+    fn extent(&self) -> Extent<'_> {
         Extent::Unknown
     }
 
@@ -41,12 +42,22 @@ pub struct LightSample {
 
 /// The points of a light, for proofs of what it adds. Its radiance at them is what the light's
 /// [`enclose`](crate::world::light::Light::enclose) returns.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Extent {
-    /// The points of a flat panel.
+#[derive(Clone, Copy)]
+pub enum Extent<'e> {
+    /// The points of a flat panel, chosen by [`Panel::sample`].
     Panel(Panel),
-    /// The points of a ball's surface.
+    /// The points of a ball's surface, chosen by [`Ball::sample`].
     Ball(Ball),
+    /// The directions around a unit vector, chosen by [`in_cone`]. Their radiance is such that a surface that faces this vector
+    /// gets what `enclose` returns.
+    Cone {
+        /// The middle.
+        axis: DVec3,
+        /// 1 minus the cosine of the largest angle to it.
+        height: f64,
+    },
+    /// The directions of a sky, whose radiance is that of its background.
+    Sky(&'e SkyLight),
     /// Any points.
     Unknown,
 }

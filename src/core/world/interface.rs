@@ -28,11 +28,27 @@ pub trait Interface: Send + Sync {
         None
     }
 
+    /// Returns the law by which rays [`cross`](Self::cross) the surface, for proofs. The default is always correct.
+    fn law(&self) -> Law {
+        Law::Unknown
+    }
+
     /// Returns how rough the surface is: 0 if it is smooth, and at most 1. It is the same in every call. The rays of a rough
     /// surface cross facets of it: [`cross`](Self::cross) is given the normal of one.
     fn roughness(&self) -> f64 {
         0.0
     }
+}
+
+/// The law of an interface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Law {
+    /// Snell's law and Fresnel's equations for light that is not polarised, by the refractive index inside, relative to outside.
+    Fresnel(f64),
+    /// Schlick's approximation, by the fractions of light that are reflected along the normal; the rest is absorbed.
+    Schlick(DVec3),
+    /// Any other.
+    Unknown,
 }
 
 /// A clear medium that absorbs light by the length of the way through it (Beer's law).

@@ -42,7 +42,7 @@ pub use body::{AnyLight, AnyShader, Body, NamedBody, Part, ShaderFactory, Solid,
 pub use camera::{Camera, Origins, Projected};
 pub use emitter::{Emitter, Extent, LightSample};
 pub use hittable::{Bracketed, Certified, Facts, Hittable, Searched, Shape, Sides};
-pub use interface::{AnyInterface, Crossing, Interface, Medium};
+pub use interface::{AnyInterface, Crossing, Interface, Law, Medium};
 pub use light::Light;
 pub use material::{Material, Rgb};
 pub use panel::Panel;

@@ -33,6 +33,11 @@ impl Panel {
         if self.is_round { one.sqrt() } else { (one + other).sqrt() }
     }
 
+    /// Returns the distance from which on points are chosen by area, in world units.
+    pub fn far(&self) -> f64 {
+        if self.is_round { 4.0 * self.radius() } else { 32.0 * self.radius() }
+    }
+
     /// Chooses a point as seen from a place by two numbers from 0 to 1: by solid angle, or from afar, where that is nearly
     /// the same, by area. Near a disc, it is chosen in the square around it; `None` beside it.
     ///
@@ -40,8 +45,7 @@ impl Panel {
     /// most 2 pi.
     pub fn sample(&self, at: DVec3, numbers: DVec2) -> Option<(DVec3, f64)> {
         let (between, half) = (self.middle - at, self.half);
-        let far = if self.is_round { 4.0 } else { 32.0 } * self.radius();
-        if between.length() > far {
+        if between.length() > self.far() {
             let place = if self.is_round { on_disc(numbers) } else { 2.0 * numbers - 1.0 };
             let toward = between + place.x * half[0] + place.y * half[1];
             let leaving = toward.normalize().dot(self.facing()).abs();

@@ -1,8 +1,10 @@
 //! Textures that repeat.
 
 use crate::world::material::Rgb;
-use crate::world::texture::Texture;
+use crate::world::texture::{MOST_TEXELS, Texture};
 use glam::{DVec2, DVec3};
+use tabray_exact::interval::{Float, Interval};
+use tabray_exact::scalar::{Scalar, constants, per_axis};
 
 impl Texture {
     /// Returns the blend of the four texels around a place, which is given in texels from the lower left corner: of colours, or
@@ -14,6 +16,35 @@ impl Texture {
         let texel = |right: f64, up: f64| texel(wrapped(corner.x + right, 0), wrapped(corner.y + up, 1));
         let row = |up: f64| texel(0.0, up).lerp(texel(1.0, up), part.x);
         row(0.0).lerp(row(1.0), part.y)
+    }
+
+    /// Encloses the blends of the four texels around the places in a box, which are given as those of
+    /// [`blended`](Self::blended). `texel` returns the texel of any column and row. `None` if the box reaches over many.
+    pub fn enclose_blended<F: Float>(
+        &self,
+        place: [Interval; 2],
+        texel: impl Fn(DVec2) -> DVec3,
+    ) -> Option<[Interval<F>; 3]> {
+        let place = place.map(|along| along - Interval::constant(0.5));
+        let [columns, rows] = place.map(|along| [along.low.floor(), along.high.floor()]);
+        let texel = |x: f64, y: f64| constants::<Interval<F>>(texel(DVec2::new(x, y)));
+        if columns[0] == columns[1] && rows[0] == rows[1] {
+            let (x, y) = (columns[0], rows[0]);
+            let part = |along: Interval, from: f64| Interval::<F>::from_f64(along - Interval::constant(from));
+            let blend = |one: [Interval<F>; 3], other: [Interval<F>; 3], part: Interval<F>| {
+                per_axis(|channel| one[channel] + part * (other[channel] - one[channel]))
+            };
+            let row = |y: f64| blend(texel(x, y), texel(x + 1.0, y), part(place[0], x));
+            return Some(blend(row(y), row(y + 1.0), part(place[1], y)));
+        }
+        // Blends lie among the texels around.
+        let are_few = |[low, high]: [f64; 2]| high - low < MOST_TEXELS as f64;
+        let all = |[low, high]: [f64; 2]| (0..=(high - low) as u32 + 1).map(move |at| low + f64::from(at));
+        let hull = |one: [Interval<F>; 3], other: [Interval<F>; 3]| {
+            per_axis(|channel| one[channel].hull(other[channel]))
+        };
+        let around = (are_few(columns) && are_few(rows)).then(|| all(rows))?;
+        around.flat_map(|y| all(columns).map(move |x| [x, y])).map(|[x, y]| texel(x, y)).reduce(hull)
     }
 
     /// Returns the mean light of a rectangle, given by its lower left and its upper right corner in texels. The image goes on

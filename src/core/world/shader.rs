@@ -2,6 +2,7 @@
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::Side;
+use crate::world::body::AnyShader;
 use crate::world::certify::{Precise, ProofMethods};
 use crate::world::hittable::Hittable;
 use crate::world::material::{Look, Material, Rgb};
@@ -221,6 +222,24 @@ pub trait Shader: Send + Sync {
     #[inline]
     fn is_cut_out(&self, _at: &SurfacePoint) -> bool {
         false
+    }
+
+    /// Encloses the unit normals to which the shader bends these outward ones, those of [`colours`](Self::colours), before any
+    /// rounding, at every point of a box; `None` where they are not known. `None` is always correct.
+    fn enclose_bend<F: Precise>(
+        &self,
+        _at: &PointBounds<F>,
+        _normal: [Interval<F>; 3],
+    ) -> Option<[Interval<F>; 3]>
+    where
+        Self: Sized,
+    {
+        None
+    }
+
+    /// Returns the shader that gives the colours and the normals that are bent, if the shader does nothing but bend normals.
+    fn colours(&self) -> Option<&AnyShader> {
+        None
     }
 
     /// Returns the three reflectivities, if each is the same at every point. Then only [`bend`](Self::bend) is called

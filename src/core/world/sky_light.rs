@@ -3,7 +3,7 @@
 use crate::parallel;
 use crate::world::background::Background;
 use crate::world::certify::Precise;
-use crate::world::emitter::{Emitter, LightSample, by_cosine};
+use crate::world::emitter::{Emitter, Extent, LightSample, by_cosine};
 use crate::world::light::Light;
 use crate::world::material::Rgb;
 use glam::{DVec2, DVec3};
@@ -31,7 +31,12 @@ impl SkyLight {
         Self { background, map: OnceLock::new() }
     }
 
-    fn map(&self) -> Option<&Map> {
+    pub(crate) fn background(&self) -> &dyn Background {
+        &*self.background
+    }
+
+    /// Returns where directions are chosen by brightness.
+    pub(crate) fn map(&self) -> Option<&Map> {
         self.map.get_or_init(|| Map::of(&*self.background)).as_ref()
     }
 }
@@ -87,6 +92,10 @@ impl Emitter for SkyLight {
         Some(LightSample { toward, distance: f64::INFINITY, light })
     }
 
+    fn extent(&self) -> Extent<'_> {
+        Extent::Sky(self)
+    }
+
     /// Mirrors show the background itself.
     fn has_highlights(&self) -> bool {
         false
@@ -95,7 +104,7 @@ impl Emitter for SkyLight {
 
 /// How bright a background is around the scene: cells of an equirectangular map, whose middle lies toward -z and whose upper
 /// edge is straight up.
-struct Map {
+pub(crate) struct Map {
     columns: usize,
     rows: usize,
     /// The part of all light that comes from the rows up to each one, counted from below.
@@ -161,7 +170,7 @@ impl Map {
     }
 
     /// Chooses a direction by two numbers from 0 to 1.
-    fn direction(&self, numbers: DVec2) -> DVec3 {
+    pub fn direction(&self, numbers: DVec2) -> DVec3 {
         let (row, up) = chosen(&self.rows_up_to, numbers.y);
         let (column, along) = chosen(self.cells(row), numbers.x);
         // Equal solid angles are equal differences of the sine.
@@ -178,7 +187,25 @@ impl Map {
         let around = 0.5 + libm::atan2(toward.x, -toward.z) / (2.0 * PI);
         let up = 0.5 + libm::asin(toward.y.clamp(-1.0, 1.0)) / PI;
         let index = |part: f64, count: usize| ((part * count as f64) as usize).min(count - 1);
-        let (row, column) = (index(up, self.rows), index(around, self.columns));
+        self.density_in(index(up, self.rows), index(around, self.columns))
+    }
+
+    /// Encloses the density at directions that are unit vectors in a box.
+    pub fn density_within(&self, toward: [Interval; 3]) -> Interval {
+        let [around, up] = equirectangular(toward);
+        let cells = |part: Interval, count: usize| {
+            let places = part * Interval::constant(count as f64);
+            let [first, last] = [places.low, places.high].map(|place| (place as usize).min(count - 1));
+            first..=last
+        };
+        let density = |row: usize, column: usize| Interval::constant(self.density_in(row, column));
+        let cells = cells(up, self.rows)
+            .flat_map(|row| cells(around, self.columns).map(move |column| density(row, column)));
+        cells.reduce(Interval::hull).unwrap_or(Interval::WHOLE)
+    }
+
+    /// Returns the density in a cell.
+    fn density_in(&self, row: usize, column: usize) -> f64 {
         let part =
             |up_to: &[f64], index: usize| up_to[index] - if index == 0 { 0.0 } else { up_to[index - 1] };
         let solid_angle = 2.0 * PI / self.columns as f64 * band(row, self.rows);
@@ -194,6 +221,13 @@ fn sine(row: usize, rows: usize) -> f64 {
 /// Returns the height of a row of a unit sphere.
 fn band(row: usize, rows: usize) -> f64 {
     sine(row + 1, rows) - sine(row, rows)
+}
+
+/// Encloses the places of directions in an equirectangular map whose middle lies toward -z, in its width from the left and its
+/// height from below. The directions are unit vectors in a box.
+pub fn equirectangular([x, y, z]: [Interval; 3]) -> [Interval; 2] {
+    let (n, pi) = (Interval::constant, Interval::pi());
+    [n(0.5) + x.atan2(-z) / (n(2.0) * pi), n(1.0) - y.acos() / pi]
 }
 
 /// Returns the direction at a place of an equirectangular map, in its width from the left and its height from below.

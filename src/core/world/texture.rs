@@ -28,7 +28,7 @@ const ASIDE: u64 = 1 << 20;
 pub const CUTOFF: f64 = 0.5;
 
 /// The number of columns or rows from which on an enclosure no longer examines each texel.
-const MOST_TEXELS: usize = 8;
+pub(super) const MOST_TEXELS: usize = 8;
 
 /// An image in a file. It is read once, when it is first needed.
 #[derive(Debug, Default)]

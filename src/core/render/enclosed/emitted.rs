@@ -1,22 +1,23 @@
 //! The light of what is spread out that reaches the points of a surface.
 
-use super::light::{LightPoints, on_disc, power};
+use super::light::{LightPoints, power, unit};
 use super::number::{Endpoint, Number, ranges};
-use super::panes::passed;
+use super::panes::{Ends, Passes, passed};
+use super::sampled::{self, Points, Round};
 use super::scene::{Colour, EnclosedScene, Path};
 use super::surface::{HitPoints, is_black};
 use crate::geometry::sight::Line;
-use crate::world::ball::Ball;
 use crate::world::emitter::{Emitter, Extent};
-use crate::world::panel::Panel;
-use tabray_exact::interval::Interval;
-use tabray_exact::scalar::{constants, dot, per_axis};
+use glam::DVec2;
+use tabray_exact::interval::{Float, Interval};
+use tabray_exact::scalar::{dot, per_axis};
 
 /// Encloses what a light that is spread out adds to the colour of points; `None` where it is open. `dir` is the unit vector
 /// along the rays that see the points.
 ///
-/// The mean over a panel or a ball is enclosed by what its points add; the sum of what a sky sends, or a sample, by nothing and
-/// the most that there may be.
+/// A sample is enclosed by what its point adds, and the mean over a panel, a ball or a cone by what all points add. Where these
+/// are open, and of the mean over a sky, it is known that there is no less than nothing, and no more than the most that there
+/// may be.
 pub(super) fn shine<N: Number>(
     scene: &EnclosedScene,
     (index, seen): (usize, LightPoints),
@@ -54,15 +55,20 @@ pub(super) fn shine<N: Number>(
         let low = if is_positive { 0.0 } else { -most };
         N::enclosing(Interval::from_f64(Interval { low, high: most }))
     });
-    let highlight = has_highlight.then_some(shininess);
-    let lit = match (seen, emitter.extent()) {
-        (LightPoints::All, Extent::Panel(panel)) => {
-            from_panel(scene, &panel, (index, sent), surface, dir, highlight)
-        }
-        (LightPoints::All, Extent::Ball(ball)) => {
-            from_ball(scene, &ball, (index, sent), surface, dir, highlight)
-        }
-        _ => None,
+    let of = Shining { scene, index, surface, dir, shininess: has_highlight.then_some(shininess) };
+    let extent = emitter.extent();
+    // A sky's samples have its colours.
+    let sent = if matches!(extent, Extent::Sky(_)) { [N::constant(1.0); 3] } else { sent };
+    let lit = match seen {
+        LightPoints::All => match &extent {
+            Extent::Panel(panel) => {
+                let points = sampled::at_place(panel, surface.at, [0, 1].map(N::on_light));
+                of.at(&points, &sent).map(|lit| lit.map(N::mean_over_light))
+            }
+            extent => Round::seen(extent, surface.at).and_then(|round| of.round(&round, &sent)),
+        },
+        LightPoints::Middle => of.sampled(&extent, DVec2::splat(0.5), &sent),
+        LightPoints::Of(sample) => of.sampled(&extent, sample.on_light(index), &sent),
     };
     let Some(lit) = lit else { return Some(any) };
     Some(per_axis(|channel| {
@@ -72,92 +78,81 @@ pub(super) fn shine<N: Number>(
     }))
 }
 
-/// Encloses what the points of a panel, a light of this index that sends such light, add to the colour of points; `None` where
-/// it is open.
-fn from_panel<N: Number>(
-    scene: &EnclosedScene,
-    panel: &Panel,
-    (index, sent): (usize, Colour<N>),
-    surface: &HitPoints<N>,
+/// A light of this index, and the points of a surface on which it shines, seen along `dir`.
+struct Shining<'s, N: Number> {
+    scene: &'s EnclosedScene<'s>,
+    index: usize,
+    surface: &'s HitPoints<N>,
     dir: [N; 3],
-    highlight: Option<f64>,
-) -> Option<Colour<N>> {
-    let Panel { middle, half, .. } = panel;
-    let n = N::constant;
-    let [x, y] = [0, 1].map(N::on_light);
-    let toward =
-        per_axis(|axis| n(middle[axis]) - surface.at[axis] + (x * n(half[0][axis]) + y * n(half[1][axis])));
-    let square = dot(toward, toward);
-    let distance = square.sqrt();
-    // The rounding of its area and its direction is below what colours are compared to.
-    let facing = constants::<N>(panel.facing());
-    let leaving = (dot(toward, facing) / distance).abs();
-    let cosine = dot(toward, surface.normal) / distance;
-    let above = surface.unbent.map_or(cosine, |unbent| cosine.min(dot(toward, unbent))).range();
-    let (zero, black) = (N::of(0.0), [n(0.0); 3]);
-    if above.high <= zero {
-        return Some(black);
-    }
-    let weight = n(panel.area()) * leaving / (N::enclosing(Interval::pi()) * square);
-    let mut scattered = per_axis(|channel| surface.diffuse[channel] * cosine);
-    if let Some(shininess) = highlight {
-        let half = per_axis(|axis| toward[axis] / distance - dir[axis]);
-        let strength = power(dot(half, surface.normal) / dot(half, half).sqrt(), shininess);
-        scattered = per_axis(|channel| scattered[channel] + surface.specular[channel] * strength);
-    }
-    let path = Path { line: Line { origin: surface.at, dir: toward }, leaves: Some(surface.place) };
-    let full = per_axis(|channel| scattered[channel] * sent[channel] * weight);
-    let lit = passed(scene, &path, index, N::of(1.0)).lit(scene, &full, above)?;
-    Some(per_axis(|channel| lit[channel].mean_over_light()))
+    /// The shininess of the surface, if it shows highlights of the light.
+    shininess: Option<f64>,
 }
 
-/// Encloses what a ball, a light of this index that sends such light, adds to the colour of points; `None` where it is open.
-///
-/// What scatters evenly gets the closed form: the square of the sine of half the angle at which the ball is seen, times the
-/// cosine toward its middle.
-fn from_ball<N: Number>(
-    scene: &EnclosedScene,
-    ball: &Ball,
-    (index, sent): (usize, Colour<N>),
-    surface: &HitPoints<N>,
-    dir: [N; 3],
-    highlight: Option<f64>,
-) -> Option<Colour<N>> {
-    let n = N::constant;
-    let radius = n(ball.radius);
-    let middle = per_axis(|axis| n(ball.middle[axis]) - surface.at[axis]);
-    let square = dot(middle, middle);
-    let distance = square.sqrt();
-    let (zero, one) = (N::of(0.0), n(1.0));
-    if (distance - radius).range().low <= zero {
-        return None;
+impl<N: Number> Shining<'_, N> {
+    /// Encloses what a sample adds that looks at the points that two numbers choose; `None` where it is open.
+    fn sampled(&self, extent: &Extent, numbers: DVec2, sent: &Colour<N>) -> Option<Colour<N>> {
+        match sampled::chosen(extent, self.surface, numbers)? {
+            Some(points) => self.at(&points, sent),
+            None => Some([N::constant(0.0); 3]),
+        }
     }
-    // How far its middle is above the horizon.
-    let rise = dot(middle, surface.normal);
-    let above = surface.unbent.map_or(rise, |unbent| rise.min(dot(middle, unbent)));
-    if (above + radius).range().high <= zero {
-        return Some([n(0.0); 3]);
+
+    /// Encloses what points of the light add, which send such light; `None` where it is open.
+    fn at(&self, points: &Points<N>, sent: &Colour<N>) -> Option<Colour<N>> {
+        let Points { toward, are_far, light } = points;
+        let rise = dot(*toward, self.surface.normal);
+        // Light from behind the surface may face the shading normals only.
+        let unbent = self.surface.unbent;
+        let above = unbent.map_or(rise, |unbent| rise.min(dot(*toward, unbent))).range();
+        if above.high <= N::of(0.0) {
+            return Some([N::constant(0.0); 3]);
+        }
+        let cosine = rise / dot(*toward, *toward).sqrt();
+        let mut scattered = per_axis(|channel| self.surface.diffuse[channel] * cosine);
+        if let Some(strength) = self.highlight(*toward) {
+            scattered = per_axis(|channel| scattered[channel] + self.surface.specular[channel] * strength);
+        }
+        let full = per_axis(|channel| scattered[channel] * (sent[channel] * light[channel]));
+        let end = if *are_far { N::End::INFINITY } else { N::of(1.0) };
+        self.passes(*toward, Ends::at(end)).lit(self.scene, &full, above)
     }
-    let is_whole = (above - radius).range().low > zero;
-    let seen = (radius * radius) / square;
-    let cosine = if is_whole { rise / distance } else { n(0.0).hull(one) };
-    let mut scattered = per_axis(|channel| surface.diffuse[channel] * cosine * seen);
-    let away = (one - seen).sqrt();
-    let toward = on_disc(middle, radius / away);
-    if let Some(shininess) = highlight {
-        let length = dot(toward, toward).sqrt();
-        let half = per_axis(|axis| toward[axis] / length - dir[axis]);
-        let strength = power(dot(half, surface.normal) / dot(half, half).sqrt(), shininess);
-        let strength = if is_whole { strength } else { n(0.0).hull(strength) };
-        // The solid angle over pi.
-        let covered = n(2.0) * seen / (one + away);
-        scattered = per_axis(|channel| scattered[channel] + surface.specular[channel] * strength * covered);
+
+    /// Encloses what all points add of a light that looks round, which send such light; `None` where it is open.
+    fn round(&self, round: &Round<N>, sent: &Colour<N>) -> Option<Colour<N>> {
+        let (n, surface) = (N::constant, self.surface);
+        // How far its middle is above the horizon.
+        let rise = dot(round.middle, surface.normal);
+        let above = surface.unbent.map_or(rise, |unbent| rise.min(dot(round.middle, unbent)));
+        if (above + round.radius).range().high <= N::of(0.0) {
+            return Some([n(0.0); 3]);
+        }
+        let is_whole = (above - round.radius).range().low > N::of(0.0);
+        let part = |of: N| if is_whole { of } else { of.hull(n(0.0)) };
+        // The part above the horizon adds no more than all of it to a surface that faces it.
+        let cosine = if is_whole { rise / round.distance } else { part(n(1.0)) };
+        let [facing, all] = round.light;
+        let mut scattered = per_axis(|channel| surface.diffuse[channel] * cosine * facing);
+        let toward = round.disc();
+        if let Some(strength) = self.highlight(toward) {
+            let strength = part(strength) * all;
+            scattered = per_axis(|channel| scattered[channel] + surface.specular[channel] * strength);
+        }
+        let full = per_axis(|channel| scattered[channel] * sent[channel]);
+        let certain = Interval::point(N::of(1.0));
+        let lit = self.passes(toward, round.ends).lit(self.scene, &full, certain)?;
+        Some(lit.map(N::mean_over_light))
     }
-    let path = Path { line: Line { origin: surface.at, dir: toward }, leaves: Some(surface.place) };
-    let full = per_axis(|channel| scattered[channel] * sent[channel]);
-    // The ball touches the plane through its nearest point that faces the points.
-    let nearest = (one - radius / distance).range().low;
-    let passes = passed(scene, &path, index, nearest);
-    let lit = passes.lit(scene, &full, Interval { low: N::of(1.0), high: N::of(1.0) })?;
-    Some(per_axis(|channel| lit[channel].mean_over_light()))
+
+    /// Encloses the strength of highlights of points of the light, if there are any.
+    fn highlight(&self, toward: [N; 3]) -> Option<N> {
+        let toward = unit(toward);
+        let half = per_axis(|axis| toward[axis] - self.dir[axis]);
+        self.shininess
+            .map(|shininess| power(dot(half, self.surface.normal) / dot(half, half).sqrt(), shininess))
+    }
+
+    fn passes(&self, toward: [N; 3], ends: Ends<N::End>) -> Passes<N> {
+        let (origin, leaves) = (self.surface.at, Some(self.surface.place));
+        passed(self.scene, &Path { line: Line { origin, dir: toward }, leaves }, self.index, ends)
+    }
 }

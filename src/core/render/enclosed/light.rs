@@ -1,7 +1,7 @@
 //! The light that reaches the points of a surface.
 
 use super::number::{Endpoint, Number, ranges};
-use super::panes::passed;
+use super::panes::{Ends, passed};
 use super::scene::{Colour, EnclosedScene, Path};
 use super::surface::{HitPoints, is_black};
 use crate::geometry::sight::Line;
@@ -69,7 +69,7 @@ pub(super) fn shine<N: Number>(
     }
     let path = Path { line: Line { origin: surface.at, dir: toward }, leaves: Some(surface.place) };
     let full = per_axis(|channel| scattered[channel] * sent[channel]);
-    let lit = passed(scene, &path, index, N::of(1.0)).lit(scene, &full, above)?;
+    let lit = passed(scene, &path, index, Ends::at(N::of(1.0))).lit(scene, &full, above)?;
     Some(lit.map(N::mean_over_light))
 }
 
@@ -120,7 +120,7 @@ pub(super) fn unit<N: Number>(vector: [N; 3]) -> [N; 3] {
 }
 
 /// Encloses the two vectors perpendicular to a unit vector that `glam` chooses; `None` where they are open.
-fn orthonormal_pair<N: Number>([x, y, z]: [N; 3]) -> Option<[[N; 3]; 2]> {
+pub(super) fn orthonormal_pair<N: Number>([x, y, z]: [N; 3]) -> Option<[[N; 3]; 2]> {
     let (n, side) = (N::constant, z.range());
     let sign = if side.low >= N::of(0.0) {
         n(1.0)

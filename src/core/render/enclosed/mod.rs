@@ -11,11 +11,13 @@
 //! [`Interval`]: tabray_exact::interval::Interval
 //! [`Affine`]: tabray_exact::affine::Affine
 
+mod crossing;
 mod emitted;
 mod light;
 mod number;
 mod panes;
 mod rays;
+mod sampled;
 mod scene;
 mod surface;
 

@@ -41,6 +41,13 @@ pub trait Endpoint: Precise {
     /// Encloses the look of an object at a point.
     fn look(object: &Object, at: &PointBounds<Self>) -> Option<LookBounds<Self>>;
 
+    /// Encloses the unit normals to which a shader bends outward ones at a point.
+    fn bent(
+        shader: &(dyn PacketShader + 'static),
+        at: &PointBounds<Self>,
+        normal: [Interval<Self>; 3],
+    ) -> Option<[Interval<Self>; 3]>;
+
     /// Encloses what a light sends toward a point.
     fn sent(light: &(dyn PacketLight + 'static), toward: [Interval<Self>; 3]) -> Option<[Interval<Self>; 3]>;
 }
@@ -51,7 +58,23 @@ where
     dyn PacketLight: EncloseLight<F>,
 {
     fn look(object: &Object, at: &PointBounds<Self>) -> Option<LookBounds<Self>> {
-        EncloseLook::<F>::look(&*object.shader, &object.material, at)
+        let mut shader = &object.shader;
+        while let Some(colours) = shader.colours() {
+            shader = colours;
+        }
+        EncloseLook::<F>::look(&**shader, &object.material, at)
+    }
+
+    fn bent(
+        shader: &(dyn PacketShader + 'static),
+        at: &PointBounds<Self>,
+        normal: [Interval<Self>; 3],
+    ) -> Option<[Interval<Self>; 3]> {
+        if !shader.bends() {
+            return Some(normal);
+        }
+        let normal = shader.colours().map_or(Some(normal), |colours| Self::bent(&**colours, at, normal))?;
+        EncloseLook::<F>::bent(shader, at, normal)
     }
 
     fn sent(light: &(dyn PacketLight + 'static), toward: [Interval<Self>; 3]) -> Option<[Interval<Self>; 3]> {

@@ -6,7 +6,7 @@ use super::surface::tint;
 use crate::geometry::sight::Line;
 use crate::world::shader::PointBounds;
 use std::ptr;
-use tabray_exact::interval::Interval;
+use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::per_axis;
 
 /// The number of walls of one transparent object on a shadow ray after which what passes is open.
@@ -49,21 +49,34 @@ impl<N: Number> Passes<N> {
     }
 }
 
-/// Tells how much of the light of this index passes along lines from t = 0 to the points of it where they end: at t = 1, or
-/// anywhere from `nearest` on.
+/// Where lines end on a light: at no t before the first and none after the last.
+#[derive(Clone, Copy)]
+pub(super) struct Ends<F> {
+    pub first: F,
+    pub last: F,
+}
+
+impl<F: Float> Ends<F> {
+    /// At one t.
+    pub fn at(t: F) -> Self {
+        Self { first: t, last: t }
+    }
+}
+
+/// Tells how much of the light of this index passes along lines from t = 0 to where they end on it.
 pub(super) fn passed<N: Number>(
     scene: &EnclosedScene,
     path: &Path<N>,
     light: usize,
-    nearest: N::End,
+    ends: Ends<N::End>,
 ) -> Passes<N> {
-    let (objects, one) = (&scene.model.objects, N::of(1.0));
+    let objects = &scene.model.objects;
     let coarse = coarse(&path.line);
     let is_glass = |object: &usize| objects[*object].material.transparency != 0.0;
     let mut panes = Panes { at: Vec::new(), passed: None };
     let (mut open, mut is_blocked) = (Vec::new(), false);
     for object in (0..objects.len()).filter(is_glass) {
-        if let Err(low) = panes.add(scene, path, object, nearest) {
+        if let Err(low) = panes.add(scene, path, object, ends) {
             panes.at.push(Interval { low, high: N::of(scene.leaves(&coarse, object)) });
             open.push(object);
         }
@@ -77,10 +90,10 @@ pub(super) fn passed<N: Number>(
     for object in (0..objects.len()).filter(|object| !is_glass(object) && !is_source(object)) {
         scene.hits(path, &coarse, object, &mut |hit, _| {
             match hit {
-                Hit::Certain(at) if at.range().high < nearest && !panes.are_at(at.range()) => {
+                Hit::Certain(at) if at.range().high < ends.first && !panes.are_at(at.range()) => {
                     is_blocked = true
                 }
-                hit if hit.low() < one => open.push(object),
+                hit if hit.low() < ends.last => open.push(object),
                 _ => {}
             }
             !is_blocked
@@ -111,8 +124,7 @@ impl<N: Number> Panes<N> {
         self.at.iter().any(|pane| pane.low <= t.high && t.low <= pane.high)
     }
 
-    /// Adds each wall of a transparent object that the lines pass through before they end: at t = 1, or anywhere from
-    /// `nearest` on.
+    /// Adds each wall of a transparent object that the lines pass through before they end.
     ///
     /// # Errors
     /// The t before which all are added, where it is open which follow.
@@ -121,9 +133,8 @@ impl<N: Number> Panes<N> {
         scene: &EnclosedScene,
         path: &Path<N>,
         object: usize,
-        nearest: N::End,
+        ends: Ends<N::End>,
     ) -> Result<(), N::End> {
-        let one = N::of(1.0);
         let (mut onward, mut start) = (*path, N::constant(0.0));
         for _ in 0..MAX_PANES {
             let mut all = Vec::new();
@@ -132,7 +143,7 @@ impl<N: Number> Panes<N> {
                     Hit::Certain(at) | Hit::Perhaps(at) => (start + at).range().low,
                     Hit::Doubtful(low) => (start.range() + Interval::point(low)).low,
                 };
-                if low < one {
+                if low < ends.last {
                     all.push((low, hit, place));
                 }
                 true
@@ -153,7 +164,7 @@ impl<N: Number> Panes<N> {
             };
             let range = at.range();
             // Of panes in one place, one stands for all: that is not decided here.
-            if range.high >= nearest || self.are_at(range) {
+            if range.high >= ends.first || self.are_at(range) {
                 return Err(range.low);
             }
             let point = path.line.at(at);

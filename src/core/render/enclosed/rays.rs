@@ -1,11 +1,14 @@
 //! The colours that rays return.
 
+use super::crossing::{Crossings, crossings};
 use super::emitted;
 use super::light::{self, LightPoints};
 use super::number::{Hit, Number};
 use super::scene::{Colour, EnclosedScene, Path, Place};
 use super::surface::{HitPoints, is_black, tint};
 use crate::geometry::sight::Line;
+use crate::scene::model::Object;
+use crate::world::interface::Interface;
 use crate::world::rules::{self, Rules};
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{dot, per_axis};
@@ -134,36 +137,24 @@ impl<'s> EnclosingTracer<'s> {
         per_axis(|channel| N::enclosing(Interval::from_f64(seen[channel])))
     }
 
-    /// Encloses the colours that rays return which hit a place at t; `None` where they are open. Where an interface divides
-    /// the rays, nothing is known.
+    /// Encloses the colours that rays return which hit a place at t; `None` where they are open.
     fn seen<N: Number>(&mut self, ray: &Ray<N>, t: N, place: Place) -> Option<Colour<N>> {
-        if self.scene.model.objects[place.object].material.interface.is_some() {
-            return None;
-        }
+        let interface = self.scene.model.objects[place.object].material.interface.as_deref();
         let mut any = None;
         let window = self.scene.window.filter(|_| ray.depth == 0);
         for surface in HitPoints::facing(self.scene, (&ray.path.line, ray.length), t, place, window)? {
-            let shaded = self.shaded(ray, t, &surface)?;
+            let shaded = match interface {
+                None => self.shaded(ray, t, &surface)?,
+                Some(interface) => self.divided(ray, t, &surface, interface)?,
+            };
             any = Some(any.map_or(shaded, |any| hull(any, shaded)));
         }
         any
     }
 
     fn shaded<N: Number>(&mut self, ray: &Ray<N>, t: N, surface: &HitPoints<N>) -> Option<Colour<N>> {
-        let travelled = ray.travelled + t * ray.length;
-        let dir = ray.path.line.dir;
-        let toward = per_axis(|axis| dir[axis] / ray.length);
-        let mut colour = surface.ambient;
-        for index in self.scene.lights {
-            let seen = (*index, self.lights);
-            let added = match self.scene.model.lights[*index].value.emitter() {
-                None => light::shine(self.scene, seen, surface, toward)?,
-                Some(emitter) => emitted::shine(self.scene, seen, emitter, surface, toward)?,
-            };
-            colour = per_axis(|channel| colour[channel] + added[channel]);
-        }
-        let rules = self.rules();
-        colour = per_axis(|channel| rules.after(travelled, colour[channel]));
+        let (dir, travelled) = (ray.path.line.dir, ray.travelled + t * ray.length);
+        let mut colour = self.own(ray, travelled, surface)?;
         let transparency = self.scene.model.objects[surface.place.object].material.transparency;
         if transparency != 0.0 {
             let tint = tint(transparency, surface.diffuse)?;
@@ -178,6 +169,59 @@ impl<'s> EnclosingTracer<'s> {
         Some(colour)
     }
 
+    /// Encloses the colours that rays return which an interface divides. What media absorb and what highlights add to glass is
+    /// not enclosed, nor are the facets of rough surfaces.
+    fn divided<N: Number>(
+        &mut self,
+        ray: &Ray<N>,
+        t: N,
+        surface: &HitPoints<N>,
+        interface: &dyn Interface,
+    ) -> Option<Colour<N>> {
+        let Object { material, shape, .. } = &self.scene.model.objects[surface.place.object];
+        let is_smooth = interface.roughness() == 0.0 || matches!(self.lights, LightPoints::Middle);
+        if !is_smooth || !shape.is_two_sided() || material.glints() || self.scene.bounds.has_media {
+            return None;
+        }
+        let (dir, travelled) = (ray.path.line.dir, ray.travelled + t * ray.length);
+        let Crossings { reflected, onward } =
+            crossings(interface.law(), surface, per_axis(|axis| dir[axis] / ray.length))?;
+        let (one, transparency) = (N::constant(1.0), material.transparency);
+        let mut colour = [N::constant(0.0); 3];
+        if transparency != 1.0 {
+            let own = self.own(ray, travelled, surface)?;
+            colour = own.map(|own| (one - N::constant(transparency)) * own);
+        }
+        if let Some(onward) = onward {
+            let tint = tint(transparency, surface.diffuse)?;
+            let through = per_axis(|channel| tint[channel] * (one - reflected[channel]));
+            let onward = onward.map(|along| ray.length * along);
+            let behind = self.secondary(ray, surface, travelled, onward, &through)?;
+            colour = per_axis(|at| rules::reflected(colour[at], behind[at], through[at]));
+        }
+        if !is_black(&reflected) {
+            let seen = self.secondary(ray, surface, travelled, surface.mirrored(dir)?, &reflected)?;
+            colour = per_axis(|at| rules::reflected(colour[at], seen[at], reflected[at]));
+        }
+        Some(colour)
+    }
+
+    /// Encloses the light that points return by themselves.
+    fn own<N: Number>(&self, ray: &Ray<N>, travelled: N, surface: &HitPoints<N>) -> Option<Colour<N>> {
+        let toward = per_axis(|axis| ray.path.line.dir[axis] / ray.length);
+        let mut colour = surface.ambient;
+        for index in self.scene.lights {
+            let seen = (*index, self.lights);
+            let added = match self.scene.model.lights[*index].value.emitter() {
+                None => light::shine(self.scene, seen, surface, toward)?,
+                Some(emitter) => emitted::shine(self.scene, seen, emitter, surface, toward)?,
+            };
+            colour = per_axis(|channel| colour[channel] + added[channel]);
+        }
+        let rules = self.rules();
+        Some(per_axis(|channel| rules.after(travelled, colour[channel])))
+    }
+
     /// Encloses the colours that rays return which continue from a surface. Their light is multiplied by `factor`.
     fn secondary<N: Number>(
         &mut self,
@@ -189,7 +233,7 @@ impl<'s> EnclosingTracer<'s> {
     ) -> Option<Colour<N>> {
         let path = Path { line: Line { origin: surface.at, dir }, leaves: Some(surface.place) };
         let most = factor.iter().fold(0.0_f64, |most, channel| most.max(channel.coarse().magnitude()));
-        // A mirrored direction is as long as the one that it is mirrored from.
+        // Rays continue with directions as long as those from which they come.
         let length = ray.length;
         self.colour(&Ray { path, length, travelled, weight: ray.weight * most, depth: ray.depth + 1 })
     }

@@ -37,6 +37,8 @@ pub struct SceneBounds {
     pub(super) most: f64,
     /// Whether what glass lets pass of a channel is known to lie between none of it and all.
     pub(super) passes_fractions: bool,
+    /// Whether any object absorbs light by the length of the way through it.
+    pub(super) has_media: bool,
 }
 
 impl SceneBounds {
@@ -51,6 +53,7 @@ impl SceneBounds {
             boxes: model.objects.iter().map(around).collect(),
             most: depth::most(model),
             passes_fractions: model.tints_are_fractions(),
+            has_media: model.objects.iter().any(|object| object.material.medium().is_some()),
         }
     }
 }

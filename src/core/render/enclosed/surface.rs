@@ -19,6 +19,8 @@ pub(super) struct HitPoints<N> {
     pub at: [N; 3],
     /// The unit normals with which the points are shaded, turned to face the lines where both sides are lit.
     pub normal: [N; 3],
+    /// Whether the normals are turned inward.
+    pub is_inside: bool,
     /// The unit normals of the surface itself, turned likewise, where the points are shaded with others.
     pub unbent: Option<[N; 3]>,
     pub ambient: Colour<N>,
@@ -37,10 +39,6 @@ impl<N: Number> HitPoints<N> {
         window: Option<Window>,
     ) -> Option<Vec<Self>> {
         let object = &scene.model.objects[place.object];
-        // What a shader bends normals to is not enclosed.
-        if object.shader.bends() {
-            return None;
-        }
         let zero = N::of(0.0);
         let at = line.at(t);
         let shape = object.shape.proven()?;
@@ -85,22 +83,37 @@ impl<N: Number> HitPoints<N> {
         let shape = object.shape.proven()?;
         // What is mirrored is mirrored by the shading normal, too.
         let normal = N::shading_normal(shape, at, place.part, own)?;
-        let unbent = (normal != own).then_some(own);
         let outward = if is_turned { per_axis(|axis| -normal[axis]) } else { normal };
-        let (mut at_ranges, outward) = (ranges(at), Some(ranges(outward)));
+        let (mut at_ranges, outward) = (ranges(at), ranges(outward));
         if let Some(reach) = reach {
             let around = Interval { low: N::of(-reach), high: N::of(reach) };
             at_ranges = at_ranges.map(|along| along + around);
         }
-        let point = PointBounds::seen(shape, object.shader.sees(), place.part, at_ranges, outward);
+        let point = PointBounds::seen(shape, object.shader.sees(), place.part, at_ranges, Some(outward));
         let look = N::End::look(object, &point)?;
+        let normal = if object.shader.bends() {
+            let bent = N::End::bent(&*object.shader, &point, outward)?.map(N::enclosing);
+            if is_turned { bent.map(|along| -along) } else { bent }
+        } else {
+            normal
+        };
+        let unbent = (normal != own).then_some(own);
         let rounding = |of: Interval<N::End>| {
             let error = if reach.is_some() { MEAN_ROUNDING * of.coarse().magnitude() } else { 0.0 };
             of + Interval { low: N::of(-error), high: N::of(error) }
         };
         let enclosing = |of: [Interval<N::End>; 3]| per_axis(|channel| N::enclosing(rounding(of[channel])));
         let (ambient, diffuse) = (enclosing(look.ambient), enclosing(look.diffuse));
-        Some(Self { place, at, normal, unbent, ambient, diffuse, specular: enclosing(look.specular) })
+        Some(Self {
+            place,
+            at,
+            normal,
+            is_inside: is_turned,
+            unbent,
+            ambient,
+            diffuse,
+            specular: enclosing(look.specular),
+        })
     }
 
     /// Returns the directions in which rays along `dir` are mirrored, as long as these; `None` where they are open.

@@ -6,7 +6,7 @@ use crate::world::certify::Precise;
 use crate::world::material::{Material, Rgb};
 use crate::world::shader::{LookBounds, PointBounds, Shader, SurfacePoint};
 use f256::f256;
-use tabray_exact::interval::Fraction;
+use tabray_exact::interval::{Fraction, Interval};
 
 /// Points of a surface, as a shader sees them.
 #[derive(Clone, Copy)]
@@ -41,11 +41,18 @@ pub trait PacketShader: Shader + EncloseLook<f64> + EncloseLook<f256> + EncloseL
 pub trait EncloseLook<F> {
     /// Calls [`Shader::enclose`].
     fn look(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>>;
+
+    /// Calls [`Shader::enclose_bend`].
+    fn bent(&self, at: &PointBounds<F>, normal: [Interval<F>; 3]) -> Option<[Interval<F>; 3]>;
 }
 
 impl<T: Shader, F: Precise> EncloseLook<F> for T {
     fn look(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
         self.enclose(material, at)
+    }
+
+    fn bent(&self, at: &PointBounds<F>, normal: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
+        self.enclose_bend(at, normal)
     }
 }
 
