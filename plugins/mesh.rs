@@ -63,7 +63,8 @@ inventory::submit! {
             warnings.extend(painted.unlike_materials(&args.material()));
             Body::shaded(shape, painted)
         };
-        Ok(Body { warnings, files: surface.files.clone(), bytes: surface.bytes(), ..body })
+        let (files, bytes, accuracy) = (surface.files.clone(), surface.bytes(), args.accuracy());
+        Ok(Body { warnings, files, bytes, boundary: Some(Box::new(move || surface.boundary(accuracy))), ..body })
     })
     .known_as(&["obj", "stl", "ply", "gltf", "glb", "model", "trimesh"])
 }

@@ -117,7 +117,7 @@ impl<A> Triangle<A> {
 /// Returns a number whose sign tells on which side of the line from one point to another a ray passes; 0 where the two
 /// lines intersect.
 #[inline(never)]
-fn exact_side(from: DVec3, to: DVec3, ray: &Ray) -> f64 {
+pub(crate) fn exact_side(from: DVec3, to: DVec3, ray: &Ray) -> f64 {
     let place =
         |of: DVec3| scaled_to_one(per_axis(|axis| DoubleDouble::difference(of[axis], ray.origin[axis])));
     triple_product(place(from), place(to), ray.dir.to_array().map(DoubleDouble::from)).high

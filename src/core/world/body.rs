@@ -88,6 +88,9 @@ impl fmt::Debug for NamedBody {
 /// Wraps a shader so that it sees points of a copied object in the coordinates of the original.
 pub type ToObjectSpace = Box<dyn Fn(AnyShader) -> AnyShader + Send + Sync>;
 
+/// Makes the boundary of what lies inside of an object's shape, where that is not the shape itself.
+pub type MakeBoundary = Box<dyn Fn() -> Option<AnyShape> + Send + Sync>;
+
 /// What an object's constructor returns: the object's shape and its shader.
 pub struct Body {
     /// The object's geometry.
@@ -98,6 +101,9 @@ pub struct Body {
     pub anchor: Option<Anchor>,
     /// Wraps a shader so that it sees points in the coordinates of the original, if the object is a copy.
     pub to_object_space: Option<ToObjectSpace>,
+    /// Makes a shape without those parts of the object's own that lie inside of it: solids take it in place of that, and so
+    /// does what is refracted. `None` for an object that has no such parts.
+    pub boundary: Option<MakeBoundary>,
     /// What the user should know about the object, although it can be rendered.
     pub warnings: Vec<Warning>,
     /// The files that it was read from beside those that its attributes name, whether they exist or not.
@@ -174,6 +180,7 @@ impl Body {
             shader: Arc::new(shader),
             anchor: None,
             to_object_space: None,
+            boundary: None,
             warnings: Vec::new(),
             files: Vec::new(),
             bytes: 0,
@@ -200,6 +207,11 @@ impl Body {
         };
         let anywhere = Anchor { origin: DVec3::ZERO, unit: 1.0 };
         self.anchor.or_else(of_box).unwrap_or(anywhere)
+    }
+
+    /// Returns the boundary of what lies inside of the object, where that is not its shape.
+    pub fn boundary(&self) -> Option<AnyShape> {
+        self.boundary.as_ref().and_then(|make| make())
     }
 
     /// Gives the object the look of a shader, in place of its own.

@@ -196,9 +196,12 @@ fn only_free(attribute: Option<&'static str>) -> Refusal {
 /// Returns the objects that are seen of a body, with their own materials or the one that the record names.
 fn objects(record: Record, mut body: Body) -> impl Iterator<Item = Object> {
     let more = take(&mut body.more);
-    iter::once(body).chain(more).filter_map(move |Body { shape, shader, material, .. }| {
-        let material = material.or_else(|| record.material())?;
-        Some(Object { args: record.clone(), material, shape, shader })
+    iter::once(body).chain(more).filter_map(move |body| {
+        let material = body.material.clone().or_else(|| record.material())?;
+        // Rays go on inside of what is refracted.
+        let boundary = material.interface.as_ref().and_then(|_| body.boundary());
+        let Body { shape, shader, .. } = body;
+        Some(Object { args: record.clone(), material, shape: boundary.unwrap_or(shape), shader })
     })
 }
 
@@ -244,5 +247,6 @@ fn constructed(
 /// Returns what is made of a body. Most objects take a fraction of its memory.
 fn of(body: Body) -> Constructed {
     let is_all = body.warnings.is_empty() && body.more.is_empty() && body.material.is_none();
+    let is_all = is_all && body.boundary.is_none();
     if is_all { Constructed::Plain(body.shape, body.shader) } else { Constructed::Body(Box::new(body)) }
 }

@@ -10,6 +10,9 @@ use tabray_exact::affine::Affine;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, dot, per_axis};
 
+/// A face that a line may hit: the least t of its first hit there, what is certain about that, and the face.
+pub(super) type Met<F> = ((F, HitEnclosure<F>), usize);
+
 impl Surface {
     /// Returns what is certain about a line's first hit with t > 0, and the face that is hit. `leaves` is the face on which
     /// the line's true start lies.
@@ -18,7 +21,7 @@ impl Surface {
         line: &Line<Interval<F>>,
         leaves: Option<usize>,
     ) -> (HitEnclosure<F>, usize) {
-        let met = self.met::<A, F>(line, leaves);
+        let met = self.met::<A, F>(line, |face| leaves == Some(face));
         let first = met.iter().copied().reduce(|one, other| if other.0.0 < one.0.0 { other } else { one });
         let Some(((low, first), face)) = first else { return (HitEnclosure::Misses, 0) };
         let HitEnclosure::Hits(at) = first else { return (HitEnclosure::Doubtful(low), face) };
@@ -45,18 +48,18 @@ impl Surface {
     }
 
     /// Returns the faces that a line may hit, each with what is certain about its first hit there and with the least t of
-    /// that hit.
-    fn met<A: Bounded, F: Precise>(
+    /// that hit. `is_left` tells whether the line's true start lies in the plane of a face.
+    pub(super) fn met<A: Bounded, F: Precise>(
         &self,
         line: &Line<Interval<F>>,
-        leaves: Option<usize>,
-    ) -> Vec<((F, HitEnclosure<F>), usize)> {
+        is_left: impl Fn(usize) -> bool,
+    ) -> Vec<Met<F>> {
         let coarse = Line { origin: line.origin.map(Interval::coarse), dir: line.dir.map(Interval::coarse) };
         let mut met = Vec::new();
         self.tree.within(
             |bounds| coarse.clip(bounds.low, bounds.high).is_some(),
             |face| {
-                let leaves = (leaves == Some(face)).then_some(0);
+                let leaves = is_left(face).then_some(0);
                 let found = match Face(self.triangle::<A>(face)).first_hit(line, leaves).0 {
                     HitEnclosure::Misses => return,
                     found @ (HitEnclosure::Hits(at) | HitEnclosure::Edge(at)) => (at.low, found),
@@ -88,7 +91,7 @@ impl Surface {
         });
         // The point on the face is at t = 1.
         let (nearly, toward) = (F::of(1.0 - 256.0 * f64::EPSILON), Line { origin: line.origin, dir: way });
-        let met = self.met::<A, F>(&toward, leaves);
+        let met = self.met::<A, F>(&toward, |face| leaves == Some(face));
         if met.iter().any(|((_, found), _)| matches!(found, HitEnclosure::Hits(at) if at.high < nearly)) {
             return Some(true);
         }

@@ -5,9 +5,13 @@
 //! hits are found face by face as those of single triangles are, in plain arithmetic with bounds of its errors, and in
 //! more digits where the bounds leave open which face is hit, or whether any is. Of faces at the same distance the first
 //! in the file is hit.
+//!
+//! A closed mesh has an inside: the points around which it winds, so that its bodies may overlap and touch. Where some of its
+//! faces do not bound that, solids and glass take the boundary in its place.
 
 mod along;
 mod approach;
+mod boundary;
 mod creases;
 mod edges;
 mod face;
@@ -20,6 +24,7 @@ mod memo;
 mod overlap;
 mod packets;
 mod painted;
+mod passages;
 mod points;
 pub mod read;
 mod search;

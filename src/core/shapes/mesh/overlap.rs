@@ -7,27 +7,28 @@ use crate::geometry::orientation::{axis_across, side_of_plane, turn};
 use crate::parallel;
 use glam::DVec3;
 use std::cmp::Ordering;
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering::Relaxed;
 
 impl Surface {
-    /// Returns two faces that have other points in common than edges and corners that they share, if there are any.
-    pub(super) fn overlap(&self) -> Option<[usize; 2]> {
-        let face = parallel::find_first(self.face_count(), |face| self.overlapping(face).is_some())?;
-        Some([face, self.overlapping(face)?])
-    }
-
-    /// Returns a later face that overlaps a face.
-    fn overlapping(&self, face: usize) -> Option<usize> {
+    /// Tells for each face whether it has other points in common with another one than edges and corners that they share.
+    pub(super) fn overlapping(&self) -> Vec<bool> {
+        let found: Vec<_> = (0..self.face_count()).map(|_| AtomicBool::new(false)).collect();
         let around = |face: usize| Aabb::around(&self.corners(face));
-        let (own, mut found) = (around(face), None);
-        self.tree.within(
-            |bounds| bounds.overlaps(&own),
-            |other| {
-                let is_met = other > face && around(other).overlaps(&own) && self.do_overlap(face, other);
-                found =
-                    if is_met { Some(found.map_or(other, |found: usize| found.min(other))) } else { found };
-            },
-        );
-        found
+        parallel::for_each(self.face_count(), &|face| {
+            let own = around(face);
+            let are_found = |other: usize| [face, other].iter().all(|one| found[*one].load(Relaxed));
+            self.tree.within(
+                |bounds| bounds.overlaps(&own),
+                |other| {
+                    let may_overlap = other > face && around(other).overlaps(&own) && !are_found(other);
+                    if may_overlap && self.do_overlap(face, other) {
+                        [face, other].iter().for_each(|one| found[*one].store(true, Relaxed));
+                    }
+                },
+            );
+        });
+        found.into_iter().map(AtomicBool::into_inner).collect()
     }
 
     /// Tells whether two faces have other points in common than an edge or a corner that they share.

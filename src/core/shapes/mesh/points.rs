@@ -19,8 +19,18 @@ impl Surface {
     /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file of those with the
     /// least rank.
     pub(super) fn first_at(&self, at: DVec3, rank: impl Fn(usize) -> u8) -> usize {
+        self.first_of(self.nearest(at), at, rank)
+    }
+
+    /// Returns what [`first_at`](Self::first_at) does, given the distance of the nearest face that may be returned, and that
+    /// face.
+    pub(super) fn first_of(
+        &self,
+        (distance, face): (f64, usize),
+        at: DVec3,
+        rank: impl Fn(usize) -> u8,
+    ) -> usize {
         let rounding = 8.0 * f64::EPSILON * (at.abs().max_element() + self.max_coordinate());
-        let (distance, face) = self.nearest(at);
         let within = distance + rounding;
         let place = |face: usize| (rank(face), self.order[face]);
         let (mut first, mut least) = (face, None);
@@ -51,11 +61,16 @@ impl Surface {
 
     /// Returns the distance of the nearest face to a point in world units, and the face.
     pub(super) fn nearest(&self, at: DVec3) -> (f64, usize) {
+        self.nearest_of(at, |_| true)
+    }
+
+    /// Returns the distance of the nearest to a point of those faces that are meant, in world units, and the face.
+    pub(super) fn nearest_of(&self, at: DVec3, is_meant: impl Fn(usize) -> bool) -> (f64, usize) {
         // Most points are on the surface: few boxes are so near.
         for within in [CLOSE * (at.abs().max_element() + self.max_coordinate()), MISS] {
             let mut best = (within, None);
             self.near(at, within, |face, distance| {
-                if distance < best.0 {
+                if distance < best.0 && is_meant(face) {
                     best = (distance, Some(face));
                 }
                 best.0
@@ -76,10 +91,21 @@ impl Surface {
 
     /// Tells whether a point is on a face, up to an error in world units and to rounding.
     pub(super) fn is_on_surface<A: Bounded>(&self, at: DVec3, error: f64) -> bool {
+        self.is_on_one_of::<A>(at, error, |_| true)
+    }
+
+    /// Tells whether a point is on one of those faces that are meant, up to an error in world units and to rounding.
+    pub(super) fn is_on_one_of<A: Bounded>(
+        &self,
+        at: DVec3,
+        error: f64,
+        is_meant: impl Fn(usize) -> bool,
+    ) -> bool {
         let error_there = error + 8.0 * f64::EPSILON * at.abs().max_element();
         let mut any = false;
         self.tree.around(at, error_there, &mut |face| {
-            any |= Triangle::<A>::new(self.corners(face)).is_some_and(|face| is_on_surface(&face, at, error));
+            let triangle = || Triangle::<A>::new(self.corners(face));
+            any |= is_meant(face) && triangle().is_some_and(|face| is_on_surface(&face, at, error));
             if any { -1.0 } else { error_there }
         });
         any

@@ -78,7 +78,7 @@ impl<A: Bounded> Mesh<A> {
 }
 
 /// The number of plain rays that take as long as the search for a ray's hit, 2 to 5 microseconds.
-const RAYS_PER_SEARCH: u32 = 4;
+pub(super) const RAYS_PER_SEARCH: u32 = 4;
 
 impl<A: Bounded> Hittable for Mesh<A> {
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
@@ -134,7 +134,9 @@ impl<A: Bounded> Hittable for Mesh<A> {
 
     fn why_not_closed(&self) -> Option<&str> {
         match self.surface.why_not_closed {
-            Openness { open: 0, clashing: 0 } => self.surface.fault(self),
+            Openness { open: 0, clashing: 0 } => {
+                self.surface.depths().map(|_| "some of its faces do not lie between its inside and the outside")
+            }
             Openness { open: 0, .. } => Some("some of its faces are turned against their neighbours"),
             _ => Some("some of its edges belong to one face only"),
         }

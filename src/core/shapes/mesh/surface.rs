@@ -26,6 +26,11 @@ const MAX_FACES: usize = 1 << 28;
 /// The number of surfaces that have been made.
 static SURFACES: AtomicU64 = AtomicU64::new(0);
 
+/// The winding number of the points beside a face, on its outer side; on the inner side, it is greater by 1. `None` for a
+/// face that meets others elsewhere than at edges and corners that they share, as it may differ from point to point, and
+/// where it is not known.
+pub(super) type Depth = Option<i32>;
+
 /// The triangles of a mesh in the world.
 ///
 /// Vertices are placed and rounded once; the triangles through the rounded vertices are the surface, so that faces that
@@ -53,8 +58,8 @@ pub struct Surface {
     pub(super) bounds: Aabb,
     /// The planes of the faces, where the mesh is convex and has few; found when it is first asked for.
     pub(super) planes: OnceLock<Option<Box<[[DVec3; 2]]>>>,
-    /// Why the mesh has no inside although it is closed, if it has none; found when it is first asked for.
-    pub(super) fault: OnceLock<Option<String>>,
+    /// What lies before the faces of a closed mesh, if that is not the outside; found when it is first asked for.
+    pub(super) depths: OnceLock<Option<Arc<[Depth]>>>,
     /// The edges that keep the surface from being closed.
     pub why_not_closed: Openness,
     /// Whether both sides of an open surface are lit.
@@ -194,7 +199,7 @@ impl Surface {
             tree,
             bounds,
             planes: OnceLock::new(),
-            fault: OnceLock::new(),
+            depths: OnceLock::new(),
             why_not_closed,
             is_two_sided: look.is_two_sided,
             remarks,

@@ -2,7 +2,7 @@
 
 use super::shape::{ByPlacement, Placed};
 use crate::geometry::placement::Placement;
-use crate::world::body::{AnyShader, Body};
+use crate::world::body::{AnyShader, Body, MakeBoundary};
 use crate::world::certify::Precise;
 use crate::world::hittable::{ByPackets, Shape};
 use crate::world::material::{Look, Material, Rgb};
@@ -25,7 +25,13 @@ impl Placed {
         let to_object_space = move |shader: AnyShader| -> AnyShader {
             Arc::new(PlacedShader::new(&original, placement, Some(shader)))
         };
+        let own = Arc::clone(body);
+        let boundary = move || {
+            let inner = Body { entity: own.entity, ..Body::plain(own.boundary()?) };
+            Some(Shape::new(Self::new(&Arc::new(inner), placement)).by::<ByPackets, ByPlacement>().into())
+        };
         Body {
+            boundary: body.boundary.is_some().then(|| -> MakeBoundary { Box::new(boundary) }),
             depth: body.depth + 1,
             anchor: Some(body.anchor()),
             to_object_space: Some(Box::new(to_object_space)),

@@ -8,6 +8,7 @@ use crate::scene::entity::{Args, Refusal};
 use crate::scene::list::List;
 use crate::scene::pparm::Pparm;
 use crate::shapes::placed::Placed;
+use crate::world::any_shape::AnyShape;
 use crate::world::body::{Body, NamedBody, Part, Solid};
 use crate::world::hittable::{ByPackets, Shape};
 use crate::world::material::Material;
@@ -55,7 +56,7 @@ impl NoSolid {
             Self::Open(name, why) => (
                 format!("cannot be made of `{name}`, which is not a closed shape: {why}"),
                 "only closed shapes can be combined: a sphere, a box, a cylinder with its ends, a lathe that begins and ends \
-                 on its axis, a mesh without holes whose faces meet only at edges and corners; for a cut along a plane, use a large box",
+                 on its axis, a mesh without holes; for a cut along a plane, use a large box",
             ),
             Self::TooMany => (
                 format!("has more than {MOST_PARTS} parts"),
@@ -85,10 +86,14 @@ impl Solid {
                 |part: &Part| Part { name: format!("{} of {name}", part.name).into(), ..part.clone() };
             return Ok(Self { parts: solid.parts.iter().map(named).collect(), tree: solid.tree.clone() });
         }
-        if let Some(why) = object.shape.why_not_closed() {
+        let body = match object.boundary() {
+            Some(shape) => Arc::new(Body { entity: object.entity, ..seen_as(object, shape) }),
+            None => object.clone(),
+        };
+        if let Some(why) = body.shape.why_not_closed() {
             return Err(NoSolid::Open(name, why.to_owned()));
         }
-        let part = Part { name, body: object.clone(), material: object.material.clone().unwrap_or_default() };
+        let part = Part { name, body, material: object.material.clone().unwrap_or_default() };
         Ok(Self { parts: vec![part], tree: Tree::Part(0) })
     }
 
@@ -150,6 +155,21 @@ impl Body {
     }
 }
 
+/// Returns a body with the look of an object, and another shape.
+fn seen_as(object: &Arc<Body>, shape: impl Into<AnyShape>) -> Body {
+    let own = object.clone();
+    let to_object_space = move |shader| match &own.to_object_space {
+        Some(to_object_space) => to_object_space(shader),
+        None => shader,
+    };
+    Body {
+        depth: object.depth,
+        anchor: Some(object.anchor()),
+        to_object_space: Some(Box::new(to_object_space)),
+        ..Body::shaded(shape, PartShader(object.clone()))
+    }
+}
+
 /// Returns the bodies of the parts whose surface may be seen.
 fn seen(solid: &Solid) -> Vec<Body> {
     let parts: Arc<[Part]> = solid.parts.clone().into();
@@ -170,20 +190,8 @@ fn seen(solid: &Solid) -> Vec<Body> {
         let around = common(around, tree.bounds(&|part| bounds[part]));
         let shape = SolidPart::new(&parts, &bounds, (index, is_outer), (tree, path), around);
         let part = &parts[index];
-        let shader = PartShader(part.body.clone());
-        let body = Body::shaded(Shape::new(shape).by::<ByPackets, ByParts>(), shader);
-        let own = part.body.clone();
-        let to_object_space = move |shader| match &own.to_object_space {
-            Some(to_object_space) => to_object_space(shader),
-            None => shader,
-        };
-        Some(Body {
-            depth: part.body.depth,
-            material: Some(part.material.clone()),
-            anchor: Some(part.body.anchor()),
-            to_object_space: Some(Box::new(to_object_space)),
-            ..body
-        })
+        let shape = Shape::new(shape).by::<ByPackets, ByParts>();
+        Some(Body { material: Some(part.material.clone()), ..seen_as(&part.body, shape) })
     };
     (0..parts.len()).filter_map(body).collect()
 }

@@ -1,0 +1,211 @@
+//! The boundary of what lies inside of a closed mesh whose bodies overlap, touch or lie in each other: for solids and glass,
+//! which pass from one side of a surface to the other.
+//!
+//! A ray passes it where the winding number changes from 0 or to 0. Of faces in one place, those that are turned against each
+//! other cancel.
+
+mod hit_proofs;
+
+use super::passages::{Turn, winding};
+use super::shape::{Mesh, RAYS_PER_SEARCH};
+use super::surface::{Depth, Surface};
+use super::winding::DIRECTIONS;
+use crate::geometry::aabb::Aabb;
+use crate::geometry::ray::{MISS, Ray, RayRange, Side};
+use crate::geometry::sight::Sight;
+use crate::world::accuracy::{Accuracy, Bounded, Exact, Strict};
+use crate::world::any_shape::AnyShape;
+use crate::world::certify::{Assumption, Enclosure, HitProofs, Precision, Premise, ProofMethods};
+use crate::world::coincidence::{CLOSE, ROUNDING};
+use crate::world::hittable::{ByDistance, Facts, Hittable, Shape, TieBreaking};
+use crate::world::packets::shape::HitQueries;
+use f256::f256;
+use glam::{DMat3, DVec2, DVec3};
+use std::sync::Arc;
+use tabray_exact::double_double::DoubleDouble;
+
+/// The distance from a face at which it is told what lies on its sides, as a multiple of the rounding error of a point.
+const BESIDE: f64 = 256.0;
+
+/// The boundary of what lies inside of a closed mesh.
+struct Boundary<A> {
+    mesh: Mesh<A>,
+    /// What lies before its faces.
+    depths: Arc<[Depth]>,
+}
+
+/// Marks a shape whose hits are proven by counting the faces that a ray passes.
+struct ByWinding;
+
+impl TieBreaking for ByWinding {}
+
+impl Surface {
+    /// Makes the shape of the boundary of what lies inside of a closed surface; `None` where that is all of the surface, and
+    /// for one that is not closed.
+    pub fn boundary(self: &Arc<Self>, accuracy: Accuracy) -> Option<AnyShape> {
+        let depths = if self.is_closed() { self.depths()?.clone() } else { return None };
+        Some(match accuracy {
+            Accuracy::Strict => Boundary::<Strict>::shape(self, depths, accuracy).into(),
+            _ => Boundary::<Exact>::shape(self, depths, accuracy).into(),
+        })
+    }
+}
+
+impl<A: Bounded> Boundary<A> {
+    fn shape(
+        surface: &Arc<Surface>,
+        depths: Arc<[Depth]>,
+        accuracy: Accuracy,
+    ) -> Shape<Self, ByDistance, ByWinding> {
+        let mesh = Mesh::shape(surface.clone(), accuracy).shape;
+        Shape::new(Self { mesh, depths }).by()
+    }
+
+    /// Tells whether all of a face lies inside.
+    fn is_hidden(&self, face: usize) -> bool {
+        self.depths[face].is_some_and(|depth| depth != 0 && depth != -1)
+    }
+
+    /// Tells whether a point lies inside, for one that lies on no face.
+    fn is_inside(&self, at: DVec3) -> bool {
+        let ray = Ray { origin: at, dir: DIRECTIONS[0].normalize() };
+        winding(&self.mesh.surface.passages::<A>(&ray, -1.0)) != 0
+    }
+
+    /// Tells whether the points beside a point of a face lie inside, on its outer side and on its inner one.
+    fn sides(&self, face: usize, at: DVec3) -> [bool; 2] {
+        if let Some(depth) = self.depths[face] {
+            return [depth != 0, depth != -1];
+        }
+        let size = at.abs().max_element() + self.mesh.surface.max_coordinate();
+        let step = BESIDE * ROUNDING * size * self.mesh.surface.triangle::<A>(face).plane.normal;
+        [self.is_inside(at + step), self.is_inside(at - step)]
+    }
+
+    /// Returns the face of the boundary that is nearest to a point; of several, up to rounding, the first in the file of those
+    /// that have the outside on one side only.
+    fn face_at(&self, at: DVec3) -> usize {
+        let nearest = self.mesh.surface.nearest_of(at, |face| !self.is_hidden(face));
+        self.mesh.surface.first_of(nearest, at, |face| {
+            let [before, behind] = self.sides(face, at);
+            u8::from(before == behind)
+        })
+    }
+
+    /// Returns the place where a ray passes the boundary, given its distance in world units.
+    fn turn_at(&self, ray: &Ray, distance: f64) -> Option<Turn> {
+        let turns = self.mesh.surface.turns::<A>(ray, -1.0).into_iter();
+        let away = |turn: &Turn| (turn.distance - distance).abs();
+        turns.min_by(|one, other| away(one).total_cmp(&away(other))).filter(|_| distance.is_finite())
+    }
+}
+
+impl<A: Bounded> Hittable for Boundary<A> {
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        let surface = &self.mesh.surface;
+        let leaves = if range.origin_side.is_none() {
+            -1.0
+        } else if !self.mesh.can_hit_itself {
+            return MISS;
+        } else {
+            // As for the mesh, the ray starts at the nearest face.
+            let nearest = 2.0 * surface.nearest_of(ray.origin, |face| !self.is_hidden(face)).0;
+            range.origin_error.max(ROUNDING * surface.max_coordinate()).max(nearest)
+        };
+        let turns = surface.turns::<A>(ray, leaves).into_iter();
+        turns.map(|turn| range.keep(turn.distance)).find(|distance| *distance < MISS).unwrap_or(MISS)
+    }
+
+    /// The normal of the nearest face, turned to the outside.
+    fn normal(&self, at: DVec3) -> DVec3 {
+        let face = self.face_at(at);
+        let normal = self.mesh.surface.triangle::<A>(face).plane.normal;
+        if self.sides(face, at)[0] { -normal } else { normal }
+    }
+
+    fn facts(&self) -> Facts {
+        self.mesh.facts()
+    }
+
+    fn shading_normal(&self, at: DVec3, normal: DVec3) -> DVec3 {
+        self.mesh.surface.smoothed(self.face_at(at), at, normal)
+    }
+
+    fn uv(&self, at: DVec3) -> Option<DVec2> {
+        Some(self.mesh.surface.uv_of(self.face_at(at), at))
+    }
+
+    fn face(&self, at: DVec3) -> Option<u32> {
+        Some(self.mesh.surface.order[self.face_at(at)])
+    }
+
+    fn face_hit(&self, ray: &Ray, distance: f64) -> Option<u32> {
+        Some(self.mesh.surface.order[self.turn_at(ray, distance)?.face])
+    }
+
+    fn part(&self, ray: &Ray, distance: f64) -> Option<String> {
+        Some(format!("face {}", self.face_hit(ray, distance)? + 1))
+    }
+
+    fn bounds_after(&self, linear: &DMat3) -> Option<Aabb> {
+        self.mesh.bounds_after(linear)
+    }
+
+    fn why_not_closed(&self) -> Option<&str> {
+        None
+    }
+
+    fn search_cost(&self, _ray: &Ray, _origin_side: Option<Side>) -> u32 {
+        // To the end of the ray.
+        2 * RAYS_PER_SEARCH
+    }
+
+    fn method(&self) -> String {
+        format!("{}, whose faces are counted along rays where its bodies meet", self.mesh.method())
+    }
+
+    fn clearance(&self, from: DVec3) -> Option<f64> {
+        self.mesh.clearance(from)
+    }
+
+    fn assumes(&self, each: &mut dyn FnMut(Assumption)) {
+        self.mesh.assumes(each);
+    }
+
+    fn read_from_files(&self, each: &mut dyn FnMut(&[u8])) {
+        self.mesh.read_from_files(each);
+    }
+}
+
+impl<A: Bounded> HitQueries for Shape<Boundary<A>, ByDistance, ByWinding> {
+    fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
+        let Boundary { mesh, .. } = &self.shape;
+        mesh.surface.is_on_one_of::<A>(at, error, |face| !self.shape.is_hidden(face))
+    }
+
+    fn contains(&self, at: DVec3, error: f64) -> Option<bool> {
+        (!self.is_on_surface(at, error)).then(|| self.shape.is_inside(at))
+    }
+
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
+        let face = self.shape.turn_at(ray, distance)?.face;
+        let fine = self.shape.mesh.surface.triangle::<A>(face).plane.exact_crossing(ray);
+        let size = distance + ray.origin.abs().max_element();
+        ((fine.high - distance).abs() <= CLOSE * size).then_some(fine)
+    }
+
+    fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
+        self.shape.assumes(&mut |assumption| each(of, Premise::Assumed(assumption)));
+    }
+
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        match precision {
+            Precision::Double => HitProofs::<f64>::first_hit(&self.shape, &sight.line(), None).0.into(),
+            Precision::Octuple => HitProofs::<f256>::first_hit(&self.shape, &sight.line(), None).0.into(),
+        }
+    }
+
+    fn proven(&self) -> Option<&dyn ProofMethods> {
+        Some(&self.shape)
+    }
+}

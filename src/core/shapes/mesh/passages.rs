@@ -1,0 +1,162 @@
+//! All faces of a closed mesh that a ray passes through, in their order, decided exactly for the ray as it is rounded.
+//!
+//! A ray through an edge or a corner, or in the plane of a face, is decided as one beside it: as if its origin were moved by a
+//! number less than any other along x, by one far less than that along y, and by one far less again along z (Edelsbrunner and
+//! Mücke 1990). That ray meets no edge, and so passes into a closed mesh and out of it in turns as any other does. As for
+//! [`orientation`](crate::geometry::orientation), products of coordinates must not underflow.
+
+use super::face::Leaving;
+use super::hits::NOTHING;
+use super::points::is_on_surface;
+use super::surface::Surface;
+use crate::geometry::orientation::side_of_plane;
+use crate::geometry::ray::{MISS, Ray, RayError, RayRange};
+use crate::shapes::triangle::{exact_side, passed};
+use crate::world::accuracy::Bounded;
+use crate::world::coincidence::close;
+use glam::DVec3;
+use std::cmp::Ordering;
+use tabray_exact::double_double::DoubleDouble;
+use tabray_exact::double_double::exact::Exact;
+use tabray_exact::double_double::vectors::{cross, scaled_to_one};
+use tabray_exact::double_double::{exponent_to_one, times_power_of_two};
+use tabray_exact::scalar::per_axis;
+
+/// A face that a ray passes through.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Passage {
+    pub face: usize,
+    /// Whether the ray comes from the face's outer side.
+    pub enters: bool,
+    /// The distance of the face's plane along the ray, in world units.
+    pub distance: f64,
+}
+
+/// A place where a ray passes the boundary of what lies inside of a closed mesh.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Turn {
+    /// The first in the file of the faces that bound it there.
+    pub face: usize,
+    /// The distance in world units.
+    pub distance: f64,
+}
+
+impl Surface {
+    /// Returns the places where a ray passes the boundary of a closed mesh's inside, in their order. The ray leaves the faces
+    /// within `leaves` world units of its origin; negative where it leaves none.
+    pub(super) fn turns<A: Bounded>(&self, ray: &Ray, leaves: f64) -> Vec<Turn> {
+        let passages = self.passages::<A>(ray, leaves);
+        let mut winding = winding(&passages);
+        let mut turns = Vec::new();
+        for here in passages.chunk_by(|one, other| self.compared(ray, one, other).is_eq()) {
+            let before = winding;
+            // Back from there, as much less.
+            winding -= self::winding(here);
+            let bounding = here.iter().find(|passage| passage.enters == (winding > before));
+            if (before == 0) != (winding == 0)
+                && let Some(Passage { face, distance, .. }) = bounding.copied()
+            {
+                turns.push(Turn { face, distance });
+            }
+        }
+        turns
+    }
+
+    /// Returns the faces of a closed mesh that a ray passes through, in the order of their distances, and those at one
+    /// distance in the order of the file.
+    pub(super) fn passages<A: Bounded>(&self, ray: &Ray, leaves: f64) -> Vec<Passage> {
+        let mut passages = Vec::new();
+        let leaving = if leaves < 0.0 { NOTHING } else { Leaving { least: leaves, most: leaves } };
+        self.each(ray, &RayRange::ALL, leaving, |face, _| {
+            let corners = self.corners(face);
+            if let Some(enters) = enters(corners, ray)
+                && side_of_plane(corners, ray.origin)
+                    == if enters { Ordering::Less } else { Ordering::Greater }
+            {
+                let triangle = self.triangle::<A>(face);
+                if leaves < 0.0 || !is_on_surface(&triangle, ray.origin, leaves) {
+                    passages.push(Passage { face, enters, distance: triangle.plane.crossing(ray) });
+                }
+            }
+            MISS
+        });
+        passages.sort_by(|one, other| {
+            self.compared(ray, one, other).then(self.order[one.face].cmp(&self.order[other.face]))
+        });
+        passages
+    }
+
+    /// Compares the distances of two faces along a ray.
+    fn compared(&self, ray: &Ray, one: &Passage, other: &Passage) -> Ordering {
+        if (one.distance - other.distance).abs() > close(ray, one.distance) {
+            return one.distance.total_cmp(&other.distance);
+        }
+        nearer(ray, [one, other].map(|passage| self.corners(passage.face)))
+    }
+}
+
+/// Returns the winding number where a ray starts that passes through these faces.
+pub(super) fn winding(passages: &[Passage]) -> i32 {
+    passages.iter().map(|passage| if passage.enters { -1 } else { 1 }).sum()
+}
+
+/// Tells whether the line of a ray passes a face from its outer to its inner side; `None` where it passes by.
+fn enters(corners: [DVec3; 3], ray: &Ray) -> Option<bool> {
+    let [a, b, c] = corners;
+    match passed(corners, ray, RayError::NONE) {
+        Some(false) => None,
+        Some(true) => Some((a - ray.origin).cross(b - ray.origin).dot(ray.dir) < 0.0),
+        None => {
+            let sides = [(a, b), (b, c), (c, a)].map(|(from, to)| side(from, to, ray));
+            // On all sides alike. A ray along an edge is parallel to the face.
+            (sides[0].is_ne() && sides[0] == sides[1] && sides[1] == sides[2]).then(|| sides[0].is_lt())
+        }
+    }
+}
+
+/// Tells on which side of the line from one point to another a ray passes that is moved as the module says; `Equal` for a
+/// parallel one.
+fn side(from: DVec3, to: DVec3, ray: &Ray) -> Ordering {
+    // The derivative along an axis is the component of the product of the direction and the edge.
+    let moved = || {
+        let edge = scaled_to_one(per_axis(|axis| DoubleDouble::difference(to[axis], from[axis])));
+        cross(ray.dir.to_array().map(DoubleDouble::from), edge).map(|part| sign(part.high))
+    };
+    sign(exact_side(from, to, ray)).then_with(|| {
+        let [x, y, z] = moved();
+        x.then(y).then(z)
+    })
+}
+
+fn sign(of: f64) -> Ordering {
+    of.partial_cmp(&0.0).unwrap_or(Ordering::Equal)
+}
+
+/// Compares the distances along a ray of the planes of two faces, neither of which is parallel to it.
+fn nearer(ray: &Ray, faces: [[DVec3; 3]; 2]) -> Ordering {
+    let all = faces.as_flattened().iter().chain([&ray.origin]);
+    let size = all.map(|at| at.abs().max_element()).fold(0.0, f64::max);
+    let scale = times_power_of_two(1.0, exponent_to_one(size));
+    let minus = |one: DVec3, other: DVec3| {
+        per_axis(|axis| Exact::sum([scale * one[axis], -scale * other[axis]]))
+    };
+    let dir = ray.dir.to_array().map(|part| Exact::sum([part]));
+    let fraction = |[a, b, c]: [DVec3; 3]| {
+        let (one, other) = (minus(b, a), minus(c, a));
+        let normal = [(1, 2), (2, 0), (0, 1)].map(|(u, v)| less(&one[u], &other[v], &one[v], &other[u]));
+        [minus(a, ray.origin), dir.clone()]
+            .map(|of| Exact::sum(normal.iter().zip(&of).flat_map(|(one, other)| one.times(other))))
+    };
+    let [[away, toward], [other_away, other_toward]] = faces.map(fraction);
+    let difference = sign_of(&less(&away, &other_toward, &other_away, &toward));
+    if sign_of(&toward) == sign_of(&other_toward) { difference } else { difference.reverse() }
+}
+
+/// Returns the product of two numbers, less that of two others.
+fn less(one: &Exact, times: &Exact, other: &Exact, by: &Exact) -> Exact {
+    Exact::sum(one.times(times).chain(other.times(by).map(|term| -term)))
+}
+
+fn sign_of(number: &Exact) -> Ordering {
+    sign(number.parts().last().copied().unwrap_or(0.0))
+}
