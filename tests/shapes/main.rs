@@ -23,3 +23,4 @@ mod polynomials;
 mod query;
 mod solids;
 mod stability;
+mod winding;

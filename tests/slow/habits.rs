@@ -1,64 +1,15 @@
 //! Meshes and textures as programs and people write them: each habit of real files in a small file of its own.
 
 use crate::common::{registry, render};
+use crate::mesh_files::{Model, bodies};
 use image::RgbImage;
 use std::fs;
 use tabray::scene;
 use tempfile::TempDir;
 
 /// A cube from 0 to 1, of twelve triangles.
-const CORNERS: [[f32; 3]; 8] = [
-    [0.0, 0.0, 0.0],
-    [1.0, 0.0, 0.0],
-    [1.0, 1.0, 0.0],
-    [0.0, 1.0, 0.0],
-    [0.0, 0.0, 1.0],
-    [1.0, 0.0, 1.0],
-    [1.0, 1.0, 1.0],
-    [0.0, 1.0, 1.0],
-];
-const SIDES: [[usize; 4]; 6] =
-    [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [2, 3, 7, 6], [1, 2, 6, 5], [0, 4, 7, 3]];
-
-fn triangles() -> Vec<[usize; 3]> {
-    SIDES.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect()
-}
-
-fn obj() -> String {
-    let vertices = CORNERS.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n"));
-    vertices.chain(triangles().iter().map(|[a, b, c]| format!("f {} {} {}\n", a + 1, b + 1, c + 1))).collect()
-}
-
-fn ply() -> String {
-    let vertices: String = CORNERS.iter().map(|[x, y, z]| format!("{x} {y} {z}\n")).collect();
-    let faces: String = triangles().iter().map(|[a, b, c]| format!("3 {a} {b} {c}\n")).collect();
-    format!(
-        "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n\
-         element face 12\nproperty list uchar int vertex_indices\nend_header\n{vertices}{faces}"
-    )
-}
-
-fn stl() -> String {
-    let facet = |face: &[usize; 3]| {
-        let vertices = face.map(|corner| {
-            let [x, y, z] = CORNERS[corner];
-            format!("vertex {x} {y} {z}\n")
-        });
-        format!("facet normal 0 0 0\nouter loop\n{}endloop\nendfacet\n", vertices.concat())
-    };
-    format!("solid cube\n{}endsolid cube\n", triangles().iter().map(facet).collect::<String>())
-}
-
-fn stl_bytes(title: &str, announced: u32, spare: &[u8]) -> Vec<u8> {
-    let mut bytes = title.as_bytes().to_vec();
-    bytes.resize(80, 0);
-    bytes.extend(announced.to_le_bytes());
-    for face in triangles() {
-        bytes.extend([0; 12]);
-        face.iter().flat_map(|corner| CORNERS[*corner]).for_each(|part| bytes.extend(part.to_le_bytes()));
-        bytes.extend([0; 2]);
-    }
-    [bytes, spare.to_vec()].concat()
+fn cube() -> Model {
+    bodies::cube().of_triangles()
 }
 
 /// Renders a scene with a mesh from a file, and returns it with the warnings, or the errors.
@@ -79,9 +30,9 @@ fn shown(name: &str, bytes: &[u8], attributes: &str) -> Result<(RgbImage, String
 
 #[test]
 fn files_that_other_programs_read_show_the_same_cube() {
-    let (right, silence) = shown("cube.obj", obj().as_bytes(), "").expect("a cube");
+    let (right, silence) = shown("cube.obj", cube().obj().as_bytes(), "").expect("a cube");
     assert!(silence.is_empty() && right.pixels().any(|pixel| pixel.0[0] > 100));
-    let (obj, ply, stl) = (obj(), ply(), stl());
+    let (obj, ply, stl) = (cube().obj(), cube().ply(), cube().stl());
     let lines = |end: &str, text: &str| text.replace('\n', end).into_bytes();
     let flipped: String = obj
         .lines()
@@ -140,22 +91,22 @@ fn files_that_other_programs_read_show_the_same_cube() {
         ("end loop", "a.stl", stl.replace("endloop", "end loop").into_bytes(), ""),
         ("a byte order mark", "a.stl", format!("\u{feff}{stl}").into_bytes(), ""),
         ("carriage returns", "a.stl", lines("\r", &stl), ""),
-        ("a title like a text", "a.stl", stl_bytes("solid cube", 12, &[]), ""),
-        ("a title like a text, and a spare byte", "a.stl", stl_bytes("solid cube", 12, b"\n"), ""),
+        ("a title like a text", "a.stl", cube().stl_bytes("solid cube", 12, &[]), ""),
+        ("a title like a text, and a spare byte", "a.stl", cube().stl_bytes("solid cube", 12, b"\n"), ""),
         (
             "a count that is too small",
             "a.stl",
-            stl_bytes("cube", 5, &[]),
+            cube().stl_bytes("cube", 5, &[]),
             "announces 5 triangles and holds 12",
         ),
         (
             "a count that is too large",
             "a.stl",
-            stl_bytes("cube", 100, &[]),
+            cube().stl_bytes("cube", 100, &[]),
             "announces 100 triangles and holds 12",
         ),
-        ("a count of 0", "a.stl", stl_bytes("cube", 0, &[]), "announces 0 triangles and holds 12"),
-        ("an STL without an ending", "cube", stl_bytes("cube", 12, &[]), ""),
+        ("a count of 0", "a.stl", cube().stl_bytes("cube", 0, &[]), "announces 0 triangles and holds 12"),
+        ("an STL without an ending", "cube", cube().stl_bytes("cube", 12, &[]), ""),
     ] {
         let (picture, warnings) =
             shown(name, &bytes, "").unwrap_or_else(|errors| panic!("{habit}: {errors}"));
@@ -166,14 +117,19 @@ fn files_that_other_programs_read_show_the_same_cube() {
 
 #[test]
 fn files_that_cannot_be_read_are_called_what_they_are() {
-    let wide: Vec<u8> = format!("\u{feff}{}", obj()).encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let wide: Vec<u8> =
+        format!("\u{feff}{}", cube().obj()).encode_utf16().flat_map(u16::to_le_bytes).collect();
     for (name, bytes, said) in [
         ("a.obj", wide, "UTF-16"),
         ("a.ply", b"\x1f\x8b\x08\0\0\0\0\0\0\x03\x01\x02".to_vec(), "gzip"),
         ("a.stl", b"PK\x03\x04\x14\0\0\0".to_vec(), "ZIP"),
         ("a.obj", b"v 0 0 0\nv 1 0 0\n".to_vec(), "cloud of points"),
         ("a.obj", b"version https://git-lfs.github.com/spec/v1\n".to_vec(), "git lfs pull"),
-        ("a.ply", ply().into_bytes()[..ply().len() - 20].to_vec(), "ends before all of its elements"),
+        (
+            "a.ply",
+            cube().ply().into_bytes()[..cube().ply().len() - 20].to_vec(),
+            "ends before all of its elements",
+        ),
     ] {
         let errors = shown(name, &bytes, "").err().unwrap_or_else(|| panic!("{said}"));
         assert!(errors.contains(said), "{said}: {errors}");

@@ -17,6 +17,8 @@ mod falsify;
 mod fuzz;
 mod gallery;
 mod habits;
+mod mesh_files;
+mod mesh_table;
 mod performance;
 mod plugins;
 mod proven;

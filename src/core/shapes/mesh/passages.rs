@@ -86,6 +86,17 @@ impl Surface {
         passages
     }
 
+    /// Tells whether plain arithmetic tells of each face up to a distance, in world units, whether a ray passes through it, as
+    /// it then does of the camera's ray that was rounded to this one.
+    pub(super) fn is_off_edges(&self, ray: &Ray, far: f64) -> bool {
+        let mut is_off = true;
+        self.each(ray, &RayRange { far, ..RayRange::ALL }, NOTHING, |face, _| {
+            is_off &= passed(self.corners(face), ray, RayError::NONE).is_some();
+            if is_off { far } else { -1.0 }
+        });
+        is_off
+    }
+
     /// Compares the distances of two faces along a ray.
     fn compared(&self, ray: &Ray, one: &Passage, other: &Passage) -> Ordering {
         if (one.distance - other.distance).abs() > close(ray, one.distance) {
@@ -137,9 +148,8 @@ fn nearer(ray: &Ray, faces: [[DVec3; 3]; 2]) -> Ordering {
     let all = faces.as_flattened().iter().chain([&ray.origin]);
     let size = all.map(|at| at.abs().max_element()).fold(0.0, f64::max);
     let scale = times_power_of_two(1.0, exponent_to_one(size));
-    let minus = |one: DVec3, other: DVec3| {
-        per_axis(|axis| Exact::sum([scale * one[axis], -scale * other[axis]]))
-    };
+    let minus =
+        |one: DVec3, other: DVec3| per_axis(|axis| Exact::sum([scale * one[axis], -scale * other[axis]]));
     let dir = ray.dir.to_array().map(|part| Exact::sum([part]));
     let fraction = |[a, b, c]: [DVec3; 3]| {
         let (one, other) = (minus(b, a), minus(c, a));

@@ -134,9 +134,10 @@ impl<A: Bounded> Hittable for Mesh<A> {
 
     fn why_not_closed(&self) -> Option<&str> {
         match self.surface.why_not_closed {
-            Openness { open: 0, clashing: 0 } => {
-                self.surface.depths().map(|_| "some of its faces do not lie between its inside and the outside")
-            }
+            Openness { open: 0, clashing: 0 } => self
+                .surface
+                .depths()
+                .map(|_| "some of its faces do not lie between its inside and the outside"),
             Openness { open: 0, .. } => Some("some of its faces are turned against their neighbours"),
             _ => Some("some of its edges belong to one face only"),
         }

@@ -70,7 +70,8 @@ impl<A: Bounded> Boundary<A> {
             let (before, after) = (winding, winding + count(true) - count(false));
             if here.iter().all(|(_, face)| self.are_in_plane(first, *face)) {
                 if (before == 0) != (after == 0) {
-                    let bounding = here.iter().zip(&enters).filter(|(_, enters)| **enters == (after > before));
+                    let bounding =
+                        here.iter().zip(&enters).filter(|(_, enters)| **enters == (after > before));
                     let chosen = bounding.min_by_key(|((_, face), _)| surface.order[*face]);
                     let Some((((_, found), face), enters)) = chosen else { return doubtful };
                     return (*found, 2 * face + usize::from(*enters != (before == 0)));

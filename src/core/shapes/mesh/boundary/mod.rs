@@ -11,14 +11,14 @@ use super::shape::{Mesh, RAYS_PER_SEARCH};
 use super::surface::{Depth, Surface};
 use super::winding::DIRECTIONS;
 use crate::geometry::aabb::Aabb;
-use crate::geometry::ray::{MISS, Ray, RayRange, Side};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
 use crate::geometry::sight::Sight;
 use crate::world::accuracy::{Accuracy, Bounded, Exact, Strict};
 use crate::world::any_shape::AnyShape;
 use crate::world::certify::{Assumption, Enclosure, HitProofs, Precision, Premise, ProofMethods};
-use crate::world::coincidence::{CLOSE, ROUNDING};
-use crate::world::hittable::{ByDistance, Facts, Hittable, Shape, TieBreaking};
-use crate::world::packets::shape::HitQueries;
+use crate::world::coincidence::{CLOSE, ROUNDING, close};
+use crate::world::hittable::{Bracketed, ByBracket, Facts, Hittable, Shape};
+use crate::world::packets::shape::{HitQueries, by_distance};
 use f256::f256;
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
@@ -37,8 +37,6 @@ struct Boundary<A> {
 /// Marks a shape whose hits are proven by counting the faces that a ray passes.
 struct ByWinding;
 
-impl TieBreaking for ByWinding {}
-
 impl Surface {
     /// Makes the shape of the boundary of what lies inside of a closed surface; `None` where that is all of the surface, and
     /// for one that is not closed.
@@ -56,7 +54,7 @@ impl<A: Bounded> Boundary<A> {
         surface: &Arc<Surface>,
         depths: Arc<[Depth]>,
         accuracy: Accuracy,
-    ) -> Shape<Self, ByDistance, ByWinding> {
+    ) -> Shape<Self, ByBracket, ByWinding> {
         let mesh = Mesh::shape(surface.clone(), accuracy).shape;
         Shape::new(Self { mesh, depths }).by()
     }
@@ -64,6 +62,11 @@ impl<A: Bounded> Boundary<A> {
     /// Tells whether all of a face lies inside.
     fn is_hidden(&self, face: usize) -> bool {
         self.depths[face].is_some_and(|depth| depth != 0 && depth != -1)
+    }
+
+    /// Tells whether a point is on the boundary, up to an error in world units and to rounding.
+    fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
+        self.mesh.surface.is_on_one_of::<A>(at, error, |face| !self.is_hidden(face))
     }
 
     /// Tells whether a point lies inside, for one that lies on no face.
@@ -161,7 +164,7 @@ impl<A: Bounded> Hittable for Boundary<A> {
     }
 
     fn method(&self) -> String {
-        format!("{}, whose faces are counted along rays where its bodies meet", self.mesh.method())
+        format!("{}; what lies inside of it is left out", self.mesh.method())
     }
 
     fn clearance(&self, from: DVec3) -> Option<f64> {
@@ -177,14 +180,33 @@ impl<A: Bounded> Hittable for Boundary<A> {
     }
 }
 
-impl<A: Bounded> HitQueries for Shape<Boundary<A>, ByDistance, ByWinding> {
+/// A ray of the camera through an edge, as far as plain arithmetic tells, is decided as the scene gives it.
+impl<A: Bounded> Bracketed for Boundary<A> {
+    fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
+        let Aabb { low, high } = self.mesh.surface.bounds;
+        let is_outside = ray.origin.cmplt(low).any() || ray.origin.cmpgt(high).any();
+        let is_from_camera = range.origin_side.is_none() && range.origin_error == 0.0;
+        let is_on_surface = || self.is_on_surface(ray.origin, range.origin_error);
+        by_distance(ray, range, is_on_surface, |range| {
+            let distance = self.distance(ray, range);
+            // What lies inside is counted from the end of the ray, unless the ray starts outside.
+            let far = if is_outside && distance < MISS { distance + close(ray, distance) } else { MISS };
+            (!is_from_camera || self.mesh.surface.is_off_edges(ray, far)).then_some(distance)
+        })
+    }
+
+    fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
+        self.distance(ray, &RayRange { origin_side, ..RayRange::ALL })
+    }
+}
+
+impl<A: Bounded> HitQueries for Shape<Boundary<A>, ByBracket, ByWinding> {
     fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
-        let Boundary { mesh, .. } = &self.shape;
-        mesh.surface.is_on_one_of::<A>(at, error, |face| !self.shape.is_hidden(face))
+        self.shape.is_on_surface(at, error)
     }
 
     fn contains(&self, at: DVec3, error: f64) -> Option<bool> {
-        (!self.is_on_surface(at, error)).then(|| self.shape.is_inside(at))
+        (!self.shape.is_on_surface(at, error)).then(|| self.shape.is_inside(at))
     }
 
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
