@@ -10,6 +10,7 @@ use crate::render::tiles::{self, BAND, Band, TILE, locked};
 use crate::render::trace::{Scratch, Tracer};
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::View;
+use crate::world::material::Rgb;
 use rayon::ThreadPool;
 use std::ops::{ControlFlow, Range};
 
@@ -130,26 +131,26 @@ impl Renderer {
         self.run(|| parallel::for_each_in_order(band.strips.len(), &strip));
     }
 
-    /// Renders a part of the image with its colours before they are clamped and rounded: red, green and blue of each pixel, in rows from
-    /// the top, each from the left. Returns `None` if the overseer stops it. Observers are passed to `watched` as in
+    /// Renders a part of the image with its light before it is clamped and rounded: for each pixel what `of` makes of its light, in
+    /// rows from the top, each from the left. Returns `None` if the overseer stops it. Observers are passed to `watched` as in
     /// [`bands`](Self::bands).
-    pub fn colours<W: ImageObserver>(
+    pub fn light<W: ImageObserver, T: Clone + Default + Send>(
         &self,
         plan: &Plan,
         [columns, rows]: [&Range<usize>; 2],
         overseer: RenderCallbacks,
         watched: &(dyn Fn(W) + Sync),
-    ) -> Option<Vec<f32>> {
-        let ([_, height], display) = (plan.camera.pixels, plan.camera.display());
+        of: &(dyn Fn(Rgb) -> T + Sync),
+    ) -> Option<Vec<T>> {
+        let [_, height] = plan.camera.pixels;
         let (left, width) = (columns.start, columns.len());
-        let mut all = vec![0.0; 3 * width * rows.len()];
-        let strip = |index: usize, strip: &mut [f32]| {
+        let mut all = vec![T::default(); width * rows.len()];
+        let strip = |index: usize, strip: &mut [T]| {
             let top = rows.start + TILE * index;
-            let rows = top..top + strip.len() / (3 * width);
+            let rows = top..top + strip.len() / width;
             let mut add = |_: usize, pixels: &[[usize; 2]], colours: View| {
                 for (index, [x, y]) in pixels.iter().enumerate() {
-                    let colour = display.full_range(colours.get(index)).as_vec3().to_array();
-                    strip[3 * ((height - 1 - y - top) * width + x - left)..][..3].copy_from_slice(&colour);
+                    strip[(height - 1 - y - top) * width + x - left] = of(colours.get(index));
                 }
             };
             let indices = (0..width.div_ceil(TILE)).collect();
@@ -160,8 +161,22 @@ impl Renderer {
             rows.for_each(|_| (overseer.row)());
             flow
         };
-        let finished = self.run(|| parallel::chunks(&mut all, 3 * width * TILE, strip));
+        let finished = self.run(|| parallel::chunks(&mut all, width * TILE, strip));
         finished.is_continue().then_some(all)
+    }
+
+    /// Renders a part of the image as [`light`](Self::light) does, as files of full range have it: red, green and blue of each
+    /// pixel.
+    pub fn colours<W: ImageObserver>(
+        &self,
+        plan: &Plan,
+        part: [&Range<usize>; 2],
+        overseer: RenderCallbacks,
+        watched: &(dyn Fn(W) + Sync),
+    ) -> Option<Vec<f32>> {
+        let display = plan.camera.display();
+        let of = |light: Rgb| display.full_range(light).as_vec3().to_array();
+        self.light(plan, part, overseer, watched, &of).map(Vec::into_flattened)
     }
 
     /// Computes a value for each pixel, in rows counted from the top, each from the left. Returns `None` if `done`,

@@ -11,6 +11,7 @@
 
 mod along;
 mod approach;
+mod arrays;
 mod boundary;
 mod creases;
 mod edges;
@@ -38,6 +39,7 @@ mod to_world;
 mod uv;
 mod winding;
 
+pub use arrays::ArrayError;
 pub use finished::Finished;
 pub use painted::Painted;
 pub use shape::Mesh;

@@ -1,0 +1,85 @@
+//! Meshes from arrays of numbers, without a file.
+
+use super::read::Model;
+use super::surface::{Look, Surface, SurfaceError};
+use super::to_world::ToWorld;
+use crate::geometry::placement::Rotation;
+use crate::parallel;
+use glam::DVec3;
+use std::fmt;
+
+/// The reason why no surface can be made of arrays.
+#[derive(Debug, PartialEq)]
+pub enum ArrayError {
+    /// The first face that has a corner which is no vertex: the index of the face, that of the corner, and what stands there.
+    Corner(usize, usize, u32),
+    /// The first vertex that is not finite, by its index.
+    NotFinite(usize),
+    /// No surface can be made of these triangles, for this reason.
+    Surface(&'static str),
+}
+
+impl fmt::Display for ArrayError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Corner(face, corner, index) => {
+                write!(f, "corner {corner} of face {face} is {index}, which is no vertex")
+            }
+            Self::NotFinite(vertex) => write!(f, "vertex {vertex} is not finite"),
+            Self::Surface(why) => write!(f, "the mesh {why}"),
+        }
+    }
+}
+
+impl Surface {
+    /// Makes the surface of triangles, given by the indices of their vertices. Coordinates stay as they are, and so does the
+    /// turn of each face.
+    ///
+    /// ```
+    /// use tabray_core::glam::DVec3;
+    /// use tabray_core::shapes::mesh::{ArrayError, Surface};
+    ///
+    /// let corners = || vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+    /// assert_eq!(Surface::of_arrays(corners(), vec![[0, 1, 2]]).map(|surface| surface.face_count()), Ok(1));
+    /// assert_eq!(Surface::of_arrays(corners(), vec![[0, 1, 3]]).err(), Some(ArrayError::Corner(0, 2, 3)));
+    /// ```
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn of_arrays(vertices: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Result<Self, ArrayError> {
+        let first = |vertex: usize| !vertices[vertex].is_finite();
+        if let Some(vertex) = parallel::find_first(vertices.len(), first) {
+            return Err(ArrayError::NotFinite(vertex));
+        }
+        let is_none = |index: &u32| *index as usize >= vertices.len();
+        if let Some(face) = parallel::find_first(faces.len(), |face| faces[face].iter().any(is_none)) {
+            let corner = faces[face].iter().position(is_none).unwrap_or(0);
+            return Err(ArrayError::Corner(face, corner, faces[face][corner]));
+        }
+        let placement = ToWorld::new(DVec3::ONE, Rotation::NONE, DVec3::ZERO);
+        let model = Model { vertices, faces, ..Model::default() };
+        let refused = |error: SurfaceError| ArrayError::Surface(error.message().0);
+        Self::new(model, &placement, Look::default()).map_err(refused)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_makes_no_surface_is_told_with_its_first_place() {
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+        let error = |vertices: &[DVec3], faces: &[[u32; 3]]| {
+            Surface::of_arrays(vertices.to_vec(), faces.to_vec()).err().map(|error| error.to_string())
+        };
+        assert_eq!(error(&corners, &[[0, 1, 2], [1, 2, 3]]), None);
+        let told = error(&corners, &[[0, 1, 2], [0, 7, 9], [8, 0, 0]]);
+        assert_eq!(told.as_deref(), Some("corner 1 of face 1 is 7, which is no vertex"));
+        let told = error(&[DVec3::X, DVec3::NAN], &[[0, 1, 0]]);
+        assert_eq!(told.as_deref(), Some("vertex 1 is not finite"));
+        let told = error(&corners, &[[0, 1, 1]]);
+        assert_eq!(told.as_deref(), Some("the mesh has no face with an area"));
+        assert_eq!(error(&corners, &[]).as_deref(), Some("the mesh has no face with an area"));
+    }
+}
