@@ -81,13 +81,6 @@ impl Source {
         Self { name: path.display().to_string(), folder, bytes: text.into_bytes(), sets: sets.clone() }
     }
 
-    /// Returns the text with more lines at its end.
-    #[must_use]
-    pub fn and(&self, lines: &str) -> Self {
-        let bytes = [&self.bytes, &b"\n"[..], lines.as_bytes()].concat();
-        Self { name: self.name.clone(), folder: self.folder.clone(), bytes, sets: self.sets.clone() }
-    }
-
     /// Returns the syntax, by the name or, where that does not tell, by the text.
     pub fn syntax(&self) -> Syntax {
         let of_text = || std::str::from_utf8(&self.bytes).map_or(Syntax::Notes, Syntax::of_text);
@@ -104,10 +97,19 @@ impl Source {
         self.load_by(registry, ReadOptions { above_all: accuracy, ..ReadOptions::default() })
     }
 
+    /// Makes a model of which only rays are asked, and its warnings.
+    pub fn load_for_rays(&self, registry: &Registry, accuracy: Option<Accuracy>) -> Result<Loaded, Report> {
+        let chosen = self.chosen(ReadOptions { above_all: accuracy, ..ReadOptions::default() });
+        reader::read_for_rays(registry, &self.name, &self.folder, &self.bytes, chosen)
+    }
+
     /// Makes a model and its warnings, with the choices of [`ReadOptions`].
-    pub fn load_by(&self, registry: &Registry, accuracy: ReadOptions<'_>) -> Result<Loaded, Report> {
-        let chosen = ReadOptions { sets: &self.sets.values, set_by: &self.sets.set_by, ..accuracy };
-        reader::read_by(registry, &self.name, &self.folder, &self.bytes, chosen)
+    pub fn load_by(&self, registry: &Registry, options: ReadOptions<'_>) -> Result<Loaded, Report> {
+        reader::read_by(registry, &self.name, &self.folder, &self.bytes, self.chosen(options))
+    }
+
+    fn chosen<'s>(&'s self, options: ReadOptions<'s>) -> ReadOptions<'s> {
+        ReadOptions { sets: &self.sets.values, set_by: &self.sets.set_by, ..options }
     }
 }
 

@@ -1,0 +1,56 @@
+//! Scenes of which only rays are asked: they need no camera.
+
+use super::build::NO_CAMERA;
+use super::options::ReadOptions;
+use super::{Loaded, Report, read_by};
+use crate::registry::Registry;
+use crate::syntax::Syntax;
+use std::ffi::OsStr;
+use std::path::Path;
+use tabray_core::scene::value::Datum;
+
+/// A camera for scenes that have none. No answer depends on it.
+const CAMERA: &str =
+    "look_at \"a camera that is not used\" { pixeldim 1 1 position 0 0 1 target 0 0 0 angle 40 }";
+const CAMERA_IN_TOML: &str = "[look_at.\"a camera that is not used\"]
+pixeldim = [1, 1]
+position = [0, 0, 1]
+target = [0, 0, 0]
+angle = 40";
+
+/// Returns the text of a scene of which only rays are asked: the mesh in a file, which is named relative to the scene's folder.
+pub fn mesh_for_rays(file: &Path) -> String {
+    let text = |part: Option<&OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
+    let (name, file) = (text(file.file_stem()), Datum::Word(text(file.file_name())));
+    let (name, file) = (Syntax::Notes.key(&name), Syntax::Notes.values(&file).concat());
+    format!("{CAMERA}\nmaterial grey {{ }}\nmesh {name} {{ material grey file {file} }}\n")
+}
+
+/// Reads a scene of which only rays are asked, as [`read_by`] does. A scene without a camera is given one.
+///
+/// # Errors
+/// Every fault of the scene, warnings among them, in the order of the text.
+pub fn read_for_rays(
+    registry: &Registry,
+    name: &str,
+    folder: &Path,
+    bytes: &[u8],
+    options: ReadOptions<'_>,
+) -> Result<Loaded, Report> {
+    let options = ReadOptions { only_rays: true, ..options };
+    let read = |bytes: &[u8]| read_by(registry, name, folder, bytes, options);
+    read(bytes).or_else(|report| {
+        if !report.lacks_camera() {
+            return Err(report);
+        }
+        let camera = if report.syntax() == Syntax::Toml { CAMERA_IN_TOML } else { CAMERA };
+        read(&[bytes, b"\n", camera.as_bytes()].concat())
+    })
+}
+
+impl Report {
+    /// Tells whether one of the faults is that the scene has no camera.
+    pub fn lacks_camera(&self) -> bool {
+        self.faults().iter().any(|fault| fault.message == NO_CAMERA)
+    }
+}
