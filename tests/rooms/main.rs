@@ -9,6 +9,7 @@ mod imports;
 use imports::{Import, Tree};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
+use std::iter;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -34,7 +35,7 @@ fn sources(folder: &str) -> Vec<PathBuf> {
 }
 
 /// The crates, from the bottom up, but for the program and the plugins, whose files are few or import nothing.
-const CRATES: [&str; 5] = ["exact", "core", "lang", "tools", "cli"];
+const CRATES: [&str; 6] = ["exact", "core", "lang", "tools", "cli", "python"];
 
 /// Returns the modules of a crate, without its examples and the templates of `tabray new`.
 fn tree(crate_: &str) -> Tree {
@@ -175,15 +176,15 @@ fn the_drawings_name_what_is_there() {
     }
 }
 
-/// Returns the manifests of the workspace's members.
+/// Returns the manifests of the program and of the workspace's members.
 fn manifests() -> Vec<toml::Table> {
     let read = |folder: &str| {
         let text = fs::read_to_string(root().join(folder).join("Cargo.toml")).expect("a manifest");
         toml::from_str::<toml::Table>(&text).expect("a manifest in TOML")
     };
     let all = read(".");
-    let members = all["workspace"]["default-members"].as_array().expect("default-members");
-    members.iter().map(|member| read(member.as_str().expect("a folder"))).collect()
+    let members = all["workspace"]["members"].as_array().expect("members").clone();
+    iter::once(all).chain(members.iter().map(|member| read(member.as_str().expect("a folder")))).collect()
 }
 
 /// Returns the external crates in the tables of this name, also those for single systems.

@@ -1,0 +1,265 @@
+//! What rays hit, as arrays.
+
+use crate::arrays::{Rows, Vectors, View, numbers};
+use crate::work::{Course, How};
+use glam::DVec3;
+use numpy::ndarray::{Array2, ArrayView1};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use tabray_core::geometry::ray_packet::PACKET_SIZE;
+use tabray_core::parallel;
+use tabray_core::query::{Answer, ExactRay, Query, Surroundings, Verdict};
+use tabray_core::scene::model::Model;
+use tabray_core::world::certify::Precision;
+use tabray_tools::hits::answers::code;
+
+/// The number of packets whose answers are put into arrays at a time: enough for all threads, and little memory.
+const TOGETHER: usize = 256;
+
+/// The number of rays that 237 bits answer between two looks at whether the work ends: about a tenth of a second.
+const TIGHT: usize = 16;
+
+/// How rays are answered.
+#[derive(Clone, Copy)]
+pub struct Asked {
+    /// Whether nothing is proven.
+    pub fast: bool,
+    /// Whether bounds are narrowed with 237 bits.
+    pub tight: bool,
+}
+
+/// The rays that are asked about.
+pub struct Rays<'py> {
+    count: usize,
+    origins: Rows<'py>,
+    directions: Rows<'py>,
+    ends: Option<PyReadonlyArray1<'py, f64>>,
+}
+
+/// A view of them, for other threads.
+struct RayView<'a> {
+    count: usize,
+    origins: View<'a>,
+    directions: View<'a>,
+    ends: Option<ArrayView1<'a, f64>>,
+}
+
+impl<'py> Rays<'py> {
+    /// Takes the arrays of rays.
+    pub fn of(
+        origins: &Bound<'py, PyAny>,
+        directions: &Bound<'py, PyAny>,
+        t_max: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Self> {
+        let [from, along] = [Vectors::of(origins, "origins")?, Vectors::of(directions, "directions")?];
+        let count = match (from.count(), along.count()) {
+            (Some(one), Some(other)) if one != other => {
+                return Err(PyValueError::new_err(format!(
+                    "there are {one} origins and {other} directions: give as many of both, or one for all"
+                )));
+            }
+            (one, other) => one.or(other).unwrap_or(1),
+        };
+        let ends = t_max.map(|ends| numbers(ends, "t_max", count)).transpose()?;
+        Ok(Self { count, origins: from.rows(count)?, directions: along.rows(count)?, ends })
+    }
+
+    fn view(&self) -> RayView<'_> {
+        let ends = self.ends.as_ref().map(|ends| ends.as_array());
+        RayView { count: self.count, origins: self.origins.view(), directions: self.directions.view(), ends }
+    }
+}
+
+impl RayView<'_> {
+    /// Returns a ray with the t at which it ends, or what is wrong with it.
+    fn ray(&self, index: usize) -> Result<(ExactRay, f64), String> {
+        let (origin, dir) = (self.origins.row(index), self.directions.row(index));
+        let ray = ExactRay::new(origin, dir).ok_or_else(|| match dir == DVec3::ZERO {
+            true => format!("the direction of ray {index} is 0: a ray goes somewhere"),
+            false => format!("ray {index} is not finite: its origin is {origin}, and its direction {dir}"),
+        })?;
+        let end = self.ends.map_or(f64::INFINITY, |ends| ends[index]);
+        if end > 0.0 {
+            Ok((ray, end))
+        } else {
+            Err(format!("`t_max` of ray {index} is {end}: give a positive number"))
+        }
+    }
+}
+
+/// What is told of a ray.
+type Told = (Answer, Option<Surroundings>);
+
+/// Answers all rays, some at a time, and passes on what is told of them, in their order. The answers depend on the rays alone.
+fn answer(
+    course: &Course,
+    query: &Query,
+    rays: &RayView,
+    asked: Asked,
+    told: &(dyn Fn(&Query, &ExactRay, Answer, f64) -> Told + Sync),
+    sink: &mut dyn FnMut(Told),
+) -> Result<(), String> {
+    let size = if asked.tight { TIGHT } else { PACKET_SIZE };
+    let packet = |first: usize| -> Result<Vec<Told>, String> {
+        if course.stops() {
+            return Ok(Vec::new());
+        }
+        let range = first..rays.count.min(first + size);
+        let (of, ends): (Vec<_>, Vec<_>) =
+            range.clone().map(|index| rays.ray(index)).collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
+        let answers = if asked.fast { query.traced(&of) } else { query.proven(&of, asked.tight) };
+        course.step(range.len());
+        let answers = of.iter().zip(answers).zip(ends);
+        Ok(answers.map(|((ray, answer), end)| told(query, ray, answer, end)).collect())
+    };
+    for first in (0..rays.count).step_by(TOGETHER * size) {
+        let packets = (rays.count - first).div_ceil(size).min(TOGETHER);
+        for answers in parallel::map(packets, |index| packet(first + index * size)) {
+            answers?.into_iter().for_each(&mut *sink);
+        }
+        if course.stops() {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// What rays hit: an array for each thing that is known, with an entry for each ray. What there is not is -1 or NaN.
+#[pyclass(frozen, module = "tabray", get_all)]
+pub struct Hits {
+    /// What is known: a `Verdict`. uint8.
+    verdict: Py<PyArray1<u8>>,
+    /// The number of bits that proved it: 53 or 237; 0 without a proof. uint8.
+    proof: Py<PyArray1<u8>>,
+    /// The object, an index of `Scene.objects`. int32.
+    object: Py<PyArray1<i32>>,
+    /// The face of the object, where it has several. int32.
+    face: Py<PyArray1<i32>>,
+    /// The hit, in lengths of the ray's direction.
+    t: Py<PyArray1<f64>>,
+    /// A number that the real t is not below; without a proof -inf.
+    t_low: Py<PyArray1<f64>>,
+    /// A number that the real t is not above; without a proof inf.
+    t_high: Py<PyArray1<f64>>,
+    /// The distance in world units, rounded.
+    distance: Py<PyArray1<f64>>,
+    /// The point, rounded. (n, 3).
+    point: Py<PyArray2<f64>>,
+    /// The unit normal there, as the shape has it, rounded. (n, 3).
+    normal: Py<PyArray2<f64>>,
+}
+
+/// The columns of the answers.
+#[derive(Default)]
+struct Columns {
+    verdict: Vec<u8>,
+    proof: Vec<u8>,
+    object: Vec<i32>,
+    face: Vec<i32>,
+    t: Vec<f64>,
+    t_low: Vec<f64>,
+    t_high: Vec<f64>,
+    distance: Vec<f64>,
+    point: Vec<f64>,
+    normal: Vec<f64>,
+}
+
+impl Columns {
+    fn add(&mut self, (answer, surface): Told) {
+        let index = |index: Option<u32>| index.map_or(-1, |index| index as i32);
+        let vector = |vector: Option<DVec3>| vector.unwrap_or(DVec3::NAN).to_array();
+        self.verdict.push(code(answer.verdict));
+        self.proof.push(match answer.proof {
+            None => 0,
+            Some(Precision::Double) => 53,
+            Some(Precision::Octuple) => 237,
+        });
+        self.object.push(index(answer.object.map(|object| object as u32)));
+        self.face.push(index(surface.and_then(|surface| surface.face)));
+        self.t.push(answer.t);
+        self.t_low.push(answer.bounds.low);
+        self.t_high.push(answer.bounds.high);
+        self.distance.push(answer.distance);
+        self.point.extend(vector(surface.map(|surface| surface.point)));
+        self.normal.extend(vector(surface.map(|surface| surface.normal)));
+    }
+
+    fn into_hits(self, py: Python<'_>) -> PyResult<Hits> {
+        fn array<T: numpy::Element>(py: Python<'_>, of: Vec<T>) -> Py<PyArray1<T>> {
+            of.into_pyarray(py).unbind()
+        }
+        let rows = |of: Vec<f64>| {
+            let rows = Array2::from_shape_vec((of.len() / 3, 3), of);
+            rows.map(|rows| rows.into_pyarray(py).unbind())
+                .map_err(|error| PyValueError::new_err(error.to_string()))
+        };
+        Ok(Hits {
+            verdict: array(py, self.verdict),
+            proof: array(py, self.proof),
+            object: array(py, self.object),
+            face: array(py, self.face),
+            t: array(py, self.t),
+            t_low: array(py, self.t_low),
+            t_high: array(py, self.t_high),
+            distance: array(py, self.distance),
+            point: rows(self.point)?,
+            normal: rows(self.normal)?,
+        })
+    }
+}
+
+/// Says what rays hit first.
+pub fn hits(py: Python<'_>, model: &Model, rays: &Rays, asked: Asked, how: &How) -> PyResult<Hits> {
+    let rays = rays.view();
+    let told = |query: &Query, ray: &ExactRay, answer: Answer, end: f64| {
+        let answer = answer.within(end);
+        (answer, query.surroundings(ray, &answer))
+    };
+    let columns = how.run(py, rays.count, |_, course| {
+        let (query, mut columns) = (Query::new(model), Columns::default());
+        let answered = answer(course, &query, &rays, asked, &told, &mut |told| columns.add(told));
+        answered.map(|()| columns)
+    })?;
+    columns.map_err(PyValueError::new_err)?.into_hits(py)
+}
+
+/// Says for each ray whether anything may be hit before its end.
+pub fn occluded<'py>(
+    py: Python<'py>,
+    model: &Model,
+    rays: &Rays,
+    fast: bool,
+    how: &How,
+) -> PyResult<Bound<'py, PyArray1<bool>>> {
+    let rays = rays.view();
+    let told = |_: &Query, _: &ExactRay, answer: Answer, end: f64| (answer.any_within(end), None);
+    let may_be = how.run(py, rays.count, |_, course| {
+        let (query, mut may_be) = (Query::new(model), Vec::new());
+        let asked = Asked { fast, tight: false };
+        let mut add = |(answer, _): Told| may_be.push(answer.verdict != Verdict::Miss);
+        answer(course, &query, &rays, asked, &told, &mut add).map(|()| may_be)
+    })?;
+    Ok(may_be.map_err(PyValueError::new_err)?.into_pyarray(py))
+}
+
+#[pymethods]
+impl Hits {
+    fn __len__(&self, py: Python<'_>) -> PyResult<usize> {
+        self.verdict.bind(py).as_any().len()
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let verdicts = self.verdict.bind(py).try_readonly()?;
+        let verdicts = verdicts.as_array();
+        let count = |of: u8| verdicts.iter().filter(|verdict| **verdict == of).count();
+        let named = ["miss", "hit", "edge", "tie", "undecided"];
+        let told = (0..).zip(named).map(|(of, name)| (count(of), name)).filter(|(count, _)| *count > 0);
+        let told = told.map(|(count, name)| format!("{count} {name}")).collect::<Vec<_>>().join(", ");
+        Ok(format!(
+            "<tabray.Hits of {} rays: {}>",
+            verdicts.len(),
+            if told.is_empty() { "none" } else { &told }
+        ))
+    }
+}

@@ -1,0 +1,210 @@
+//! Images as arrays.
+
+use crate::work::How;
+use glam::DVec3;
+use numpy::ndarray::{Array2, Array3};
+use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray3};
+use pyo3::exceptions::{PyKeyboardInterrupt, PyOSError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use std::io::{self, Write};
+use std::iter;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+use tabray_core::output::deflate::Compression;
+use tabray_core::output::full_range::FullRange;
+use tabray_core::output::picture::Format;
+use tabray_core::render::flaws::Flaws;
+use tabray_core::render::plan::Plan;
+use tabray_core::render::renderer::RenderCallbacks;
+use tabray_core::render::{Renderer, trace};
+use tabray_core::scene::model::Model;
+use tabray_core::text::count;
+use tempfile::NamedTempFile;
+
+/// An image: light as an array of shape (height, width, 3), float64, red, green and blue, in rows from the top. `numpy.asarray`
+/// takes it, too.
+///
+/// Light is linear: as it is before tone, transfer curve and rounding, and after the exposure where the scene follows the notes'
+/// rules.
+#[pyclass(frozen, module = "tabray")]
+pub struct Image {
+    size: [usize; 2],
+    /// Red, green and blue of each pixel, as files of images have them.
+    bytes: Vec<u8>,
+    /// The light.
+    #[pyo3(get)]
+    array: Py<PyArray3<f64>>,
+    /// The distance of what is seen in the middle of each pixel, in world units; inf where nothing is. None unless asked for.
+    #[pyo3(get)]
+    depth: Option<Py<PyArray2<f64>>>,
+    /// The object that is seen there, an index of `Scene.objects`; -1 where none is. int32. None unless asked for.
+    #[pyo3(get)]
+    objects: Option<Py<PyArray2<i32>>>,
+    /// The unit normal of what is seen there; 0 where nothing is. (height, width, 3). None unless asked for.
+    #[pyo3(get)]
+    normals: Option<Py<PyArray3<f64>>>,
+}
+
+/// What an image is to be.
+pub struct Wanted {
+    /// The width and the height in pixels, if it is not the scene's.
+    pub size: Option<[usize; 2]>,
+    /// The samples of each pixel, if they are not as many as the scene's.
+    pub samples: Option<u32>,
+    pub depth: bool,
+    pub objects: bool,
+    pub normals: bool,
+}
+
+/// What is seen in the middle of a pixel: its distance, its object and its normal.
+type Seen = (f64, i32, [f64; 3]);
+
+/// Renders an image.
+pub fn render(py: Python<'_>, model: &Model, wanted: &Wanted, how: &How) -> PyResult<Image> {
+    let own = &model.camera.value;
+    let size = wanted.size.unwrap_or(own.pixels);
+    let [width, height] = size;
+    let flaws = Mutex::new(Flaws::default());
+    let made = how.run(py, height, |renderer, course| {
+        // What may be left out of an image depends on its size.
+        let mut plan = if size == own.pixels { Plan::for_picture(model) } else { Plan::new(model) };
+        (plan.camera.pixels, plan.camera.samples) = (size, wanted.samples.unwrap_or(own.samples));
+        let add = |part: Flaws| flaws.lock().unwrap_or_else(PoisonError::into_inner).add(&part);
+        let overseer = RenderCallbacks { stops: &|| course.stops(), row: &|| course.step(1) };
+        let part = [&(0..width), &(0..height)];
+        let light = renderer.light(&plan, part, overseer, &add, &|light| light.to_array())?;
+        let is_seen = wanted.depth || wanted.objects || wanted.normals;
+        let seen = if is_seen { seen(renderer, &plan, &|| course.stops())? } else { Vec::new() };
+        let display = plan.camera.display();
+        let bytes = light.iter().flat_map(|light| display.bytes(DVec3::from(*light))).collect::<Vec<_>>();
+        let of = |light: [f64; 3]| display.full_range(DVec3::from(light)).to_array();
+        let light = light.into_iter().map(of).collect::<Vec<_>>().into_flattened();
+        Some((light, bytes, seen))
+    })?;
+    // It ends early only where a signal is raised.
+    let (light, bytes, seen) = made.ok_or_else(|| PyKeyboardInterrupt::new_err(()))?;
+    warn(py, &flaws.into_inner().unwrap_or_else(PoisonError::into_inner))?;
+    let (flat, deep) = ((height, width), (height, width, 3));
+    let wrong = |error: numpy::ndarray::ShapeError| PyValueError::new_err(error.to_string());
+    let depth = wanted.depth.then(|| seen.iter().map(|seen| seen.0).collect());
+    let depth = depth.map(|depth| Array2::from_shape_vec(flat, depth)).transpose().map_err(wrong)?;
+    let objects = wanted.objects.then(|| seen.iter().map(|seen| seen.1).collect());
+    let objects = objects.map(|objects| Array2::from_shape_vec(flat, objects)).transpose().map_err(wrong)?;
+    let normals = wanted.normals.then(|| seen.iter().flat_map(|seen| seen.2).collect());
+    let normals = normals.map(|normals| Array3::from_shape_vec(deep, normals)).transpose().map_err(wrong)?;
+    Ok(Image {
+        size,
+        bytes,
+        array: Array3::from_shape_vec(deep, light).map_err(wrong)?.into_pyarray(py).unbind(),
+        depth: depth.map(|depth| depth.into_pyarray(py).unbind()),
+        objects: objects.map(|objects| objects.into_pyarray(py).unbind()),
+        normals: normals.map(|normals| normals.into_pyarray(py).unbind()),
+    })
+}
+
+/// Returns what is seen in the middles of all pixels.
+fn seen(renderer: &Renderer, plan: &Plan, stops: &(dyn Fn() -> bool + Sync)) -> Option<Vec<Seen>> {
+    let [_, height] = plan.camera.pixels;
+    let pixel = |x: usize, y: usize| -> Seen {
+        match trace::first_hit(plan, &plan.camera.sight(x as f64, y as f64)) {
+            None => (f64::INFINITY, -1, [0.0; 3]),
+            Some(hit) => (hit.distance, hit.index as i32, hit.object.shape.normal(hit.point).to_array()),
+        }
+    };
+    let done =
+        || if stops() { std::ops::ControlFlow::Break(()) } else { std::ops::ControlFlow::Continue(()) };
+    renderer.pixels(plan, 0..height, &done, pixel)
+}
+
+/// Warns of pixels that are not as they should be.
+fn warn(py: Python<'_>, flaws: &Flaws) -> PyResult<()> {
+    let told = [
+        (flaws.cuts.pixels, "cut off at the ray budget: mirrors or glass spawn too many rays"),
+        (flaws.undecided.pixels(), "could not be decided: a surface that rays touch may be missing there"),
+    ];
+    for (pixels, what) in told.into_iter().filter(|(pixels, _)| *pixels > 0) {
+        let message = format!("{} {what}", count(pixels as usize, "pixel"));
+        py.import("tabray._errors")?.getattr("warn_of_image")?.call1((message,))?;
+    }
+    Ok(())
+}
+
+impl Image {
+    /// Encodes the image as this format has it.
+    fn encoded(&self, format: Format) -> io::Result<Vec<u8>> {
+        let mut file = Vec::new();
+        format.write(&mut file, self.size, iter::once(Ok(self.bytes.clone())))?;
+        Ok(file)
+    }
+
+    fn full_range(&self, py: Python<'_>, format: FullRange) -> PyResult<Vec<u8>> {
+        let array: PyReadonlyArray3<'_, f64> = self.array.bind(py).try_readonly()?;
+        let numbers: Vec<f32> = array.as_array().iter().map(|number| *number as f32).collect();
+        let mut file = Vec::new();
+        format.write(&mut file, self.size, &numbers)?;
+        Ok(file)
+    }
+}
+
+/// Writes a file that appears when it is complete.
+fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut file: NamedTempFile = builder.tempfile_in(folder)?;
+    file.write_all(bytes)?;
+    file.persist(path).map(drop).map_err(|error| error.error)
+}
+
+#[pymethods]
+impl Image {
+    /// Writes the image to a file, in the format of its ending: .png or .ppm for the bytes that the command line writes, .exr or
+    /// .pfm for the light, as float32. A file that exists is replaced when the new one is complete.
+    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let bytes = match (Format::of(&path), FullRange::of(&path)) {
+            (Some(format), _) => self.encoded(format)?,
+            (None, Some(format)) => self.full_range(py, format)?,
+            (None, None) => {
+                let told =
+                    format!("`{}` has no known format: end it in .png, .ppm, .exr or .pfm", path.display());
+                return Err(PyValueError::new_err(told));
+            }
+        };
+        py.detach(|| write(&path, &bytes)).map_err(|error| {
+            let code = error.raw_os_error().unwrap_or(0);
+            PyOSError::new_err((code, error.to_string(), path.display().to_string()))
+        })
+    }
+
+    /// The width and the height in pixels.
+    #[getter]
+    fn size(&self) -> (usize, usize) {
+        (self.size[0], self.size[1])
+    }
+
+    #[pyo3(signature = (dtype=None, copy=None))]
+    fn __array__<'py>(
+        &self,
+        py: Python<'py>,
+        dtype: Option<&Bound<'py, PyAny>>,
+        copy: Option<bool>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let array = self.array.bind(py).as_any();
+        match (dtype, copy) {
+            (None, None | Some(false)) => Ok(array.clone()),
+            (None, Some(true)) => array.call_method0("copy"),
+            (Some(dtype), Some(true)) => array.call_method1("astype", (dtype,)),
+            (Some(dtype), _) => py.import("numpy")?.getattr("asarray")?.call1((array, dtype)),
+        }
+    }
+
+    pub(crate) fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        Ok(PyBytes::new(py, &self.encoded(Format::Png(Compression::Balanced))?))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<tabray.Image of {} x {} pixels>", self.size[0], self.size[1])
+    }
+}

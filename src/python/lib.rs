@@ -1,0 +1,43 @@
+//! The Python package `tabray`: scenes, images, hits and proofs as NumPy arrays. `docs/python.md` shows its use.
+//!
+//! This is the module `tabray._native`; what is simpler in Python is beside it, in `tabray/`.
+
+mod arrays;
+mod errors;
+mod hits;
+mod image;
+mod mesh;
+mod proof;
+mod scene;
+mod work;
+
+// Links the entity types.
+use tabray_plugins as _;
+
+/// What the package does in Rust.
+#[pyo3::pymodule]
+mod _native {
+    use pyo3::exceptions::PyRuntimeError;
+    use pyo3::{PyResult, pyfunction};
+    use tabray_core::text;
+    use tabray_lang::Registry;
+    use tabray_lang::list_json::Tables;
+
+    #[pymodule_export]
+    use crate::hits::Hits;
+    #[pymodule_export]
+    use crate::image::Image;
+    #[pymodule_export]
+    use crate::mesh::{Mesh, mesh};
+    #[pymodule_export]
+    use crate::proof::Proof;
+    #[pymodule_export]
+    use crate::scene::{Scene, read, read_mesh};
+
+    /// Returns the tables of the scene language as JSON: those that `tabray list --json` prints.
+    #[pyfunction]
+    fn tables() -> PyResult<String> {
+        let registry = Registry::get().map_err(PyRuntimeError::new_err)?;
+        Ok(text::json(&Tables::of(registry)))
+    }
+}

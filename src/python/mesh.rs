@@ -1,0 +1,148 @@
+//! Meshes from arrays.
+
+use crate::arrays::{self, Vectors};
+use crate::hits::{self, Asked, Hits, Rays};
+use crate::scene::{self, Source};
+use crate::work::How;
+use glam::DVec3;
+use numpy::{IntoPyArray, PyArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use std::sync::Arc;
+use tabray_core::parallel;
+use tabray_core::query::is_inside;
+use tabray_core::scene::model::Model;
+use tabray_core::shapes::mesh::{Mesh as Shape, Surface};
+use tabray_core::text::count;
+use tabray_core::world::accuracy::{Accuracy, Exact};
+
+/// The number of points that are asked about between two looks at whether the work ends.
+const TOGETHER: usize = 64;
+
+/// A scene of one object. No entity type makes a mesh of arrays: the object is then given its shape.
+const SCENE: &str = "material grey { }  sphere mesh { material grey  center 0 0 0  radius 1 }";
+
+/// A mesh of triangles in memory, which rays and points are asked about. `tabray.mesh` makes one.
+#[pyclass(frozen, module = "tabray")]
+pub struct Mesh {
+    surface: Arc<Surface>,
+    model: Model,
+}
+
+/// Makes a mesh of arrays: vertices of shape (n, 3), numbers of any type, and the corners of triangles, (m, 3), integers of any
+/// type. Coordinates are taken as they are. Triangles without an area are left out: no ray hits them.
+#[pyfunction]
+#[pyo3(signature = (vertices, faces, *, threads=None))]
+pub fn mesh(
+    py: Python<'_>,
+    vertices: &Bound<'_, PyAny>,
+    faces: &Bound<'_, PyAny>,
+    threads: Option<usize>,
+) -> PyResult<Mesh> {
+    let vertices = Vectors::of(vertices, "vertices")?;
+    let rows = vertices.rows(vertices.count().unwrap_or(1))?;
+    let view = rows.view();
+    let count = vertices.count().unwrap_or(1);
+    let faces = arrays::faces(faces, count)?;
+    let how = How { threads, progress: None };
+    let surface =
+        how.run(py, 0, |_, _| Surface::of_arrays((0..count).map(|index| view.row(index)).collect(), faces))?;
+    let surface = Arc::new(surface.map_err(|error| PyValueError::new_err(error.to_string()))?);
+    let mut model = scene::loaded_for_rays(py, &Source::of_text(SCENE))?.model;
+    model.objects[0].shape = Shape::<Exact>::shape(surface.clone(), Accuracy::Exact).into();
+    Ok(Mesh { surface, model })
+}
+
+#[pymethods]
+impl Mesh {
+    /// Says what rays hit first, as `Scene.hits` does. The face is the index of the triangle.
+    #[pyo3(signature = (origins, directions, t_max=None, *, fast=false, tight=false, threads=None, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+    fn hits<'py>(
+        &self,
+        py: Python<'py>,
+        origins: &Bound<'py, PyAny>,
+        directions: &Bound<'py, PyAny>,
+        t_max: Option<&Bound<'py, PyAny>>,
+        fast: bool,
+        tight: bool,
+        threads: Option<usize>,
+        progress: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Hits> {
+        let rays = Rays::of(origins, directions, t_max)?;
+        hits::hits(py, &self.model, &rays, Asked { fast, tight }, &How { threads, progress })
+    }
+
+    /// Says for each ray whether anything is hit before its end, as `Scene.occluded` does.
+    #[pyo3(signature = (origins, directions, t_max=None, *, fast=false, threads=None, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+    fn occluded<'py>(
+        &self,
+        py: Python<'py>,
+        origins: &Bound<'py, PyAny>,
+        directions: &Bound<'py, PyAny>,
+        t_max: Option<&Bound<'py, PyAny>>,
+        fast: bool,
+        threads: Option<usize>,
+        progress: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray1<bool>>> {
+        let rays = Rays::of(origins, directions, t_max)?;
+        hits::occluded(py, &self.model, &rays, fast, &How { threads, progress })
+    }
+
+    /// Says for each point whether it is inside: 1 inside, 0 outside, and -1 where 237 bits do not tell, as on the surface. int8.
+    ///
+    /// It is inside if both halves of a line through it cross the surface an odd number of times, each crossing proven; faces
+    /// need not agree in how they are turned. The mesh must be closed.
+    #[pyo3(signature = (points, *, threads=None, progress=None))]
+    fn inside<'py>(
+        &self,
+        py: Python<'py>,
+        points: &Bound<'py, PyAny>,
+        threads: Option<usize>,
+        progress: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray1<i8>>> {
+        let open = self.surface.why_not_closed.open;
+        if open > 0 {
+            let edges = count(open, "edge");
+            return Err(PyValueError::new_err(format!("the mesh is open at {edges}: it has no inside")));
+        }
+        let points = Vectors::of(points, "points")?;
+        let count = points.count().unwrap_or(1);
+        let rows = points.rows(count)?;
+        let (view, shape) = (rows.view(), &self.model.objects[0].shape);
+        let point = |index: usize| -> Result<i8, usize> {
+            let at: DVec3 = view.row(index);
+            let known = at.is_finite().then(|| is_inside(shape, at)).ok_or(index)?;
+            Ok(known.map_or(-1, i8::from))
+        };
+        let inside: Result<Vec<i8>, usize> = How { threads, progress }.run(py, count, |_, course| {
+            let parts = parallel::map(count.div_ceil(TOGETHER), |part| {
+                let range = part * TOGETHER..count.min((part + 1) * TOGETHER);
+                course.step(range.len());
+                let range = if course.stops() { 0..0 } else { range };
+                range.map(point).collect::<Result<Vec<_>, _>>()
+            });
+            parts.into_iter().collect::<Result<Vec<_>, _>>().map(|parts| parts.concat())
+        })?;
+        let inside = inside.map_err(|at| PyValueError::new_err(format!("point {at} is not finite")))?;
+        Ok(inside.into_pyarray(py))
+    }
+
+    /// Whether each edge joins two triangles, or an even number of them.
+    #[getter]
+    fn is_closed(&self) -> bool {
+        self.surface.why_not_closed.open == 0
+    }
+
+    /// The low and the high corner of a box around the mesh.
+    #[getter]
+    fn bounds(&self) -> [[f64; 3]; 2] {
+        self.surface.bounds().map(|corner| corner.to_array())
+    }
+
+    fn __repr__(&self) -> String {
+        let closed = if self.is_closed() { "closed" } else { "open" };
+        format!("<tabray.Mesh of {}, {closed}>", count(self.surface.face_count(), "triangle"))
+    }
+}

@@ -1,0 +1,78 @@
+//! Which object each pixel shows, as it is proven.
+
+use crate::work::How;
+use numpy::ndarray::Array2;
+use numpy::{IntoPyArray, PyArray2};
+use pyo3::exceptions::PyKeyboardInterrupt;
+use pyo3::prelude::*;
+use std::ops::ControlFlow;
+use tabray_core::render::plan::Plan;
+use tabray_core::scene::model::Model;
+use tabray_tools::verify::{self, Verdict};
+
+/// What is proven of each pixel: masks of shape (height, width), in rows from the top, of which one is True at each pixel. A proof
+/// is about the ray through the middle of the pixel.
+#[pyclass(frozen, module = "tabray")]
+pub struct Proof {
+    verdicts: Array2<Verdict>,
+}
+
+/// Proves which object each pixel shows, and compares it with what the tracer finds.
+pub fn verify(py: Python<'_>, model: &Model, how: &How) -> PyResult<Proof> {
+    let [width, height] = model.camera.value.pixels;
+    let verdicts = how.run(py, height, |renderer, course| {
+        let done = || {
+            course.step(1);
+            if course.stops() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        verify::picture(renderer, &Plan::new(model), &done).ok()
+    })?;
+    let verdicts = verdicts.and_then(|verdicts| Array2::from_shape_vec((height, width), verdicts).ok());
+    // It ends early only where a signal is raised.
+    Ok(Proof { verdicts: verdicts.ok_or_else(|| PyKeyboardInterrupt::new_err(()))? })
+}
+
+impl Proof {
+    fn mask<'py>(&self, py: Python<'py>, of: Verdict) -> Bound<'py, PyArray2<bool>> {
+        self.verdicts.mapv(|verdict| verdict == of).into_pyarray(py)
+    }
+}
+
+#[pymethods]
+impl Proof {
+    /// The pixels that certainly show the object that the tracer finds.
+    #[getter]
+    fn proven<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<bool>> {
+        self.mask(py, Verdict::Proven)
+    }
+
+    /// The pixels at which 237 bits do not tell which object is first, or whether one is touched; the tracer finds one of them.
+    #[getter]
+    fn tie<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<bool>> {
+        self.mask(py, Verdict::Tie)
+    }
+
+    /// The pixels that may show a shape without an equation, about which nothing is proven but its bounds.
+    #[getter]
+    fn undecided<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<bool>> {
+        self.mask(py, Verdict::Uncertified)
+    }
+
+    /// The pixels at which the tracer finds an object that certainly is not the first.
+    #[getter]
+    fn contradicted<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<bool>> {
+        self.mask(py, Verdict::Contradicted)
+    }
+
+    fn __repr__(&self) -> String {
+        let count = |of: Verdict| self.verdicts.iter().filter(|verdict| **verdict == of).count();
+        format!(
+            "<tabray.Proof of {} pixels: {} proven, {} tie, {} undecided, {} contradicted>",
+            self.verdicts.len(),
+            count(Verdict::Proven),
+            count(Verdict::Tie),
+            count(Verdict::Uncertified),
+            count(Verdict::Contradicted)
+        )
+    }
+}

@@ -1,0 +1,288 @@
+//! Scenes, as they are read and asked.
+
+use crate::errors;
+use crate::hits::{self, Asked, Hits, Rays};
+use crate::image::{self, Image, Wanted};
+use crate::proof::{self, Proof};
+use crate::work::How;
+use numpy::PyArray1;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
+use tabray_core::scene::choice::Choice;
+use tabray_core::scene::model::Model;
+use tabray_core::text::count;
+use tabray_core::world::accuracy::Accuracy;
+use tabray_core::world::sample::Sampler;
+use tabray_lang::Registry;
+use tabray_lang::reader::{self, Loaded, ReadOptions, Report};
+
+/// The largest side of an image in pixels, as for `pixeldim`.
+const MAX_SIDE: usize = 100_000;
+
+/// The width of a picture in a notebook, at most, in pixels.
+const SHOWN: usize = 640;
+
+/// The text of a scene, from which any number of models can be made.
+pub struct Source {
+    /// What messages call the scene.
+    name: String,
+    /// The folder to which its file names are relative.
+    folder: PathBuf,
+    bytes: Vec<u8>,
+    /// What is set beside the text, and what messages call that.
+    sets: Vec<String>,
+    set_by: Vec<String>,
+}
+
+impl Source {
+    /// Takes a text without a name.
+    pub fn of_text(text: &str) -> Self {
+        let (folder, sets, set_by) = (PathBuf::new(), Vec::new(), Vec::new());
+        Self { name: "<text>".to_owned(), folder, bytes: text.as_bytes().to_vec(), sets, set_by }
+    }
+
+    /// Makes a model, with this accuracy or with the scene's own.
+    fn load(
+        &self,
+        py: Python<'_>,
+        accuracy: Option<Accuracy>,
+        only_rays: bool,
+    ) -> PyResult<Result<Loaded, Report>> {
+        let registry = Registry::get().map_err(PyRuntimeError::new_err)?;
+        let read = if only_rays { reader::read_for_rays } else { reader::read_by };
+        let (sets, set_by) = (&self.sets[..], &self.set_by[..]);
+        How::PLAIN.run(py, 0, |_, _| {
+            let options = ReadOptions { above_all: accuracy, sets, set_by, ..ReadOptions::default() };
+            read(registry, &self.name, &self.folder, &self.bytes, options)
+        })
+    }
+}
+
+/// Makes a model that rays alone are asked about.
+pub fn loaded_for_rays(py: Python<'_>, source: &Source) -> PyResult<Loaded> {
+    source.load(py, Some(Accuracy::Exact), true)?.map_err(|report| errors::exception(py, &report))
+}
+
+/// A scene that is ready to be rendered and asked. `load`, `parse` and `scene` make one.
+#[pyclass(frozen, module = "tabray")]
+pub struct Scene {
+    source: Source,
+    model: Arc<Model>,
+    /// The model with exact hits, where the scene chooses others, once it is asked for.
+    exact: OnceLock<Arc<Model>>,
+    /// Whether the scene has a camera; one without is asked about rays alone.
+    #[pyo3(get)]
+    has_camera: bool,
+}
+
+/// Reads the text of a scene. Its file names are relative to `folder`; `sets` are set beside it, as `--set` has them.
+#[pyfunction]
+pub fn read(
+    py: Python<'_>,
+    name: String,
+    folder: PathBuf,
+    bytes: Vec<u8>,
+    sets: Vec<String>,
+) -> PyResult<Scene> {
+    let set_by = vec!["set".to_owned(); sets.len()];
+    let source = Source { name, folder, bytes, sets, set_by };
+    let (loaded, has_camera) = match source.load(py, None, false)? {
+        Ok(loaded) => (loaded, true),
+        Err(report) if report.lacks_camera() => (loaded_for_rays(py, &source)?, false),
+        Err(report) => return Err(errors::exception(py, &report)),
+    };
+    scene(py, source, loaded, has_camera)
+}
+
+/// Makes a scene of the mesh in a file, which rays are asked about.
+#[pyfunction]
+pub fn read_mesh(py: Python<'_>, path: PathBuf) -> PyResult<Scene> {
+    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    let bytes = reader::mesh_for_rays(&path).into_bytes();
+    let source =
+        Source { name: path.display().to_string(), folder, bytes, sets: Vec::new(), set_by: Vec::new() };
+    let loaded = loaded_for_rays(py, &source)?;
+    scene(py, source, loaded, false)
+}
+
+fn scene(py: Python<'_>, source: Source, loaded: Loaded, has_camera: bool) -> PyResult<Scene> {
+    errors::warn(py, &loaded.warnings)?;
+    Ok(Scene { source, model: Arc::new(loaded.model), exact: OnceLock::new(), has_camera })
+}
+
+impl Scene {
+    /// Returns the model with this accuracy.
+    fn with(&self, py: Python<'_>, accuracy: Accuracy) -> PyResult<Arc<Model>> {
+        if self.model.camera.value.accuracy == accuracy {
+            return Ok(self.model.clone());
+        }
+        if let Some(model) = self.exact.get().filter(|_| accuracy == Accuracy::Exact) {
+            return Ok(model.clone());
+        }
+        let loaded = self.source.load(py, Some(accuracy), !self.has_camera)?;
+        let model = Arc::new(loaded.map_err(|report| errors::exception(py, &report))?.model);
+        Ok(if accuracy == Accuracy::Exact { self.exact.get_or_init(|| model).clone() } else { model })
+    }
+
+    fn needs_camera(&self) -> PyResult<()> {
+        let told = "the scene has no camera, and so no image: add one, such as a `look_at`";
+        if self.has_camera { Ok(()) } else { Err(PyValueError::new_err(told)) }
+    }
+
+    /// Returns the size of an image of which one side or both are given.
+    fn size(&self, width: Option<usize>, height: Option<usize>) -> PyResult<Option<[usize; 2]>> {
+        let [own_width, own_height] = self.model.camera.value.pixels;
+        let scaled = |side: usize, of: usize, to: usize| {
+            ((side as f64 * to as f64 / of as f64).round() as usize).max(1)
+        };
+        let size = match (width, height) {
+            (None, None) => return Ok(None),
+            (Some(width), None) => [width, scaled(width, own_width, own_height)],
+            (None, Some(height)) => [scaled(height, own_height, own_width), height],
+            (Some(width), Some(height)) => [width, height],
+        };
+        if size.iter().all(|side| (1..=MAX_SIDE).contains(side)) {
+            Ok(Some(size))
+        } else {
+            let [width, height] = size;
+            Err(PyValueError::new_err(format!(
+                "an image of {width} x {height} pixels cannot be made: each side is from 1 to {MAX_SIDE}"
+            )))
+        }
+    }
+}
+
+/// Finds the accuracy of this name.
+fn accuracy(name: &str) -> PyResult<Accuracy> {
+    let found = Accuracy::ALL.into_iter().find(|accuracy| accuracy.option().name == name);
+    found.ok_or_else(|| {
+        let names = Accuracy::ALL.map(|accuracy| accuracy.option().name).join(", ");
+        PyValueError::new_err(format!("there is no method `{name}`: the methods are {names}"))
+    })
+}
+
+#[pymethods]
+impl Scene {
+    /// Renders the image. Width and height in pixels, the samples of each pixel and the method ("exact", "strict", "draft" or
+    /// "classic") are by default the scene's own; of width and height, one may be given. `depth`, `objects` and `normals` add
+    /// arrays of these. `progress` is called with the number of rows that are done, and of all.
+    #[pyo3(signature = (
+        *, samples=None, width=None, height=None, method=None, depth=false, objects=false, normals=false, threads=None,
+        progress=None
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+    fn render(
+        &self,
+        py: Python<'_>,
+        samples: Option<u32>,
+        width: Option<usize>,
+        height: Option<usize>,
+        method: Option<&str>,
+        depth: bool,
+        objects: bool,
+        normals: bool,
+        threads: Option<usize>,
+        progress: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<Image> {
+        self.needs_camera()?;
+        if samples.is_some_and(|samples| !(1..=Sampler::MOST).contains(&samples)) {
+            return Err(PyValueError::new_err(format!("`samples` must be from 1 to {}", Sampler::MOST)));
+        }
+        let wanted = Wanted { size: self.size(width, height)?, samples, depth, objects, normals };
+        let model = match method {
+            None => self.model.clone(),
+            Some(name) => self.with(py, accuracy(name)?)?,
+        };
+        image::render(py, &model, &wanted, &How { threads, progress })
+    }
+
+    /// Says what rays hit first, each with a proof. Origins and directions are arrays of shape (n, 3), or (3,) for one that stands
+    /// for all, and are taken as they are if they are float64 or float32; directions need not be unit vectors, and t is in
+    /// lengths of theirs. `t_max` is the t at which rays end, a number or one for each. `fast` proves nothing and says what
+    /// the tracer finds; `tight` narrows the bounds of t with 237 bits, in many times the time. `progress` is called with the number
+    /// of rays that are done, and of all.
+    #[pyo3(signature = (origins, directions, t_max=None, *, fast=false, tight=false, threads=None, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+    fn hits<'py>(
+        &self,
+        py: Python<'py>,
+        origins: &Bound<'py, PyAny>,
+        directions: &Bound<'py, PyAny>,
+        t_max: Option<&Bound<'py, PyAny>>,
+        fast: bool,
+        tight: bool,
+        threads: Option<usize>,
+        progress: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Hits> {
+        let rays = Rays::of(origins, directions, t_max)?;
+        let model = self.with(py, Accuracy::Exact)?;
+        hits::hits(py, &model, &rays, Asked { fast, tight }, &How { threads, progress })
+    }
+
+    /// Says for each ray whether anything is hit before `t_max`, as for shadows. False is proven; True is also where 237 bits do
+    /// not tell. With `fast`, nothing is proven.
+    #[pyo3(signature = (origins, directions, t_max=None, *, fast=false, threads=None, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+    fn occluded<'py>(
+        &self,
+        py: Python<'py>,
+        origins: &Bound<'py, PyAny>,
+        directions: &Bound<'py, PyAny>,
+        t_max: Option<&Bound<'py, PyAny>>,
+        fast: bool,
+        threads: Option<usize>,
+        progress: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray1<bool>>> {
+        let rays = Rays::of(origins, directions, t_max)?;
+        let model = self.with(py, Accuracy::Exact)?;
+        hits::occluded(py, &model, &rays, fast, &How { threads, progress })
+    }
+
+    /// Proves for each pixel which object it shows.
+    #[pyo3(signature = (*, threads=None, progress=None))]
+    fn verify(
+        &self,
+        py: Python<'_>,
+        threads: Option<usize>,
+        progress: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<Proof> {
+        self.needs_camera()?;
+        proof::verify(py, &self.model, &How { threads, progress })
+    }
+
+    /// The names of the objects that rays may hit, by their indices in arrays.
+    #[getter]
+    fn objects(&self) -> Vec<&str> {
+        self.model.objects.iter().map(|object| object.args.name()).collect()
+    }
+
+    /// The width and the height of the image in pixels; None without a camera.
+    #[getter(size)]
+    fn own_size(&self) -> Option<(usize, usize)> {
+        let [width, height] = self.model.camera.value.pixels;
+        self.has_camera.then_some((width, height))
+    }
+
+    fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyBytes>>> {
+        if !self.has_camera {
+            return Ok(None);
+        }
+        let [width, _] = self.model.camera.value.pixels;
+        let size = self.size((width > SHOWN).then_some(SHOWN), None)?;
+        let wanted = Wanted { size, samples: None, depth: false, objects: false, normals: false };
+        image::render(py, &self.model, &wanted, &How::PLAIN)?._repr_png_(py).map(Some)
+    }
+
+    fn __repr__(&self) -> String {
+        let Model { objects, lights, .. } = &*self.model;
+        let image = match self.own_size() {
+            Some((width, height)) => format!("{width} x {height} pixels"),
+            None => "no camera".to_owned(),
+        };
+        let (objects, lights) = (count(objects.len(), "object"), count(lights.len(), "light"));
+        format!("<tabray.Scene `{}`: {objects}, {lights}, {image}>", self.source.name)
+    }
+}

@@ -1,0 +1,135 @@
+"""A ray tracer in which a scene is data, and whose first hits can be proven.
+
+>>> import tabray
+>>> ball = tabray.parse("material red { }  sphere ball { material red  center 0 0 0  radius 2 }")
+>>> hits = ball.hits([[0, 0, 9]], [[0, 0, -1]])
+>>> hits.t[0], hits.verdict[0] == tabray.Verdict.HIT
+(np.float64(7.0), np.True_)
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from os import PathLike
+from pathlib import Path
+from typing import Mapping, Sequence
+
+from . import entities
+from ._errors import Fault, SceneError, SceneWarning
+from ._native import Hits, Image, Mesh, Proof, Scene, mesh
+from ._native import read as _read
+from ._native import read_mesh as _read_mesh
+from ._text import Entities, Value, as_sets, as_toml
+
+__all__ = [
+    "Fault",
+    "Hits",
+    "Image",
+    "Mesh",
+    "Proof",
+    "Scene",
+    "SceneError",
+    "SceneWarning",
+    "Verdict",
+    "entities",
+    "load",
+    "mesh",
+    "parse",
+    "scene",
+    "surface",
+]
+
+_MESHES = {".glb", ".gltf", ".obj", ".ply", ".stl"}
+
+
+class Verdict(IntEnum):
+    """What is known of the first hit of a ray."""
+
+    MISS = 0
+    """The ray hits nothing."""
+    HIT = 1
+    """The ray hits this object first."""
+    EDGE = 2
+    """The ray passes through the edge of this object, as far as 237 bits tell, and hits nothing else before it."""
+    TIE = 3
+    """The ray hits several objects first at once, as far as 237 bits tell."""
+    UNDECIDED = 4
+    """Neither is known, as where a ray touches a surface and does not cross it."""
+
+
+def load(path: str | PathLike[str], *, set: Mapping[str, Value] | None = None) -> Scene:
+    """Read a scene from a file, or make one of the file of a mesh, which has no camera and is asked about rays.
+
+    `set` changes values of the scene: `set={"ball.radius": 3, "n": 5}` those of an attribute and of a `let`.
+
+    Raises SceneError with all faults of the scene, and FileNotFoundError where there is no such file.
+    """
+    path = Path(path)
+    if path.suffix.lower() in _MESHES:
+        path.stat()
+        if set:
+            raise ValueError("the file of a mesh has no values to set")
+        return _read_mesh(path)
+    return _read(str(path), path.parent, path.read_bytes(), as_sets(set))
+
+
+def parse(
+    text: str,
+    *,
+    syntax: str | None = None,
+    folder: str | PathLike[str] = "",
+    set: Mapping[str, Value] | None = None,
+) -> Scene:
+    """Read a scene from its text, in the syntax of `.ray` files or in TOML; by default, its first line tells which.
+
+    The names of files in it are relative to `folder`. `syntax` is "ray" or "toml".
+    """
+    if syntax not in (None, "ray", "toml"):
+        raise ValueError(f'there is no syntax "{syntax}": give "ray" or "toml"')
+    name = "<text>" if syntax is None else f"<text>.{syntax}"
+    return _read(name, Path(folder), text.encode(), as_sets(set))
+
+
+def scene(entities: Entities, *, folder: str | PathLike[str] = "", set: Mapping[str, Value] | None = None) -> Scene:
+    """Make a scene of dicts, as TOML has them: `{"sphere": {"ball": {"radius": 2, ...}}}`; or of a list of such dicts.
+
+    `tabray.entities.sphere("ball", radius=2, ...)` makes a dict of one entity. Entities are checked by the same tables as
+    those of a text, into which the dicts are turned: messages show its lines.
+    """
+    return _read("<scene>.toml", Path(folder), as_toml(entities).encode(), as_sets(set))
+
+
+def surface(
+    formula: str,
+    *,
+    box: float | Sequence[float] = 2.0,
+    colour: Sequence[float] = (0.85, 0.45, 0.2),
+    width: int = 480,
+    height: int = 360,
+    **parameters: float,
+) -> Scene:
+    """Make a scene of the surface on which a formula in x, y and z is 0, with a camera and lights that fit its box.
+
+    `box` clips the surface: half the side of a cube around the origin, or six numbers, the low and the high corner. Other
+    names are parameters of the formula: `surface("x^2 + y^2 + z^2 - r^2", r=1.5)`.
+    """
+    low_high = [-float(box)] * 3 + [float(box)] * 3 if isinstance(box, (int, float)) else [float(side) for side in box]
+    if len(low_high) != 6:
+        raise ValueError("`box` is half the side of a cube, or six numbers: the low and the high corner")
+    low, high = low_high[:3], low_high[3:]
+    middle = [(one + other) / 2 for one, other in zip(low, high)]
+    radius = sum((other - one) ** 2 for one, other in zip(low, high)) ** 0.5 / 2
+
+    def at(x: float, y: float, z: float) -> list[float]:
+        return [centre + radius * along for centre, along in zip(middle, (x, y, z))]
+
+    return scene(
+        [
+            {"let": dict(parameters)} if parameters else {},
+            entities.look_at("eye", pixeldim=[width, height], position=at(1.6, 1.3, 2.4), target=middle, angle=38, samples=4),
+            entities.sky("sky", horizon=[0.75, 0.8, 0.85], zenith=[0.35, 0.45, 0.6], lights=True),
+            entities.material("paint", diffuse=list(colour)),
+            entities.implicit("surface", material="paint", formula=formula, box=low_high),
+            entities.sun("sun", direction=[0.5, 1.0, 0.6], emissivity=[1.6, 1.5, 1.4]),
+        ]
+    )

@@ -1,0 +1,84 @@
+"""Faults of scenes, as exceptions and warnings."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from typing import NamedTuple
+
+
+class Fault(NamedTuple):
+    """One thing that is wrong with a scene."""
+
+    message: str
+    """What is wrong."""
+    path: str | None
+    """The scene as messages name it, or the file that it includes."""
+    line: int | None
+    """The line of the place, from 1."""
+    column: int | None
+    """The first column of the place, from 1, in characters."""
+    span: tuple[int, int] | None
+    """The first byte of the place, from 0, and the first after it."""
+    label: str | None
+    """A few words about the place."""
+    help: str | None
+    """What would be right."""
+    is_error: bool
+    """Whether the scene cannot be made; otherwise it is a warning."""
+
+
+class SceneError(ValueError):
+    """A scene that cannot be made. Its text is the message of the command line, and `faults` are what is wrong."""
+
+    def __init__(self, message: str, report: str) -> None:
+        super().__init__(message)
+        self.faults: list[Fault] = [fault for fault, _ in _faults(report)]
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return (_again, (str(self), self.faults))
+
+
+class SceneWarning(UserWarning):
+    """Something about a scene or its image that may not be as intended."""
+
+
+def _again(message: str, faults: list[Fault]) -> SceneError:
+    error = SceneError(message, "")
+    error.faults = faults
+    return error
+
+
+def _faults(report: str) -> list[tuple[Fault, str]]:
+    """Read the messages of a report, which are JSON, one on each line, as faults with their texts."""
+    faults = []
+    for line in report.splitlines():
+        message = json.loads(line)
+        place = next((place for place in message["spans"] if place["is_primary"]), None)
+        fault = Fault(
+            message=message["message"],
+            path=place and place["file_name"],
+            line=place and place["line_start"],
+            column=place and place["column_start"],
+            span=place and (place["byte_start"], place["byte_end"]),
+            label=place and place["label"],
+            help=message["help"],
+            is_error=message["level"] == "error",
+        )
+        faults.append((fault, message["rendered"]))
+    return faults
+
+
+# How far the caller's own code is from here: `warn`, the scene's reader in `__init__.py`, and what called that.
+_CALLER = 3
+
+
+def warn(report: str) -> None:
+    """Warn of each fault of a report."""
+    for _, text in _faults(report):
+        warnings.warn(SceneWarning(text), stacklevel=_CALLER)
+
+
+def warn_of_image(message: str) -> None:
+    """Warn of something about an image."""
+    warnings.warn(SceneWarning(message), stacklevel=_CALLER - 1)

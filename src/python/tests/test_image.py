@@ -1,0 +1,117 @@
+"""Images are arrays of light, and files with the pixels of the command line's."""
+
+import numpy as np
+import pytest
+
+import tabray
+
+SCENE = """look_at eye { pixeldim 16 12  position 0 2 9  target 0 0 0  angle 40  exposure 1 }
+material red { ambient 0.2 0 0  diffuse 1 0 0 }
+sphere ball { material red  center 0 0 0  radius 2 }
+plane floor { material red  normal 0 1 0  point 0 -2 0 }
+sun lamp { direction 1 2 3  emissivity 4 4 4 }
+"""
+
+
+def png_pixels(data):
+    """Decode a PNG of 8 bits of red, green and blue, with the standard library alone."""
+    import struct
+    import zlib
+
+    assert data[:8] == b"\x89PNG\r\n\x1a\n"
+    width, height = struct.unpack(">II", data[16:24])
+    at, packed = 8, b""
+    while at < len(data):
+        (length,) = struct.unpack(">I", data[at : at + 4])
+        if data[at + 4 : at + 8] == b"IDAT":
+            packed += data[at + 8 : at + 8 + length]
+        at += 12 + length
+    rows = np.frombuffer(zlib.decompress(packed), np.uint8).reshape(height, 1 + 3 * width)
+    pixels = np.zeros((height + 1, width + 1, 3), np.uint8)
+    for y, row in enumerate(rows):
+        line = row[1:].reshape(width, 3)
+        for x in range(width):
+            left, above, corner = pixels[y + 1, x], pixels[y, x + 1], pixels[y, x]
+            guess = left.astype(int) + above - corner
+            far = [abs(guess - left), abs(guess - above), abs(guess - corner)]
+            paeth = np.where(
+                (far[0] <= far[1]) & (far[0] <= far[2]), left, np.where(far[1] <= far[2], above, corner)
+            )
+            mean = ((left.astype(int) + above) // 2).astype(np.uint8)
+            pixels[y + 1, x + 1] = line[x] + [0 * left, left, above, mean, paeth][row[0]]
+    return pixels[1:, 1:]
+
+
+def test_an_image_is_linear_light_in_double_precision():
+    image = tabray.parse(SCENE).render()
+    assert image.array.shape == (12, 16, 3) and image.array.dtype == np.float64 and image.size == (16, 12)
+    assert np.asarray(image) is image.array
+    assert np.asarray(image, dtype=np.float32).dtype == np.float32
+    brighter = tabray.parse(SCENE, set={"lamp.emissivity": [8, 8, 8], "red.ambient": [0.4, 0, 0]}).render()
+    # Light adds up, which what is shown of it does not.
+    assert np.allclose(brighter.array, 2 * image.array, rtol=1e-12) and image.array.max() > 1
+
+
+def test_pngs_have_the_pixels_of_the_command_line(scenes, tmp_path):
+    for name in ["torus", "sphere"]:
+        image = tabray.load(scenes / "entities" / f"{name}.ray").render()
+        image.save(tmp_path / "it.png")
+        ours = png_pixels((tmp_path / "it.png").read_bytes())
+        snapshot = scenes.parent / "snapshots" / "entities" / f"{name}.snap.png"
+        assert np.array_equal(ours, png_pixels(snapshot.read_bytes())), name
+        assert np.array_equal(png_pixels(image._repr_png_()), ours)
+
+
+def test_formats_are_those_of_the_ending(tmp_path):
+    image = tabray.parse(SCENE).render()
+    image.save(tmp_path / "it.ppm")
+    ppm = (tmp_path / "it.ppm").read_bytes()
+    assert ppm.startswith(b"P6 16 12 255\n")
+    assert np.array_equal(
+        np.frombuffer(ppm[-16 * 12 * 3 :], np.uint8).reshape(12, 16, 3), png_pixels(image._repr_png_())
+    )
+    image.save(str(tmp_path / "it.pfm"))
+    pfm = np.frombuffer((tmp_path / "it.pfm").read_bytes()[-16 * 12 * 12 :], np.float32)
+    assert np.array_equal(pfm.reshape(12, 16, 3)[::-1], image.array.astype(np.float32))
+    image.save(tmp_path / "it.exr")
+    for name in ["it.gif", "it"]:
+        with pytest.raises(ValueError, match="no known format"):
+            image.save(tmp_path / name)
+    with pytest.raises(FileNotFoundError):
+        image.save(tmp_path / "none" / "it.png")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["it.exr", "it.pfm", "it.ppm"]
+
+
+def test_depth_objects_and_normals_are_those_of_the_rays():
+    scene = tabray.parse(SCENE)
+    image = scene.render(depth=True, objects=True, normals=True)
+    assert image.depth.dtype == np.float64 and image.objects.dtype == np.int32
+    assert set(np.unique(image.objects)) == {-1, 0, 1}
+    assert np.array_equal(np.isinf(image.depth), image.objects == -1)
+    lengths = np.linalg.norm(image.normals, axis=2)
+    assert np.allclose(lengths, image.objects >= 0)
+    plain = scene.render()
+    assert plain.depth is None and plain.objects is None and plain.normals is None
+    assert np.array_equal(plain.array, image.array)
+
+
+def test_size_samples_and_method_are_chosen():
+    scene = tabray.parse(SCENE)
+    assert scene.render(width=8).size == (8, 6)
+    assert scene.render(height=24).size == (32, 24)
+    assert scene.render(width=5, height=7).array.shape == (7, 5, 3)
+    assert not np.array_equal(scene.render(samples=4).array, scene.render().array)
+    assert scene.render(method="classic").size == (16, 12)
+    assert np.array_equal(scene.render(method="exact", threads=1).array, scene.render(threads=2).array)
+    for wrong in [{"width": 0}, {"height": 10**6}, {"samples": 0}, {"method": "magic"}, {"threads": 0}]:
+        with pytest.raises(ValueError):
+            scene.render(**wrong)
+
+
+def test_a_proof_has_a_mask_of_each_kind():
+    scene = tabray.parse(SCENE)
+    proof = scene.verify()
+    masks = [proof.proven, proof.tie, proof.undecided, proof.contradicted]
+    assert all(mask.shape == (12, 16) and mask.dtype == bool for mask in masks)
+    assert np.array_equal(sum(mask.astype(int) for mask in masks), np.ones((12, 16)))
+    assert proof.proven.mean() > 0.9 and not proof.contradicted.any()
