@@ -16,6 +16,7 @@ use tabray_core::scene::model::Model;
 use tabray_core::text::{self, count, shortest};
 use tabray_core::world::accuracy::Accuracy;
 use tabray_core::world::camera::Projected;
+use tabray_lang::reader::UNUSED_CAMERA;
 use tabray_lang::registry::Registry;
 use tabray_tools::hits::answers;
 use tabray_tools::hits::judge::{self, Finding, Judged, Report};
@@ -79,7 +80,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let model = model::load(registry, &args.scene, &args.set, Some(Accuracy::Exact))?;
     let picture = args.output.as_deref().map(|picture| {
         let format = format_by_name(picture, "end it in .png or .ppm")?;
-        if model.camera.args.name() == model::UNUSED {
+        if model.camera.args.name() == UNUSED_CAMERA {
             let help = "give it a `look_at`; `tabray new scene --mesh FILE` makes a scene of a mesh";
             return Err(Failure::Usage(
                 "the scene has no camera to show it".to_owned(),

@@ -45,7 +45,7 @@ pub(crate) use guesses::find_attribute;
 pub(crate) use located::Located;
 pub use machine::Message;
 pub(crate) use older::is_older;
-pub use only_rays::{mesh_for_rays, read_for_rays};
+pub use only_rays::{UNUSED_CAMERA, mesh_for_rays, read_for_rays};
 pub use options::ReadOptions;
 pub use parsed::Parsed;
 pub use toml_faults::toml_error;

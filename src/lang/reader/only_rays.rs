@@ -9,7 +9,9 @@ use std::ffi::OsStr;
 use std::path::Path;
 use tabray_core::scene::value::Datum;
 
-/// A camera for scenes that have none. No answer depends on it.
+/// The name of the camera that a scene without one is given. No answer depends on it.
+pub const UNUSED_CAMERA: &str = "a camera that is not used";
+
 const CAMERA: &str =
     "look_at \"a camera that is not used\" { pixeldim 1 1 position 0 0 1 target 0 0 0 angle 40 }";
 const CAMERA_IN_TOML: &str = "[look_at.\"a camera that is not used\"]
@@ -52,5 +54,17 @@ impl Report {
     /// Tells whether one of the faults is that the scene has no camera.
     pub fn lacks_camera(&self) -> bool {
         self.faults().iter().any(|fault| fault.message == NO_CAMERA)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_camera_has_its_name_in_both_syntaxes() {
+        for text in [CAMERA, CAMERA_IN_TOML] {
+            assert!(text.contains(&format!("\"{UNUSED_CAMERA}\"")), "{text}");
+        }
     }
 }
