@@ -17,6 +17,7 @@ use crate::world::certify::{self, Enclosure, HitEnclosure, Precision};
 use crate::world::coincidence::{CLOSE, close};
 use f256::f256;
 use glam::DVec3;
+use std::cell::Cell;
 use tabray_exact::interval::{Float, Fraction, Interval, Wide};
 
 impl Surface {
@@ -231,7 +232,14 @@ impl Surface {
             Some(fine) => fine.clip(*low, *high).map(|(entry, _)| entry),
             None => line.clip(*low, *high).map(|(entry, _)| f256::from(entry)),
         };
-        let end = std::cell::Cell::new(f256::INFINITY);
+        let end = Cell::new(f256::INFINITY);
+        // Behind the face that is found without a proof, if that is hit, nothing needs to be looked for.
+        let found = self.first(Cpu::best(), &sight.ray(), &RayRange::ALL, NOTHING, RayError::NONE, false);
+        if let Some(face) = found.face()
+            && let Enclosure::Hits(at) = certify::first_hit(&Face(self.triangle::<A>(face)), sight, precision)
+        {
+            end.set(at.high);
+        }
         let mut met = Vec::new();
         self.tree.within(
             |bounds| entry(bounds).is_some_and(|entry| entry <= end.get()),
