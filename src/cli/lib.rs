@@ -51,7 +51,7 @@ use process::failure::{Failure, report};
 #[cfg(target_os = "linux")]
 use process::interrupt;
 use process::messages::Told;
-use process::{arguments, color, crash, help, memory, messages, program};
+use process::{arguments, color, crash, help, memory, messages, program, progress};
 use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
 use tabray_lang::registry::Registry;
@@ -72,6 +72,9 @@ struct Cli {
     /// Print only errors and warnings
     #[arg(short, long, global = true)]
     quiet: bool,
+    /// How progress is shown
+    #[arg(long, global = true, value_name = "FORM", default_value = "bar")]
+    progress: progress::Form,
     /// Whether messages have colours
     #[arg(long, global = true, value_name = "WHEN", default_value = "auto")]
     color: color::Color,
@@ -163,6 +166,7 @@ fn chosen() -> ExitCode {
         (true, None) => Told::Errors,
     };
     messages::choose(cli.message_format, told);
+    progress::choose(cli.progress);
     let outcome = match Registry::get() {
         Ok(registry) => match cli.command {
             Some(Command::Render(args)) => render::run(registry, *args),

@@ -6,6 +6,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::Path;
 use tabray_core::render::plan::Plan;
 use tabray_core::scene::model::Model;
+use tabray_core::text;
 use tabray_lang::registry::Registry;
 use tabray_tools::probe;
 use tabray_tools::threads::renderer_with;
@@ -22,6 +23,9 @@ pub struct Args {
     /// The pixel's row, from 0 at the bottom
     #[arg(allow_negative_numbers = true, value_parser = place)]
     y: i64,
+    /// Print all rays and colours as JSON, with all digits
+    #[arg(long)]
+    json: bool,
     #[command(flatten)]
     method: method::Args,
 }
@@ -29,6 +33,7 @@ pub struct Args {
 const EXAMPLES: &str = "\
 Examples:
   tabray probe ball.ray 160 120
+  tabray probe ball.ray 160 120 --json
   tabray probe ball.ray 160 120 --method classic";
 
 /// Reads the number of a column or a row.
@@ -40,8 +45,14 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let model = args.scene.load(registry, args.method.accuracy()?)?;
     let [x, y] = inside(&model, [args.x, args.y])?;
     let mut out = BufWriter::new(io::stdout());
-    let printed =
-        renderer_with(1)?.run(|| probe::pixel(&Plan::new(&model), x, y, &mut out).and_then(|()| out.flush()));
+    let plan = Plan::new(&model);
+    let printed = renderer_with(1)?.run(|| {
+        match args.json {
+            true => out.write_all(text::json_in_lines(&probe::explained(&plan, x, y)).as_bytes())?,
+            false => probe::pixel(&plan, x, y, &mut out)?,
+        }
+        out.flush()
+    });
     match printed {
         // A reader that closes the pipe is no failure.
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {

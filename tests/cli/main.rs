@@ -21,6 +21,7 @@ mod limits;
 mod messages;
 mod new;
 mod parts;
+mod programs;
 mod refusals;
 mod review;
 mod samples;

@@ -2,8 +2,30 @@
 
 use crate::process::messages;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::sync::{Mutex, PoisonError};
+use std::io::{self, Write};
+use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
+
+/// How progress is shown.
+#[derive(Clone, Copy, Default, PartialEq, clap::ValueEnum)]
+pub enum Form {
+    /// As a bar, on a terminal
+    #[default]
+    Bar,
+    /// For programs: as JSON on standard error, one object a line, at most ten a second
+    Json,
+}
+
+/// How progress is shown, by what was asked for.
+static CHOSEN: OnceLock<Form> = OnceLock::new();
+
+/// Sets how all later progress is shown.
+pub fn choose(form: Form) {
+    CHOSEN.get_or_init(|| form);
+}
+
+/// The least time between two lines of progress.
+const BETWEEN: Duration = Duration::from_millis(100);
 
 /// The bar that is shown, if there is one.
 static SHOWN: Mutex<Option<ProgressBar>> = Mutex::new(None);
@@ -42,6 +64,8 @@ pub fn clear() {
 pub struct Progress {
     bar: ProgressBar,
     start: Instant,
+    /// When progress was last told to a program.
+    told: Mutex<Instant>,
 }
 
 impl Progress {
@@ -58,7 +82,19 @@ impl Progress {
         Self {
             bar: bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())),
             start: Instant::now(),
+            told: Mutex::new(Instant::now()),
         }
+    }
+
+    /// Tells a program how much is done.
+    fn tell(&self) {
+        let (done, of) = (self.bar.position(), self.bar.length().unwrap_or_default());
+        // Who does not read it misses it.
+        let _ = writeln!(io::stderr(), "{{\"progress\":{{\"done\":{done},\"of\":{of}}}}}");
+    }
+
+    fn is_for_programs() -> bool {
+        CHOSEN.get() == Some(&Form::Json)
     }
 
     /// Adds steps that are to be done.
@@ -72,6 +108,16 @@ impl Progress {
 
     /// Counts steps as done.
     pub fn advance(&self, steps: usize) {
+        if Self::is_for_programs() {
+            self.bar.inc(steps as u64);
+            if let Ok(mut told) = self.told.try_lock()
+                && told.elapsed() >= BETWEEN
+            {
+                *told = Instant::now();
+                self.tell();
+            }
+            return;
+        }
         if self.bar.is_hidden() && !messages::is_quiet() && self.start.elapsed() > Duration::from_millis(500)
         {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
@@ -81,6 +127,9 @@ impl Progress {
     }
 
     pub fn end(&self) {
+        if Self::is_for_programs() && !self.bar.is_finished() {
+            self.tell();
+        }
         self.bar.finish_and_clear();
     }
 }

@@ -1,6 +1,9 @@
 //! Explains one pixel: its rays as an indented tree, with all that was tested, hit and added up on the way.
 
+mod json;
+
 use glam::DVec3;
+pub use json::explained;
 use std::io::{self, Write};
 use tabray_core::geometry::ray::{MISS, Ray, RayRange};
 use tabray_core::render::limits::{MAX_DIST, MAX_RAYS, MAX_TREE};
