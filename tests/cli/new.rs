@@ -163,7 +163,7 @@ fn a_mesh_is_described() {
     let (_, out, _) = outcome(tabray(&folder).args(["list", "whole.obj"]));
     let out = text(out);
     let own = "normals at all corners\nuv      at 2 of 6 corners\ncolours at all corners\n\
-        looks   of 1 of 2 materials, with 0 images\nnames   a, b\n";
+        looks   1 of 2 materials, with 0 images\nnames   a, b\n";
     assert!(
         out.contains(own) && out.contains("note    it has materials whose images cannot be read"),
         "{out}"

@@ -90,7 +90,7 @@ fn looks(model: &Model) -> String {
     let materials = match model.materials.len() {
         0 => "none".to_owned(),
         names => {
-            format!("of {} of {}, with {}", looks.count(), count(names, "material"), count(images, "image"))
+            format!("{} of {}, with {}", looks.count(), count(names, "material"), count(images, "image"))
         }
     };
     let mut text = format!(
