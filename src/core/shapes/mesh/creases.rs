@@ -49,7 +49,7 @@ impl Normals {
             }));
         }
         let unit = |sum: DVec3| sum.normalize_or_zero().to_array().map(|part| part as f32);
-        Self { values: sums.into_iter().map(unit).collect(), faces: corners }
+        Self { values: sums.into_iter().map(unit).collect(), faces: corners.into() }
     }
 }
 

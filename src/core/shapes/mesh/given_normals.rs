@@ -4,6 +4,7 @@ use super::creases::{Normals, flat_normal};
 use super::read::NO_VALUE;
 use super::to_world::ToWorld;
 use glam::DVec3;
+use std::sync::Arc;
 
 impl Normals {
     /// Takes the normals that a file gives the corners of faces, and those of `others` where it gives none or where one is 0,
@@ -16,7 +17,8 @@ impl Normals {
         placement: &ToWorld,
         others: impl FnOnce() -> Self,
     ) -> (Self, usize) {
-        let Self { mut values, faces: mut corners } = given;
+        let Self { mut values, faces: corners } = given;
+        let mut corners = Arc::unwrap_or_clone(corners);
         values.iter_mut().for_each(|normal| *normal = placed(*normal, placement));
         // For each normal, where it is turned, if it is.
         let mut turned = Vec::new();
@@ -51,7 +53,7 @@ impl Normals {
                 corners[face][side] = before + others.faces[face][side];
             }
         }
-        (Self { values, faces: corners }, refused)
+        (Self { values, faces: corners.into() }, refused)
     }
 }
 
@@ -108,7 +110,10 @@ mod tests {
             is_round(&surface(ball(|at| -at), scale), scale);
             let mut model = ball(|at| at);
             model.faces.iter_mut().step_by(3).for_each(|face| face.swap(0, 1));
-            model.attributes.normals.faces.iter_mut().step_by(3).for_each(|face| face.swap(0, 1));
+            Arc::make_mut(&mut model.attributes.normals.faces)
+                .iter_mut()
+                .step_by(3)
+                .for_each(|face| face.swap(0, 1));
             is_round(&surface(model, scale), scale);
         }
     }
@@ -129,7 +134,7 @@ mod tests {
             }
         }
         let mut model = ball(|at| at);
-        model.attributes.normals.faces[5] = [NO_VALUE; 3];
+        Arc::make_mut(&mut model.attributes.normals.faces)[5] = [NO_VALUE; 3];
         assert!(surface(model, DVec3::ONE).remarks.is_empty());
     }
 }

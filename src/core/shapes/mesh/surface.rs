@@ -177,7 +177,10 @@ impl Surface {
         let sorted = tree.take_order();
         let mut faces: Vec<_> = sorted.iter().map(|face| kept[*face as usize]).collect();
         let vertices = in_order_of_use(&vertices, &mut faces);
-        let (normals, uv, colours) = (normals.sorted(&sorted), uv.sorted(&sorted), colours.sorted(&sorted));
+        let (normals, mut uv, mut colours) =
+            (normals.sorted(&sorted), uv.sorted(&sorted), colours.sorted(&sorted));
+        uv.share(&normals.faces);
+        colours.share(if uv.is_empty() { &normals.faces } else { &uv.faces });
         let mut order: Vec<_> = sorted.iter().map(|face| order[*face as usize]).collect();
         let slots =
             if slots.is_empty() { slots } else { order.iter().map(|face| slots[*face as usize]).collect() };

@@ -1,5 +1,7 @@
 //! What the corners of faces have beside their places: normals, texture coordinates and colours.
 
+use std::sync::Arc;
+
 /// The index of a corner that has no value.
 pub const NO_VALUE: u32 = u32::MAX;
 
@@ -8,13 +10,14 @@ pub const NO_VALUE: u32 = u32::MAX;
 pub struct AtCorners<T> {
     /// The values.
     pub values: Vec<T>,
-    /// For each face, the indices of the values at its corners, or [`NO_VALUE`]. Empty where no corner has a value.
-    pub faces: Vec<[u32; 3]>,
+    /// For each face, the indices of the values at its corners, or [`NO_VALUE`]. Empty where no corner has a value. Values of
+    /// several kinds often have the same indices, which are then [shared](Self::share).
+    pub faces: Arc<Vec<[u32; 3]>>,
 }
 
 impl<T> Default for AtCorners<T> {
     fn default() -> Self {
-        Self { values: Vec::new(), faces: Vec::new() }
+        Self { values: Vec::new(), faces: Arc::default() }
     }
 }
 
@@ -22,7 +25,7 @@ impl<T: Copy> AtCorners<T> {
     /// Makes values of vertices, each of which has one, those of the faces between them; none of no values.
     pub fn of_vertices(values: Vec<T>, faces: &[[u32; 3]]) -> Self {
         let faces = if values.is_empty() { Vec::new() } else { faces.to_vec() };
-        Self { values, faces }
+        Self { values, faces: faces.into() }
     }
 
     /// Tells whether no corner has a value.
@@ -49,23 +52,30 @@ impl<T: Copy> AtCorners<T> {
             return self;
         }
         let mut faces: Vec<_> = order.iter().map(|face| self.faces[*face as usize]).collect();
-        Self { values: in_order_of_use(&self.values, &mut faces), faces }
+        Self { values: in_order_of_use(&self.values, &mut faces), faces: faces.into() }
+    }
+
+    /// Takes the indices of other values in the place of its own, if they are the same, so that they are held once.
+    pub fn share(&mut self, other: &Arc<Vec<[u32; 3]>>) {
+        if self.faces == *other {
+            self.faces = other.clone();
+        }
     }
 
     fn extend(&mut self, other: Self) {
         self.values.extend(other.values);
-        self.faces.extend(other.faces);
+        Arc::make_mut(&mut self.faces).extend(&*other.faces);
     }
 
     fn drop_unused(&mut self) {
         if self.values.is_empty() {
-            self.faces = Vec::new();
+            self.faces = Arc::default();
         }
     }
 
-    /// Returns the memory that they take, in bytes.
+    /// Returns the memory that they take, in bytes; indices that are [shared](Self::share) count in equal parts.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.values[..]) + size_of_val(&self.faces[..])
+        size_of_val(&self.values[..]) + size_of_val(&self.faces[..]) / Arc::strong_count(&self.faces)
     }
 }
 
@@ -89,7 +99,7 @@ impl Attributes {
     /// Returns the lists of those attributes that there are, with an entry for each face.
     pub fn lists(&mut self) -> impl Iterator<Item = &mut Vec<[u32; 3]>> {
         let lists = [&mut self.normals.faces, &mut self.uv.faces, &mut self.colours.faces];
-        lists.into_iter().filter(|list| !list.is_empty())
+        lists.into_iter().map(Arc::make_mut).filter(|list| !list.is_empty())
     }
 
     /// Adds those of faces that follow.

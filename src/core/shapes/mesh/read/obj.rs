@@ -14,6 +14,7 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::ops::Add;
 use std::path::Path;
+use std::sync::Arc;
 
 /// What the lines `v`, `vt` and `vn` are, one and several.
 const NAMES: [[&str; 2]; 3] = [["vertex", "vertices"], ["`vt`", "`vt`"], ["`vn`", "`vn`"]];
@@ -291,8 +292,8 @@ impl Part {
                 }
                 budget.holds(counts[0], self.faces.len() + corners[0].len())?;
                 self.polygons.add(&corners[0], &mut self.faces);
-                Polygons::add_values(&corners[1], &mut uv.faces);
-                Polygons::add_values(&corners[2], &mut normals.faces);
+                Polygons::add_values(&corners[1], Arc::make_mut(&mut uv.faces));
+                Polygons::add_values(&corners[2], Arc::make_mut(&mut normals.faces));
             }
             Some(b"mtllib") if wanted.materials.is_some() => {
                 self.libraries.push((after_first_word(line).to_vec(), number))

@@ -13,6 +13,7 @@ use glam::{DMat3, DMat4, DQuat, DVec3};
 use json::{Gltf, Node, Primitive};
 use memchr::memchr_iter;
 use std::path::Path;
+use std::sync::Arc;
 
 /// What begins a GLB.
 pub const MAGIC: &[u8] = b"glTF";
@@ -305,12 +306,12 @@ fn add<const N: usize, T: Copy>(
     if !is_wanted {
         return;
     }
-    let before = to.values.len() as u32;
+    let (before, list) = (to.values.len() as u32, Arc::make_mut(&mut to.faces));
     match elements {
-        None => to.faces.extend(faces.iter().map(|_| [NO_VALUE; 3])),
+        None => list.extend(faces.iter().map(|_| [NO_VALUE; 3])),
         Some(elements) => {
             to.values.extend((0..elements.count).map(|index| value(elements.get(index))));
-            to.faces.extend(faces.iter().map(|face| face.map(|corner| before + corner)));
+            list.extend(faces.iter().map(|face| face.map(|corner| before + corner)));
         }
     }
 }
