@@ -117,6 +117,20 @@ pub trait Scalar:
 
     /// Returns the step function, 1 above 0 and 0 below: the derivative of `max(0, x)`.
     fn step(self) -> Self;
+    /// Returns one number where this one is 0 or above, and another one where it is below. What is not returned need not be
+    /// defined.
+    #[inline(always)]
+    fn choose(self, one: Self, other: Self) -> Self {
+        let [low, high] = self.bounds();
+        if low >= 0.0 {
+            one
+        } else if high < 0.0 {
+            other
+        } else {
+            other + (one - other) * self.step()
+        }
+    }
+
     /// Returns the derivative of [`step`](Self::step): unbounded where the number may be 0, else 0.
     fn d_step(self) -> Self;
     /// Returns the derivative of [`floor`](Self::floor): unbounded where the number may be an integer, else 0.

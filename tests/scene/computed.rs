@@ -81,6 +81,49 @@ fn named_numbers_stand_in_formulas_of_profiles_and_surfaces_and_are_numbers_in_t
 }
 
 #[test]
+fn functions_of_a_scene_are_what_they_stand_for() {
+    let entities = "sphere s { material m center \"f(1, 0)\" \"ring(3)\" -4 radius \"ring(2)/2\" }
+        implicit i { material m formula \"f(x, 2y) + ring(z) = 2\" box -1 -1 -1 1 1 1 }";
+    let of_numbers = "sphere s { material m center 1 7 -4 radius 1.5 }";
+    let notes = [
+        "let k 2\nlet f(u, v) = \"u^2 + k v\" # a comment\nlet ring(r) \"f(r, -r/2) + if(r < 1, 0, 1)\"\n",
+        "let k 2 let f(u,v) \"u^2 + k v\" let \"ring( r )\" \"f(r, -r/2) + if(r < 1, 0, 1)\"\n",
+    ];
+    let expected = written(&format!("{HEAD}{notes}{entities}", notes = notes[0]));
+    assert!(expected.starts_with(&written(&format!("{HEAD}{of_numbers}"))), "{expected}");
+    assert_eq!(written(&format!("{HEAD}{notes}{entities}", notes = notes[1])), expected);
+    assert_eq!(written(&expected), expected);
+    let toml = "[camera.eye]\npixeldim = [8, 6]\nworlddim = [8, 6]\nviewpoint = [4, 3, 6]\n[material.m]\nambient = [1, 1, 1]\n\
+        [let]\nk = 2\n\"f(u, v)\" = \"u^2 + k v\"\n\"ring(r)\" = \"f(r, -r/2) + if(r < 1, 0, 1)\"\n\
+        [sphere.s]\nmaterial = \"m\"\ncenter = [\"f(1, 0)\", \"ring(3)\", -4]\nradius = \"ring(2)/2\"\n\
+        [implicit.i]\nmaterial = \"m\"\nformula = \"f(x, 2y) + ring(z) = 2\"\nbox = [[-1, -1, -1], [1, 1, 1]]\n";
+    let toml = toml.replace("[[-1, -1, -1], [1, 1, 1]]", "[-1, -1, -1, 1, 1, 1]");
+    assert_eq!(written(&toml), expected);
+}
+
+#[test]
+fn what_is_wrong_with_a_function_is_marked_there() {
+    for (text, said) in [
+        ("let f(pi) \"1\"", "`pi` cannot be the name of an argument"),
+        ("let f(u, u) \"u\"", "`u` is an argument twice"),
+        ("let f() \"1\"", "`` cannot be the name of an argument"),
+        ("let f(u) 3", "`3` is not a formula in quotes"),
+        ("let sin(u) \"u\"", "`sin` cannot be the name of a number"),
+        ("let f(u) \"u + w\"", "unknown name `w` in a formula"),
+        ("let f(u) \"u*f(u - 1)\"", "the function `f` is used before it is defined"),
+        ("let f(u) \"u\" let f(v) \"v\"", "the number `f` is defined twice"),
+        ("let f(u, v) \"u\" let a \"f(1)\"", "`f` takes 2 values, separated by commas"),
+        ("let f(u, v \"u\"", "its arguments end with `)`"),
+    ] {
+        let message = refused(Path::new(""), "scene.ray", &format!("{HEAD}{text}\n"));
+        assert!(message.contains(said), "{text}: {message}");
+    }
+    // What is faulty is told once.
+    let message = refused(Path::new(""), "scene.ray", &format!("{HEAD}let f(u) \"u +\" let a \"f(1)\"\n"));
+    assert!(message.contains("1 error") && message.contains("expected a value"), "{message}");
+}
+
+#[test]
 fn a_hundred_thousand_rounds_are_read_quickly_and_many_more_are_refused() {
     let start = Instant::now();
     let text = format!(

@@ -127,6 +127,23 @@ fn a_jump_is_no_surface() {
 }
 
 #[test]
+fn a_formula_of_two_parts_has_the_surface_of_each_where_it_is_chosen() {
+    agrees("if(x < 0, y - 0.5, y + 0.5 - x)", |ray| {
+        let (from, dir) = (ray.origin, ray.dir);
+        let [left, right] = [(0.5 - from.y) / dir.y, (from.y + 0.5 - from.x) / (dir.x - dir.y)];
+        vec![(left, -ray.at(left).x), (right, ray.at(right).x)]
+    });
+    // Neither part is defined everywhere.
+    agrees("if(x >= 0, sqrt(x) - y, y + x*x + 0*ln(-x))", |ray| {
+        let (from, dir) = (ray.origin, ray.dir);
+        let right = quadratic(dir.y * dir.y, from.y * dir.y - 0.5 * dir.x, from.y * from.y - from.x);
+        let left = quadratic(dir.x * dir.x, from.x * dir.x + 0.5 * dir.y, from.x * from.x + from.y);
+        let right = right.into_iter().map(|t| (t, ray.at(t).y.min(ray.at(t).x)));
+        right.chain(left.into_iter().map(|t| (t, -ray.at(t).x))).collect()
+    });
+}
+
+#[test]
 fn what_fractions_repeat_is_seen_as_often_as_it_is_there() {
     agrees("(fract(x) - 0.5)^2 + (mod(y, 1) - 0.5)^2 + (z - floor(z) - 0.5)^2 - 0.1", |ray| {
         let centers =

@@ -5,7 +5,7 @@ use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
 use dashu_int::{IBig, UBig};
 use f256::f256;
-use tabray::exact::{Interval, Scalar, Wide, double_double::DoubleDouble};
+use tabray::exact::{Interval, Scalar, Wide, affine::Affine, double_double::DoubleDouble, dual::Dual};
 
 type Big = FBig<HalfEven, 2>;
 
@@ -196,6 +196,32 @@ fn intervals_hold_the_true_angles() {
     assert!(above.atan2(left).low > 2.0 && across.atan2(left).width() > std::f64::consts::TAU);
 }
 
+/// What is chosen by a number that may have either sign is bounded in both ways, and so are its slopes.
+#[test]
+fn bounds_hold_what_is_chosen() {
+    let mut random = Random::new(10);
+    for _ in 0..20 * ARGUMENTS {
+        let inside = random.between(-1.0, 1.0);
+        let width = 0.1_f64.powi(random.below(18) as i32);
+        let [less, more] = [0, 1].map(|_| width * random.between(0.0, 1.0));
+        let piece = Interval { low: inside - less, high: inside + more };
+        let exact = if inside < 0.0 { -3.0 * inside } else { 2.0 + inside * inside };
+        let chosen = piece.choose(piece.powi(2).shifted(2.0), piece.scaled(-3.0));
+        assert!(chosen.low <= exact && exact <= chosen.high, "{inside:?} in {piece:?}: {chosen:?}");
+        let affine = Affine::from(piece);
+        let range = affine.choose(affine.powi(2).shifted(2.0), affine.scaled(-3.0)).range();
+        assert!(range.low <= exact && exact <= range.high, "{inside:?} in {piece:?}: {range:?}");
+        let dual = Dual::variable(piece);
+        let slope = dual.choose(dual.powi(2).shifted(2.0), dual.scaled(-3.0)).slope;
+        let exact = if inside < 0.0 { -3.0 } else { 2.0 * inside };
+        assert!(slope.low <= exact && exact <= slope.high, "{inside:?} in {piece:?}: {slope:?}");
+        assert!(!piece.has_zero() || !slope.is_bounded(), "the jump has no slope: {piece:?} {slope:?}");
+    }
+    // What is not chosen need not be defined.
+    let positive = Interval { low: 0.5, high: 1.0 };
+    assert_eq!(positive.choose(positive, (-positive).ln()), positive);
+}
+
 /// Converts a number of 237 bits, exactly.
 fn widest(of: f256) -> Bits {
     let (sign, exponent, (high, low)) = of.as_sign_exp_signif();
@@ -245,6 +271,8 @@ fn wide_intervals_hold_the_right_results() {
         holds(wide.cos(), &big.cos(), 40.0, "cos");
         holds(wide.tan(), &big.tan(), 40.0, "tan");
         holds(y.atan2(x), &big_b.atan2(&big_a), 80.0, "angle");
+        let chosen = if big_a >= big_b { &big_a * &big_b } else { &big_a / &big_b };
+        holds((x - y).choose(x * y, x / y), &chosen, 4.0, "choice");
         let power = (exactly(q) * big.ln()).exp();
         // The error of the logarithm is multiplied by the exponent.
         holds(wide.pow(Wide::point(q)), &power, 1000.0, "power");

@@ -172,8 +172,8 @@ fn widened(place: [Interval; 3], margin: [f64; 3]) -> [Interval; 3] {
 
 /// Tells whether an operation may be one of several, depending on the place.
 pub(super) fn is_choice(step: Step) -> bool {
-    use Function::{Abs, Floor, Heaviside, Max, Min};
-    matches!(step, Step::Call(Min | Max | Abs | Floor | Heaviside))
+    use Function::{Abs, Floor, Heaviside, If, Max, Min};
+    matches!(step, Step::Call(Min | Max | Abs | Floor | Heaviside | If))
 }
 
 /// Returns the values of a formula that matter in a box, and bounds of the formula there.
@@ -204,6 +204,8 @@ fn pruned(values: &Values, place: [Interval; 3]) -> (Values, Interval) {
             Step::Call(Function::Abs) if a.high <= 0.0 => step = Step::Neg,
             Step::Call(Function::Heaviside) if a.low > 0.0 => step = Step::Number(1.0),
             Step::Call(Function::Heaviside) if a.high < 0.0 => step = Step::Number(0.0),
+            Step::Call(Function::If) if a.low >= 0.0 => own = second,
+            Step::Call(Function::If) if a.high < 0.0 => own = third,
             Step::Call(Function::Floor) => {
                 step = a.certain_floor().map_or(step, Step::Number);
             }

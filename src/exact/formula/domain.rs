@@ -7,6 +7,7 @@ use super::step::{Function, Step};
 use super::variables::SPACE;
 use crate::interval::{Float, Interval};
 use crate::scalar::Scalar;
+use std::mem::take;
 use std::sync::Arc;
 
 /// The largest number of jumps in a box on whose sides a formula is evaluated, each on two.
@@ -20,18 +21,32 @@ impl Field {
         let within = [0, 1, 2].map(|axis| Interval { low: low[axis], high: high[axis] });
         let steps = &self.formula().steps;
         let mut starts: Vec<usize> = Vec::new();
-        let (mut conditions, mut of_all): (Vec<&[Step]>, Vec<Step>) = (Vec::new(), Vec::new());
+        // What must not be below 0, each with the index of the operation that asks for it.
+        let (mut conditions, mut of_all): (Vec<(usize, Vec<Step>)>, Vec<Step>) = (Vec::new(), Vec::new());
         for (index, step) in steps.iter().enumerate() {
             // Where the operation's operands start, and where the first of them ends.
-            let (mut first, mut end) = (index, index);
+            let (mut first, mut end, mut last) = (index, index, index);
             for _ in 0..step.operands() {
-                (first, end) = (starts.pop().unwrap_or(0), first);
+                (first, end, last) = (starts.pop().unwrap_or(0), first, end);
             }
-            if matches!(step, Step::Call(Function::Sqrt | Function::Ln | Function::Pow)) {
-                conditions.push(&steps[first..end]);
+            match step {
+                Step::Call(Function::Sqrt | Function::Ln | Function::Pow) => {
+                    conditions.push((index, steps[first..end].to_vec()));
+                }
+                // What is not chosen need not be defined.
+                Step::Call(Function::If) => {
+                    for (at, condition) in conditions.iter_mut().filter(|(at, _)| *at >= end) {
+                        let fulfilled = vec![Step::Number(1.0)];
+                        let own = take(condition);
+                        let [one, other] = if *at < last { [own, fulfilled] } else { [fulfilled, own] };
+                        *condition = [&steps[first..end], &one, &other, &[*step]].concat();
+                    }
+                }
+                _ => {}
             }
             starts.push(first);
         }
+        let conditions: Vec<_> = conditions.into_iter().map(|(_, condition)| condition).collect();
         for (index, condition) in conditions.iter().enumerate() {
             // What cannot be below 0 may be by rounding.
             let may_be_below = self.with(condition.to_vec()).at(within).low < -f64::MIN_POSITIVE;
@@ -39,7 +54,7 @@ impl Field {
                 continue;
             }
             let is_first = of_all.is_empty();
-            of_all.extend_from_slice(condition);
+            of_all.extend(condition);
             if !is_first {
                 of_all.push(Step::Call(Function::Min));
             }
@@ -79,6 +94,10 @@ impl Field {
                     let is_single = value.high - value.low == F::of(1.0);
                     value = Interval::point(if is_above { value.high } else { value.low });
                     *jumps += if is_single { 1 } else { MOST_JUMPS + 1 };
+                }
+                Step::Call(Function::If) if a.low < zero && a.high >= zero => {
+                    value = if is_above { b } else { c() };
+                    *jumps += 1;
                 }
                 // Below 0, they are not defined.
                 Step::Call(Function::Ln | Function::Pow) if a.low < zero && a.high >= zero => {
@@ -141,6 +160,11 @@ mod tests {
             ("ln(x) + sqrt(y)", [-1.5, 0.5, 0.0], -1.5),
             ("sqrt(x - sqrt(y)) - z", [1.0, 1.0, 0.0], 0.0),
             ("x^(1/3) - y", [-1.0, 1.0, 0.0], -1.0),
+            ("if(z < 0, sqrt(x), ln(y)) - z", [-1.0, 0.5, -1.0], -1.0),
+            ("if(z < 0, sqrt(x), ln(y)) - z", [-1.0, 0.5, 1.0], 0.5),
+            ("if(x < 0, sqrt(-x), if(y > 1, x, sqrt(x))) - z", [-0.5, 0.0, 0.0], 0.5),
+            ("if(x < 0, sqrt(-x), if(y > 1, x, sqrt(x))) - z", [0.25, 0.0, 0.0], 0.25),
+            ("if(x < 0, sqrt(-x), if(y > 1, x, sqrt(x))) - z", [0.25, 2.0, 0.0], 1.0),
         ] {
             let domain =
                 field(text).domain(BOX).unwrap_or_else(|| panic!("{text} is not defined everywhere"));
@@ -171,6 +195,9 @@ mod tests {
             ("x - 2*floor(x) + 1", near(1.0), false),
             ("floor(9*x) - 1.5 - 1e9*x", [0.0, 1.0], false),
             ("heaviside(x - 1) - 0.5", near(1.0), true),
+            ("if(x < 1, -2, 3)", near(1.0), true),
+            ("if(x >= 1, y - x, 1 - y - 2*x)", near(1.0), true),
+            ("if(x > 1, x - 1, 1 - x)", near(1.0), false),
             ("atan2(x - 1, -1) - y", near(1.0), true),
             ("sin(y)/(x - 1) - 3", near(1.0), true),
             ("(x - 1)/(x - 1) - 1", near(1.0), false),

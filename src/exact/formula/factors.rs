@@ -134,6 +134,7 @@ fn written(steps: &[Step]) -> String {
             Step::Powi(exponent) => (format!("{}^{exponent}", within(a, 4)), 3),
             Step::Spline => a,
             Step::Call(Function::Pow) => (format!("{}^{}", within(a, 4), within(b, 4)), 3),
+            Step::Call(Function::If) => (format!("if({} >= 0, {}, {})", a.0, b.0, c.0), 4),
             Step::Call(function) => {
                 let name = format!("{function:?}").to_lowercase();
                 let arguments = [a.0, b.0, c.0][..step.operands()].join(", ");

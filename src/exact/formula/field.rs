@@ -181,7 +181,7 @@ fn with_constants(steps: &[Step]) -> Vec<Step> {
             Step::Call(Function::Min | Function::Max | Function::Pow | Function::Atan2) => {
                 starts.pop();
             }
-            Step::Call(Function::Noise) => starts.truncate(starts.len().saturating_sub(2)),
+            Step::Call(Function::Noise | Function::If) => starts.truncate(starts.len().saturating_sub(2)),
             _ => {}
         }
         out.push(*step);

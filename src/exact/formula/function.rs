@@ -17,6 +17,8 @@ pub(super) enum Meaning {
     Operation(Function),
     /// An operation of as many values as it names.
     Fixed(Function),
+    /// A comparison, and the values where it holds and where it does not.
+    Choice,
     /// The formula of its arguments that this text is.
     Formula(&'static str),
 }
@@ -24,7 +26,7 @@ pub(super) enum Meaning {
 use Meaning::{Fixed, Formula, Operation};
 
 /// The functions of formulas.
-static FUNCTIONS: [FormulaFunction; 39] = [
+static FUNCTIONS: [FormulaFunction; 40] = [
     FormulaFunction { name: "sin", arguments: &["x"], meaning: Operation(Function::Sin) },
     FormulaFunction { name: "cos", arguments: &["x"], meaning: Operation(Function::Cos) },
     FormulaFunction { name: "tan", arguments: &["x"], meaning: Operation(Function::Tan) },
@@ -58,6 +60,7 @@ static FUNCTIONS: [FormulaFunction; 39] = [
     FormulaFunction { name: "tanh", arguments: &["x"], meaning: Formula("1 - 2/(exp(2*x) + 1)") },
     FormulaFunction { name: "noise", arguments: &["x", "y", "z"], meaning: Fixed(Function::Noise) },
     FormulaFunction { name: "heaviside", arguments: &["x"], meaning: Fixed(Function::Heaviside) },
+    FormulaFunction { name: "if", arguments: &["a < b", "c", "d"], meaning: Meaning::Choice },
     FormulaFunction { name: "atan2", arguments: &["y", "x"], meaning: Fixed(Function::Atan2) },
     FormulaFunction { name: "trunc", arguments: &["x"], meaning: Formula("floor(abs(x))*sign(x)") },
     FormulaFunction { name: "sign", arguments: &["x"], meaning: Formula("2*heaviside(x) - 1") },

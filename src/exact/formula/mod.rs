@@ -6,6 +6,7 @@ mod domain;
 mod factors;
 pub mod field;
 mod function;
+mod own;
 mod parser;
 mod program;
 mod quotient;
@@ -16,7 +17,8 @@ pub mod variables;
 mod words;
 
 pub use function::functions;
-pub use parser::Named;
+pub use own::{OwnFunction, head};
+pub use parser::{Meant, Named};
 pub use words::{FormulaFault, is_in_name, is_taken};
 
 use crate::dual::Dual;
@@ -24,7 +26,7 @@ use crate::f64x8::F64x8;
 use crate::f64x8::LANES;
 use crate::scalar::Scalar;
 use crate::spline::Spline;
-use crate::text;
+use parser::Operations;
 use program::{Instruction, MOST_REGISTERS, Program};
 use std::fmt;
 use std::sync::Arc;
@@ -66,8 +68,8 @@ impl Formula {
         Self::parse_with(text, variables, &|_| None)
     }
 
-    /// Parses a formula in these variables and named numbers. Its own text has the numbers in place of their names, and
-    /// stands on one line.
+    /// Parses a formula in these variables, named numbers and functions of the scene. Its own text has the numbers in place of
+    /// their names, and what functions stand for in place of their calls, and stands on one line.
     ///
     /// # Errors
     /// Returns the first place where the text is not a formula.
@@ -76,21 +78,20 @@ impl Formula {
         variables: &'static [&'static str],
         named: Named<'_>,
     ) -> Result<Self, FormulaFault> {
-        let (steps, numbers) = parser::parse(text, variables, named, |steps| {
+        let Operations { steps, pieces, has_calls } = parser::parse(text, variables, named, |steps| {
             Self::new(String::new(), &[], steps.to_vec()).at(0.0)
         })?;
-        let (mut written, mut at) = (String::with_capacity(text.len()), 0);
-        for (place, number) in numbers {
-            written += &text[at..place.start];
-            let number = text::shortest(number);
-            // In `2n`, the digits of a number would be part of the number before it.
-            let is_factor = written.trim_end().ends_with(|c: char| c.is_alphanumeric() || ".)|".contains(c));
-            written += &if number.starts_with('-') || is_factor { format!("({number})") } else { number };
-            at = place.end;
-        }
-        written += &text[at..];
+        let mut written = own::joined(&pieces);
         if written.contains('\n') || written.contains("  ") {
             written = written.split_whitespace().collect::<Vec<_>>().join(" ");
+        }
+        // What functions stand for is nested more deeply than their calls. A number that is not known is NaN.
+        let is_known = |step: &Step| !matches!(step, Step::Number(number) if number.is_nan());
+        if has_calls
+            && steps.iter().all(is_known)
+            && let Err(fault) = parser::parse(&written, variables, &|_| None, |_| 1.0)
+        {
+            return Err(FormulaFault { place: 0..text.len(), ..fault });
         }
         Ok(Self::new(written, variables, steps))
     }
@@ -116,8 +117,10 @@ impl Formula {
 
     fn new(text: String, variables: &'static [&'static str], steps: Vec<Step>) -> Self {
         let program = Program::new(&steps, variables.len());
-        // The derivative of a general power takes more than arithmetic, and noise looks things up.
-        let is_long = |step: &Step| matches!(step, Step::Call(Function::Pow | Function::Noise));
+        // The derivative of a general power takes more than arithmetic, noise looks things up, and eight y may choose
+        // differently.
+        let is_long =
+            |step: &Step| matches!(step, Step::Call(Function::Pow | Function::Noise | Function::If));
         let is_plain = program.registers <= FEW_REGISTERS && !steps.iter().any(is_long);
         Self { text, variables, steps, program, spline: None, is_plain }
     }
@@ -230,6 +233,10 @@ mod tests {
             ("4*atan(y)/pi + 4*atan2(y, -y)/pi + 2*asin(y)/pi + acos(y)", 1.0, 5.0),
             ("asinh(sinh(y)) + acosh(cosh(y)) - 2*atanh(tanh(y))", 0.0, 0.0),
             ("smin(y, 1, 2) + smax(y, 1, 2)", 1.0, 2.0),
+            ("if(y < 2, 1, 10) + if(y <= 2, 2, 20) + if(y > 2, 3, 30) + if(y >= 2, 4, 40)", 2.0, 46.0),
+            ("if(y < 2, 1, 10) + if(y ≤ 2, 2, 20) + if(y > 2, 3, 30) + if(y ≥ 2, 4, 40)", 1.0, 73.0),
+            ("if(y^2 < 2 + y, ln(y), if(3 < y, y + 1, -1))", 4.0, 5.0),
+            ("if(y < 5, y, ln(-y))", 4.0, 4.0),
         ] {
             assert_eq!(value(text, y), expected, "{text}");
         }
@@ -254,6 +261,10 @@ mod tests {
             ("2 + |y", 4..5, "unclosed `|`"),
             ("mod(y)", 0..3, "`mod` takes 2 values, separated by commas"),
             ("clamp(y, 1, 2, 3)", 0..5, "`clamp` takes only 3 values"),
+            ("if(y, 1, 2)", 4..5, "expected a comparison"),
+            ("if(y < 1, 2)", 0..2, "`if` takes 3 values, separated by commas"),
+            ("if(1 < y < 2, 1, 0)", 0..2, "`if` takes 3 values, separated by commas"),
+            ("y > 2", 2..3, "expected a value, not a comparison"),
         ] {
             let fault = Formula::parse(text).expect_err(text);
             assert_eq!((fault.place, fault.message.as_str()), (place, message), "{text}");
@@ -277,13 +288,78 @@ mod tests {
     #[test]
     fn what_is_written_with_named_numbers_means_the_same_without_them() {
         let named = |name: &str| {
-            [("n", 5.0), ("mod", -2.0), ("k", 0.5)].iter().find(|of| of.0 == name).map(|of| of.1)
+            let of = [("n", 5.0), ("mod", -2.0), ("k", 0.5)].into_iter().find(|of| of.0 == name);
+            of.map(|of| Meant::Number(of.1))
         };
         for text in ["2n + y", "2 n y^(2*n)", "y²n", "n(y + 1)n", "|y|k - n k", "2mod + mod y", "(y)n"] {
             let formula = Formula::parse_with(text, HEIGHT, &named).expect(text);
             let written = Formula::parse(&formula.to_string()).expect(text);
             assert_eq!(written.at(1.5), formula.at(1.5), "{text}: {formula}");
         }
+    }
+
+    /// Returns `f(u, v)`, `g(x)`, which calls it, and a constant.
+    fn own(name: &str) -> Option<Meant> {
+        let function = |arguments: &[&str], text: &str| {
+            let parsed = OwnFunction::parse(arguments, text, &own).expect("a function");
+            Some(Meant::Function(Arc::new(parsed)))
+        };
+        match name {
+            "f" => function(&["u", "v"], "u² - 2v"),
+            "g" => function(&["x"], "n f(x, X + 1) + |x|"),
+            "n" => Some(Meant::Number(3.0)),
+            _ => None,
+        }
+    }
+
+    #[test]
+    fn functions_of_a_scene_mean_what_they_stand_for() {
+        for (text, expected) in [
+            ("f(y, 1)", 2.0),
+            ("2f(y + 1, n) f(1, 0)", 6.0),
+            ("-f(-y, y^2)^2 + y²f(0, 1)", -24.0),
+            ("g(y)", 3.0 * (4.0 - 6.0) + 2.0),
+            ("f(f(y, n), g(1))", 4.0 + 16.0),
+            ("|y - 5|f(if(y < 1, 5, 1), 0)", 3.0),
+        ] {
+            let formula =
+                Formula::parse_with(text, HEIGHT, &own).unwrap_or_else(|fault| panic!("{text}: {fault:?}"));
+            assert_eq!(formula.at(2.0), expected, "{text}: {formula}");
+            let written =
+                Formula::parse(&formula.to_string()).unwrap_or_else(|fault| panic!("{formula}: {fault:?}"));
+            assert_eq!(written.at(2.0), expected, "{text}: {formula}");
+        }
+    }
+
+    #[test]
+    fn faults_in_calls_of_a_scenes_functions_are_marked_where_they_are() {
+        for (text, place, message) in [
+            ("1 + f(y)", 4..5, "`f` takes 2 values, separated by commas"),
+            ("f(y, 1, 2)", 0..1, "`f` takes only 2 values"),
+            ("f y", 0..1, "`f` needs its argument in parentheses"),
+            ("f(y, 2 +)", 8..9, "expected a value"),
+            ("f(y, h(1))", 5..6, "unknown name `h` in a formula"),
+            ("f(1, y", 1..2, "unclosed `(`"),
+        ] {
+            let fault = Formula::parse_with(text, HEIGHT, &own).expect_err(text);
+            assert_eq!((fault.place, fault.message.as_str()), (place, message), "{text}");
+        }
+        let fault = OwnFunction::parse(&["u"], "u + w", &|_| None).expect_err("unknown");
+        assert_eq!((fault.place, fault.message.as_str()), (4..5, "unknown name `w` in a formula"));
+    }
+
+    #[test]
+    fn functions_of_functions_are_bounded() {
+        let mut last = Arc::new(OwnFunction::parse(&["u"], "u u", &|_| None).expect("a function"));
+        let mut count = 1;
+        while let Ok(next) = {
+            let named = |name: &str| (name == "f").then(|| Meant::Function(last.clone()));
+            OwnFunction::parse(&["u"], "f(u) f(u + 1)", &named)
+        } {
+            (last, count) = (Arc::new(next), count + 1);
+            assert!(count < 32);
+        }
+        assert!(count > 4);
     }
 
     #[test]
@@ -319,6 +395,7 @@ mod tests {
             "y^y",
             "abs(y-3)",
             "min(y, 2)+max(1, y)*cos(y)",
+            "if(y < 2, y^2, 8 - y^2)",
             "y^0.5",
             "(1+y)^-2",
         ] {

@@ -1,6 +1,7 @@
 //! The parser: from the text of a formula to its operations in postfix order.
 
 use super::function::{self, Meaning};
+use super::own::{Edits, OwnFunction, Piece};
 use super::step::{Function, MAX_DEPTH, Step, deepest};
 use super::variables::SPACE;
 use super::words::{FormulaFault, SUPERSCRIPTS, is_in_name, language};
@@ -9,12 +10,28 @@ use crate::text;
 use std::f64::consts::PI;
 use std::mem::replace;
 use std::ops::Range;
+use std::sync::Arc;
 
-/// Looks up a number by the name that a scene gives it.
-pub type Named<'n> = &'n dyn Fn(&str) -> Option<f64>;
+/// What a name of a scene stands for.
+#[derive(Clone, Debug)]
+pub enum Meant {
+    /// A number.
+    Number(f64),
+    /// A function of the scene's own.
+    Function(Arc<OwnFunction>),
+}
 
-/// The operations of a formula, and the named numbers in its text, each with its place.
-pub(super) type Operations = (Vec<Step>, Vec<(Range<usize>, f64)>);
+/// Looks up what a scene gives a name.
+pub type Named<'n> = &'n dyn Fn(&str) -> Option<Meant>;
+
+/// What a text says.
+pub(super) struct Operations {
+    pub steps: Vec<Step>,
+    /// The text without the names of a scene.
+    pub pieces: Vec<Piece>,
+    /// Whether it calls functions of the scene.
+    pub has_calls: bool,
+}
 
 /// The greatest whole exponent of a power that is computed by multiplications.
 const MAX_POWER: i32 = 1000;
@@ -37,7 +54,7 @@ pub(super) fn parse(
         named,
         at: 0,
         steps: Vec::new(),
-        numbers: Vec::new(),
+        edits: Edits::default(),
         depth: 0,
         is_in_bars: false,
         value,
@@ -55,9 +72,19 @@ pub(super) fn parse(
         parser.steps.push(Step::Sub);
     }
     match parser.peek() {
-        None if deepest(&parser.steps) <= MAX_DEPTH => Ok((parser.steps, parser.numbers)),
+        None if deepest(&parser.steps) <= MAX_DEPTH => {
+            let pieces = parser.edits.take(text, 0..text.len());
+            Ok(Operations { steps: parser.steps, pieces, has_calls: parser.edits.has_calls })
+        }
         None => Err(parser.fault_here("formula nested too deeply")),
         Some(')') => Err(parser.fault_here("unmatched `)`")),
+        Some('<' | '>' | '≤' | '≥') => {
+            let fault = parser.fault_here("expected a value, not a comparison");
+            Err(FormulaFault {
+                help: "a comparison chooses between two values: `if(a < b, c, d)`".to_owned(),
+                ..fault
+            })
+        }
         Some(_) => Err(parser.fault_here("expected an operator")),
     }
 }
@@ -68,8 +95,8 @@ struct Parser<'t> {
     named: Named<'t>,
     at: usize,
     steps: Vec<Step>,
-    /// The named numbers so far, each with its place.
-    numbers: Vec<(Range<usize>, f64)>,
+    /// The names so far.
+    edits: Edits,
     /// The number of values on the stack or the depth of parentheses, whichever is greater.
     depth: usize,
     /// Whether a `|` ends an absolute value.
@@ -294,24 +321,34 @@ impl<'t> Parser<'t> {
                 let message = format!("`{word}` is a variable of this formula and a number of the scene");
                 return Err(self.fault(place, message));
             }
-            self.steps.push(Step::Variable(variable as u8));
+            self.variable(place, variable);
             return Ok(());
         }
         let (named, lower) = ((self.named)(word), word.to_lowercase());
         match (word, named, function::find(word)) {
             ("pi" | "π", _, _) => self.steps.push(Step::Number(PI)),
-            (_, Some(number), function) if function.is_none_or(|function| !function.is_reserved()) => {
-                self.steps.push(Step::Number(number));
-                self.numbers.push((place, number));
+            (_, Some(meant), function) if function.is_none_or(|function| !function.is_reserved()) => {
+                match meant {
+                    Meant::Number(number) => {
+                        self.steps.push(Step::Number(number));
+                        self.edits.number(self.text, place, number);
+                    }
+                    Meant::Function(function) => self.own_call(&function, place)?,
+                }
             }
             (_, _, Some(function)) => self.call(function, place)?,
             // `X` is x, unless the scene has a number of this name.
             _ => match self.variables.iter().position(|name| *name == lower && word.len() == 1) {
-                Some(variable) => self.steps.push(Step::Variable(variable as u8)),
+                Some(variable) => self.variable(place, variable),
                 None => return Err(self.unknown(word, place)),
             },
         }
         Ok(())
+    }
+
+    fn variable(&mut self, place: Range<usize>, index: usize) {
+        self.steps.push(Step::Variable(index as u8));
+        self.edits.variable(place, index);
     }
 
     /// Explains a name that means nothing.
@@ -330,12 +367,11 @@ impl<'t> Parser<'t> {
 
     /// Parses the arguments of a function, and applies it.
     fn call(&mut self, function: &function::FormulaFunction, place: Range<usize>) -> Parsed {
-        let (name, count, open) = (function.name, function.arguments.len(), self.at);
-        if self.take(&['(']).is_none() {
-            return Err(self.fault(place, format!("`{name}` needs its argument in parentheses")));
-        }
+        let (name, count) = (function.name, function.arguments.len());
+        let open = self.open(name, &place)?;
         let (mut starts, depth) = (vec![self.steps.len()], self.depth);
         self.enclosed(false)?;
+        let is_reversed = matches!(function.meaning, Meaning::Choice) && self.comparison()?;
         while (starts.len() < count || function.takes_more()) && self.take(&[',']).is_some() {
             starts.push(self.steps.len());
             self.deeper()?;
@@ -347,43 +383,116 @@ impl<'t> Parser<'t> {
             }
         }
         self.depth = depth;
-        if starts.len() < count {
-            return Err(self.fault(place, format!("`{name}` takes {count} values, separated by commas")));
-        }
-        if self.peek() == Some(',') {
-            let takes = text::count(count, "value");
-            return Err(self.fault(place, format!("`{name}` takes only {takes}")));
-        }
+        self.counted(name, &place, starts.len(), count)?;
         match function.meaning {
             Meaning::Operation(of) if count == 1 => self.steps.push(Step::Call(of)),
             Meaning::Operation(_) => {}
             Meaning::Fixed(of) => self.steps.push(Step::Call(of)),
+            Meaning::Choice => {
+                if is_reversed {
+                    let count = self.steps.len() - starts[2];
+                    self.steps[starts[1]..].rotate_right(count);
+                }
+                self.steps.push(Step::Call(Function::If));
+            }
             Meaning::Formula(text) => {
-                let (steps, _) = parse(text, function.arguments, &|_| None, self.value)?;
-                let from = starts[0];
-                let uses = |step: &Step| match step {
-                    Step::Variable(index) => {
-                        let at = usize::from(*index);
-                        starts[at]..starts.get(at + 1).copied().unwrap_or(self.steps.len())
-                    }
-                    _ => 0..0,
-                };
-                let length: usize = steps.iter().map(|step| uses(step).len().max(1)).sum();
-                if self.steps.len() + length > MAX_STEPS {
-                    return Err(self.fault(place, "too many operations"));
-                }
-                let mut applied = Vec::with_capacity(length);
-                for step in &steps {
-                    match step {
-                        Step::Variable(_) => applied.extend_from_slice(&self.steps[uses(step)]),
-                        step => applied.push(*step),
-                    }
-                }
-                self.steps.truncate(from);
-                self.steps.append(&mut applied);
+                let Operations { steps, .. } = parse(text, function.arguments, &|_| None, self.value)?;
+                self.apply(&steps, &starts, &place)?;
             }
         }
         self.close(open)
+    }
+
+    /// Consumes the parenthesis before arguments, and returns its place.
+    fn open(&mut self, name: &str, place: &Range<usize>) -> Result<usize, FormulaFault> {
+        let open = self.at;
+        match self.take(&['(']) {
+            Some(_) => Ok(open),
+            None => Err(self.fault(place.clone(), format!("`{name}` needs its argument in parentheses"))),
+        }
+    }
+
+    /// Refuses another number of arguments than a function takes.
+    fn counted(&mut self, name: &str, place: &Range<usize>, found: usize, count: usize) -> Parsed {
+        let takes = text::count(count, "value");
+        if found < count {
+            return Err(self.fault(place.clone(), format!("`{name}` takes {takes}, separated by commas")));
+        }
+        match self.peek() {
+            Some(',') => Err(self.fault(place.clone(), format!("`{name}` takes only {takes}"))),
+            _ => Ok(()),
+        }
+    }
+
+    /// Puts the operations of a function of arguments, which start there, in the place of the arguments.
+    fn apply(&mut self, of: &[Step], starts: &[usize], place: &Range<usize>) -> Parsed {
+        let uses = |step: &Step| match step {
+            Step::Variable(index) => {
+                let at = usize::from(*index);
+                starts[at]..starts.get(at + 1).copied().unwrap_or(self.steps.len())
+            }
+            _ => 0..0,
+        };
+        let length: usize = of.iter().map(|step| uses(step).len().max(1)).sum();
+        if self.steps.len() + length > MAX_STEPS {
+            return Err(self.fault(place.clone(), "too many operations"));
+        }
+        let mut applied = Vec::with_capacity(length);
+        for step in of {
+            match step {
+                Step::Variable(_) => applied.extend_from_slice(&self.steps[uses(step)]),
+                step => applied.push(*step),
+            }
+        }
+        self.steps.truncate(starts[0]);
+        self.steps.append(&mut applied);
+        Ok(())
+    }
+
+    /// Parses the arguments of a function of the scene's own, and applies it.
+    fn own_call(&mut self, function: &OwnFunction, place: Range<usize>) -> Parsed {
+        let (name, depth) = (self.text[place.clone()].to_owned(), self.depth);
+        let open = self.open(&name, &place)?;
+        let (mut starts, mut arguments) = (Vec::new(), Vec::new());
+        loop {
+            starts.push(self.steps.len());
+            let start = self.at;
+            self.enclosed(false)?;
+            arguments.push(self.edits.take(self.text, start..self.at));
+            if starts.len() == function.count() || self.take(&[',']).is_none() {
+                break;
+            }
+            self.deeper()?;
+        }
+        self.depth = depth;
+        self.counted(&name, &place, starts.len(), function.count())?;
+        self.apply(&function.steps, &starts, &place)?;
+        self.close(open)?;
+        if !self.edits.call(place.start..self.at, &function.pieces, &arguments) {
+            return Err(self.fault(place, "too many operations"));
+        }
+        Ok(())
+    }
+
+    /// Parses the sign of a comparison and its other side: what is 0 or above where it holds or, if it is reversed, where it does
+    /// not. Returns whether it is reversed.
+    fn comparison(&mut self) -> Result<bool, FormulaFault> {
+        let Some(sign) = self.take(&['<', '>', '≤', '≥']) else {
+            let fault = self.fault_here("expected a comparison");
+            let help = "`if` takes a comparison and two values, as in `if(x < 0, -x, x)`, with `<`, `<=`, `>` or `>=`";
+            return Err(FormulaFault { help: help.to_owned(), ..fault });
+        };
+        let is_or_equal = matches!(sign, '≤' | '≥') || self.text[self.at..].starts_with('=');
+        self.at += usize::from(self.text[self.at..].starts_with('=') && is_or_equal && sign.is_ascii());
+        self.deeper()?;
+        self.enclosed(false)?;
+        self.depth -= 1;
+        self.steps.push(Step::Sub);
+        // a < b is the opposite of a - b >= 0, and a > b that of b - a >= 0.
+        if matches!((sign, is_or_equal), ('>', false) | ('<' | '≤', true)) {
+            self.steps.push(Step::Neg);
+        }
+        Ok(!is_or_equal)
     }
 
     fn deeper(&mut self) -> Parsed {

@@ -36,7 +36,7 @@ impl Step {
             Self::Variable(_) | Self::Number(_) => 0,
             Self::Add | Self::Sub | Self::Mul | Self::Div => 2,
             Self::Call(Function::Min | Function::Max | Function::Pow | Function::Atan2) => 2,
-            Self::Call(Function::Noise) => 3,
+            Self::Call(Function::Noise | Function::If) => 3,
             Self::Neg | Self::Powi(_) | Self::Scale(_) | Self::Shift(_) | Self::Spline | Self::Call(_) => 1,
         }
     }
@@ -46,7 +46,12 @@ impl Step {
     pub fn cost(self) -> u64 {
         match self {
             Self::Call(
-                Function::Abs | Function::Floor | Function::Heaviside | Function::Min | Function::Max,
+                Function::Abs
+                | Function::Floor
+                | Function::Heaviside
+                | Function::If
+                | Function::Min
+                | Function::Max,
             ) => 1,
             Self::Call(Function::Pow | Function::Atan2) => 24,
             Self::Call(Function::Noise) => 160,
@@ -106,6 +111,10 @@ impl Step {
                 apart(move || N::noise(at, [0; 3]))
             }
             Self::Call(Function::Heaviside) => long!(a.step()),
+            Self::Call(Function::If) => {
+                let c = c();
+                long!(a.choose(b, c))
+            }
             Self::Call(Function::Atan2) => long!(a.atan2(b)),
         }
     }
@@ -128,6 +137,8 @@ pub(super) enum Function {
     Noise,
     /// 1 from 0 upward, and 0 below.
     Heaviside,
+    /// The second value where the first one is 0 or above, and the third one elsewhere.
+    If,
     Atan2,
 }
 

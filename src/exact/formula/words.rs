@@ -38,12 +38,13 @@ pub(super) fn language(variables: &[&str]) -> String {
         variables => text::list(variables.iter().copied()),
     };
     let of = |count: usize| {
-        let names = functions().filter(|(_, arguments)| arguments.len() == count).map(|(name, _)| name);
+        let names = functions().filter(|(name, arguments)| arguments.len() == count && *name != "if");
+        let names = names.map(|(name, _)| name);
         names.collect::<Vec<_>>().join(" ")
     };
     format!(
         "a formula consists of numbers, {variables}, `pi`, + - * / ^, parentheses, and the functions {} of one value, {} of \
-         two, and {} of three",
+         two, {} of three, and `if(a < b, c, d)`",
         of(1),
         of(2),
         of(3)

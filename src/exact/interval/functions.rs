@@ -258,6 +258,17 @@ impl<F: Float> Scalar for Interval<F> {
         })
     }
 
+    fn choose(self, one: Self, other: Self) -> Self {
+        let zero = F::of(0.0);
+        if self.low >= zero {
+            one
+        } else if self.high < zero {
+            other
+        } else {
+            one.hull(other)
+        }
+    }
+
     #[inline(always)]
     fn d_step(self) -> Self {
         if self.has_zero() { Self::whole() } else { Self::constant(0.0) }

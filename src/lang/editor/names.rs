@@ -21,11 +21,14 @@ impl Names {
     }
 
     fn add(&mut self, view: &View, item: &Item, outer: &[&Repeat]) {
-        let name = |namespace, word: Word| Name {
-            namespace,
-            text: view.word(word).into_owned(),
-            place: word.inner(),
-            context: NameContext::Key(word),
+        let name = |namespace, word: Word| {
+            let (mut text, mut place) = (view.word(word).into_owned(), word.inner());
+            // That of a function ends before its arguments.
+            if let (Namespace::Number, Some(end)) = (namespace, text.find('(')) {
+                text.truncate(end);
+                place.end = place.start + end;
+            }
+            Name { namespace, text, place, context: NameContext::Key(word) }
         };
         let scope = outer.last().map(|repeat| repeat.body.clone());
         let mut define = |namespace, word: Word, again: &[Word], whole: Range<usize>, scope, depth| {

@@ -176,12 +176,15 @@ impl<'a, 'r> Grammar<'a, 'r> {
         let first = self.step()?;
         let mut words = [None, None];
         let count = if keyword == Keyword::Include { 1 } else { 2 };
-        for word in &mut words[..count] {
+        for (index, word) in words[..count].iter_mut().enumerate() {
             let is_next = self.is_draft && keyword != Keyword::Repeat && self.has_form();
             let token = self.token().filter(|token| !token.is_brace() && !is_next);
-            let Some(token) = token else { break };
-            *word = Some(self.tokens.word(token));
+            let Some(mut token) = token else { break };
             self.step();
+            if keyword == Keyword::Let && index == 0 {
+                token = self.head(token);
+            }
+            *word = Some(self.tokens.word(token));
         }
         let is_whole = words[count - 1].is_some();
         let repeats = is_whole && keyword == Keyword::Repeat && self.is(0, TokenForm::Open);
@@ -191,6 +194,26 @@ impl<'a, 'r> Grammar<'a, 'r> {
             self.report.add(Fault::error(Some(first.place()), message).help(keyword.usage()));
         }
         Some(Statement { keyword, first, words, open })
+    }
+
+    /// Consumes the rest of a function's head, `f(u, v)`, that a word begins, and a `=` after it; returns all of the head.
+    fn head(&mut self, first: Token) -> Token {
+        let is_word = |token: &Token| token.form == TokenForm::Word;
+        let is_closed = |grammar: &Self, token: Token| grammar.tokens.raw(token).ends_with(')');
+        if !is_word(&first) || !self.tokens.raw(first).contains('(') {
+            return first;
+        }
+        let mut last = first;
+        while !is_closed(self, last)
+            && let Some(next) = self.token().filter(is_word)
+        {
+            last = next;
+            self.step();
+        }
+        if self.token().is_some_and(|token| self.tokens.raw(token) == "=") {
+            self.step();
+        }
+        Token { end: last.end, ..first }
     }
 
     /// Skips words that belong to no entity.

@@ -1,23 +1,28 @@
-//! The named numbers of a scene, and formulas in place of numbers.
+//! The named numbers and the functions of a scene, and formulas in place of numbers.
 
 use super::fault::{Fault, Place, Severity};
 use super::parsed::{Form, Word};
 use super::report::Report;
 use super::tokens::Tokens;
 use super::values;
+use std::cell::RefCell;
 use std::collections::HashMap;
+use std::sync::Arc;
 use tabray_core::scene::value::Type;
 use tabray_core::text::{list, nearest, shortest};
-use tabray_exact::formula::{Formula, FormulaFault, is_in_name, is_taken};
+use tabray_exact::formula::{self, Formula, FormulaFault, Meant, Named, OwnFunction, is_in_name, is_taken};
 
 /// The maximum number of names that a message lists.
 const LISTED: usize = 8;
 
-/// A number that a scene names.
+/// How a function is defined.
+const FUNCTION: &str = "write a function as `let f(u, v) \"u^2 + v\"`";
+
+/// A number or a function that a scene names.
 struct Number {
     name: String,
     /// `None` if what it should be is faulty: then nothing that uses it is reported.
-    value: Option<f64>,
+    value: Option<Meant>,
     place: Place,
 }
 
@@ -59,7 +64,7 @@ impl<'a> Numbers<'a> {
     /// Changes a number, given by how many names were there before it.
     pub fn change(&mut self, index: usize, value: f64) {
         if let Some(number) = self.all.get_mut(index) {
-            number.value = Some(value);
+            number.value = Some(Meant::Number(value));
         }
     }
 
@@ -70,6 +75,40 @@ impl<'a> Numbers<'a> {
 
     /// Names a number, or reports why it cannot have the name; `None` stands for a number that is faulty.
     pub fn define(&mut self, name: &Word<'_>, value: Option<f64>, report: &mut Report<'_>) {
+        self.name(name, value.map(Meant::Number), report);
+    }
+
+    /// Defines a function by its head, `f(u, v)`, and the formula of its arguments, or reports why there can be none; `None` if
+    /// the word is no head of one.
+    pub fn function(&mut self, head: &Word<'_>, value: &Word<'_>, report: &mut Report<'_>) -> Option<()> {
+        let (name, arguments) = formula::head(&head.text)?;
+        let function = match arguments {
+            Err(reason) => {
+                let message =
+                    format!("`{}` is not the head of a function: {reason}", head.text.escape_debug());
+                report.add(Fault::error(head.place.clone(), message).help(FUNCTION));
+                None
+            }
+            Ok(_) if value.form != Form::Text => {
+                let message = format!("`{}` is not a formula in quotes", value.text.escape_debug());
+                report.add(Fault::error(value.place.clone(), message).help(FUNCTION));
+                None
+            }
+            Ok(arguments) => {
+                let mut used = Vec::new();
+                let parsed =
+                    self.named(&mut used, |named| OwnFunction::parse(&arguments, &value.text, named));
+                let fault = parsed.as_ref().err().cloned().map(|fault| self.explained(value, fault, report));
+                fault.into_iter().for_each(|fault| report.add(fault));
+                parsed.ok().filter(|_| used.iter().all(|(_, value)| !f64::is_nan(*value)))
+            }
+        };
+        let name = Word { text: name.to_owned().into(), ..head.clone() };
+        self.name(&name, function.map(|function| Meant::Function(Arc::new(function))), report);
+        Some(())
+    }
+
+    fn name(&mut self, name: &Word<'_>, value: Option<Meant>, report: &mut Report<'_>) {
         let mut letters = name.text.chars();
         let is_name = letters.next().is_some_and(char::is_alphabetic) && letters.all(is_in_name);
         let fault = |message| Fault::error(name.place.clone(), message);
@@ -180,10 +219,17 @@ impl<'a> Numbers<'a> {
         variables: &'static [&'static str],
         used: &mut Vec<(String, f64)>,
     ) -> Result<Formula, FormulaFault> {
-        let seen = std::cell::RefCell::new(used);
-        Formula::parse_with(&word.text, variables, &|name| {
-            let value = self.all[*self.by_name.get(name)?].value.unwrap_or(f64::NAN);
-            seen.borrow_mut().push((name.to_owned(), value));
+        self.named(used, |named| Formula::parse_with(&word.text, variables, named))
+    }
+
+    /// Calls a function with what names stand for, and notes the numbers among them; functions count as 0, and what is faulty as
+    /// NaN.
+    fn named<T>(&self, used: &mut Vec<(String, f64)>, parse: impl FnOnce(Named<'_>) -> T) -> T {
+        let seen = RefCell::new(used);
+        parse(&|name| {
+            let value = self.all[*self.by_name.get(name)?].value.clone().unwrap_or(Meant::Number(f64::NAN));
+            let number = if let Meant::Number(number) = value { number } else { 0.0 };
+            seen.borrow_mut().push((name.to_owned(), number));
             Some(value)
         })
     }
@@ -192,11 +238,14 @@ impl<'a> Numbers<'a> {
     fn explained(&mut self, word: &Word<'_>, fault: FormulaFault, report: &Report<'_>) -> Fault {
         let mut told = Fault::error(word.within(&fault.place), fault.message);
         let Some(unknown) = fault.unknown else { return told.help(fault.help) };
+        let text = self.text;
         if let Some(place) = self.anywhere().get(&unknown) {
-            told.message = format!("the number `{unknown}` is used before it is defined");
+            let head = place.clone().and_then(|place| text.get(place));
+            let what = if head.is_some_and(|head| head.contains('(')) { "function" } else { "number" };
+            told.message = format!("the {what} `{unknown}` is used before it is defined");
             return told
                 .also(place.clone(), "defined here")
-                .help("a number must be defined before it is used");
+                .help(format!("a {what} must be defined before it is used"));
         }
         let is_told = report.would_list(Severity::Error, &told.place);
         if let Some(near) = nearest(&unknown, self.names().filter(|_| is_told)) {
@@ -219,7 +268,9 @@ impl<'a> Numbers<'a> {
             let mut tokens = Tokens::of(text, nowhere);
             while let Some(token) = tokens.step(nowhere) {
                 if let (true, Some(name)) = (tokens.raw(token) == "let", tokens.ahead[0]) {
-                    names.insert(tokens.text(name).into_owned(), Some(name.place()));
+                    let head = tokens.text(name);
+                    let called = head.split('(').next().unwrap_or_default().to_owned();
+                    names.insert(called, Some(name.place()));
                 }
             }
             names

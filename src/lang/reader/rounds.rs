@@ -93,8 +93,11 @@ impl<'a> Rounds<'a> {
         }
     }
 
-    /// Names a number, of which another value may be set.
+    /// Names a number, of which another value may be set, or defines a function.
     pub fn define(&mut self, name: &Word<'a>, value: &Word<'a>, report: &mut Report<'_>) {
+        if self.numbers.function(name, value, report).is_some() {
+            return;
+        }
         let set = self.sets.number(&name.text);
         let value = self.numbers.number(set.as_ref().unwrap_or(value), report);
         self.numbers.define(name, value, report);

@@ -1,0 +1,163 @@
+//! Functions that a scene defines, and the texts of formulas without the names of a scene.
+
+use super::function;
+use super::parser::{Named, Operations, parse};
+use super::step::Step;
+use super::words::{FormulaFault, is_in_name};
+use crate::text;
+use std::ops::Range;
+
+/// The most arguments of a function.
+const MOST_ARGUMENTS: usize = 16;
+
+/// The longest text of a formula in which calls are written as what they stand for, in bytes.
+const LONGEST: usize = 1 << 20;
+
+/// A function that a scene defines, as `f` of u and v as `u^2 + v`.
+#[derive(Clone, Debug)]
+pub struct OwnFunction {
+    count: usize,
+    /// Its operations; the variables are its arguments.
+    pub(super) steps: Vec<Step>,
+    pub(super) pieces: Vec<Piece>,
+}
+
+impl OwnFunction {
+    /// Parses a function of these arguments.
+    ///
+    /// # Errors
+    /// The first place where the text is not a formula of them.
+    pub fn parse(arguments: &[&str], text: &str, named: Named<'_>) -> Result<Self, FormulaFault> {
+        let value = |steps: &[Step]| super::Formula::new(String::new(), &[], steps.to_vec()).at(0.0);
+        let Operations { steps, pieces, .. } = parse(text, arguments, named, value)?;
+        Ok(Self { count: arguments.len(), steps, pieces })
+    }
+
+    /// Returns the number of its arguments.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+}
+
+/// Splits the head of a function, `f(u, v)`, into its name and its arguments; `None` if it is no head of one.
+///
+/// # Errors
+/// Why it cannot be the head of a function.
+pub fn head(text: &str) -> Option<(&str, Result<Vec<&str>, String>)> {
+    let (name, rest) = text.split_once('(')?;
+    let arguments = || {
+        let rest = rest.trim_end().strip_suffix(')').ok_or("its arguments end with `)`")?;
+        let arguments: Vec<_> = rest.split(',').map(str::trim).collect();
+        for (index, argument) in arguments.iter().enumerate() {
+            let is_name = argument.starts_with(char::is_alphabetic) && argument.chars().all(is_in_name);
+            let is_taken = ["pi", "π"].contains(argument)
+                || function::find(argument).is_some_and(function::FormulaFunction::is_reserved);
+            if !is_name || is_taken {
+                return Err(format!("`{}` cannot be the name of an argument", argument.escape_debug()));
+            }
+            if arguments[..index].contains(argument) {
+                return Err(format!("`{argument}` is an argument twice"));
+            }
+        }
+        if arguments.len() > MOST_ARGUMENTS {
+            return Err(format!("it has more than {MOST_ARGUMENTS} arguments"));
+        }
+        Ok(arguments)
+    };
+    Some((name.trim(), arguments()))
+}
+
+/// A part of the text of a formula.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Piece {
+    Text(String),
+    /// A variable, by its index, and as it is written.
+    Variable(usize, String),
+}
+
+/// Returns the text that pieces make.
+pub(super) fn joined(pieces: &[Piece]) -> String {
+    let of = |piece: &Piece| match piece {
+        Piece::Text(text) | Piece::Variable(_, text) => text.clone(),
+    };
+    pieces.iter().map(of).collect()
+}
+
+fn length(pieces: &[Piece]) -> usize {
+    let of = |piece: &Piece| match piece {
+        Piece::Text(text) | Piece::Variable(_, text) => text.len(),
+    };
+    pieces.iter().map(of).sum()
+}
+
+/// What stands in the place of names in a text, in the order of the text.
+#[derive(Default)]
+pub(super) struct Edits {
+    all: Vec<(Range<usize>, Vec<Piece>)>,
+    /// Whether any is a call.
+    pub has_calls: bool,
+}
+
+impl Edits {
+    /// Puts a number in the place of its name.
+    pub fn number(&mut self, text: &str, place: Range<usize>, number: f64) {
+        let number = text::shortest(number);
+        // In `2n`, the digits of a number would be part of the number before it.
+        let before = text[..place.start].trim_end();
+        let is_factor = before.ends_with(|c: char| c.is_alphanumeric() || ".)|".contains(c));
+        let written = if number.starts_with('-') || is_factor { format!("({number})") } else { number };
+        self.all.push((place, vec![Piece::Text(written)]));
+    }
+
+    /// Notes a variable.
+    pub fn variable(&mut self, place: Range<usize>, index: usize) {
+        self.all.push((place, vec![Piece::Variable(index, String::new())]));
+    }
+
+    /// Puts what a function stands for in the place of its call; returns whether that is short enough.
+    pub fn call(&mut self, place: Range<usize>, of: &[Piece], arguments: &[Vec<Piece>]) -> bool {
+        let bracket = |text: &str| Piece::Text(text.to_owned());
+        let mut pieces = vec![bracket("(")];
+        let mut left = LONGEST;
+        for piece in of {
+            let long = match piece {
+                Piece::Variable(index, _) => length(&arguments[*index]) + 2,
+                Piece::Text(text) => text.len(),
+            };
+            left = match left.checked_sub(long) {
+                Some(left) => left,
+                None => return false,
+            };
+            match piece {
+                Piece::Variable(index, _) => {
+                    pieces.push(bracket("("));
+                    pieces.extend(arguments[*index].iter().cloned());
+                    pieces.push(bracket(")"));
+                }
+                text => pieces.push(text.clone()),
+            }
+        }
+        pieces.push(bracket(")"));
+        self.all.push((place, pieces));
+        self.has_calls = true;
+        true
+    }
+
+    /// Takes the edits in a range of the text, and returns the text there with them.
+    pub fn take(&mut self, text: &str, range: Range<usize>) -> Vec<Piece> {
+        let first = self.all.partition_point(|(place, _)| place.start < range.start);
+        let (mut pieces, mut at) = (Vec::new(), range.start);
+        for (place, edit) in self.all.drain(first..) {
+            pieces.push(Piece::Text(text[at..place.start].to_owned()));
+            pieces.extend(edit.into_iter().map(|piece| match piece {
+                Piece::Variable(index, written) if written.is_empty() => {
+                    Piece::Variable(index, text[place.clone()].to_owned())
+                }
+                piece => piece,
+            }));
+            at = place.end;
+        }
+        pieces.push(Piece::Text(text[at..range.end].to_owned()));
+        pieces
+    }
+}
