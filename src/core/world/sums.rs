@@ -72,7 +72,7 @@ mod tests {
             x in 0.0..19.0_f64, y in 0.0..9.0_f64, width in 0.02..20.0_f64, height in 0.02..10.0_f64,
         ) {
             let image = RgbImage::from_fn(20, 10, |x, y| image::Rgb([(37 * x + 91 * y) as u8, (x * y) as u8, 255]));
-            let texels = Texels::of_bytes(image, &Sensor::default().display());
+            let texels = Texels::of_bytes(image, None, &Sensor::default().display());
             let (low, size) = (DVec2::new(x, y), DVec2::new(20.0, 10.0));
             let high = (low + DVec2::new(width, height)).min(size);
             let (one, other) = (Sums::of(&texels).mean(low, high), texels.mean_of_few(low, high));

@@ -116,7 +116,7 @@ mod tests {
         let (vertices, faces, Normals { values: normals, faces: corners }) = normals(30.0);
         // Each corner of a rim has one for the sides and one for the end.
         assert_eq!(normals.len(), vertices.len() + 2 * SIDES as usize);
-        for (face, normal) in faces.iter().zip(&corners) {
+        for (face, normal) in faces.iter().zip(&*corners) {
             let is_end = face.iter().any(|corner| *corner >= 2 * SIDES);
             for (corner, normal) in face.iter().zip(normal) {
                 let (at, normal) =

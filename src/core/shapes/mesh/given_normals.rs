@@ -71,6 +71,7 @@ mod tests {
     use crate::shapes::mesh::tests::closed;
     use crate::shapes::mesh::{Look, Surface, ToWorld};
     use glam::DVec3;
+    use std::sync::Arc;
 
     /// Returns a ball whose vertices have normals that this function makes of their places.
     fn ball(normal: impl Fn(DVec3) -> DVec3) -> Model {
