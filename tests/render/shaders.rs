@@ -41,6 +41,21 @@ fn a_shader_by_number_by_its_type_and_by_its_entity_are_one() {
 }
 
 #[test]
+fn a_surface_has_another_material_on_its_back() {
+    let ball = |place: &str, look: &str| {
+        picture(&format!(
+            "material red {{ ambient 4 1 1 diffuse 2 1 0 specular 0.25 }} sides two {{ back red }}
+            light lamp {{ location 3 4 3 emissivity 9 9 9 }} sphere b {{ {place} {look} }}"
+        ))
+    };
+    for (place, own) in
+        [("center 4 3 -3 radius 2", "material white"), ("center 4 3 0 radius 12", "material red")]
+    {
+        assert_eq!(ball(place, "material white shader two"), ball(place, own), "{place}");
+    }
+}
+
+#[test]
 fn a_shader_of_the_scene_comes_before_a_type_of_its_name() {
     let text =
         "tiles rainbow { width 1 } plane p { material white normal 0 0 1 point 0 0 -4 shader rainbow }";
