@@ -4,11 +4,12 @@ use crate::work::How;
 use glam::DVec3;
 use numpy::ndarray::{Array2, Array3};
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray3};
-use pyo3::exceptions::{PyKeyboardInterrupt, PyOSError, PyValueError};
+use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use std::io::{self, Write};
 use std::iter;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use tabray_core::output::deflate::Compression;
@@ -19,7 +20,7 @@ use tabray_core::render::plan::Plan;
 use tabray_core::render::renderer::RenderCallbacks;
 use tabray_core::render::{Renderer, trace};
 use tabray_core::scene::model::Model;
-use tabray_core::text::count;
+use tabray_core::text::{self, count};
 use tempfile::NamedTempFile;
 
 /// An image: light as an array of shape (height, width, 3), float64, red, green and blue, in rows from the top. `numpy.asarray`
@@ -112,8 +113,7 @@ fn seen(renderer: &Renderer, plan: &Plan, stops: &(dyn Fn() -> bool + Sync)) -> 
             Some(hit) => (hit.distance, hit.index as i32, hit.object.shape.normal(hit.point).to_array()),
         }
     };
-    let done =
-        || if stops() { std::ops::ControlFlow::Break(()) } else { std::ops::ControlFlow::Continue(()) };
+    let done = || if stops() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
     renderer.pixels(plan, 0..height, &done, pixel)
 }
 
@@ -172,10 +172,11 @@ impl Image {
                 return Err(PyValueError::new_err(told));
             }
         };
-        py.detach(|| write(&path, &bytes)).map_err(|error| {
-            let code = error.raw_os_error().unwrap_or(0);
-            PyOSError::new_err((code, error.to_string(), path.display().to_string()))
-        })
+        let cannot = |error: io::Error| {
+            let told = format!("cannot write `{}`: {}", path.display(), text::reason(&error));
+            io::Error::new(error.kind(), told).into()
+        };
+        py.detach(|| write(&path, &bytes)).map_err(cannot)
     }
 
     /// The width and the height in pixels.

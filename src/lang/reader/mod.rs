@@ -45,7 +45,7 @@ pub(crate) use guesses::find_attribute;
 pub(crate) use located::Located;
 pub use machine::Message;
 pub(crate) use older::is_older;
-pub use only_rays::{UNUSED_CAMERA, mesh_for_rays, read_for_rays};
+pub use only_rays::{UNUSED_CAMERA, mesh_for_rays};
 pub use options::ReadOptions;
 pub use parsed::Parsed;
 pub use toml_faults::toml_error;
@@ -122,6 +122,25 @@ pub fn read_by(
             foreign::explained(report, text, again)
         }
         Err(report) => report,
+    })
+}
+
+/// Reads a scene of which only rays are asked, as [`read_by`] does. A scene without a camera is given one.
+///
+/// # Errors
+/// Every fault of the scene, warnings among them, in the order of the text.
+pub fn read_for_rays(
+    registry: &Registry,
+    name: &str,
+    folder: &Path,
+    bytes: &[u8],
+    options: ReadOptions<'_>,
+) -> Result<Loaded, Report> {
+    let options = ReadOptions { only_rays: true, ..options };
+    let read = |bytes: &[u8]| read_by(registry, name, folder, bytes, options);
+    read(bytes).or_else(|report| match report.lacks_camera() {
+        true => read(&only_rays::with_camera(bytes, report.syntax())),
+        false => Err(report),
     })
 }
 

@@ -1,9 +1,7 @@
 //! Scenes of which only rays are asked: they need no camera.
 
 use super::build::NO_CAMERA;
-use super::options::ReadOptions;
-use super::{Loaded, Report, read_by};
-use crate::registry::Registry;
+use super::report::Report;
 use crate::syntax::Syntax;
 use std::ffi::OsStr;
 use std::path::Path;
@@ -28,29 +26,13 @@ pub fn mesh_for_rays(file: &Path) -> String {
     format!("{CAMERA}\nmaterial grey {{ }}\nmesh {name} {{ material grey file {file} }}\n")
 }
 
-/// Reads a scene of which only rays are asked, as [`read_by`] does. A scene without a camera is given one.
-///
-/// # Errors
-/// Every fault of the scene, warnings among them, in the order of the text.
-pub fn read_for_rays(
-    registry: &Registry,
-    name: &str,
-    folder: &Path,
-    bytes: &[u8],
-    options: ReadOptions<'_>,
-) -> Result<Loaded, Report> {
-    let options = ReadOptions { only_rays: true, ..options };
-    let read = |bytes: &[u8]| read_by(registry, name, folder, bytes, options);
-    read(bytes).or_else(|report| {
-        if !report.lacks_camera() {
-            return Err(report);
-        }
-        let camera = if report.syntax() == Syntax::Toml { CAMERA_IN_TOML } else { CAMERA };
-        read(&[bytes, b"\n", camera.as_bytes()].concat())
-    })
+/// Returns the text of a scene that lacks a camera, with one.
+pub fn with_camera(bytes: &[u8], syntax: Syntax) -> Vec<u8> {
+    let camera = if syntax == Syntax::Toml { CAMERA_IN_TOML } else { CAMERA };
+    [bytes, b"\n", camera.as_bytes()].concat()
 }
 
-impl Report {
+impl Report<'_> {
     /// Tells whether one of the faults is that the scene has no camera.
     pub fn lacks_camera(&self) -> bool {
         self.faults().iter().any(|fault| fault.message == NO_CAMERA)
