@@ -104,8 +104,8 @@ pub fn numbers<'py>(
 ) -> PyResult<PyReadonlyArray1<'py, f64>> {
     let array = converted(&array(object)?, "float64")?;
     match array.shape() {
-        [] => repeated(&array, &[count])?.extract().map_err(PyErr::from),
-        [length] if *length == count => array.extract().map_err(PyErr::from),
+        [] => repeated(&array, &[count])?.extract(),
+        [length] if *length == count => array.extract(),
         _ => Err(shaped(name, &array, &format!("a number, or ({count},) for one of each ray"))),
     }
 }

@@ -9,6 +9,7 @@
 
 from __future__ import annotations
 
+import math
 from enum import IntEnum
 from os import PathLike
 from pathlib import Path
@@ -120,16 +121,27 @@ def surface(
     middle = [(one + other) / 2 for one, other in zip(low, high)]
     radius = sum((other - one) ** 2 for one, other in zip(low, high)) ** 0.5 / 2
 
-    def at(x: float, y: float, z: float) -> list[float]:
-        return [centre + radius * along for centre, along in zip(middle, (x, y, z))]
-
+    # So far away that a ball around the box fits into the image, the lesser side of which is seen at this angle.
+    angle = math.radians(38)
+    lesser = math.atan(math.tan(angle / 2) * min(1, height / width))
+    toward = (0.5, 0.41, 0.76)
+    position = [centre + along * radius / math.sin(lesser) for centre, along in zip(middle, toward)]
     return scene(
         [
             {"let": dict(parameters)} if parameters else {},
-            entities.look_at("eye", pixeldim=[width, height], position=at(1.6, 1.3, 2.4), target=middle, angle=38, samples=4),
-            entities.sky("sky", horizon=[0.75, 0.8, 0.85], zenith=[0.35, 0.45, 0.6], lights=True),
-            entities.material("paint", diffuse=list(colour)),
+            entities.look_at(
+                "eye",
+                pixeldim=[width, height],
+                position=position,
+                target=middle,
+                angle=math.degrees(angle),
+                samples=4,
+                tone="neutral",
+            ),
+            entities.sky("sky", horizon=[0.75, 0.8, 0.85], zenith=[0.35, 0.45, 0.6]),
+            entities.material("paint", ambient=[0.12 * part for part in colour], diffuse=list(colour)),
             entities.implicit("surface", material="paint", formula=formula, box=low_high),
-            entities.sun("sun", direction=[0.5, 1.0, 0.6], emissivity=[1.6, 1.5, 1.4]),
+            entities.sun("key", direction=[0.2, 1.0, 0.6], emissivity=[0.85, 0.83, 0.8]),
+            entities.sun("fill", direction=[1.0, 0.1, 0.7], emissivity=[0.25, 0.27, 0.3]),
         ]
     )
