@@ -144,7 +144,7 @@ impl<'m> Listener<'m> {
         self.rays.get_mut(number)
     }
 
-    fn light(&mut self, index: usize, outcome: LightOutcome) -> LightExplained<'m> {
+    fn light(&self, index: usize, outcome: LightOutcome) -> LightExplained<'m> {
         let model = self.model;
         let (outcome, blocked_by, shines) = match outcome {
             LightOutcome::Behind => ("behind", None, None),
@@ -166,7 +166,9 @@ impl TraceObserver for Listener<'_> {
             Event::Light(index, outcome) => {
                 self.shadow = None;
                 let light = self.light(index, outcome);
-                self.ray().into_iter().for_each(|ray| ray.lights.push(light));
+                if let Some(ray) = self.ray() {
+                    ray.lights.push(light);
+                }
                 return;
             }
             _ => {}
