@@ -142,8 +142,11 @@ fn no_snapshot_is_left_of_a_scene_that_is_gone() {
         for entry in fs::read_dir(folder).expect("a folder of snapshots") {
             let path = entry.expect("an entry").path();
             if path.is_dir() {
-                // The snapshots of explanations, plans, proofs and refusals have names other than those of scenes.
-                if !["probe", "plan", "proofs", "refusals"].iter().any(|folder| path.ends_with(folder)) {
+                // Tables of meshes, explanations, plans, proofs and refusals have names other than those of scenes.
+                if !["meshes", "probe", "plan", "proofs", "refusals"]
+                    .iter()
+                    .any(|folder| path.ends_with(folder))
+                {
                     folders.push(path);
                 }
                 continue;
