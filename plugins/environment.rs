@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 use tabray::prelude::*;
-use tabray::world::sky_light::equirectangular;
+use tabray::world::sky_map::equirectangular;
 
 static TEXTURE: Pparm<Arc<Texture>> = Pparm::required(
     "texture",

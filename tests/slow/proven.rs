@@ -16,9 +16,12 @@ const SIZE: [usize; 2] = [20, 15];
 
 /// The size of those whose pixels take a hundred times as long as most, and these scenes.
 const FEW: [usize; 2] = [8, 6];
-const COSTLY: [&str; 7] = [
+const COSTLY: [&str; 10] = [
+    "gallery/facing-mirrors.ray",
     "gallery/gold.ray",
     "gallery/hall-of-mirrors.ray",
+    "gallery/rings.ray",
+    "glass/bubbles.ray",
     "hard/copies.ray",
     "hard/lantern-inside.ray",
     "hard/lantern.ray",

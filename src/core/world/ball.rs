@@ -1,6 +1,6 @@
 //! Balls that shine, and which of their points are seen.
 
-use crate::world::emitter::in_cone;
+use crate::world::directions::in_cone;
 use glam::{DVec2, DVec3};
 
 /// A ball that shines at its surface, on both sides.

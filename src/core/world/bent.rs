@@ -3,7 +3,7 @@
 use crate::world::body::AnyShader;
 use crate::world::certify::Precise;
 use crate::world::material::{Look, Material, Rgb};
-use crate::world::shader::{PointBounds, Shader, ShaderInputs, SurfacePoint};
+use crate::world::shader::{EnclosedShader, PointBounds, Shader, ShaderInputs, SurfacePoint};
 use glam::{DVec2, DVec3};
 use tabray_exact::interval::Interval;
 
@@ -63,8 +63,8 @@ impl<B: Bend> Shader for Bent<B> {
         self.bend.enclose(at, normal)
     }
 
-    fn colours(&self) -> Option<&AnyShader> {
-        Some(&self.colours)
+    fn colours(&self) -> Option<&(dyn EnclosedShader + 'static)> {
+        Some(&*self.colours)
     }
 
     fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {

@@ -2,13 +2,13 @@
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::Side;
-use crate::world::body::AnyShader;
 use crate::world::certify::{Precise, ProofMethods};
 use crate::world::hittable::Hittable;
 use crate::world::material::{Look, Material, Rgb};
 use crate::world::patch::Patch;
+use f256::f256;
 use glam::{DVec2, DVec3};
-use tabray_exact::interval::{Float, Interval};
+use tabray_exact::interval::{Float, Fraction, Interval};
 use tabray_exact::scalar::{Scalar, per_axis};
 
 /// A point of a surface, as a shader sees it. On a copy of an object, the point is in the coordinates of the original.
@@ -238,7 +238,7 @@ pub trait Shader: Send + Sync {
     }
 
     /// Returns the shader that gives the colours and the normals that are bent, if the shader does nothing but bend normals.
-    fn colours(&self) -> Option<&AnyShader> {
+    fn colours(&self) -> Option<&(dyn EnclosedShader + 'static)> {
         None
     }
 
@@ -310,6 +310,30 @@ impl<F: Float> LookBounds<F> {
             diffuse: hull(self.diffuse, other.diffuse),
             specular: hull(self.specular, other.specular),
         }
+    }
+}
+
+/// A shader that is enclosed in each precision. Every [`Shader`] is one.
+pub trait EnclosedShader: Shader + EncloseLook<f64> + EncloseLook<f256> + EncloseLook<Fraction> {}
+
+impl<T: Shader> EnclosedShader for T {}
+
+/// A shader whose looks are enclosed in one precision. Every [`Shader`] is one.
+pub trait EncloseLook<F> {
+    /// Calls [`Shader::enclose`].
+    fn look(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>>;
+
+    /// Calls [`Shader::enclose_bend`].
+    fn bent(&self, at: &PointBounds<F>, normal: [Interval<F>; 3]) -> Option<[Interval<F>; 3]>;
+}
+
+impl<T: Shader, F: Precise> EncloseLook<F> for T {
+    fn look(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
+        self.enclose(material, at)
+    }
+
+    fn bent(&self, at: &PointBounds<F>, normal: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
+        self.enclose_bend(at, normal)
     }
 }
 

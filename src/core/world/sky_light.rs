@@ -1,28 +1,22 @@
 //! Backgrounds that light surfaces.
 
-use crate::parallel;
 use crate::world::background::Background;
 use crate::world::certify::Precise;
 use crate::world::emitter::{Emitter, Extent, LightSample, by_cosine};
 use crate::world::light::Light;
 use crate::world::material::Rgb;
+use crate::world::sky_map::SkyMap;
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 use std::sync::{Arc, OnceLock};
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, per_axis};
 
-/// The largest number of columns, and of rows, of a [`Map`].
-const MOST_CELLS: [u32; 2] = [1024, 512];
-
-/// The number of rows of a map from which on they are filled on all threads.
-const MANY: usize = 64;
-
 /// The light of a background. Directions are chosen by the cosine of the angle at which light arrives; where the background
 /// has detail, half of them by how bright it is there.
 pub struct SkyLight {
     background: Arc<dyn Background>,
-    map: OnceLock<Option<Map>>,
+    map: OnceLock<Option<SkyMap>>,
 }
 
 impl SkyLight {
@@ -31,13 +25,8 @@ impl SkyLight {
         Self { background, map: OnceLock::new() }
     }
 
-    pub(crate) fn background(&self) -> &dyn Background {
-        &*self.background
-    }
-
-    /// Returns where directions are chosen by brightness.
-    pub(crate) fn map(&self) -> Option<&Map> {
-        self.map.get_or_init(|| Map::of(&*self.background)).as_ref()
+    fn map(&self) -> Option<&SkyMap> {
+        self.map.get_or_init(|| SkyMap::of(&*self.background)).as_ref()
     }
 }
 
@@ -93,155 +82,11 @@ impl Emitter for SkyLight {
     }
 
     fn extent(&self) -> Extent<'_> {
-        Extent::Sky(self)
+        Extent::Sky { background: &*self.background, map: self.map() }
     }
 
     /// Mirrors show the background itself.
     fn has_highlights(&self) -> bool {
         false
     }
-}
-
-/// How bright a background is around the scene: cells of an equirectangular map, whose middle lies toward -z and whose upper
-/// edge is straight up.
-pub(crate) struct Map {
-    columns: usize,
-    rows: usize,
-    /// The part of all light that comes from the rows up to each one, counted from below.
-    rows_up_to: Vec<f64>,
-    /// For each row, the part of its light that comes from the cells up to each one.
-    cells_up_to: Vec<f64>,
-}
-
-impl Map {
-    /// Looks at a background; `None` if it has no detail, or is black.
-    fn of(background: &dyn Background) -> Option<Self> {
-        let [width, height] = background.detail()?;
-        if width == 0 || height == 0 {
-            return None;
-        }
-        let [columns, rows] = [width.min(MOST_CELLS[0]) as usize, height.min(MOST_CELLS[1]) as usize];
-        let (width, height) = (width as usize, height as usize);
-        let light = |y: usize| -> Vec<f32> {
-            let up = (y as f64 + 0.5) / height as f64;
-            let place = |x: usize| DVec2::new((x as f64 + 0.5) / width as f64, up);
-            (0..width).map(|x| background.colour(direction(place(x))).max_element().max(0.0) as f32).collect()
-        };
-        let texels = parallel::map_ranges(height, MANY, &|range| range.map(light).collect());
-        // The mean over a texel of colours that are interpolated between the middles of texels.
-        let mean = |x: usize, y: usize| {
-            let along = |y: usize| {
-                let at = |x: usize| f64::from(texels[y][x % width]);
-                0.75 * at(x) + 0.125 * (at(x + width - 1) + at(x + 1))
-            };
-            0.75 * along(y) + 0.125 * (along(y.saturating_sub(1)) + along((y + 1).min(height - 1)))
-        };
-        let cells = |row: usize| {
-            let mut sums = vec![0.0; columns];
-            for y in row * height / rows..(row + 1) * height / rows {
-                (0..width).for_each(|x| sums[x * columns / width] += mean(x, y));
-            }
-            sums
-        };
-        let lit = parallel::map_ranges(rows, MANY, &|range| range.map(cells).collect());
-        let (mut rows_up_to, mut cells_up_to) =
-            (Vec::with_capacity(rows), Vec::with_capacity(rows * columns));
-        let mut all = 0.0;
-        for (row, mut cells) in lit.into_iter().enumerate() {
-            let sum: f64 = cells.iter().sum();
-            let mut before = 0.0;
-            for cell in &mut cells {
-                before += *cell;
-                *cell = if sum > 0.0 { before / sum } else { 1.0 };
-            }
-            cells_up_to.append(&mut cells);
-            all += sum * band(row, rows);
-            rows_up_to.push(all);
-        }
-        if all.is_nan() || all <= 0.0 {
-            return None;
-        }
-        rows_up_to.iter_mut().for_each(|up_to| *up_to /= all);
-        Some(Self { columns, rows, rows_up_to, cells_up_to })
-    }
-
-    fn cells(&self, row: usize) -> &[f64] {
-        &self.cells_up_to[row * self.columns..][..self.columns]
-    }
-
-    /// Chooses a direction by two numbers from 0 to 1.
-    pub fn direction(&self, numbers: DVec2) -> DVec3 {
-        let (row, up) = chosen(&self.rows_up_to, numbers.y);
-        let (column, along) = chosen(self.cells(row), numbers.x);
-        // Equal solid angles are equal differences of the sine.
-        let [low, high] = [row, row + 1].map(|row| sine(row, self.rows));
-        let height = (low + up * (high - low)).clamp(-1.0, 1.0);
-        let around = 2.0 * PI * ((column as f64 + along) / self.columns as f64 - 0.5);
-        let (sin, cos) = libm::sincos(around);
-        let flat = (1.0 - height * height).sqrt();
-        DVec3::new(flat * sin, height, -flat * cos).normalize()
-    }
-
-    /// Returns the density of the directions that are chosen, per unit of solid angle.
-    fn density(&self, toward: DVec3) -> f64 {
-        let around = 0.5 + libm::atan2(toward.x, -toward.z) / (2.0 * PI);
-        let up = 0.5 + libm::asin(toward.y.clamp(-1.0, 1.0)) / PI;
-        let index = |part: f64, count: usize| ((part * count as f64) as usize).min(count - 1);
-        self.density_in(index(up, self.rows), index(around, self.columns))
-    }
-
-    /// Encloses the density at directions that are unit vectors in a box.
-    pub fn density_within(&self, toward: [Interval; 3]) -> Interval {
-        let [around, up] = equirectangular(toward);
-        let cells = |part: Interval, count: usize| {
-            let places = part * Interval::constant(count as f64);
-            let [first, last] = [places.low, places.high].map(|place| (place as usize).min(count - 1));
-            first..=last
-        };
-        let density = |row: usize, column: usize| Interval::constant(self.density_in(row, column));
-        let cells = cells(up, self.rows)
-            .flat_map(|row| cells(around, self.columns).map(move |column| density(row, column)));
-        cells.reduce(Interval::hull).unwrap_or(Interval::WHOLE)
-    }
-
-    /// Returns the density in a cell.
-    fn density_in(&self, row: usize, column: usize) -> f64 {
-        let part =
-            |up_to: &[f64], index: usize| up_to[index] - if index == 0 { 0.0 } else { up_to[index - 1] };
-        let solid_angle = 2.0 * PI / self.columns as f64 * band(row, self.rows);
-        part(&self.rows_up_to, row) * part(self.cells(row), column) / solid_angle
-    }
-}
-
-/// Returns the sine of the elevation at the lower edge of a row.
-fn sine(row: usize, rows: usize) -> f64 {
-    libm::sin(PI * (row as f64 / rows as f64 - 0.5))
-}
-
-/// Returns the height of a row of a unit sphere.
-fn band(row: usize, rows: usize) -> f64 {
-    sine(row + 1, rows) - sine(row, rows)
-}
-
-/// Encloses the places of directions in an equirectangular map whose middle lies toward -z, in its width from the left and its
-/// height from below. The directions are unit vectors in a box.
-pub fn equirectangular([x, y, z]: [Interval; 3]) -> [Interval; 2] {
-    let (n, pi) = (Interval::constant, Interval::pi());
-    [n(0.5) + x.atan2(-z) / (n(2.0) * pi), n(1.0) - y.acos() / pi]
-}
-
-/// Returns the direction at a place of an equirectangular map, in its width from the left and its height from below.
-fn direction(place: DVec2) -> DVec3 {
-    let (sin, cos) = libm::sincos(2.0 * PI * (place.x - 0.5));
-    let (height, flat) = libm::sincos(PI * (place.y - 0.5));
-    DVec3::new(flat * sin, height, -flat * cos)
-}
-
-/// Returns the place in a list of ascending numbers up to 1 that a number from 0 to 1 chooses, and how far it is past the one
-/// before, as a part of the difference.
-fn chosen(up_to: &[f64], number: f64) -> (usize, f64) {
-    let index = up_to.partition_point(|end| *end <= number).min(up_to.len() - 1);
-    let before = if index == 0 { 0.0 } else { up_to[index - 1] };
-    let part = up_to[index] - before;
-    (index, if part > 0.0 { ((number - before) / part).clamp(0.0, 1.0) } else { 0.5 })
 }

@@ -58,7 +58,7 @@ pub(super) fn shine<N: Number>(
     let of = Shining { scene, index, surface, dir, shininess: has_highlight.then_some(shininess) };
     let extent = emitter.extent();
     // A sky's samples have its colours.
-    let sent = if matches!(extent, Extent::Sky(_)) { [N::constant(1.0); 3] } else { sent };
+    let sent = if matches!(extent, Extent::Sky { .. }) { [N::constant(1.0); 3] } else { sent };
     let lit = match seen {
         LightPoints::All => match &extent {
             Extent::Panel(panel) => {

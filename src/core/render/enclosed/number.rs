@@ -6,8 +6,7 @@ use crate::world::certify::{
     FootprintHit, HitEnclosure, Precise, ProofMethods, gradient, gradient_over, shading_normals,
 };
 use crate::world::packets::light::{EncloseLight, PacketLight};
-use crate::world::packets::shader::{EncloseLook, PacketShader};
-use crate::world::shader::{LookBounds, PointBounds};
+use crate::world::shader::{EncloseLook, EnclosedShader, LookBounds, PointBounds};
 use tabray_exact::affine::Affine;
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{Scalar, per_axis};
@@ -43,7 +42,7 @@ pub trait Endpoint: Precise {
 
     /// Encloses the unit normals to which a shader bends outward ones at a point.
     fn bent(
-        shader: &(dyn PacketShader + 'static),
+        shader: &(dyn EnclosedShader + 'static),
         at: &PointBounds<Self>,
         normal: [Interval<Self>; 3],
     ) -> Option<[Interval<Self>; 3]>;
@@ -54,26 +53,26 @@ pub trait Endpoint: Precise {
 
 impl<F: Precise> Endpoint for F
 where
-    dyn PacketShader: EncloseLook<F>,
+    dyn EnclosedShader: EncloseLook<F>,
     dyn PacketLight: EncloseLight<F>,
 {
     fn look(object: &Object, at: &PointBounds<Self>) -> Option<LookBounds<Self>> {
-        let mut shader = &object.shader;
+        let mut shader: &(dyn EnclosedShader + 'static) = &*object.shader;
         while let Some(colours) = shader.colours() {
             shader = colours;
         }
-        EncloseLook::<F>::look(&**shader, &object.material, at)
+        EncloseLook::<F>::look(shader, &object.material, at)
     }
 
     fn bent(
-        shader: &(dyn PacketShader + 'static),
+        shader: &(dyn EnclosedShader + 'static),
         at: &PointBounds<Self>,
         normal: [Interval<Self>; 3],
     ) -> Option<[Interval<Self>; 3]> {
         if !shader.bends() {
             return Some(normal);
         }
-        let normal = shader.colours().map_or(Some(normal), |colours| Self::bent(&**colours, at, normal))?;
+        let normal = shader.colours().map_or(Some(normal), |colours| Self::bent(colours, at, normal))?;
         EncloseLook::<F>::bent(shader, at, normal)
     }
 

@@ -5,10 +5,11 @@ use super::number::Number;
 use super::panes::Ends;
 use super::scene::Colour;
 use super::surface::HitPoints;
+use crate::world::background::Background;
 use crate::world::ball::Ball;
 use crate::world::emitter::Extent;
 use crate::world::panel::Panel;
-use crate::world::sky_light::SkyLight;
+use crate::world::sky_map::SkyMap;
 use glam::{DVec2, DVec3};
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{constants, cross, dot, per_axis};
@@ -44,7 +45,7 @@ pub(super) fn chosen<N: Number>(
             let Round { light: [_, light], .. } = Round::seen(extent, surface.at)?;
             Some(Some(Points { are_far: true, ..Points::even(toward, light) }))
         }
-        Extent::Sky(sky) => in_sky(sky, surface.normal, numbers),
+        Extent::Sky { background, map } => in_sky((*background, *map), surface.normal, numbers),
         Extent::Unknown => None,
     }
 }
@@ -207,10 +208,14 @@ fn on_ball<N: Number>(ball: &Ball, at: [N; 3], numbers: DVec2) -> Option<Points<
     Some(Points::even(per_axis(|axis| distance * dir[axis]), light))
 }
 
-/// As [`SkyLight`]'s samples.
-fn in_sky<N: Number>(sky: &SkyLight, normal: [N; 3], numbers: DVec2) -> Option<Option<Points<N>>> {
+/// As the samples of [`SkyLight`](crate::world::sky_light::SkyLight).
+fn in_sky<N: Number>(
+    (background, map): (&dyn Background, Option<&SkyMap>),
+    normal: [N; 3],
+    numbers: DVec2,
+) -> Option<Option<Points<N>>> {
     let n = N::constant;
-    let (map, DVec2 { x, y }) = (sky.map(), numbers);
+    let DVec2 { x, y } = numbers;
     let toward = match map {
         None => by_cosine(normal, numbers)?,
         Some(_) if (0.25..0.75).contains(&x) => by_cosine(normal, DVec2::new(2.0 * (x - 0.25), y))?,
@@ -232,7 +237,7 @@ fn in_sky<N: Number>(sky: &SkyLight, normal: [N; 3], numbers: DVec2) -> Option<O
             n(0.5) * cosine + half_pi * N::enclosing(Interval::from_f64(density))
         }
     };
-    let colour = sky.background().enclose(per_axis(|axis| toward[axis].coarse()));
+    let colour = background.enclose(per_axis(|axis| toward[axis].coarse()));
     let light = per_axis(|channel| N::enclosing(Interval::from_f64(colour[channel])) / density);
     Some(Some(Points { toward, are_far: true, light }))
 }

@@ -3,7 +3,7 @@
 use crate::world::body::Body;
 use crate::world::certify::Precise;
 use crate::world::material::{Look, Material, Rgb};
-use crate::world::packets::shader::EncloseLook;
+use crate::world::shader::EncloseLook;
 use crate::world::shader::{LookBounds, PointBounds, Shader, ShaderInputs, SurfacePoint};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;

@@ -2,11 +2,8 @@
 
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::{View, ViewMut};
-use crate::world::certify::Precise;
 use crate::world::material::{Material, Rgb};
-use crate::world::shader::{LookBounds, PointBounds, Shader, SurfacePoint};
-use f256::f256;
-use tabray_exact::interval::{Fraction, Interval};
+use crate::world::shader::{EnclosedShader, Shader, SurfacePoint};
 
 /// Points of a surface, as a shader sees them.
 #[derive(Clone, Copy)]
@@ -18,7 +15,7 @@ pub struct SurfacePoints<'p> {
 }
 
 /// A shader for packets. Every [`Shader`] is one.
-pub trait PacketShader: Shader + EncloseLook<f64> + EncloseLook<f256> + EncloseLook<Fraction> {
+pub trait PacketShader: EnclosedShader {
     /// Evaluates [`ambient`](Shader::ambient) and [`specular`](Shader::specular) at many points. Returns whether any
     /// specular reflectivity is not 0.
     fn ambient_and_specular(
@@ -35,25 +32,6 @@ pub trait PacketShader: Shader + EncloseLook<f64> + EncloseLook<f256> + EncloseL
 
     /// Writes the [`tile`](Shader::tile) at each point, as one number.
     fn tiles(&self, cpu: Cpu, points: SurfacePoints, out: &mut [u64]);
-}
-
-/// A shader whose looks are enclosed in one precision. Every [`Shader`] is one.
-pub trait EncloseLook<F> {
-    /// Calls [`Shader::enclose`].
-    fn look(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>>;
-
-    /// Calls [`Shader::enclose_bend`].
-    fn bent(&self, at: &PointBounds<F>, normal: [Interval<F>; 3]) -> Option<[Interval<F>; 3]>;
-}
-
-impl<T: Shader, F: Precise> EncloseLook<F> for T {
-    fn look(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        self.enclose(material, at)
-    }
-
-    fn bent(&self, at: &PointBounds<F>, normal: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
-        self.enclose_bend(at, normal)
-    }
 }
 
 impl<T: Shader> PacketShader for T {

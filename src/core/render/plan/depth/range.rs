@@ -16,7 +16,7 @@ use crate::geometry::aabb::Aabb;
 use crate::scene::model::{Model, Object};
 use crate::world::material::{Look, Rgb};
 use crate::world::packets::light::EncloseLight;
-use crate::world::packets::shader::EncloseLook;
+use crate::world::shader::EncloseLook;
 use crate::world::shader::{LookBounds, PointBounds};
 use glam::DVec3;
 use tabray_exact::interval::Interval;
