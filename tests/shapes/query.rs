@@ -1,10 +1,12 @@
 //! What rays hit, asked without an image.
 
-use crate::common::model;
+use crate::common::program::folder;
+use crate::common::{model, model_in};
 use glam::DVec3;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 use std::fmt::Write;
+use std::fs;
 use tabray::query::first::first_of;
 use tabray::query::{ExactRay, Query, Verdict};
 
@@ -135,4 +137,24 @@ fn a_ray_through_the_middle_of_a_box_enters_and_leaves_it() {
     let ray = ExactRay::new(DVec3::new(1.0, 9.0, 2.0), DVec3::NEG_Y).expect("a ray");
     let answer = query.proven(&[ray], false)[0];
     assert_eq!((answer.verdict, answer.t), (Verdict::Hit, 7.5));
+}
+
+/// Beside an edge by less than what the tracer's point is rounded by, the face is that of the real ray.
+#[test]
+fn the_face_of_a_proven_hit_is_that_of_the_real_ray() {
+    let folder = folder();
+    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
+    fs::write(folder.path().join("square.obj"), square).expect("a file");
+    let scene = "look_at eye { pixeldim 4 3 position 0 0 9 target 0 0 0 angle 40 } material m { }
+        mesh square { material m file square.obj }";
+    let model = model_in(folder.path(), scene);
+    let query = Query::new(&model);
+    for x in [0.5, 0.3, 0.7, 1.0 / 3.0] {
+        for (y, right) in [(f64::next_down(x), 0), (f64::next_up(x), 1)] {
+            let ray = ExactRay::new(DVec3::new(x, y, 2.0), DVec3::NEG_Z).expect("a ray");
+            let [answer] = query.proven(std::slice::from_ref(&ray), false)[..] else { panic!("one answer") };
+            let face = query.surroundings(&ray, &answer).and_then(|surface| surface.face);
+            assert_eq!((answer.verdict, face), (Verdict::Hit, Some(right)), "{x} {y}");
+        }
+    }
 }

@@ -10,9 +10,9 @@ use crate::render::plan::Plan;
 use crate::render::trace;
 use crate::scene::model::Model;
 use crate::world::any_shape::AnyShape;
-use crate::world::certify::{Enclosure, Precision};
+use crate::world::certify::{Enclosure, HitEnclosure, Precise, Precision};
 use f256::f256;
-use tabray_exact::interval::{Float, Interval, Wide};
+use tabray_exact::interval::{Float, Fraction, Interval, Wide};
 
 /// A scene that is asked what rays hit.
 pub struct Query<'m> {
@@ -138,12 +138,29 @@ impl Query<'_> {
         }
     }
 
-    /// Returns the surface where a ray hits an object, as an answer has it; `None` for an answer without a hit.
+    /// Returns the surface where a ray hits an object, as an answer has it; `None` for an answer without a hit. The face of a
+    /// proven hit is proven, too, where the shape's faces are parts of its proofs; of faces that share an edge which the ray
+    /// passes through, it is one.
     pub fn surroundings(&self, ray: &ExactRay, answer: &Answer) -> Option<Surroundings> {
         let shape = self.shape(answer.object.filter(|_| answer.distance.is_finite())?);
         let point = ray.at(answer.distance);
-        let face = shape.face_hit(&ray.sight().ray(), answer.distance);
+        let proven = answer.proof.filter(|_| answer.verdict == Verdict::Hit).and_then(|_| {
+            let by_more = || face::<f256>(shape, ray).or_else(|| face::<Fraction>(shape, ray));
+            face::<f64>(shape, ray).or_else(by_more)
+        });
+        let face = proven.or_else(|| shape.face_hit(&ray.sight().ray(), answer.distance));
         Some(Surroundings { point, normal: shape.normal(point), uv: shape.uv(point), face })
+    }
+}
+
+/// Returns the face of a shape that a ray certainly hits first.
+fn face<F: Precise>(shape: &AnyShape, ray: &ExactRay) -> Option<u32> {
+    let proofs = F::proofs(shape.proven()?);
+    // Most shapes have none.
+    proofs.face_of(0)?;
+    match proofs.first_hit(&ray.sight().line(), None) {
+        (HitEnclosure::Hits(_), part) => proofs.face_of(part),
+        _ => None,
     }
 }
 

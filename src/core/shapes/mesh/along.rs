@@ -6,6 +6,7 @@ use super::surface::Surface;
 use crate::geometry::sight::Line;
 use crate::world::accuracy::Bounded;
 use crate::world::certify::{self, FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precise};
+use std::cell::Cell;
 use tabray_exact::affine::Affine;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, dot, per_axis};
@@ -21,7 +22,7 @@ impl Surface {
         line: &Line<Interval<F>>,
         leaves: Option<usize>,
     ) -> (HitEnclosure<F>, usize) {
-        let met = self.met::<A, F>(line, |face| leaves == Some(face));
+        let met = self.met::<A, F>(line, |face| leaves == Some(face), true);
         let first = met.iter().copied().reduce(|one, other| if other.0.0 < one.0.0 { other } else { one });
         let Some(((low, first), face)) = first else { return (HitEnclosure::Misses, 0) };
         let HitEnclosure::Hits(at) = first else { return (HitEnclosure::Doubtful(low), face) };
@@ -48,16 +49,18 @@ impl Surface {
     }
 
     /// Returns the faces that a line may hit, each with what is certain about its first hit there and with the least t of
-    /// that hit. `is_left` tells whether the line's true start lies in the plane of a face.
+    /// that hit. `is_left` tells whether the line's true start lies in the plane of a face. If `only_first`, faces that lie
+    /// behind a certain hit may be left out.
     pub(super) fn met<A: Bounded, F: Precise>(
         &self,
         line: &Line<Interval<F>>,
         is_left: impl Fn(usize) -> bool,
+        only_first: bool,
     ) -> Vec<Met<F>> {
         let coarse = Line { origin: line.origin.map(Interval::coarse), dir: line.dir.map(Interval::coarse) };
-        let mut met = Vec::new();
+        let (mut met, end) = (Vec::new(), Cell::new(f64::INFINITY));
         self.tree.within(
-            |bounds| coarse.clip(bounds.low, bounds.high).is_some(),
+            |bounds| coarse.clip(bounds.low, bounds.high).is_some_and(|(from, _)| from <= end.get()),
             |face| {
                 let leaves = is_left(face).then_some(0);
                 let found = match Face(self.triangle::<A>(face)).first_hit(line, leaves).0 {
@@ -65,6 +68,9 @@ impl Surface {
                     found @ (HitEnclosure::Hits(at) | HitEnclosure::Edge(at)) => (at.low, found),
                     found @ HitEnclosure::Doubtful(low) => (low, found),
                 };
+                if let (true, HitEnclosure::Hits(at)) = (only_first, found.1) {
+                    end.set(end.get().min(at.coarse().high));
+                }
                 met.push((found, face));
             },
         );
@@ -91,7 +97,7 @@ impl Surface {
         });
         // The point on the face is at t = 1.
         let (nearly, toward) = (F::of(1.0 - 256.0 * f64::EPSILON), Line { origin: line.origin, dir: way });
-        let met = self.met::<A, F>(&toward, |face| leaves == Some(face));
+        let met = self.met::<A, F>(&toward, |face| leaves == Some(face), false);
         if met.iter().any(|((_, found), _)| matches!(found, HitEnclosure::Hits(at) if at.high < nearly)) {
             return Some(true);
         }

@@ -58,7 +58,7 @@ impl Surface {
         let outward = |dir: &DVec3| dot(constants(*dir), normal).low > F::of(0.0);
         let mut lines =
             directions().filter(outward).map(|dir| Line { origin, dir: constants::<Interval<F>>(dir) });
-        lines.find_map(|line| self.winding(&line, &self.met::<Exact, F>(&line, |other| other == face)))
+        lines.find_map(|line| self.winding(&line, &self.met::<Exact, F>(&line, |other| other == face, false)))
     }
 
     /// Tells whether a closed mesh is certainly the surface of a star-shaped body: whether all faces turn their inner sides
@@ -75,7 +75,8 @@ impl Surface {
         }
         let mut lines =
             directions().map(|dir| Line { origin: constants::<Interval<f64>>(middle), dir: constants(dir) });
-        lines.find_map(|line| self.winding(&line, &self.met::<Exact, f64>(&line, |_| false))) == Some(1)
+        lines.find_map(|line| self.winding(&line, &self.met::<Exact, f64>(&line, |_| false, false)))
+            == Some(1)
     }
 
     /// Returns for each face the first of those that hang together with it by edges of two faces, none of which overlaps

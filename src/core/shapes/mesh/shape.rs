@@ -247,6 +247,10 @@ impl<A: Bounded, F: Precise> HitProofs<F> for Mesh<A> {
         if surface.is_alone(at, |face| face == part) { surface.uv_bounds(part, at) } else { None }
     }
 
+    fn face_of(&self, part: usize) -> Option<u32> {
+        Some(self.surface.order[part])
+    }
+
     fn face(&self, at: [Interval<F>; 3], part: usize) -> Option<u32> {
         let order = &self.surface.order;
         let is_own = |face: usize| order[face] == order[part];

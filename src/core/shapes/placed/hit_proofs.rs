@@ -55,6 +55,10 @@ impl<F: Precise> HitProofs<F> for Placed {
         F::proofs(self.body.shape.proven()?).uv_bounds(self.placement.point(at), part)
     }
 
+    fn face_of(&self, part: usize) -> Option<u32> {
+        F::proofs(self.body.shape.proven()?).face_of(part)
+    }
+
     fn face(&self, at: [Interval<F>; 3], part: usize) -> Option<u32> {
         F::proofs(self.body.shape.proven()?).face(self.placement.point(at), part)
     }

@@ -102,6 +102,10 @@ impl<F: Precise> HitProofs<F> for SolidPart {
         F::proofs(self.proven(self.index)?).uv_bounds(at, part)
     }
 
+    fn face_of(&self, part: usize) -> Option<u32> {
+        F::proofs(self.proven(self.index)?).face_of(part)
+    }
+
     fn face(&self, at: [Interval<F>; 3], part: usize) -> Option<u32> {
         F::proofs(self.proven(self.index)?).face(at, part)
     }

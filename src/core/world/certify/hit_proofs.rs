@@ -40,6 +40,13 @@ pub trait HitProofs<F: Float> {
         None
     }
 
+    /// Returns the index of the face that a part is, as [`Hittable::face`] tells it, where the parts of the shape are faces.
+    ///
+    /// [`Hittable::face`]: crate::world::hittable::Hittable::face
+    fn face_of(&self, _part: usize) -> Option<u32> {
+        None
+    }
+
     /// Returns the index of the face on which the points of a part in a box in world coordinates lie, as
     /// [`Hittable::face`] tells it; `None` where it is not known.
     ///

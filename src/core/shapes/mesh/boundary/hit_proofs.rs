@@ -52,7 +52,7 @@ impl<A: Bounded> Boundary<A> {
     ) -> (HitEnclosure<F>, usize) {
         let surface = &self.mesh.surface;
         let is_left = |face| leaves.is_some_and(|part| self.are_in_plane(part >> 1, face));
-        let mut met = surface.met::<A, F>(line, is_left);
+        let mut met = surface.met::<A, F>(line, is_left, false);
         if met.is_empty() {
             return (HitEnclosure::Misses, 0);
         }
@@ -122,6 +122,10 @@ impl<A: Bounded, F: Precise> HitProofs<F> for Boundary<A> {
 
     fn uv_bounds(&self, at: [Interval<F>; 3], part: usize) -> Option<[Interval; 2]> {
         HitProofs::<F>::uv_bounds(&self.mesh, at, part >> 1)
+    }
+
+    fn face_of(&self, part: usize) -> Option<u32> {
+        HitProofs::<F>::face_of(&self.mesh, part >> 1)
     }
 
     fn face(&self, at: [Interval<F>; 3], part: usize) -> Option<u32> {
