@@ -263,6 +263,13 @@ fn all_surfaces_that_a_ray_crosses_are_told_in_their_order() {
         "2 miss - null",
     ];
     assert_eq!(found, right, "{out}");
+    // Each crossing of a mesh has its own face.
+    let folder = with_balls();
+    fs::write(folder.path().join("box.ray"), "material m { } box b { material m center 0 0 0 size 2 3 4 }")
+        .expect("a file");
+    let (_, out, _) = asked(&folder, &["box.ray", "--all"], "0.1 9 0.2  0 -1 0\n0 9 0  0 -1 0\n");
+    let faces: Vec<_> = lines(&out).iter().map(|answer| answer["face"].as_u64()).collect();
+    assert_eq!(faces, [Some(5), Some(4), None, Some(5), Some(4), None]);
     let (_, csv, _) = asked(&with_balls(), &["balls.ray", "--all", "--to", "csv"], rays);
     assert!(
         csv.starts_with("ray,enters,verdict,")

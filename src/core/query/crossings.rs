@@ -18,6 +18,8 @@ pub struct Crossing {
     pub answer: Answer,
     /// Whether the ray enters the shape there, if the shape is closed.
     pub enters: Option<bool>,
+    /// The index of the face, from 0, where the proof tells it.
+    pub face: Option<u32>,
 }
 
 /// A crossing of a ray and an object.
@@ -27,6 +29,7 @@ struct Found {
     /// Bounds of the distance, in lengths of the sight's direction.
     at: Wide,
     enters: bool,
+    face: Option<u32>,
     precision: Precision,
 }
 
@@ -58,12 +61,12 @@ impl Query<'_> {
         let open = known.iter().map(|of| of.open).fold(f256::INFINITY, Float::min);
         let mut crossings = Vec::new();
         for (found, is_tied) in in_order(&known).into_iter().filter(|(found, _)| found.at.high < open) {
-            let Found { object, at, enters, precision } = found;
+            let Found { object, at, enters, face, precision } = found;
             let verdict = if is_tied { Verdict::Tie } else { Verdict::Hit };
             let answer = Answer::at(ray, verdict, Some(object), at, precision).within(t_max);
             let is_last = matches!(answer.verdict, Verdict::Miss | Verdict::Undecided);
             let enters = (!is_last && self.shape(object).why_not_closed().is_none()).then_some(enters);
-            crossings.push(Crossing { answer, enters });
+            crossings.push(Crossing { answer, enters, face: face.filter(|_| !is_last) });
             if is_last {
                 return crossings;
             }
@@ -77,7 +80,7 @@ impl Query<'_> {
                 Answer { verdict: Verdict::Undecided, bounds, ..miss }.within(t_max)
             }
         };
-        crossings.push(Crossing { answer, enters: None });
+        crossings.push(Crossing { answer, enters: None, face: None });
         crossings
     }
 
@@ -90,14 +93,14 @@ impl Query<'_> {
                 known => known,
             },
         };
-        let found = found.into_iter().map(|(at, enters)| Found { object, at, enters, precision });
+        let found = found.into_iter().map(|(at, enters, face)| Found { object, at, enters, face, precision });
         Known { found: found.collect(), precision, open }
     }
 }
 
-/// The bounds of the crossings of a ray and a shape, each with whether the ray enters there, and the distance from which on
-/// nothing is known.
-type Along = (Vec<(Wide, bool)>, f256);
+/// The bounds of the crossings of a ray and a shape, each with whether the ray enters there and the face, and the distance from
+/// which on nothing is known.
+type Along = (Vec<(Wide, bool, Option<u32>)>, f256);
 
 /// Returns the crossings of a ray and a shape as one precision tells them.
 fn along<F: Precise>(shape: &AnyShape, ray: &ExactRay) -> Along {
@@ -106,7 +109,9 @@ fn along<F: Precise>(shape: &AnyShape, ray: &ExactRay) -> Along {
     let (mut crossings, mut found) = (solid::Crossings::new(proven, &line, None), Vec::new());
     loop {
         match crossings.get(found.len()) {
-            Ok(solid::Crossing { at, enters, .. }) => found.push((F::widen(at).wide(), enters)),
+            Ok(solid::Crossing { at, part, enters }) => {
+                found.push((F::widen(at).wide(), enters, F::proofs(proven).face_of(part)));
+            }
             Err(end) if end == F::INFINITY => return (found, f256::INFINITY),
             Err(end) => return (found, F::widen(Interval::point(end)).wide().low),
         }

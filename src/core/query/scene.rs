@@ -139,29 +139,30 @@ impl Query<'_> {
     }
 
     /// Returns the surface where a ray hits an object, as an answer has it; `None` for an answer without a hit. The face of a
-    /// proven hit is proven, too, where the shape's faces are parts of its proofs; of faces that share an edge which the ray
-    /// passes through, it is one.
+    /// first hit that is proven is proven, too, where the shape's faces are parts of its proofs; of faces that share an edge which
+    /// the ray passes through, it is one.
     pub fn surroundings(&self, ray: &ExactRay, answer: &Answer) -> Option<Surroundings> {
         let shape = self.shape(answer.object.filter(|_| answer.distance.is_finite())?);
         let point = ray.at(answer.distance);
         let proven = answer.proof.filter(|_| answer.verdict == Verdict::Hit).and_then(|_| {
-            let by_more = || face::<f256>(shape, ray).or_else(|| face::<Fraction>(shape, ray));
-            face::<f64>(shape, ray).or_else(by_more)
+            let by_more =
+                || face::<f256>(shape, ray, answer).or_else(|| face::<Fraction>(shape, ray, answer));
+            face::<f64>(shape, ray, answer).or_else(by_more)
         });
         let face = proven.or_else(|| shape.face_hit(&ray.sight().ray(), answer.distance));
         Some(Surroundings { point, normal: shape.normal(point), uv: shape.uv(point), face })
     }
 }
 
-/// Returns the face of a shape that a ray certainly hits first.
-fn face<F: Precise>(shape: &AnyShape, ray: &ExactRay) -> Option<u32> {
+/// Returns the face of a shape that a ray certainly hits first, if that is the hit of an answer.
+fn face<F: Precise>(shape: &AnyShape, ray: &ExactRay, answer: &Answer) -> Option<u32> {
     let proofs = F::proofs(shape.proven()?);
     // Most shapes have none.
     proofs.face_of(0)?;
-    match proofs.first_hit(&ray.sight().line(), None) {
-        (HitEnclosure::Hits(_), part) => proofs.face_of(part),
-        _ => None,
-    }
+    let (HitEnclosure::Hits(at), part) = proofs.first_hit(&ray.sight().line(), None) else { return None };
+    let bounds = ray.t(F::widen(at).wide());
+    let is_this = bounds.low <= answer.bounds.high && answer.bounds.low <= bounds.high;
+    proofs.face_of(part).filter(|_| is_this)
 }
 
 /// Returns a lower bound on the distance at which a line is in a box, which is widened for its rounding; `None` if it

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use rays::{BadRay, RayReader, RayRow};
 use std::io::{self, Write};
 use tabray_core::geometry::ray_packet::PACKET_SIZE;
-use tabray_core::query::{Answer, ExactRay, Query};
+use tabray_core::query::{Answer, Crossing, ExactRay, Query, Surroundings};
 use tabray_core::render::Renderer;
 
 /// The number of rays that are answered before any of their answers is written: enough for all threads, and little memory.
@@ -146,7 +146,13 @@ fn answer(
             let first = first + (index * PACKET_SIZE) as u64;
             let of_ray = |(number, (ray, end)): (u64, &Ray)| {
                 let crossings = query.crossings(ray, *end, asked.tight).into_iter();
-                crossings.map(|of| shown(ray, Some(number), of.answer, of.enters)).collect::<Vec<_>>()
+                let of = |Crossing { answer, enters, face }| {
+                    let answered = shown(ray, Some(number), answer, enters);
+                    let surface =
+                        |surface: Surroundings| Surroundings { face: face.or(surface.face), ..surface };
+                    Answered { surface: answered.surface.map(surface), ..answered }
+                };
+                crossings.map(of).collect::<Vec<_>>()
             };
             return format.written((first..).zip(rays).flat_map(of_ray));
         }
