@@ -4,7 +4,7 @@ use crate::common::program::{folder, outcome, tabray};
 use serde_json::Value;
 use std::fs;
 
-const SCENE: &str = "look_at eye { pixeldim 41 31 position 0 0 20 target 0 0 0 angle 40 }
+const SCENE: &str = "look_at eye { pixeldim 41 31 position 0 0 20 target 0 0 0 angle 40 rules notes }
     material grey { diffuse 0.5 0.5 0.5 } material shiny { diffuse 0.2 0.2 0.2 specular 0.5 0.5 0.5 }
     light key { location 0 30 20 emissivity 9 9 9 } light low { location 0 -30 0 emissivity 9 9 9 }
     sphere ball { material shiny center 0 0 0 radius 5 } plane floor { material grey normal 0 1 0 point 0 -6 0 }";

@@ -58,8 +58,13 @@ fn no_scene_is_contradicted_and_nearly_every_pixel_is_proven() {
     for path in scenes() {
         let name = path.strip_prefix(root().join("scenes")).expect("a scene").to_string_lossy().into_owned();
         let model = load(&path);
-        let [proven, undecided, contradicted] =
-            counts(&model, if model.camera.value.pixels[0] > 320 { 31 } else { 7 });
+        let step = if model.camera.value.pixels[0] > 320 { 31 } else { 7 };
+        // What an image cuts out is known to no equation.
+        if model.objects.iter().any(|object| !object.shape.is_certified()) {
+            assert_eq!(all_counts(&model, step)[2], 0, "{name}");
+            continue;
+        }
+        let [proven, undecided, contradicted] = counts(&model, step);
         assert_eq!(contradicted, 0, "{name}");
         let part = undecided as f64 / (proven + undecided) as f64;
         let may_be_more = AT_EDGES.contains(&name.as_str());

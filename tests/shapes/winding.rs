@@ -115,6 +115,20 @@ fn first(faces: &[Face], origin: &Vector, dir: &Vector) -> Option<f64> {
     Some(if before { last.0.divided(&last.1, 60, false).to_f64(false) } else { f64::INFINITY })
 }
 
+/// Returns the multiples of a direction at which a ray passes exactly through edges or corners of faces, which it need not cross.
+fn touched(faces: &[Face], origin: &Vector, dir: &Vector) -> Vec<f64> {
+    let at = |face: &Face| {
+        let from = corners(face).map(|corner| minus(&corner, origin));
+        let sides = sides(&from, dir);
+        let normal = cross(&minus(&from[1], &from[0]), &minus(&from[2], &from[0]));
+        let (top, bottom) = (dot(&normal, &from[0]), dot(&normal, dir));
+        let is_aside = sides.contains(&Less) && sides.contains(&Greater);
+        (!is_aside && sides.contains(&Equal) && !bottom.is_zero())
+            .then(|| top.to_f64(false) / bottom.to_f64(false))
+    };
+    faces.iter().filter_map(at).collect()
+}
+
 /// Returns the sides of a box, each as two triangles, turned inward if `is_turned`.
 fn block([x, y, z]: [i64; 3], [dx, dy, dz]: [i64; 3], is_turned: bool) -> Vec<Face> {
     let corner = |index: usize| {
@@ -173,8 +187,11 @@ fn compare(faces: &[Face], model: &Model, rays: impl Iterator<Item = [[i64; 3]; 
         let Some(exact) = ExactRay::new(from, along) else { continue };
         if let Some(truth) = first(faces, &vector(from.into()), &vector(along.into())) {
             let [answer] = query.proven(&[exact], false)[..] else { panic!("one answer") };
+            let is_there = |t: f64| t.next_up() >= answer.bounds.low && t.next_down() <= answer.bounds.high;
+            let touches =
+                || touched(faces, &vector(from.into()), &vector(along.into())).into_iter().any(is_there);
             let is_right = match answer.verdict {
-                Verdict::Hit => truth.next_up() >= answer.bounds.low && truth <= answer.bounds.high,
+                Verdict::Hit => is_there(truth) || touches(),
                 Verdict::Miss => truth == f64::INFINITY,
                 Verdict::Edge | Verdict::Tie | Verdict::Undecided => true,
             };

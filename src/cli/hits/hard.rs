@@ -49,7 +49,7 @@ pub struct Args {
 const EXAMPLES: &str = "\
 Examples:
   tabray hard ball.ray -n 100000 -o rays.csv
-  tabray hard part.stl | tabray hits part.stl";
+  tabray hard part.stl --seed 2 --to jsonl";
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let format = match &args.output {

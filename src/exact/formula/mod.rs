@@ -51,6 +51,17 @@ pub struct Formula {
 /// The number of registers that suffices for most formulas, in values.
 const FEW_REGISTERS: usize = 6;
 
+impl OwnFunction {
+    /// Parses a function of these arguments.
+    ///
+    /// # Errors
+    /// The first place where the text is not a formula of them.
+    pub fn parse(arguments: &[&str], text: &str, named: Named<'_>) -> Result<Self, FormulaFault> {
+        let value = |steps: &[Step]| Formula::new(String::new(), &[], steps.to_vec()).at(0.0);
+        Ok(Self::new(arguments.len(), parser::parse(text, arguments, named, value)?))
+    }
+}
+
 impl Formula {
     /// Parses a formula in y.
     ///

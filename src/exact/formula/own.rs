@@ -1,9 +1,9 @@
 //! Functions that a scene defines, and the texts of formulas without the names of a scene.
 
 use super::function;
-use super::parser::{Named, Operations, parse};
+use super::parser::Operations;
 use super::step::Step;
-use super::words::{FormulaFault, is_in_name};
+use super::words::is_in_name;
 use crate::text;
 use std::ops::Range;
 
@@ -23,14 +23,9 @@ pub struct OwnFunction {
 }
 
 impl OwnFunction {
-    /// Parses a function of these arguments.
-    ///
-    /// # Errors
-    /// The first place where the text is not a formula of them.
-    pub fn parse(arguments: &[&str], text: &str, named: Named<'_>) -> Result<Self, FormulaFault> {
-        let value = |steps: &[Step]| super::Formula::new(String::new(), &[], steps.to_vec()).at(0.0);
-        let Operations { steps, pieces, .. } = parse(text, arguments, named, value)?;
-        Ok(Self { count: arguments.len(), steps, pieces })
+    /// Makes a function of so many arguments.
+    pub(super) fn new(count: usize, Operations { steps, pieces, .. }: Operations) -> Self {
+        Self { count, steps, pieces }
     }
 
     /// Returns the number of its arguments.
