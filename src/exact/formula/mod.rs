@@ -58,7 +58,8 @@ impl OwnFunction {
     /// The first place where the text is not a formula of them.
     pub fn parse(arguments: &[&str], text: &str, named: Named<'_>) -> Result<Self, FormulaFault> {
         let value = |steps: &[Step]| Formula::new(String::new(), &[], steps.to_vec()).at(0.0);
-        Ok(Self::new(arguments.len(), parser::parse(text, arguments, named, value)?))
+        let Operations { steps, pieces, .. } = parser::parse(text, arguments, named, value)?;
+        Ok(Self::new(arguments.len(), steps, pieces))
     }
 }
 

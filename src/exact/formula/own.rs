@@ -1,7 +1,6 @@
 //! Functions that a scene defines, and the texts of formulas without the names of a scene.
 
 use super::function;
-use super::parser::Operations;
 use super::step::Step;
 use super::words::is_in_name;
 use crate::text;
@@ -23,8 +22,8 @@ pub struct OwnFunction {
 }
 
 impl OwnFunction {
-    /// Makes a function of so many arguments.
-    pub(super) fn new(count: usize, Operations { steps, pieces, .. }: Operations) -> Self {
+    /// Makes a function of so many arguments, given its operations and the pieces of its text.
+    pub(super) fn new(count: usize, steps: Vec<Step>, pieces: Vec<Piece>) -> Self {
         Self { count, steps, pieces }
     }
 
