@@ -4,13 +4,14 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{MISS, Ray, RayRange, Side};
 use crate::geometry::sight::Sight;
 use crate::world::any_shape::AnyShape;
-use crate::world::body::AnyShader;
 use crate::world::certify::{Assumption, Enclosure, Precision, Premise};
 use crate::world::coincidence::ROUNDING;
 use crate::world::hittable::{ByDistance, Facts, Hittable, Shape, TieBreaking};
+use crate::world::packets::shader::PacketShader;
 use crate::world::packets::shape::HitQueries;
 use crate::world::shader::SurfacePoint;
 use glam::{DMat3, DVec2, DVec3};
+use std::sync::Arc;
 use tabray_exact::double_double::DoubleDouble;
 
 /// The most cut parts that a ray passes on its way: it hits nothing behind that.
@@ -19,7 +20,7 @@ const MOST_PASSED: usize = 1 << 16;
 /// A shape without the parts that a shader cuts out. Rays pass there.
 pub(crate) struct Cutout {
     shape: AnyShape,
-    shader: AnyShader,
+    shader: Arc<dyn PacketShader>,
 }
 
 /// Marks a shape of whose hits nothing is proven but that they are hits of the whole shape.
@@ -29,7 +30,7 @@ impl TieBreaking for ByWhole {}
 
 impl Cutout {
     /// Makes a shape without what a shader cuts out.
-    pub(crate) fn shape(shape: AnyShape, shader: AnyShader) -> Shape<Self, ByDistance, ByWhole> {
+    pub(crate) fn shape(shape: AnyShape, shader: Arc<dyn PacketShader>) -> Shape<Self, ByDistance, ByWhole> {
         Shape::new(Self { shape, shader }).by()
     }
 
