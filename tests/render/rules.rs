@@ -162,3 +162,20 @@ fn the_three_evaluators_of_the_rules_agree() {
         "{known:?} of {pixels:?} pixels are known"
     );
 }
+
+/// Below three panes, one of them aside, a mirror shows the lit side of the lowest pane.
+#[test]
+fn what_a_mirror_below_panes_shows_is_not_left_out() {
+    let text = "camera eye { pixeldim 16 12 worlddim 8 6 viewpoint 4 3 7 rules free }
+        light key { location 0 4 0 emissivity 1 1 2 falloff none at 3 }
+        material dark { ambient 0 0 0 diffuse 0 0 0 transparency 0.1 }
+        material mirror { ambient 0 0 0 diffuse 0 0 0 specular 0 0 0.9 }
+        material upper { ambient 0 0 0 diffuse 0 0 0.94 transparency 0.1 }
+        material lower { ambient 0 0 0 diffuse 0 0 2.43 transparency 0.287 }
+        fplane aside { material dark normal 0.2 0.3 1 point 5.18 4.92 -1 xdir 1 0 0 dimensions 0.3 0.3 }
+        plane bottom { material mirror normal 0 1 0.1 point 0 0 -4.9 }
+        plane top { material upper normal 0 1 0.1 point 1.9 0 -1 }
+        plane middle { material lower normal 0 1 0.1 point 5 0 -3.17 }";
+    let known = compare(text).expect("the evaluators agree");
+    assert!(known.iter().all(|known| *known > 50), "{known:?}");
+}

@@ -61,7 +61,7 @@ pub(super) fn at_place<N: Number>(panel: &Panel, at: [N; 3], place: [N; 2]) -> P
     Points::even(toward, n(panel.area()) * leaving / (N::enclosing(Interval::pi()) * square))
 }
 
-/// As [`Panel::sample`].
+/// Encloses the point of a panel that [`Panel::sample`] chooses for two numbers from 0 to 1.
 fn on_panel<N: Number>(panel: &Panel, at: [N; 3], numbers: DVec2) -> Option<Option<Points<N>>> {
     let n = N::constant;
     let between = per_axis(|axis| n(panel.middle[axis]) - at[axis]);
@@ -196,7 +196,7 @@ impl<N: Number> Round<N> {
     }
 }
 
-/// As [`Ball::sample`], from outside.
+/// Encloses the point of a ball that [`Ball::sample`] chooses for two numbers from 0 to 1, as points outside of it see it.
 fn on_ball<N: Number>(ball: &Ball, at: [N; 3], numbers: DVec2) -> Option<Points<N>> {
     let (half, radius) = (N::constant(0.5), N::constant(ball.radius));
     let Round { middle, distance, light: [_, light], .. } = Round::seen(&Extent::Ball(*ball), at)?;
@@ -208,7 +208,8 @@ fn on_ball<N: Number>(ball: &Ball, at: [N; 3], numbers: DVec2) -> Option<Points<
     Some(Points::even(per_axis(|axis| distance * dir[axis]), light))
 }
 
-/// As the samples of [`SkyLight`](crate::world::sky_light::SkyLight).
+/// Encloses the direction that a sample of [`SkyLight`](crate::world::sky_light::SkyLight) chooses for two numbers from 0 to 1, and
+/// its light.
 fn in_sky<N: Number>(
     (background, map): (&dyn Background, Option<&SkyMap>),
     normal: [N; 3],
@@ -242,14 +243,14 @@ fn in_sky<N: Number>(
     Some(Some(Points { toward, are_far: true, light }))
 }
 
-/// As [`emitter::by_cosine`](crate::world::emitter::by_cosine).
+/// Encloses the unit vector that [`emitter::by_cosine`](crate::world::emitter::by_cosine) chooses for two numbers from 0 to 1.
 fn by_cosine<N: Number>(normal: [N; 3], numbers: DVec2) -> Option<[N; 3]> {
     let place = in_disc(numbers);
     let [x, y] = place;
     around(normal, place, (N::constant(1.0) - x * x - y * y).sqrt())
 }
 
-/// As [`emitter::in_cone`](crate::world::emitter::in_cone).
+/// Encloses the unit vector that [`emitter::in_cone`](crate::world::emitter::in_cone) chooses for two numbers from 0 to 1.
 fn in_cone<N: Number>(axis: [N; 3], height: N, numbers: DVec2) -> Option<[N; 3]> {
     let place: [N; 2] = in_disc(numbers);
     let [x, y] = place;
@@ -267,7 +268,7 @@ fn around<N: Number>(axis: [N; 3], [x, y]: [N; 2], along: N) -> Option<[N; 3]> {
     Some(per_axis(|at| x * across[at] + y * up[at] + along * axis[at]))
 }
 
-/// As [`on_disc`](crate::world::panel::on_disc).
+/// Encloses the point of the unit disc to which [`on_disc`](crate::world::panel::on_disc) maps two numbers from 0 to 1.
 fn in_disc<N: Number>(numbers: DVec2) -> [N; 2] {
     let DVec2 { x, y } = 2.0 * numbers - 1.0;
     let quarter = N::constant(0.25) * N::enclosing(Interval::pi());

@@ -159,18 +159,18 @@ impl VisibleSurfaces {
         if self.lies.is_empty() {
             return self.step_among_many(matt_light, &met);
         }
-        let all = || met.iter().enumerate();
+        let lies = |of: usize, object: usize| self.lies[of * met.len() + object];
         let of = |index: usize, side: usize| {
-            all().fold(matt_light[index][side], |most, (other, met)| {
+            met.iter().enumerate().fold(matt_light[index][side], |most, (other, [outside, inside])| {
                 let comes = if other == index {
                     [self.shiny[index].1[side]; 2]
-                } else if self.lies[index * met.len() + other][side] {
-                    self.lies[other * met.len() + index]
+                } else if lies(index, other)[side] {
+                    lies(other, index)
                 } else {
                     [false; 2]
                 };
-                let most = if comes[0] { above(most, met[0]) } else { most };
-                if comes[1] { above(most, met[1]) } else { most }
+                let most = if comes[0] { above(most, *outside) } else { most };
+                if comes[1] { above(most, *inside) } else { most }
             })
         };
         (0..met.len()).map(|index| [of(index, 0), of(index, 1)]).collect()
