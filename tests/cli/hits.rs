@@ -178,6 +178,18 @@ fn a_mesh_is_asked_without_a_scene_and_names_its_faces() {
     assert!(status == 2 && err.contains("cannot read `bad.obj` as a mesh: line 1"), "{err}");
 }
 
+/// What is said of a mesh shows no line of a scene that nobody wrote.
+#[test]
+fn a_warning_about_a_mesh_is_about_its_file() {
+    let folder = folder();
+    let bent = "v 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\nf 1 2 3 4\n";
+    fs::write(folder.path().join("bent.obj"), bent).expect("a file");
+    let (status, _, err) = asked(&folder, &["bent.obj"], "0.7 0.2 9  0 0 -1\n");
+    assert_eq!(status, 0, "{err}");
+    assert!(err.starts_with("warning: mesh `bent` has polygons that are not flat: 1\n"), "{err}");
+    assert!(!err.contains("material") && !err.contains("-->"), "{err}");
+}
+
 #[test]
 fn answers_depend_on_the_rays_alone() {
     let folder = folder();

@@ -4,6 +4,7 @@ use crate::files::input::{self, Source};
 use crate::files::mesh;
 use crate::options::set;
 use crate::process::failure::Failure;
+use crate::process::messages;
 use std::path::Path;
 use tabray_core::scene::model::Model;
 use tabray_core::shapes::mesh::read::Wanted;
@@ -18,15 +19,18 @@ pub fn load(
     sets: &set::Args,
     accuracy: Option<Accuracy>,
 ) -> Result<Model, Failure> {
-    let loaded = if mesh::is_one(path) {
-        Source::of_text(path, mesh_for_rays(path), sets).load_for_rays(registry, accuracy).map_err(
-            |report| {
-                // That names the file of the mesh and the place in it.
-                mesh::read(path, Wanted::default()).err().unwrap_or(Failure::Scene(report))
-            },
-        )?
-    } else {
-        Source::read(path, sets)?.load_for_rays(registry, accuracy).map_err(Failure::Scene)?
-    };
-    input::print_warnings(Ok(loaded)).map(|loaded| loaded.model)
+    if !mesh::is_one(path) {
+        let loaded = Source::read(path, sets)?.load_for_rays(registry, accuracy).map_err(Failure::Scene);
+        return input::print_warnings(Ok(loaded?)).map(|loaded| loaded.model);
+    }
+    let loaded = Source::of_text(path, mesh_for_rays(path), sets).load_for_rays(registry, accuracy);
+    let loaded = loaded.map_err(|report| {
+        // That names the file of the mesh and the place in it.
+        mesh::read(path, Wanted::default()).err().unwrap_or(Failure::Scene(report))
+    })?;
+    // The text of the scene is none that anybody wrote, so its lines are not shown.
+    for fault in loaded.warnings.faults() {
+        messages::warning(&fault.message, fault.help.as_deref());
+    }
+    Ok(loaded.model)
 }
