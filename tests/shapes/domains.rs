@@ -5,6 +5,7 @@ use crate::oracle::rays::Random;
 use glam::DVec3;
 use tabray::geometry::{MISS, Ray, RayRange};
 use tabray::scene::Model;
+use tabray::world::packets::shape::PacketShape;
 
 /// Half the length of an edge of the box.
 const SIZE: f64 = 2.0;
@@ -124,6 +125,23 @@ fn a_jump_is_no_surface() {
         (-6..6).map(step).collect()
     });
     agrees("atan2(z, x) - y", |ray| by_steps(|t| ray.at(t).z.atan2(ray.at(t).x) - ray.at(t).y));
+}
+
+#[test]
+fn balls_repeated_up_to_the_ends_of_the_box_are_certain() {
+    let text = "(x - floor(x) - 0.5)^2 + (y - floor(y) - 0.5)^2 + (z - floor(z) - 0.5)^2 - 0.1";
+    let (model, mut random) = (surface(text), Random::new(3));
+    let shape = &model.objects[0].shape;
+    let mut hits = 0;
+    for _ in 0..500 {
+        let mut point = |size: f64| DVec3::from([(); 3].map(|()| random.between(-size, size)));
+        let (from, to) = (point(9.0), point(SIZE));
+        let ray = Ray { origin: from, dir: (to - from).normalize() };
+        let bracket = shape.packets().t_bounds(&ray.into(), &RayRange::ALL);
+        assert!(!bracket.is_doubtful(), "{ray:?}");
+        hits += usize::from(bracket.far < MISS);
+    }
+    assert!(hits > 200, "{hits}");
 }
 
 #[test]

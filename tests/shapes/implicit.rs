@@ -470,6 +470,48 @@ fn thin_walls_and_edges_are_found_as_by_small_steps() {
     assert!(hits > 200, "{hits}");
 }
 
+#[test]
+fn a_hit_does_not_depend_on_the_rays_before_it() {
+    let mut dice = Dice::new();
+    let rays: Vec<Ray> = (0..200)
+        .map(|_| (dice.direction() * 4.0, dice.direction()))
+        .map(|(from, to)| Ray { origin: from, dir: (to - from).normalize() })
+        .collect();
+    let hits = |rays: &mut dyn Iterator<Item = &Ray>| -> Vec<f64> {
+        let gyroid = shape(Gyroid, DVec3::splat(-2.0), DVec3::splat(2.0));
+        rays.map(|ray| gyroid.distance(ray, &RayRange::ALL)).collect()
+    };
+    let (forward, mut backward) = (hits(&mut rays.iter()), hits(&mut rays.iter().rev()));
+    backward.reverse();
+    assert_eq!(forward, backward);
+    let alone: Vec<_> = rays.iter().flat_map(|ray| hits(&mut [ray].into_iter())).collect();
+    assert_eq!(forward, alone);
+}
+
+/// The gyroid, which counts how often it is evaluated.
+struct CountedGyroid(Arc<AtomicUsize>);
+
+impl Formula for CountedGyroid {
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
+        self.0.fetch_add(1, Ordering::Relaxed);
+        Gyroid.value(at)
+    }
+}
+
+#[test]
+fn rays_share_what_is_known_of_the_box() {
+    let (count, mut dice) = (Arc::new(AtomicUsize::new(0)), Dice::new());
+    let gyroid = shape(CountedGyroid(Arc::clone(&count)), DVec3::splat(-2.0), DVec3::splat(2.0));
+    let [first, later] = [(); 2].map(|()| {
+        for _ in 0..5000 {
+            let (from, to) = (dice.direction() * 4.0, dice.direction());
+            gyroid.distance(&Ray { origin: from, dir: (to - from).normalize() }, &RayRange::ALL);
+        }
+        count.swap(0, Ordering::Relaxed)
+    });
+    assert!(3 * later < 2 * first, "{first} evaluations, then {later}");
+}
+
 struct Wild;
 
 impl Formula for Wild {

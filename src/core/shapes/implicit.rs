@@ -7,6 +7,7 @@
 mod finely;
 mod formula;
 mod on_ray;
+mod parts;
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::facet::Facet;
@@ -21,6 +22,7 @@ use crate::world::packets::shape::by_distance;
 pub use formula::Implicit;
 use glam::{DVec2, DVec3};
 use on_ray::{FormulaOnRay, ImplicitShape, shortest};
+use parts::Parts;
 use tabray_exact::dual::Dual;
 use tabray_exact::formula::field::Field;
 use tabray_exact::interval::Interval;
@@ -42,7 +44,7 @@ impl Body {
         let [low, high] = formula.bounds();
         let diagonal = Polynomial::<f64, MOST>::along(Interval { low: -1.0, high: 1.0 });
         let degree = formula.along([diagonal; 3]).degree();
-        let shape = ImplicitShape { formula, degree, frame, low, high };
+        let shape = ImplicitShape { formula, degree, frame, low, high, parts: Parts::new(low, high) };
         Self::plain(Shape::new(shape).bracketed().searched())
     }
 }

@@ -51,16 +51,30 @@ fn add<C: Coefficient, const N: usize>(
     }
 }
 
-/// Returns a program in which powers are products, of other powers of the same number where they are known: `x^6` of `x^4` and
-/// `x^2`. `None` if it takes more registers than there are.
-pub(super) fn by_products(steps: &[Step], variables: usize) -> Option<Program> {
+/// Which powers are products, of other powers of the same number where they are known: `x^6` of `x^4` and `x^2`.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Products {
+    /// All powers.
+    All,
+    /// Even powers, of squares: bounds of such a product are as near as those of the power.
+    OfSquares,
+}
+
+/// Returns a program in which powers are products. `None` if it takes more registers than there are.
+pub(super) fn by_products(steps: &[Step], variables: usize, which: Products) -> Option<Program> {
     let given = Values::new(steps, variables);
-    let mut new = Products { list: given.list[..variables].to_vec(), powers: Vec::new() };
+    let mut new = Powers { list: given.list[..variables].to_vec(), known: Vec::new() };
     let mut places: Vec<usize> = (0..variables).collect();
     for value in &given.list[variables..] {
         let operands = value.operands.map(|operand| places.get(operand).copied().unwrap_or(0));
         places.push(match value.step {
-            Step::Powi(exponent) if exponent > 1 => new.power(operands[0], exponent.unsigned_abs()),
+            Step::Powi(exponent) if exponent > 1 && which == Products::All => {
+                new.power(operands[0], exponent.unsigned_abs())
+            }
+            Step::Powi(exponent) if exponent > 1 && exponent % 2 == 0 => {
+                let square = new.square(operands[0]);
+                new.power(square, exponent.unsigned_abs() / 2)
+            }
             step => new.push(step, operands),
         });
     }
@@ -68,13 +82,13 @@ pub(super) fn by_products(steps: &[Step], variables: usize) -> Option<Program> {
     (program.registers <= MOST_REGISTERS).then_some(program)
 }
 
-struct Products {
+struct Powers {
     list: Vec<Value>,
     /// Values, exponents, and the values that are these powers.
-    powers: Vec<(usize, u32, usize)>,
+    known: Vec<(usize, u32, usize)>,
 }
 
-impl Products {
+impl Powers {
     fn push(&mut self, step: Step, operands: [usize; 3]) -> usize {
         self.list.push(Value { step, operands });
         self.list.len() - 1
@@ -85,10 +99,7 @@ impl Products {
         if exponent == 1 {
             return of;
         }
-        let known = |exponent: u32| match exponent {
-            1 => Some(of),
-            _ => self.powers.iter().find(|power| (power.0, power.1) == (of, exponent)).map(|power| power.2),
-        };
+        let known = |exponent: u32| if exponent == 1 { Some(of) } else { self.find(of, exponent) };
         if let Some(power) = known(exponent) {
             return power;
         }
@@ -99,7 +110,20 @@ impl Products {
             [if exponent.is_multiple_of(2) { half } else { self.power(of, exponent - exponent / 2) }, half]
         });
         let product = self.push(Step::Mul, [parts[0], parts[1], 0]);
-        self.powers.push((of, exponent, product));
+        self.known.push((of, exponent, product));
         product
+    }
+
+    /// Returns the value that is the square of another one.
+    fn square(&mut self, of: usize) -> usize {
+        self.find(of, 2).unwrap_or_else(|| {
+            let square = self.push(Step::Powi(2), [of, 0, 0]);
+            self.known.push((of, 2, square));
+            square
+        })
+    }
+
+    fn find(&self, of: usize, exponent: u32) -> Option<usize> {
+        self.known.iter().find(|power| (power.0, power.1) == (of, exponent)).map(|power| power.2)
     }
 }

@@ -22,7 +22,7 @@ const OPERATIONS: usize = 20_000_000;
 
 /// By how much a cell is larger than it is cut, on all sides, as a fraction of the box: places at its sides belong to it,
 /// however they are rounded.
-const MARGIN: f64 = 1.0 / (1 << 20) as f64;
+pub const MARGIN: f64 = 1.0 / (1 << 20) as f64;
 
 /// A formula's cells.
 #[derive(Clone, Debug, PartialEq)]

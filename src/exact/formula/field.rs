@@ -1,6 +1,6 @@
 //! Formulas in x, y and z, and in all that is known of a point of a surface.
 
-use super::along::by_products;
+use super::along::{Products, by_products};
 use super::cells::{Cells, is_choice};
 use super::program::{MOST_REGISTERS, Program, Values};
 use super::step::{Function, Step};
@@ -49,7 +49,12 @@ impl<const COUNT: usize> FieldOf<COUNT> {
         if of_surface {
             quick = new(with_roots(&quick.steps));
         }
-        let products = if COUNT == SPACE.len() { by_products(&quick.steps, COUNT) } else { None };
+        let of_space =
+            |which| if COUNT == SPACE.len() { by_products(&quick.steps, COUNT, which) } else { None };
+        let products = of_space(Products::All);
+        if let Some(program) = of_space(Products::OfSquares) {
+            quick.program = program;
+        }
         Some(Self { formula, quick, products, cells: None })
     }
 

@@ -180,9 +180,23 @@ impl Formula {
 
     #[inline(always)]
     fn run_inline<N: Scalar, const MAY_CALL: bool>(&self, program: &Program, registers: &mut [N]) -> N {
-        for &Instruction { step, operands, result } in &program.instructions {
+        let mut instructions = program.instructions.iter();
+        while let Some(instruction) = instructions.next() {
+            let &Instruction { step, operands, result } = instruction;
             let (a, b) = (registers[usize::from(operands[0])], registers[usize::from(operands[1])]);
             let c = || registers[usize::from(operands[2])];
+            if let Some(next) = instructions.as_slice().first()
+                && matches!(step, Step::Call(Function::Sin | Function::Cos))
+                && instruction.is_of_one_angle_with(next)
+            {
+                let (sin, cos) = a.sin_cos();
+                let is_sine_first = step == Step::Call(Function::Sin);
+                let (first, second) = if is_sine_first { (sin, cos) } else { (cos, sin) };
+                registers[usize::from(result)] = first;
+                registers[usize::from(next.result)] = second;
+                instructions.next();
+                continue;
+            }
             registers[usize::from(result)] = step.of::<N, MAY_CALL>(a, b, c, self.spline.as_deref());
         }
         registers[usize::from(program.result)]

@@ -1,6 +1,6 @@
 //! Formulas as programs: operations on registers, of which equal ones are made once.
 
-use super::step::{MAX_DEPTH, Step};
+use super::step::{Function, MAX_DEPTH, Step};
 use super::variables::SURFACE;
 use std::collections::HashMap;
 use std::mem::{Discriminant, discriminant};
@@ -11,6 +11,18 @@ pub(super) struct Instruction {
     pub step: Step,
     pub operands: [u8; 3],
     pub result: u8,
+}
+
+impl Instruction {
+    /// Tells whether this and the next operation are the sine and the cosine of the same number, in any order: computing both
+    /// takes hardly longer than computing one.
+    #[inline(always)]
+    pub fn is_of_one_angle_with(&self, next: &Self) -> bool {
+        let steps = (self.step, next.step);
+        let are_pair = steps == (Step::Call(Function::Sin), Step::Call(Function::Cos))
+            || steps == (Step::Call(Function::Cos), Step::Call(Function::Sin));
+        are_pair && self.operands[0] == next.operands[0]
+    }
 }
 
 /// A formula's operations in their order.
@@ -104,8 +116,45 @@ impl Values {
     /// waits in a register until its last use.
     pub fn new(steps: &[Step], variables: usize) -> Self {
         let shared = values(steps, variables, true);
-        let fits = Program::of(&shared, variables).registers <= MOST_REGISTERS;
-        if fits { shared } else { values(steps, variables, false) }
+        let fits = |values: &Self| Program::of(values, variables).registers <= MOST_REGISTERS;
+        // Kernels compute formulas in one variable in few registers.
+        let paired = if variables > 1 { shared.paired(variables) } else { None };
+        if let Some(paired) = paired.filter(fits) {
+            paired
+        } else if fits(&shared) {
+            shared
+        } else {
+            values(steps, variables, false)
+        }
+    }
+
+    /// Returns the same values, of which the sine and the cosine of a number follow each other; `None` if there is no such pair.
+    fn paired(&self, variables: usize) -> Option<Self> {
+        let list = &self.list;
+        let pairs = list.iter().map(|value| {
+            let other = match value.step {
+                Step::Call(Function::Sin) => Function::Cos,
+                Step::Call(Function::Cos) => Function::Sin,
+                _ => return None,
+            };
+            list.iter().position(|of| of.step == Step::Call(other) && of.operands == value.operands)
+        });
+        let pairs: Vec<_> = pairs.collect();
+        pairs.iter().flatten().next()?;
+        let (mut places, mut order) = (vec![usize::MAX; list.len()], Vec::with_capacity(list.len()));
+        for index in 0..list.len() {
+            for index in [Some(index), pairs[index]].into_iter().flatten() {
+                if places[index] == usize::MAX {
+                    places[index] = order.len();
+                    order.push(index);
+                }
+            }
+        }
+        let moved = |index: &usize| Value {
+            operands: if *index < variables { [0; 3] } else { list[*index].operands.map(|of| places[of]) },
+            ..list[*index]
+        };
+        Some(Self { list: order.iter().map(moved).collect(), result: places[self.result] })
     }
 }
 
@@ -155,6 +204,20 @@ mod tests {
         let field = Field::new(Arc::new(formula)).expect("its variables are x, y and z");
         let expected = (9.0 + 4.0 - 1.0) * (9.0 + 4.0 - 1.0) * (4.0 + 1.5 - 1.0) + 9_f64.sin().powi(2);
         assert!((field.at([3.0, 2.0, 0.5]) - expected).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_sine_and_the_cosine_of_a_number_follow_each_other() {
+        let text = "cos(2*x)*sin(y) + sin(x*x) + sin(2*x)*cos(y) - cos(z)";
+        let formula = Formula::parse_in(text, SPACE).expect("a formula");
+        let operations = &formula.program.instructions;
+        let pairs = operations.windows(2).filter(|pair| pair[0].is_of_one_angle_with(&pair[1]));
+        assert_eq!((pairs.count(), operations.len()), (2, 14));
+        let at = [0.3_f64, 1.2, -0.7];
+        let field = Field::new(Arc::new(formula)).expect("its variables are x, y and z");
+        let [x, y, z] = at;
+        let expected = (2.0 * x).cos() * y.sin() + (x * x).sin() + (2.0 * x).sin() * y.cos() - z.cos();
+        assert!((field.at(at) - expected).abs() < 1e-14);
     }
 
     #[test]

@@ -218,7 +218,8 @@ impl<L: FunctionOnLine> Search<'_, L> {
     /// Returns the first root where rounding hides whether the line is still between the ends: there, nothing is
     /// certain.
     fn at_an_end(&mut self, low: f64, high: f64) -> Option<f64> {
-        if low >= high || !self.line.at(Interval { low, high }).has_zero() {
+        let end = Interval { low, high };
+        if low >= high || !self.line.at(end).has_zero() || self.line.is_broken(end) {
             return None;
         }
         self.is_certain = false;

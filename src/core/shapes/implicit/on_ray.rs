@@ -2,12 +2,14 @@
 
 use super::finely::ExactRay;
 use super::formula::Implicit;
+use super::parts::Parts;
 use crate::geometry::frame::{self, BLUR, Frame};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayError, RayRange, Side};
 use glam::DVec3;
 use std::ops::Range;
 use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::dual::Dual;
+use tabray_exact::formula::cells::MARGIN;
 use tabray_exact::formula::field::Field;
 use tabray_exact::interval::Interval;
 use tabray_exact::polynomial::Polynomial;
@@ -32,6 +34,7 @@ pub(super) struct ImplicitShape<T> {
     pub frame: Frame,
     pub low: DVec3,
     pub high: DVec3,
+    pub parts: Parts,
 }
 
 /// Whether a surface is kept at a root, and whether that is certain in `f64`.
@@ -217,9 +220,16 @@ impl<T: Implicit> taylor::FunctionOnLine for FormulaOnRay<'_, T> {
     }
 
     fn pieces(&self, ends: (f64, f64), mut visit: &mut dyn FnMut(f64, f64) -> Option<f64>) -> Option<f64> {
-        match self.shape.formula.field().and_then(Field::cells) {
+        let ImplicitShape { formula, low, high, parts, .. } = self.shape;
+        let error = self.blur + self.turn * ends.0.abs().max(ends.1.abs());
+        // So that a line is in the parts of the box that it seems to be in, with their margins.
+        let is_precise = error <= 0.5 * MARGIN * (*high - *low).min_element();
+        if !is_precise {
+            return visit(ends.0, ends.1);
+        }
+        match formula.field().and_then(Field::cells) {
             Some(cells) => cells.visit(self.base.to_array(), self.dir.to_array(), ends, &mut visit),
-            None => visit(ends.0, ends.1),
+            None => parts.visit(formula, (self.base, self.dir), ends, &mut visit),
         }
     }
 
