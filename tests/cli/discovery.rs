@@ -125,10 +125,10 @@ fn every_command_has_its_page() {
 }
 
 #[test]
-fn the_readme_names_every_command() {
-    let readme = fs::read_to_string(root().join("README.md")).expect("the README");
+fn the_page_of_commands_names_every_one() {
+    let page = fs::read_to_string(root().join("docs/commands.md")).expect("the page");
     for command in commands() {
-        let is_told = [' ', '`'].iter().any(|end| readme.contains(&format!("`tabray {command}{end}")));
-        assert!(is_told, "the README has no {command}");
+        let is_told = [' ', '`'].iter().any(|end| page.contains(&format!("`tabray {command}{end}")));
+        assert!(is_told, "docs/commands.md has no {command}");
     }
 }

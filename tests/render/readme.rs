@@ -15,13 +15,29 @@ fn readme() -> String {
 
 #[test]
 fn the_readmes_scene_is_one() {
-    assert_eq!(model(&block_with(&readme(), "look_at eye\n")).objects.len(), 2);
+    assert_eq!(model(&block_with(&readme(), "look_at eye")).objects.len(), 2);
+}
+
+#[test]
+fn the_readmes_picture_is_that_of_its_scene() {
+    let folder = folder();
+    let scene = folder.path().join("ball.ray");
+    fs::write(&scene, block_with(&readme(), "look_at eye")).expect("room for a file");
+    let shown = image::open(root().join("docs/ball.png")).expect("the picture").into_rgb8();
+    assert!(part_of(&scene, "0,0,320,240") == shown, "CONTRIBUTING.md says how to make it");
+}
+
+/// A newcomer reads it to its end.
+#[test]
+fn the_readme_is_short() {
+    let lines = readme().lines().count();
+    assert!(lines <= 160, "{lines} lines");
 }
 
 #[test]
 fn the_readmes_mistake_is_told_as_it_says() {
     let folder = folder();
-    let scene = block_with(&readme(), "look_at eye\n").replace("radius", "raduis");
+    let scene = block_with(&readme(), "look_at eye").replace("radius", "raduis");
     fs::write(folder.path().join("ball.ray"), scene).expect("room for a file");
     let (status, _, err) = outcome(tabray(&folder).args(["render", "ball.ray"]));
     assert_eq!((status, err), (2, block_with(&readme(), "raduis")));
@@ -40,7 +56,7 @@ fn the_pictures_of_the_docs_are_fresh() {
         let part = imageops::crop_imm(&shown, 0, top, width, rows).to_image();
         let is_fresh = load(&scene).camera.value.pixels == [width as usize, height as usize]
             && part_of(&scene, &format!("0,{},{width},{rows}", height - rows - top)) == part;
-        assert!(is_fresh, "{} is stale: the README says how to make it", picture.display());
+        assert!(is_fresh, "{} is stale: docs/gallery.md says how to make it", picture.display());
     }
 }
 
@@ -82,7 +98,7 @@ fn links(page: &Path) -> Vec<PathBuf> {
 
 #[test]
 fn links_lead_to_files_that_are_there() {
-    let mut pages = vec![root().join("README.md")];
+    let mut pages = ["README.md", "CONTRIBUTING.md"].map(|page| root().join(page)).to_vec();
     for folder in ["docs", "snapshots/reference"] {
         let entries = fs::read_dir(root().join(folder)).expect("a folder");
         let files = entries.map(|entry| entry.expect("an entry").path());
@@ -111,7 +127,7 @@ fn texts(path: &Path) -> Vec<(PathBuf, String)> {
 #[test]
 fn no_file_lists_the_plugins() {
     // Such a list would have to be edited for each new plugin.
-    let parts = ["README.md", "Cargo.toml", ".ci", "docs", "scenes", "snapshots", "src", "tests"];
+    let parts = ["README.md", "CONTRIBUTING.md", "Cargo.toml", ".ci", "docs", "scenes", "snapshots", "src", "tests"];
     for (path, text) in parts.iter().flat_map(|part| texts(&root().join(part))) {
         let words: BTreeSet<_> = text.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
         let lacks = common::registry().iter().any(|entity| !words.contains(entity.name));
