@@ -28,7 +28,7 @@ use scenes::Scenes;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::mpsc::{self, Receiver, Sender};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread;
 use std::time::Duration;
 use tabray_core::text;
@@ -37,6 +37,9 @@ use watched::Watched;
 
 /// The time for which a file must have been left alone before it is read: many editors write a file in several steps.
 const SETTLED: Duration = Duration::from_millis(10);
+
+/// How often files are looked at, as the system does not tell of every change.
+const LOOK: Duration = Duration::from_secs(1);
 
 /// Show the image in the browser, and render it again whenever the scene changes
 ///
@@ -84,7 +87,7 @@ pub fn run(registry: &'static Registry, args: Args) -> Result<(), Failure> {
     }
     let accuracy = args.method.accuracy()?;
     let (sender, events) = mpsc::channel();
-    let mut files = Files::new(notifier(&sender, || Event::Changed))?;
+    let mut files = Files::new(notifier(&sender, || Event::Changed));
     let scenes =
         Scenes::new(registry, &args.scenes, Arc::new(notifier(&sender, || Event::Changed)), &mut files)?;
     let server = Server::open(args.port)?;
@@ -112,16 +115,27 @@ pub fn run(registry: &'static Registry, args: Args) -> Result<(), Failure> {
         let reason = text::reason(error);
         messages::note(&format!("cannot open a browser: {reason}; open the address yourself"));
     }
-    let mut watched = Vec::new();
+    let (mut watched, mut told) = (Vec::new(), None);
     loop {
+        // The stamps of the files are taken before the files are read, so that a change in the meantime is noticed.
+        files.look();
+        let refused =
+            files.refused().map(|reason| format!("{reason}; its files are looked at once a second"));
+        if refused.is_some() && refused != told {
+            messages::warning(refused.as_deref().unwrap_or_default(), None);
+        }
         scenes.find();
+        if refused.is_some() || told.is_some() {
+            scenes.tell_of_refusal(refused.as_deref());
+        }
+        told = refused;
         for session in scenes.from(watched.len()) {
             watched.push(Watched::new(session, watched.len(), args.set.values.clone(), accuracy));
         }
         for (number, scene) in watched.iter_mut().enumerate() {
             scene.follow(scenes.is_wanted(number), &mut files)?;
         }
-        match next(&events) {
+        match next(&events, &mut files) {
             Event::Changed => {}
             Event::Interrupted => return Ok(()),
             Event::ServerFailed(message) => return Err(Failure::Failed(message)),
@@ -141,9 +155,16 @@ fn notifier(
     }
 }
 
-/// Waits for an event. Changes that follow one another count as one.
-fn next(events: &Receiver<Event>) -> Event {
-    let mut last = events.recv().unwrap_or(Event::Interrupted);
+/// Waits for an event, and looks at the files meanwhile. Changes that follow one another count as one.
+fn next(events: &Receiver<Event>, files: &mut Files) -> Event {
+    let mut last = loop {
+        match events.recv_timeout(LOOK) {
+            Ok(event) => break event,
+            Err(RecvTimeoutError::Timeout) if files.look() => break Event::Changed,
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => break Event::Interrupted,
+        }
+    };
     while let Event::Changed = last {
         match events.recv_timeout(SETTLED) {
             Ok(more) => last = more,

@@ -127,6 +127,11 @@ pub struct Fault<'f> {
     pub text: Option<&'f str>,
 }
 
+/// Tells why the system does not tell of changes, null if it does.
+pub fn watching(refused: Option<&str>) -> Bytes {
+    event("watching", &refused)
+}
+
 /// Tells which scenes there are, in the order of the list.
 pub fn scenes(list: &[SceneEntry]) -> Bytes {
     event("scenes", &list)

@@ -3,6 +3,7 @@
 use super::events;
 use super::frame::Frame;
 use hyper::body::Bytes;
+use std::mem;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use tokio::sync::watch::{self, Receiver, Sender};
@@ -18,14 +19,24 @@ struct State {
     frame: Option<Arc<Frame>>,
     /// The events about this scene so far.
     events: Vec<Bytes>,
-    /// The error in the text since then.
-    fault: Option<Bytes>,
-    /// The number of errors so far, which tells one error from the next.
-    faults: u64,
+    /// The last event of each kind of news, and the number of these so far, which tells one from the next.
+    news: [(Option<Bytes>, u64); News::ALL.len()],
+}
+
+/// News that replaces older news of its kind.
+#[derive(Clone, Copy, PartialEq)]
+pub enum News {
     /// All scenes, where there may be several.
-    list: Option<Bytes>,
-    /// The number of lists so far.
-    lists: u64,
+    Scenes,
+    /// Whether the system tells of changes.
+    Watching,
+    /// The error in the text since the last valid scene.
+    Fault,
+}
+
+impl News {
+    /// All kinds, in the order in which a page receives them; what is about the scene is between the last two.
+    const ALL: [Self; 3] = [Self::Scenes, Self::Watching, Self::Fault];
 }
 
 impl State {
@@ -47,7 +58,7 @@ impl EventFeed {
                 last.stale.store(true, Ordering::Relaxed);
             }
             state.events = vec![events::scene(frame)];
-            state.fault = None;
+            state.news[News::Fault as usize].0 = None;
         });
     }
 
@@ -62,19 +73,15 @@ impl EventFeed {
         });
     }
 
-    /// Sets the error in the current text. The last valid scene stays.
-    pub fn fault(&self, event: Bytes) {
-        self.state.send_modify(|state| {
-            state.fault = Some(event);
-            state.faults += 1;
-        });
-    }
-
-    /// Sets the list of all scenes.
-    pub fn list(&self, event: Bytes) {
-        self.state.send_modify(|state| {
-            state.list = Some(event);
-            state.lists += 1;
+    /// Replaces the news of a kind, unless it is the same.
+    pub fn tell(&self, kind: News, event: Option<Bytes>) {
+        self.state.send_if_modified(|state| {
+            let (last, count) = &mut state.news[kind as usize];
+            let is_new = *last != event;
+            if is_new {
+                (*last, *count) = (event, *count + 1);
+            }
+            is_new
         });
     }
 
@@ -85,7 +92,7 @@ impl EventFeed {
                 last.stale.store(true, Ordering::Relaxed);
             }
             state.events.clear();
-            state.fault = None;
+            state.news[News::Fault as usize].0 = None;
         });
     }
 
@@ -106,7 +113,7 @@ impl EventFeed {
 
     /// Makes a subscriber that has received no event yet.
     pub fn subscribe(&self) -> Subscriber {
-        Subscriber { state: self.state.subscribe(), version: 0, events: 0, faults: 0, lists: 0 }
+        Subscriber { state: self.state.subscribe(), version: 0, events: 0, news: [0; News::ALL.len()] }
     }
 }
 
@@ -116,10 +123,8 @@ pub struct Subscriber {
     /// The version of the scene that the subscriber knows, and the number of its events that were received.
     version: u64,
     events: usize,
-    /// The number of errors when the last one was received.
-    faults: u64,
-    /// The number of lists when the last one was received.
-    lists: u64,
+    /// The number of news of each kind when the last one was received.
+    news: [u64; News::ALL.len()],
 }
 
 impl Subscriber {
@@ -135,9 +140,13 @@ impl Subscriber {
 
     fn known(&mut self) -> Option<Bytes> {
         let state = self.state.borrow_and_update();
-        if self.lists != state.lists {
-            self.lists = state.lists;
-            return state.list.clone();
+        let mut unseen = |kind: News| {
+            let (event, count) = &state.news[kind as usize];
+            let seen = mem::replace(&mut self.news[kind as usize], *count);
+            event.clone().filter(|_| seen != *count)
+        };
+        if let Some(news) = News::ALL.into_iter().filter(|kind| *kind != News::Fault).find_map(&mut unseen) {
+            return Some(news);
         }
         if self.version != state.version() {
             (self.version, self.events) = (state.version(), 0);
@@ -146,10 +155,6 @@ impl Subscriber {
             self.events += 1;
             return Some(event.clone());
         }
-        if self.faults == state.faults {
-            return None;
-        }
-        self.faults = state.faults;
-        state.fault.clone()
+        unseen(News::Fault)
     }
 }

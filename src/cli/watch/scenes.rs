@@ -2,6 +2,7 @@
 
 use super::answer;
 use super::events::{self, SceneEntry};
+use super::feed::News;
 use super::files::{Files, is_scene};
 use super::session::{ChangeListener, Session};
 use crate::files::input;
@@ -59,12 +60,12 @@ impl Scenes {
                 ));
             }
         }
-        files.watch_folders(&folders)?;
+        files.watch_folders(&folders);
         let scenes = Self { registry, named, changed, known: Mutex::default() };
         scenes.find();
         for (number, session) in scenes.from(0).iter().enumerate() {
             if alone.contains(&session.path) {
-                files.watch(number, [&session.path])?;
+                files.watch(number, [&session.path]);
                 // A scene with faults has a page; a path that cannot be read has none.
                 input::read(&session.path)?;
             }
@@ -121,7 +122,14 @@ impl Scenes {
         };
         let event = events::scenes(&known.list.iter().map(name).collect::<Vec<_>>());
         for session in &known.sessions {
-            session.feed.list(event.clone());
+            session.feed.tell(News::Scenes, Some(event.clone()));
+        }
+    }
+
+    /// Tells all pages why the system does not tell of changes, if it does not.
+    pub fn tell_of_refusal(&self, refused: Option<&str>) {
+        for session in &self.known().sessions {
+            session.feed.tell(News::Watching, Some(events::watching(refused)));
         }
     }
 

@@ -1,20 +1,20 @@
 //! A scene that is read again whenever it changes, while pages look at it.
 
 use super::events::{self, Fault};
-use super::feed::EventFeed;
-use super::files::Files;
+use super::feed::{EventFeed, News};
+use super::files::{Files, Stamp, stamp};
 use super::frame::{ChartState, Frame, lines};
 use super::session::Session;
 use crate::files::input;
 use crate::process::crash;
 use crate::process::failure::{Failure, report};
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::{self, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
-use std::time::{Instant, SystemTime};
+use std::time::Instant;
 use tabray_core::render::Levels;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::progressive::{self, Area};
@@ -65,14 +65,6 @@ fn painter(session: Arc<Session>) -> Result<Sender<Arc<Frame>>, Failure> {
     Ok(sender)
 }
 
-/// The modification time of a file, and its length in bytes.
-type FileStamp = (SystemTime, u64);
-
-fn stamp(file: &Path) -> Option<FileStamp> {
-    let meta = fs::metadata(file).ok()?;
-    Some((meta.modified().ok()?, meta.len()))
-}
-
 /// The text and files that an image was made from.
 #[derive(PartialEq)]
 struct SourceFiles {
@@ -80,8 +72,8 @@ struct SourceFiles {
     bytes: Vec<u8>,
     /// The values that are set beside it.
     sets: Vec<String>,
-    /// The stamps of the files that it names.
-    stamps: Vec<Option<FileStamp>>,
+    /// The files that it names, and their stamps before they were read.
+    stamps: BTreeMap<PathBuf, Option<Stamp>>,
 }
 
 /// The file of a scene, which is read again and again.
@@ -92,7 +84,7 @@ pub struct Watched {
     /// The values that are set beside its text.
     sets: Vec<String>,
     accuracy: Option<Accuracy>,
-    /// The files that the scene names.
+    /// The files that the scene named when it was read last.
     named: Vec<PathBuf>,
     /// The text and files that were read last.
     last: Option<SourceFiles>,
@@ -114,14 +106,14 @@ impl Watched {
             if self.painter.take().is_some() {
                 (self.named, self.last) = (Vec::new(), None);
                 self.session.feed.clear();
-                files.watch(self.number, [&self.session.path])?;
+                files.watch(self.number, [&self.session.path]);
             }
             return Ok(());
         }
         let frames = match &self.painter {
             Some(frames) => frames.clone(),
             None => {
-                files.watch(self.number, [&self.session.path])?;
+                files.watch(self.number, [&self.session.path]);
                 self.painter.insert(painter(self.session.clone())?).clone()
             }
         };
@@ -137,7 +129,10 @@ impl Watched {
             Err(Failure::Usage(message, _) | Failure::Unread(message, _)) => {
                 let name = session.path.display().to_string();
                 let report = &format!("error: {message}");
-                feed.fault(events::fault(&Fault { lines: &[], name: &name, report, text: None }));
+                feed.tell(
+                    News::Fault,
+                    Some(events::fault(&Fault { lines: &[], name: &name, report, text: None })),
+                );
                 self.last = None;
                 return Ok(());
             }
@@ -146,11 +141,12 @@ impl Watched {
         // One save may cause several events. The stamps of the files are taken before the files are read, so that a
         // change in the meantime is noticed.
         let sets = [&self.sets[..], &session.trial_values.sets()].concat();
-        let now = SourceFiles { bytes, sets, stamps: self.named.iter().map(|file| stamp(file)).collect() };
+        let stamps = self.named.iter().map(|file| (file.clone(), stamp(file))).collect();
+        let now = SourceFiles { bytes, sets, stamps };
         if self.last.as_ref() == Some(&now) {
             return Ok(());
         }
-        let SourceFiles { bytes, sets, .. } = self.last.insert(now);
+        let SourceFiles { bytes, sets, stamps } = self.last.insert(now);
         let text = String::from_utf8_lossy(bytes);
         let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
         let folder = session.path.parent().unwrap_or(&session.path);
@@ -164,7 +160,11 @@ impl Watched {
         };
         let report = read.as_ref().map_or_else(|report| report, |loaded| &loaded.warnings);
         self.named = report.files().to_vec();
-        files.watch(self.number, self.named.iter().chain([&session.path]))?;
+        files.watch(self.number, self.named.iter().chain([&session.path]));
+        stamps.retain(|file, _| self.named.contains(file));
+        for file in &self.named {
+            stamps.entry(file.clone()).or_insert_with(|| stamp(file));
+        }
         match read {
             Ok(Loaded { model, .. }) if !fits(&model) => {
                 let [width, height] = model.camera.value.pixels;
@@ -172,7 +172,10 @@ impl Watched {
                     "error: an image of {width} x {height} pixels is too large for a page\n\
                      help: the maximum is {MAX_PIXELS} pixels, such as 4096 x 4096"
                 );
-                feed.fault(events::fault(&Fault { lines: &[], name: &name, report, text: Some(text) }));
+                feed.tell(
+                    News::Fault,
+                    Some(events::fault(&Fault { lines: &[], name: &name, report, text: Some(text) })),
+                );
             }
             Ok(Loaded { model, warnings, places, .. }) => {
                 self.version += 1;
@@ -198,7 +201,10 @@ impl Watched {
                 let lines = places.filter_map(|place| lines(text, place)).map(|[first, _]| first);
                 let lines = &lines.collect::<Vec<_>>();
                 let report = &report.to_string();
-                feed.fault(events::fault(&Fault { lines, name: &name, report, text: Some(text) }));
+                feed.tell(
+                    News::Fault,
+                    Some(events::fault(&Fault { lines, name: &name, report, text: Some(text) })),
+                );
             }
         }
         Ok(())
@@ -210,7 +216,7 @@ fn crashed(feed: &EventFeed, name: &str, text: &str, failure: &Failure) {
     report(failure);
     let Failure::Failed(message) = failure else { return };
     let report = &format!("error: {message}");
-    feed.fault(events::fault(&Fault { lines: &[], name, report, text: Some(text) }));
+    feed.tell(News::Fault, Some(events::fault(&Fault { lines: &[], name, report, text: Some(text) })));
 }
 
 fn fits(model: &Model) -> bool {

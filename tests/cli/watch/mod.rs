@@ -1,5 +1,6 @@
 //! `tabray watch`: the program and its page.
 
+mod away;
 mod broken;
 pub mod browser;
 mod camera;

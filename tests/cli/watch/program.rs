@@ -7,7 +7,7 @@ use serde_json::Value;
 use std::fs;
 use std::io::{BufRead, BufReader, Lines, Read};
 use std::path::PathBuf;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, ChildStderr, Command, Stdio};
 use std::thread;
 use std::time::Duration;
 use tempfile::TempDir;
@@ -50,14 +50,23 @@ impl Watching {
 
     /// Watches these scenes and folders in a folder; returns what it says that it watches, too.
     pub fn start_all(folder: TempDir, scenes: &[&str], args: &[&str]) -> (Self, String) {
-        let mut child = Command::new(cargo_bin!("tabray"))
-            .arg("watch")
-            .args(scenes)
-            .args(args)
-            .current_dir(folder.path())
-            .stderr(Stdio::piped())
-            .spawn()
-            .expect("the program runs");
+        let program = Command::new(cargo_bin!("tabray"));
+        let (watching, what, mut stderr) = Self::start_by(program, folder, scenes, args);
+        // Later output is read, so that the program does not block.
+        thread::spawn(move || stderr.read_to_end(&mut Vec::new()));
+        (watching, what)
+    }
+
+    /// Watches as [`start_all`](Self::start_all) does, by a command that starts the program; returns its later messages, too.
+    pub fn start_by(
+        mut program: Command,
+        folder: TempDir,
+        scenes: &[&str],
+        args: &[&str],
+    ) -> (Self, String, BufReader<ChildStderr>) {
+        program.arg("watch").args(scenes).args(args);
+        let mut child =
+            program.current_dir(folder.path()).stderr(Stdio::piped()).spawn().expect("the program runs");
         let mut stderr = BufReader::new(child.stderr.take().expect("its messages"));
         let mut line = String::new();
         stderr.read_line(&mut line).expect("text");
@@ -68,9 +77,7 @@ impl Watching {
             .and_then(|(what, address)| Some((what.to_owned(), address.split_once("/?token=")?)))
             .unwrap_or_else(|| panic!("an address: {line}"));
         let (port, token) = (port.parse().expect("a port"), token.to_owned());
-        // Later output is read, so that the program does not block.
-        thread::spawn(move || stderr.read_to_end(&mut Vec::new()));
-        (Self { child, folder, port, token }, what)
+        (Self { child, folder, port, token }, what, stderr)
     }
 
     pub fn scene(&self) -> PathBuf {

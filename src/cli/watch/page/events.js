@@ -20,6 +20,11 @@ const follow = () => {
   const events = new EventSource(`events${token}`)
   const on = (name, act) => events.addEventListener(name, (event) => act(event.data))
   on('scenes', (data) => listScenes(JSON.parse(data)))
+  on('watching', (data) => {
+    const refused = JSON.parse(data)
+    $('#deaf').textContent = refused
+    $('#deaf').hidden = !refused
+  })
   on('scene', (data) => {
     const scene = JSON.parse(data)
     version = scene.version

@@ -1,0 +1,116 @@
+//! Files and folders that go away and come back, and a system that does not tell of changes.
+
+use crate::watch::browser::Browser;
+use crate::watch::page::shown;
+use crate::watch::program::{Watching, ball};
+use assert_cmd::cargo::cargo_bin;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use tempfile::TempDir;
+
+/// Runs git in a folder, or says that there is none.
+fn git(folder: &Path, args: &[&str]) -> bool {
+    let mut git = Command::new("git");
+    git.current_dir(folder).stdout(Stdio::null()).stderr(Stdio::null());
+    git.args(["-c", "user.name=it", "-c", "user.email=it@localhost", "-c", "commit.gpgsign=false"])
+        .args(args);
+    match git.status() {
+        Ok(status) => {
+            assert!(status.success(), "{args:?}");
+            true
+        }
+        Err(_) => {
+            eprintln!("SKIPPED: there is no `git`");
+            false
+        }
+    }
+}
+
+#[test]
+fn a_branch_without_the_folder_and_back_leaves_nothing_deaf() {
+    let folder = TempDir::new().expect("a folder");
+    let at = folder.path();
+    if !git(at, &["init", "--quiet", "--initial-branch=main"]) {
+        return;
+    }
+    git(at, &["commit", "--quiet", "--allow-empty", "--message=empty"]);
+    git(at, &["checkout", "--quiet", "-b", "scenes"]);
+    fs::create_dir_all(at.join("deep/in")).expect("folders");
+    fs::write(at.join("deep/in/paint.ray"), "material paint { ambient 9 0 0 }\n").expect("a file");
+    let text = ball("9 0 0").replace("material paint { ambient 9 0 0 }", "include in/paint.ray");
+    fs::write(at.join("deep/scene.ray"), &text).expect("a file");
+    git(at, &["add", "."]);
+    git(at, &["commit", "--quiet", "--message=scenes"]);
+    let (watching, _) = Watching::start_all(folder, &["deep/scene.ray"], &["--port", "0"]);
+    let at = watching.folder.path();
+    let mut events = watching.events();
+    events.until("done");
+    for ambient in ["0 9 0", "0 0 9"] {
+        git(at, &["checkout", "--quiet", "main"]);
+        assert!(!at.join("deep").exists());
+        let fault = events.until("fault");
+        assert!(fault["report"].as_str().is_some_and(|report| report.contains("cannot read")), "{fault}");
+        git(at, &["checkout", "--quiet", "scenes"]);
+        assert_eq!(events.until("scene")["text"], text);
+        events.until("done");
+        // The file that it includes, in a folder that is new again.
+        fs::write(at.join("deep/in/paint.ray"), format!("material paint {{ ambient {ambient} }}\n"))
+            .expect("a file");
+        events.until("scene");
+        git(at, &["checkout", "--quiet", "."]);
+        events.until("scene");
+    }
+}
+
+#[test]
+fn a_folder_of_scenes_that_is_made_anew_is_followed() {
+    let folder = TempDir::new().expect("a folder");
+    let scenes = folder.path().join("scenes");
+    let make = |ambient: &str| {
+        fs::create_dir(&scenes).expect("a folder");
+        fs::write(scenes.join("a.ray"), ball(ambient)).expect("a file");
+    };
+    make("9 0 0");
+    let (watching, _) = Watching::start_all(folder, &["scenes"], &["--port", "0"]);
+    let mut events = watching.events();
+    events.until("done");
+    fs::rename(&scenes, watching.folder.path().join("old")).expect("another name");
+    events.until("fault");
+    make("0 9 0");
+    assert_eq!(events.until("scene")["text"], ball("0 9 0"));
+    fs::write(scenes.join("b.ray"), ball("0 0 9")).expect("a file");
+    while !events.until("scenes").to_string().contains("b.ray") {}
+}
+
+/// Lets the system refuse to watch anything, as it does when it watches as much as it allows.
+#[cfg(target_os = "linux")]
+#[test]
+fn where_the_system_does_not_watch_files_they_are_looked_at_and_both_say_so() {
+    use std::io::Read;
+    let refusing = ["-D", "-f", "-qq", "-o", "/dev/null", "-e", "inject=inotify_init1:error=EMFILE"];
+    let tried = Command::new("strace").args(refusing).arg("true").stderr(Stdio::null()).status();
+    if !tried.is_ok_and(|status| status.success()) {
+        eprintln!("SKIPPED: there is no `strace`, or it may not trace");
+        return;
+    }
+    let folder = TempDir::new().expect("a folder");
+    fs::write(folder.path().join("scene.ray"), ball("9 0 0")).expect("a file");
+    let mut strace = Command::new("strace");
+    strace.args(refusing).arg(cargo_bin!("tabray"));
+    let (mut watching, _, mut stderr) = Watching::start_by(strace, folder, &["scene.ray"], &["--port", "0"]);
+    let mut events = watching.events();
+    let reason = "cannot watch files: too many open files; its files are looked at once a second";
+    assert_eq!(events.until("watching"), reason);
+    events.until("done");
+    watching.save(&ball("0 9 0"));
+    assert_eq!(events.until("scene")["text"], ball("0 9 0"));
+    if let Some(browser) = Browser::open(&watching.url("")) {
+        shown(&browser, 2);
+        assert_eq!(browser.text("return document.querySelector('#deaf:not([hidden])').textContent"), reason);
+    }
+    watching.child.kill().expect("it runs");
+    let mut said = String::new();
+    stderr.read_to_string(&mut said).expect("text");
+    assert!(said.contains(&format!("warning: {reason}\n")), "{said}");
+}
