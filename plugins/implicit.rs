@@ -2,6 +2,7 @@
 
 use std::sync::OnceLock;
 use tabray::prelude::*;
+use tabray::shapes::Clip;
 use tabray::shapes::field::{self, Reduced};
 
 static FORMULA: Pparm<Field> = Pparm::required(
@@ -11,21 +12,36 @@ static FORMULA: Pparm<Field> = Pparm::required(
 static CENTER: Pparm<DVec3> = Pparm::or("center", "the origin of the formula's coordinates", DVec3::ZERO)
     .alias(&["centre"])
     .unit("world coordinates");
-static BOX: Pparm<[f64; 6]> = Pparm::required(
+static BOX: Pparm<Option<[f64; 6]>> = Pparm::or(
     "box",
     "the box that clips the surface, as its low and its high corner relative to `center`; where it clips, the surface is \
      open, and its inside is seen",
+    None,
 )
 .each(&["low x", "low y", "low z", "high x", "high y", "high z"])
 .unit("world units")
-.must("a low corner and a high corner above it", |[a, b, c, x, y, z]: &[f64; 6]| a < x && b < y && c < z);
+.must("a low corner and a high corner above it", |corners| {
+    corners.is_none_or(|[a, b, c, x, y, z]| a < x && b < y && c < z)
+});
+static CLIP: Pparm<Option<NamedBody>> = Pparm::or(
+    "clip",
+    "a closed object, defined earlier in the scene, that clips the surface in place of a `box`; it is not seen itself",
+    None,
+);
+static CAPPED: Pparm<bool> = Pparm::or(
+    "capped",
+    "whether the faces of `clip` close what they cut: they are seen, with their own material, where the formula is below 0",
+    false,
+);
 
-const TABLE: Table = &[&FORMULA, &CENTER, &BOX];
+static EXTENT: OneOf = OneOf { meaning: "what clips the surface", names: &["box", "clip"] };
+
+const TABLE: Table = &[&FORMULA, &CENTER, &BOX, &CLIP, &EXTENT, &CAPPED];
 
 inventory::submit! {
     Entity::shape("implicit", "a surface by its formula", &[TABLE], |args| {
-        let [x, y, z, x2, y2, z2] = args.get(&BOX);
-        let corners = [DVec3::new(x, y, z), DVec3::new(x2, y2, z2)];
+        let (clip, is_capped) = (args.get(&CLIP).map(|object| Clip::of(&object)).transpose()?, args.get(&CAPPED));
+        let corners = corners(args, clip.as_ref());
         let Reduced { formula, denominator, warnings } = field::reduced(args.get(&FORMULA));
         let ends = corners.map(|corner| corner.to_array());
         let (formula, domain) = (formula.clone().within(ends), formula.domain(ends));
@@ -48,10 +64,41 @@ inventory::submit! {
             ));
         }
         let is_negated = denominator.is_some_and(|denominator| field::bounds(&denominator, corners).low <= 0.0);
-        let surface = Surface { formula, domain, is_negated, corners, why_not_closed: OnceLock::new() };
-        Ok(Body { warnings, ..Body::implicit(surface, Frame::at(args.get(&CENTER))) })
+        let is_clipped = clip.is_some();
+        let surface = Surface { formula, domain, is_negated, corners, is_clipped, why_not_closed: OnceLock::new() };
+        if is_capped && let Some(why) = surface.why_not_closed() {
+            return Err(refusal_of_caps(why));
+        }
+        let body = Body { warnings, ..Body::implicit(surface, Frame::at(args.get(&CENTER))) };
+        match clip {
+            Some(clip) => clip.cut(args, body, is_capped),
+            None if is_capped => Err(refusal_of_caps("it has no `clip`")),
+            None => Ok(body),
+        }
     })
     .known_as(&["isosurface", "sdf"])
+}
+
+/// Returns the corners of the box around the surface, relative to the origin of its formula.
+fn corners(args: &Args, clip: Option<&Clip>) -> [DVec3; 2] {
+    match (clip, args.get(&BOX)) {
+        (Some(clip), _) => {
+            let (Aabb { low, high }, center) = (clip.bounds(), args.get(&CENTER));
+            [low - center, high - center]
+        }
+        (None, corners) => {
+            let [x, y, z, x2, y2, z2] = corners.unwrap_or_default();
+            [DVec3::new(x, y, z), DVec3::new(x2, y2, z2)]
+        }
+    }
+}
+
+fn refusal_of_caps(why: &str) -> Refusal {
+    Refusal {
+        attribute: Some("capped"),
+        message: format!("cannot be capped: {why}"),
+        help: "caps are where a formula is below 0 in its `clip`, which takes one that is defined and bounded there",
+    }
 }
 
 /// The surface where a scene's formula is 0.
@@ -62,6 +109,8 @@ struct Surface {
     /// Whether the scene's formula divides by what may be 0 or less in the box.
     is_negated: bool,
     corners: [DVec3; 2],
+    /// Whether an object within the box clips the surface, so that the box does not.
+    is_clipped: bool,
     /// Found when it is first asked for, as that may take tenths of a second.
     why_not_closed: OnceLock<Option<&'static str>>,
 }
@@ -72,7 +121,7 @@ impl Surface {
             Some("its formula is not defined everywhere in its box")
         } else if self.is_negated {
             Some("its formula divides by what may be 0 or less in its box")
-        } else if !field::is_outside(&self.formula, self.corners) {
+        } else if !self.is_clipped && !field::is_outside(&self.formula, self.corners) {
             Some("its box may cut its surface")
         } else if !field::is_regular(&self.formula, self.corners) {
             Some("its formula may jump where it would have to be 0")

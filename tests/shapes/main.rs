@@ -9,6 +9,7 @@ mod oracle;
 
 mod arithmetic;
 mod cameras;
+mod clips;
 mod contract;
 mod costs;
 mod cutouts;

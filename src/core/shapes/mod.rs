@@ -23,7 +23,7 @@ pub use implicit::Implicit;
 pub use placed::Placed;
 pub use quadratic::Quadric;
 pub use revolution::{ClassicRevolution, InFrame, Refinement, Revolution};
-pub use solid::{Objects, combined};
+pub use solid::{Clip, Objects, combined};
 pub use triangle::Triangle;
 
 pub use crate::world::solid::Operation;

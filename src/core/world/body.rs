@@ -122,6 +122,8 @@ pub struct Body {
     pub solid: Option<Box<Solid>>,
     /// Further bodies that are seen together with this one.
     pub more: Vec<Body>,
+    /// Whether it keeps its own look where the object that it is seen with is given a shader.
+    pub keeps_look: bool,
 }
 
 /// A solid that is made of closed shapes.
@@ -131,6 +133,8 @@ pub struct Solid {
     pub parts: Vec<Part>,
     /// The condition on the parts that a point lies in, which decides whether the point lies in the solid.
     pub tree: Tree,
+    /// Whether it is cut open: the surface of its first part alone is seen, and it has no inside.
+    pub is_open: bool,
 }
 
 /// A part of a solid.
@@ -138,10 +142,12 @@ pub struct Solid {
 pub struct Part {
     /// The name that the scene gives it.
     pub name: Arc<str>,
-    /// The object; its shape is closed.
+    /// The object; its shape is closed, unless it is clipped.
     pub body: Arc<Body>,
     /// The material.
     pub material: Arc<Material>,
+    /// Whether other parts clip it: its box may cut its surface, so that the sign of its equation alone tells its inside.
+    pub is_clipped: bool,
 }
 
 impl Solid {
@@ -152,7 +158,7 @@ impl Solid {
             trees.push(one.tree.moved(parts.len()));
             parts.extend(one.parts);
         }
-        Self { parts, tree: Tree::Combined(operation, trees.into()) }
+        Self { parts, tree: Tree::Combined(operation, trees.into()), is_open: false }
     }
 }
 
@@ -190,6 +196,7 @@ impl Body {
             material: None,
             solid: None,
             more: Vec::new(),
+            keeps_look: false,
         }
     }
 
@@ -216,7 +223,8 @@ impl Body {
 
     /// Gives the object the look of a shader, in place of its own.
     pub fn painted(mut self, paint: &ShaderFactory) -> Self {
-        self.more = self.more.into_iter().map(|one| one.painted(paint)).collect();
+        let painted = |one: Self| if one.keeps_look { one } else { one.painted(paint) };
+        self.more = self.more.into_iter().map(painted).collect();
         let shader = paint.on(self.anchor());
         let shader = match &self.to_object_space {
             Some(to_object_space) => to_object_space(shader),

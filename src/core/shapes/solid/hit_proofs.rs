@@ -15,6 +15,22 @@ impl SolidPart {
         self.parts[part].body.shape.proven()
     }
 
+    /// Tells whether a line is in a part just before and just after a place on it; `None` where that is open.
+    fn beside<'l, F: Precise>(
+        &'l self,
+        part: usize,
+        line: &'l Line<Interval<F>>,
+        place: Interval<F>,
+        crossings: &mut Option<Crossings<'l, F>>,
+    ) -> Option<[bool; 2]> {
+        let shape = self.proven(part)?;
+        if self.parts[part].is_clipped {
+            let value = F::proofs(shape).slope(line.at(place).map(Dual::fixed), 0).value;
+            return (!value.has_zero()).then_some([value.high < F::of(0.0); 2]);
+        }
+        crossings.get_or_insert_with(|| Crossings::new(shape, line, None)).around(place)
+    }
+
     /// Returns the first hit that is seen, and its part.
     ///
     /// # Errors
@@ -43,11 +59,7 @@ impl SolidPart {
             let mut is_known = true;
             self.tree.holds(&mut |part| {
                 if part != self.index {
-                    let beside = self.proven(part).and_then(|shape| {
-                        let other = others[part].get_or_insert_with(|| Crossings::new(shape, line, None));
-                        other.around(crossing.at)
-                    });
-                    match beside {
+                    match self.beside(part, line, crossing.at, &mut others[part]) {
                         Some([before, after]) => {
                             (around[0][part], around[1][part]) = (before, after);
                         }

@@ -38,7 +38,7 @@ pub fn combined(args: &Args, objects: &Pparm<Objects>, operation: Operation) -> 
 }
 
 /// The reason why objects cannot be combined.
-enum NoSolid {
+pub(super) enum NoSolid {
     /// An object of this name is open, for this reason.
     Open(Arc<str>, String),
     /// There are too many parts.
@@ -51,7 +51,7 @@ enum NoSolid {
 
 impl NoSolid {
     /// Returns the error and its correction, for messages: "is empty".
-    fn message(self) -> (String, &'static str) {
+    pub(super) fn message(self) -> (String, &'static str) {
         match self {
             Self::Open(name, why) => (
                 format!("cannot be made of `{name}`, which is not a closed shape: {why}"),
@@ -79,12 +79,15 @@ impl Solid {
     ///
     /// # Errors
     /// If it is open.
-    fn of(object: &Arc<Body>) -> Result<Self, NoSolid> {
+    pub(super) fn of(object: &Arc<Body>) -> Result<Self, NoSolid> {
         let name = object.name.clone().unwrap_or_default();
         if let Some(solid) = &object.solid {
+            if solid.is_open {
+                return Err(NoSolid::Open(name, "its `clip` cuts it open; `capped yes` closes it".to_owned()));
+            }
             let named =
                 |part: &Part| Part { name: format!("{} of {name}", part.name).into(), ..part.clone() };
-            return Ok(Self { parts: solid.parts.iter().map(named).collect(), tree: solid.tree.clone() });
+            return Ok(Self { parts: solid.parts.iter().map(named).collect(), ..(**solid).clone() });
         }
         let body = match object.boundary() {
             Some(shape) => Arc::new(Body { entity: object.entity, ..seen_as(object, shape) }),
@@ -93,18 +96,18 @@ impl Solid {
         if let Some(why) = body.shape.why_not_closed() {
             return Err(NoSolid::Open(name, why.to_owned()));
         }
-        let part = Part { name, body, material: object.material.clone().unwrap_or_default() };
-        Ok(Self { parts: vec![part], tree: Tree::Part(0) })
+        let material = object.material.clone().unwrap_or_default();
+        let part = Part { name, body, material, is_clipped: false };
+        Ok(Self { parts: vec![part], tree: Tree::Part(0), is_open: false })
     }
 
     /// Returns a copy of a solid.
     fn placed(&self, placement: Placement) -> Self {
-        let place = |Part { name, body, material }: &Part| Part {
-            name: name.clone(),
-            body: Arc::new(Placed::body(body, (placement, None), material)),
-            material: material.clone(),
+        let place = |part: &Part| Part {
+            body: Arc::new(Placed::body(&part.body, (placement, None), &part.material)),
+            ..part.clone()
         };
-        Self { parts: self.parts.iter().map(place).collect(), tree: self.tree.clone() }
+        Self { parts: self.parts.iter().map(place).collect(), ..self.clone() }
     }
 }
 
@@ -139,7 +142,7 @@ impl Body {
         Self { material: Some(material), ..copy }
     }
 
-    fn of_solid(mut solid: Solid, material: Option<Arc<Material>>) -> Result<Self, NoSolid> {
+    pub(super) fn of_solid(mut solid: Solid, material: Option<Arc<Material>>) -> Result<Self, NoSolid> {
         if solid.parts.len() > MOST_PARTS {
             return Err(NoSolid::TooMany);
         }
@@ -193,5 +196,6 @@ fn seen(solid: &Solid) -> Vec<Body> {
         let shape = Shape::new(shape).by::<ByPackets, ByParts>();
         Some(Body { material: Some(part.material.clone()), ..seen_as(&part.body, shape) })
     };
-    (0..parts.len()).filter_map(body).collect()
+    let count = if solid.is_open { 1 } else { parts.len() };
+    (0..count).filter_map(body).collect()
 }

@@ -10,6 +10,7 @@
 //! that have no such proof, points on both sides of the surface decide. Of coincident surfaces, those that border the
 //! solid on one side only are seen, once.
 
+mod clip;
 mod crossings;
 mod hit_proofs;
 mod make;
@@ -17,5 +18,6 @@ mod packets;
 mod shader;
 mod solid_part;
 
+pub use clip::Clip;
 pub(crate) use crossings::{Crossing, Crossings};
 pub use make::{Objects, combined};

@@ -174,7 +174,8 @@ impl SolidPart {
         let mut leaves = range.origin_side.map(|side| self.side(side));
         let mut error = range.origin_error;
         let (low, high) = (ray.origin - error, ray.origin + error);
-        let is_apart = self.around[self.index].is_some_and(|own| !own.overlaps(&Aabb { low, high }));
+        let is_clipped = self.parts[self.index].is_clipped;
+        let is_apart = !is_clipped && self.around[self.index].is_some_and(|own| !own.overlaps(&Aabb { low, high }));
         // The side from which the next hit comes: inside and outside alternate.
         let mut from = leaves.or(is_apart.then_some(Side::Outside));
         for _ in 0..MOST_HITS {

@@ -1,0 +1,80 @@
+//! Surfaces that a closed object clips: cut open, or capped by the faces of that object.
+
+use super::make::NoSolid;
+use crate::geometry::aabb::Aabb;
+use crate::scene::entity::{Args, Refusal};
+use crate::world::body::{Body, NamedBody, Part, Solid, Warning};
+use crate::world::solid::{Operation, Tree};
+use std::sync::Arc;
+
+/// How much larger the box of a surface is than the object that clips it, as a fraction of its size: what the object shows of
+/// the surface lies within.
+const MARGIN: f64 = 1.0 / 1024.0;
+
+/// A closed object that clips a surface.
+pub struct Clip {
+    solid: Solid,
+    bounds: Aabb,
+}
+
+fn refusal(message: String, help: &'static str) -> Refusal {
+    Refusal { attribute: Some("clip"), message, help }
+}
+
+impl Clip {
+    /// Makes a clip of a named object.
+    ///
+    /// # Errors
+    /// If the object is open, or has no bounds.
+    pub fn of(object: &NamedBody) -> Result<Self, Refusal> {
+        let Some(object) = object.get() else {
+            let message = "is clipped by an object that has not been made".to_owned();
+            return Err(refusal(message, "define the object before the surface that it clips"));
+        };
+        let solid = Solid::of(object).map_err(|fault| match fault {
+            NoSolid::Open(name, why) => refusal(
+                format!("cannot be clipped by `{name}`, which is not a closed shape: {why}"),
+                "clip by a sphere, a box, or another closed shape",
+            ),
+            fault => {
+                let (message, help) = fault.message();
+                refusal(message, help)
+            }
+        })?;
+        let of_part = |part: usize| solid.parts[part].body.shape.facts().bounds;
+        match solid.tree.bounds(&of_part) {
+            Some(bounds) => Ok(Self { solid, bounds }),
+            None => {
+                let message = "cannot be clipped by an object without bounds".to_owned();
+                Err(refusal(message, "clip by a sphere, a box, or another closed shape"))
+            }
+        }
+    }
+
+    /// Returns a box that contains the object, and so what is seen of the surface.
+    pub fn bounds(&self) -> Aabb {
+        let margin = MARGIN * 2.0 * self.bounds.half_size().max_element();
+        Aabb { low: self.bounds.low - margin, high: self.bounds.high + margin }
+    }
+
+    /// Clips an entity's surface, which is cut open, or with `is_capped` closed by the faces of the object. These have the
+    /// material and the look of the object. The surface must have an equation; with caps, one that is below 0 on its
+    /// inside.
+    ///
+    /// # Errors
+    /// The reason why the two make no solid.
+    pub fn cut(self, args: &Args, mut surface: Body, is_capped: bool) -> Result<Body, Refusal> {
+        let warnings: Vec<Warning> = std::mem::take(&mut surface.warnings);
+        surface.entity = Some(args.entity.name);
+        let (name, material) = (args.name.as_str().into(), args.material());
+        let part = Part { name, body: Arc::new(surface), material, is_clipped: true };
+        let own = Solid { parts: vec![part], tree: Tree::Part(0), is_open: false };
+        let solid = Solid::combined(Operation::Intersection, [own, self.solid]);
+        let body = Body::of_solid(Solid { is_open: !is_capped, ..solid }, None).map_err(|fault| {
+            let (message, help) = fault.message();
+            refusal(message, help)
+        })?;
+        let more = body.more.into_iter().map(|face| Body { keeps_look: true, ..face }).collect();
+        Ok(Body { warnings, more, ..body })
+    }
+}
