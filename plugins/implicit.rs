@@ -41,7 +41,10 @@ const TABLE: Table = &[&FORMULA, &CENTER, &BOX, &CLIP, &EXTENT, &CAPPED];
 inventory::submit! {
     Entity::shape("implicit", "a surface by its formula", &[TABLE], |args| {
         let (clip, is_capped) = (args.get(&CLIP).map(|object| Clip::of(&object)).transpose()?, args.get(&CAPPED));
-        let corners = corners(args, clip.as_ref());
+        let corners = match &clip {
+            Some(clip) => clip.corners(args.get(&CENTER)),
+            None => corners(args.get(&BOX).unwrap_or_default()),
+        };
         let Reduced { formula, denominator, warnings } = field::reduced(args.get(&FORMULA));
         let ends = corners.map(|corner| corner.to_array());
         let (formula, domain) = (formula.clone().within(ends), formula.domain(ends));
@@ -66,39 +69,22 @@ inventory::submit! {
         let is_negated = denominator.is_some_and(|denominator| field::bounds(&denominator, corners).low <= 0.0);
         let is_clipped = clip.is_some();
         let surface = Surface { formula, domain, is_negated, corners, is_clipped, why_not_closed: OnceLock::new() };
-        if is_capped && let Some(why) = surface.why_not_closed() {
-            return Err(refusal_of_caps(why));
-        }
         let body = Body { warnings, ..Body::implicit(surface, Frame::at(args.get(&CENTER))) };
         match clip {
             Some(clip) => clip.cut(args, body, is_capped),
-            None if is_capped => Err(refusal_of_caps("it has no `clip`")),
+            None if is_capped => Err(Refusal {
+                attribute: Some("capped"),
+                message: "is capped, and has no `clip`".to_owned(),
+                help: "caps are faces of the object that clips it: give it a `clip` in place of its `box`",
+            }),
             None => Ok(body),
         }
     })
     .known_as(&["isosurface", "sdf"])
 }
 
-/// Returns the corners of the box around the surface, relative to the origin of its formula.
-fn corners(args: &Args, clip: Option<&Clip>) -> [DVec3; 2] {
-    match (clip, args.get(&BOX)) {
-        (Some(clip), _) => {
-            let (Aabb { low, high }, center) = (clip.bounds(), args.get(&CENTER));
-            [low - center, high - center]
-        }
-        (None, corners) => {
-            let [x, y, z, x2, y2, z2] = corners.unwrap_or_default();
-            [DVec3::new(x, y, z), DVec3::new(x2, y2, z2)]
-        }
-    }
-}
-
-fn refusal_of_caps(why: &str) -> Refusal {
-    Refusal {
-        attribute: Some("capped"),
-        message: format!("cannot be capped: {why}"),
-        help: "caps are where a formula is below 0 in its `clip`, which takes one that is defined and bounded there",
-    }
+fn corners([x, y, z, x2, y2, z2]: [f64; 6]) -> [DVec3; 2] {
+    [DVec3::new(x, y, z), DVec3::new(x2, y2, z2)]
 }
 
 /// The surface where a scene's formula is 0.

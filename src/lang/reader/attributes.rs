@@ -202,6 +202,8 @@ impl AttributeChecker<'_, '_> {
                 self.store.datum(index).clone()
             }
             (Type::Name(kind), [name]) if name.form != Form::Number => {
+                // An object that may be left out is a part of another one, as what clips a surface is. A copy is none.
+                self.names.combines |= kind == Kind::Object && attribute.default().is_some();
                 self.names.resolve(self.store, kind, name)
             }
             (value_type, _) => match values::read(value_type, words) {

@@ -3,8 +3,9 @@
 use super::make::NoSolid;
 use crate::geometry::aabb::Aabb;
 use crate::scene::entity::{Args, Refusal};
-use crate::world::body::{Body, NamedBody, Part, Solid, Warning};
+use crate::world::body::{Body, NamedBody, Part, Solid};
 use crate::world::solid::{Operation, Tree};
+use glam::DVec3;
 use std::sync::Arc;
 
 /// How much larger the box of a surface is than the object that clips it, as a fraction of its size: what the object shows of
@@ -51,20 +52,27 @@ impl Clip {
         }
     }
 
-    /// Returns a box that contains the object, and so what is seen of the surface.
-    pub fn bounds(&self) -> Aabb {
+    /// Returns the low and the high corner of a box, relative to a point, that contains the object, and so what is seen of the
+    /// surface.
+    pub fn corners(&self, from: DVec3) -> [DVec3; 2] {
         let margin = MARGIN * 2.0 * self.bounds.half_size().max_element();
-        Aabb { low: self.bounds.low - margin, high: self.bounds.high + margin }
+        [self.bounds.low - margin - from, self.bounds.high + margin - from]
     }
 
     /// Clips an entity's surface, which is cut open, or with `is_capped` closed by the faces of the object. These have the
-    /// material and the look of the object. The surface must have an equation; with caps, one that is below 0 on its
-    /// inside.
+    /// material and the look of the object. The surface must have an equation that is below 0 inside of it.
     ///
     /// # Errors
-    /// The reason why the two make no solid.
+    /// The reason why the surface cannot be capped, or the two make no solid.
     pub fn cut(self, args: &Args, mut surface: Body, is_capped: bool) -> Result<Body, Refusal> {
-        let warnings: Vec<Warning> = std::mem::take(&mut surface.warnings);
+        if is_capped && let Some(why) = surface.shape.why_not_closed() {
+            return Err(Refusal {
+                attribute: Some("capped"),
+                message: format!("cannot be capped: {why}"),
+                help: "caps are where the formula is below 0: it must be defined there, and bounded",
+            });
+        }
+        let warnings = std::mem::take(&mut surface.warnings);
         surface.entity = Some(args.entity.name);
         let (name, material) = (args.name.as_str().into(), args.material());
         let part = Part { name, body: Arc::new(surface), material, is_clipped: true };
