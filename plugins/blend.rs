@@ -23,14 +23,9 @@ struct Blend {
 }
 
 impl Blend {
-    fn uses(&self, mut variables: std::ops::Range<usize>) -> bool {
-        variables.any(|variable| self.by.uses(variable))
-    }
-
     /// Returns the part of the other material at a point; what is no number counts as 0.
     fn part(&self, at: &SurfacePoint) -> f64 {
-        let (DVec3 { x, y, z }, DVec2 { x: u, y: v }) = (at.position, at.uv.unwrap_or_default());
-        let part = self.by.at([x, y, z, u, v, at.normal.x, at.normal.y, at.normal.z]);
+        let part = self.by.at(at.variables());
         if part > 0.0 { part.min(1.0) } else { 0.0 }
     }
 
@@ -41,7 +36,7 @@ impl Blend {
 
 impl Shader for Blend {
     fn sees(&self) -> ShaderInputs {
-        ShaderInputs { uv: self.uses(3..5), normal: self.uses(5..8), ..ShaderInputs::POSITION }
+        ShaderInputs::of(&self.by)
     }
 
     fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
@@ -58,13 +53,7 @@ impl Shader for Blend {
 
     fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
         let n = Interval::<F>::constant;
-        let normal = if self.uses(5..8) { at.normal? } else { [n(0.0); 3] };
-        let uv = if self.uses(3..5) { at.uv? } else { [Interval::constant(0.0); 2] };
-        if !self.by.is_enclosed() {
-            return None;
-        }
-        let ([x, y, z], [u, v], [nx, ny, nz]) = (at.position, uv.map(Interval::from_f64), normal);
-        let part = self.by.at([x, y, z, u, v, nx, ny, nz]).max(n(0.0)).min(n(1.0));
+        let part = at.value(&self.by)?.max(n(0.0)).min(n(1.0));
         let blend = |own: Rgb, other: Rgb| {
             per_axis(|channel| n(own[channel]) + part * (n(other[channel]) - n(own[channel])))
         };

@@ -1,4 +1,4 @@
-//! Colours by formulas: in the point x, y, z, in u and v, and in the normal nx, ny, nz.
+//! Colours by formulas: in the point x, y, z, in u and v, in the normal nx, ny, nz, and in the curvature.
 
 use tabray::prelude::*;
 
@@ -39,16 +39,11 @@ impl ByFormula {
     fn all(&self) -> impl Iterator<Item = &SurfaceField> {
         [&self.ambient, &self.diffuse, &self.specular].into_iter().flatten().flatten()
     }
-
-    fn uses(&self, variables: std::ops::Range<usize>) -> bool {
-        self.all().any(|formula| variables.clone().any(|variable| formula.uses(variable)))
-    }
 }
 
 fn colour(formulas: Option<&Formulas>, own: Rgb, at: &SurfacePoint) -> Rgb {
     let Some(formulas) = formulas else { return own };
-    let (DVec3 { x, y, z }, DVec2 { x: u, y: v }) = (at.position, at.uv.unwrap_or_default());
-    let values = [x, y, z, u, v, at.normal.x, at.normal.y, at.normal.z];
+    let values = at.variables();
     let channel = |formula: &SurfaceField| {
         let value = formula.at(values);
         if value > 0.0 { value.min(MOST) } else { 0.0 }
@@ -58,7 +53,7 @@ fn colour(formulas: Option<&Formulas>, own: Rgb, at: &SurfacePoint) -> Rgb {
 
 impl Shader for ByFormula {
     fn sees(&self) -> ShaderInputs {
-        ShaderInputs { uv: self.uses(3..5), normal: self.uses(5..8), ..ShaderInputs::POSITION }
+        self.all().map(ShaderInputs::of).fold(ShaderInputs::POSITION, ShaderInputs::and)
     }
 
     fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
@@ -75,33 +70,24 @@ impl Shader for ByFormula {
 
     fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
         let n = Interval::<F>::constant;
-        let normal = if self.uses(5..8) { at.normal? } else { [n(0.0); 3] };
-        let [u, v] =
-            if self.uses(3..5) { at.uv? } else { [Interval::constant(0.0); 2] }.map(Interval::from_f64);
-        if !self.all().all(SurfaceField::is_enclosed) {
-            return None;
-        }
-        let ([x, y, z], [nx, ny, nz]) = (at.position, normal);
-        let channel =
-            |formula: &SurfaceField| formula.at([x, y, z, u, v, nx, ny, nz]).max(n(0.0)).min(n(MOST));
+        let channel = |formula: &SurfaceField| Some(at.value(formula)?.max(n(0.0)).min(n(MOST)));
         let colour = |formulas: &Option<Formulas>, own| match formulas {
-            Some(formulas) => formulas.each_ref().map(channel),
-            None => own,
+            Some([red, green, blue]) => Some([channel(red)?, channel(green)?, channel(blue)?]),
+            None => Some(own),
         };
         let own = LookBounds::from(material);
         Some(LookBounds {
-            ambient: colour(&self.ambient, own.ambient),
-            diffuse: colour(&self.diffuse, own.diffuse),
-            specular: colour(&self.specular, own.specular),
+            ambient: colour(&self.ambient, own.ambient)?,
+            diffuse: colour(&self.diffuse, own.diffuse)?,
+            specular: colour(&self.specular, own.specular)?,
         })
     }
 
     /// The formulas over all of space bound the colours.
     fn brightest(&self, material: &Material) -> Option<Look> {
-        let (all, unit) = (Interval::<f64>::whole(), Interval { low: -1.0, high: 1.0 });
         let most = |formula: &SurfaceField| {
-            let bound = formula.at([all, all, all, all, all, unit, unit, unit]).high;
-            if formula.is_enclosed() && bound < MOST { bound.max(0.0) } else { MOST }
+            let bound = surface_formula::range(formula).high;
+            if bound < MOST { bound.max(0.0) } else { MOST }
         };
         let colour = |formulas: &Option<Formulas>, own: Rgb| match formulas {
             Some(formulas) => Rgb::from(formulas.each_ref().map(most)),

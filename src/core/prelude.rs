@@ -21,7 +21,7 @@ pub use crate::world::bent::{Bend, Bent};
 pub use crate::world::body::{AnyShader, Body, NamedBody, ShaderFactory, Warning};
 pub use crate::world::camera::{Camera, Origins, Projected};
 pub use crate::world::emitter::{self, Emitter, Extent, LightSample};
-pub use crate::world::hittable::{Bracketed, Certified, Facts, Hittable, Shape, Sides};
+pub use crate::world::hittable::{Bracketed, Certified, Curvature, Facts, Hittable, Shape, Sides};
 pub use crate::world::interface::{AnyInterface, Crossing, Interface, Law, Medium};
 pub use crate::world::light::Light;
 pub use crate::world::material::{Look, Material, Rgb};
@@ -31,7 +31,10 @@ pub use crate::world::pinhole::Pinhole;
 pub use crate::world::rules::Rules;
 pub use crate::world::sample::Sampler;
 pub use crate::world::sensor::AnyCamera;
-pub use crate::world::shader::{Anchor, LookBounds, PointBounds, Shader, ShaderInputs, SurfacePoint};
+pub use crate::world::shader::{
+    Anchor, EnclosedShader, LookBounds, PointBounds, Shader, ShaderInputs, SurfacePoint, enclosed,
+};
+pub use crate::world::surface_formula;
 pub use crate::world::texture::{CUTOFF, Texture};
 
 // What a scene selects by name: shaders, profiles and other alternatives.

@@ -196,3 +196,37 @@ fn a_shader_is_named_in_each_round() {
     let text = dump::scene(&model, Syntax::Notes);
     assert!(text.contains("shader   t_2"), "{text}");
 }
+
+/// Returns the largest difference of two pictures' bytes.
+fn off(one: &RgbImage, other: &RgbImage) -> u8 {
+    one.iter().zip(other.iter()).map(|(one, other)| one.abs_diff(*other)).max().unwrap_or(0)
+}
+
+#[test]
+fn a_formula_sees_how_a_sphere_bends() {
+    // Of a sphere with a radius of 2, times 5.
+    for (formula, expected) in
+        [("5*4*gauss_curvature", "5"), ("5*2*mean_curvature", "5"), ("5*gradient/4", "5"), ("let", "2")]
+    {
+        let (before, formula) = if formula == "let" { ("let gradient 2", "gradient") } else { ("", formula) };
+        let ball = |look: &str| {
+            picture(&format!(
+                "{before} formula f {{ ambient \"{look}\" 0 0 }} implicit b {{ material white formula \"x^2 + y^2 + z^2 - 4\"
+                center 4 3 -3 box -3 -3 -3 3 3 3 shader f }}"
+            ))
+        };
+        let found = ball(formula);
+        assert!(found.iter().any(|byte| *byte > 0));
+        assert!(off(&found, &ball(expected)) <= 1, "{formula}");
+    }
+}
+
+#[test]
+fn a_ramp_is_what_a_formula_says() {
+    let ball = |shader: &str| {
+        picture(&format!("{shader} sphere b {{ material white center 4 3 -3 radius 2 shader s }}"))
+    };
+    let ramp = ball("ramp s { by x from 3 to 5 colours 0 0 0  1 0.5 0  0 0 0 }");
+    let formula = ball("formula s { ambient \"5*max(0, 1 - abs(x - 4))\" \"2.5*max(0, 1 - abs(x - 4))\" 0 }");
+    assert!(off(&ramp, &formula) <= 1);
+}

@@ -4,6 +4,7 @@
 //! ray's first hit by interval arithmetic, or if the formula is a polynomial by its Bernstein coefficients along the ray,
 //! and [`Dual`] numbers give the normal.
 
+mod curvature;
 mod finely;
 mod formula;
 mod on_ray;
@@ -17,7 +18,7 @@ use crate::geometry::sight::Line;
 use crate::world::body::Body;
 use crate::world::certify::Equation;
 use crate::world::coincidence::ROUNDING;
-use crate::world::hittable::{Bracketed, Certified, Facts, Hittable, Searched, Shape};
+use crate::world::hittable::{Bracketed, Certified, Curvature, Facts, Hittable, Searched, Shape};
 use crate::world::packets::shape::by_distance;
 pub use formula::Implicit;
 use glam::{DVec2, DVec3};
@@ -52,6 +53,10 @@ impl Body {
 impl<T: Implicit> Hittable for ImplicitShape<T> {
     fn uv(&self, at: DVec3) -> Option<DVec2> {
         self.formula.uv(self.frame.point(at))
+    }
+
+    fn curvature(&self, at: DVec3) -> Option<Curvature> {
+        Some(curvature::at(&self.formula, self.frame.point(at)))
     }
 
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {

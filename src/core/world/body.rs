@@ -251,6 +251,7 @@ impl Body {
         let lacks = [
             (sees.uv && self.shape.uv(at).is_none()).then_some("u and v"),
             (sees.face && self.shape.face(at).is_none()).then_some("faces"),
+            (sees.curvature && self.shape.curvature(at).is_none()).then_some("gradient and curvature"),
         ];
         for what in lacks.into_iter().flatten() {
             self.warnings.push(Warning {

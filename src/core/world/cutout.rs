@@ -6,7 +6,7 @@ use crate::geometry::sight::Sight;
 use crate::world::any_shape::AnyShape;
 use crate::world::certify::{Assumption, Enclosure, Precision, Premise};
 use crate::world::coincidence::ROUNDING;
-use crate::world::hittable::{ByDistance, Facts, Hittable, Shape, TieBreaking};
+use crate::world::hittable::{ByDistance, Curvature, Facts, Hittable, Shape, TieBreaking};
 use crate::world::packets::shader::PacketShader;
 use crate::world::packets::shape::HitQueries;
 use crate::world::shader::SurfacePoint;
@@ -100,6 +100,10 @@ impl Hittable for Cutout {
 
     fn uv(&self, at: DVec3) -> Option<DVec2> {
         self.shape.uv(at)
+    }
+
+    fn curvature(&self, at: DVec3) -> Option<Curvature> {
+        self.shape.curvature(at)
     }
 
     fn face(&self, at: DVec3) -> Option<u32> {

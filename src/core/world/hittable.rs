@@ -70,6 +70,11 @@ pub trait Hittable: Send + Sync {
         None
     }
 
+    /// Returns how the surface bends at one of its points, for shaders; `None` for a shape that is given by no formula.
+    fn curvature(&self, _at: DVec3) -> Option<Curvature> {
+        None
+    }
+
     /// Returns the index of the face that a ray hits at a distance in world units, from 0. `None` for a shape of one face.
     fn face_hit(&self, ray: &Ray, distance: f64) -> Option<u32> {
         self.face(ray.at(distance))
@@ -100,6 +105,19 @@ pub trait Hittable: Send + Sync {
     fn clearance(&self, _from: DVec3) -> Option<f64> {
         None
     }
+}
+
+/// How a surface that is given by a formula bends at a point. What does not exist there, as at the tip of a cone, is NaN or
+/// infinite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Curvature {
+    /// The length of the formula's gradient.
+    pub gradient: f64,
+    /// The mean of the two principal curvatures, in the reciprocal of units of length: above 0 where the surface bends as a
+    /// sphere that is seen from outside.
+    pub mean: f64,
+    /// The product of the principal curvatures, the Gaussian curvature: below 0 on a saddle.
+    pub gauss: f64,
 }
 
 /// A shape whose [`distance`](Hittable::distance) is expensive, and which can quickly bracket it.

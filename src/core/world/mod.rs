@@ -32,6 +32,7 @@ pub mod sky_light;
 pub mod sky_map;
 pub mod solid;
 mod sums;
+pub mod surface_formula;
 pub mod texels;
 pub mod texture;
 

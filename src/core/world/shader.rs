@@ -3,12 +3,12 @@
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::Side;
 use crate::world::certify::{Precise, ProofMethods};
-use crate::world::hittable::Hittable;
+use crate::world::hittable::{Curvature, Hittable};
 use crate::world::material::{Look, Material, Rgb};
 use crate::world::patch::Patch;
 use f256::f256;
 use glam::{DVec2, DVec3};
-use tabray_exact::interval::{Float, Fraction, Interval};
+use tabray_exact::interval::{Fine, Float, Fraction, Interval};
 use tabray_exact::scalar::{Scalar, per_axis};
 
 /// A point of a surface, as a shader sees it. On a copy of an object, the point is in the coordinates of the original.
@@ -28,6 +28,8 @@ pub struct SurfacePoint {
     /// The unit directions along the surface in which u and v grow; `None` where the shape has no u and v, or the shader does
     /// not see these directions.
     pub tangents: Option<[DVec3; 2]>,
+    /// How the surface bends at the point; `None` where it has no formula, or the shader does not see it.
+    pub curvature: Option<Curvature>,
     /// The part of the surface around the point over which the shader takes the mean of its pattern; `None` where the pattern
     /// shows as it is at the point, or the shader does not see the patch.
     pub patch: Option<Patch>,
@@ -44,6 +46,7 @@ impl SurfacePoint {
             uv: None,
             face: None,
             tangents: None,
+            curvature: None,
             patch: None,
         }
     }
@@ -59,8 +62,9 @@ impl SurfacePoint {
         let (uv, face) = (sees.uv.then(|| shape.uv(position)), sees.face.then(|| shape.face(position)));
         let (uv, face) = (uv.flatten(), face.flatten());
         let tangents = if sees.tangents { tangents(shape, position, normal) } else { None };
+        let curvature = if sees.curvature { shape.curvature(position) } else { None };
         let (normal, side) = if sees.normal { (normal, side) } else { (DVec3::ZERO, Side::Outside) };
-        Self { position, normal, side, uv, face, tangents, patch: None }
+        Self { position, normal, side, uv, face, tangents, curvature, patch: None }
     }
 }
 
@@ -96,13 +100,16 @@ pub struct ShaderInputs {
     pub face: bool,
     /// Whether it sees in which directions u and v grow.
     pub tangents: bool,
+    /// Whether it sees how the surface bends.
+    pub curvature: bool,
     /// Whether it sees the patch around the point.
     pub patch: bool,
 }
 
 impl ShaderInputs {
     /// The position alone.
-    pub const POSITION: Self = Self { normal: false, uv: false, face: false, tangents: false, patch: false };
+    pub const POSITION: Self =
+        Self { normal: false, uv: false, face: false, tangents: false, curvature: false, patch: false };
     /// The position, the normal and the side.
     pub const NORMAL: Self = Self { normal: true, ..Self::POSITION };
     /// The position, and u and v.
@@ -120,6 +127,7 @@ impl ShaderInputs {
             uv: self.uv | other.uv,
             face: self.face | other.face,
             tangents: self.tangents | other.tangents,
+            curvature: self.curvature | other.curvature,
             patch: self.patch | other.patch,
         }
     }
@@ -335,6 +343,24 @@ impl<T: Shader, F: Precise> EncloseLook<F> for T {
     fn bent(&self, at: &PointBounds<F>, normal: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
         self.enclose_bend(at, normal)
     }
+}
+
+/// Encloses the look of a shader of any type, as [`Shader::enclose`] does.
+pub fn enclosed<F: Precise>(
+    shader: &dyn EnclosedShader,
+    material: &Material,
+    at: &PointBounds<F>,
+) -> Option<LookBounds<F>> {
+    let own = PointBounds {
+        position: at.position.map(F::widen),
+        normal: at.normal.map(|normal| normal.map(F::widen)),
+        uv: at.uv,
+        face: at.face,
+    };
+    let look = EncloseLook::<Fraction>::look(shader, material, &own)?;
+    let narrow = |colour: [Fine; 3]| colour.map(F::narrow);
+    let LookBounds { ambient, diffuse, specular } = look;
+    Some(LookBounds { ambient: narrow(ambient), diffuse: narrow(diffuse), specular: narrow(specular) })
 }
 
 /// The shader of an object that has none of its own: the material everywhere.

@@ -15,13 +15,16 @@ use std::sync::Arc;
 /// than most formulas to evaluate.
 const SOME_REGISTERS: usize = 12;
 
+/// The same for a formula of a surface, which has more variables.
+const MORE_REGISTERS: usize = 15;
+
 /// A formula in x, y and z: `x^2 + y^2 + z^2 - 1`.
 pub type Field = FieldOf<3>;
 
-/// A formula in x, y, z, u, v, nx, ny and nz: `0.5 + 0.5*sin(4*x)`.
-pub type SurfaceField = FieldOf<8>;
+/// A formula in the variables of [`SURFACE`]: `0.5 + 0.5*sin(4*x)`.
+pub type SurfaceField = FieldOf<{ SURFACE.len() }>;
 
-/// A formula in 3 variables, those of [`SPACE`], or in these 8.
+/// A formula in 3 variables, those of [`SPACE`], or in those of [`SURFACE`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldOf<const N: usize> {
     /// The formula as it was read.
@@ -99,8 +102,10 @@ impl<const COUNT: usize> FieldOf<COUNT> {
         let registers = program.registers;
         if registers <= FEW_REGISTERS {
             with(&mut [at[0]; FEW_REGISTERS])
-        } else if registers <= SOME_REGISTERS {
+        } else if COUNT != SURFACE.len() && registers <= SOME_REGISTERS {
             with(&mut [at[0]; SOME_REGISTERS])
+        } else if COUNT == SURFACE.len() && registers <= MORE_REGISTERS {
+            with(&mut [at[0]; MORE_REGISTERS])
         } else {
             with(&mut [at[0]; MOST_REGISTERS])
         }
@@ -219,7 +224,7 @@ mod tests {
         let formula = Formula::parse_in("2 + sqrt(x)*nz", SURFACE).expect("a formula");
         let field = SurfaceField::new(Arc::new(formula)).expect("its variables are those of a surface");
         assert!(field.is_enclosed() && field.uses(7) && !field.uses(6));
-        let at = |x: f64| field.at([x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5]);
+        let at = |x: f64| field.at([x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0]);
         assert_eq!([at(-4.0), at(4.0)], [2.0, 3.0]);
     }
 

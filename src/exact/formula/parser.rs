@@ -3,7 +3,7 @@
 use super::function::{self, Meaning};
 use super::own::{Edits, OwnFunction, Piece};
 use super::step::{Function, MAX_DEPTH, Step, deepest};
-use super::variables::SPACE;
+use super::variables::{OF_FORMULAS, SPACE, SURFACE};
 use super::words::{FormulaFault, SUPERSCRIPTS, is_in_name, language};
 use crate::decimal;
 use crate::text;
@@ -316,7 +316,10 @@ impl<'t> Parser<'t> {
         self.at += length;
         let word = &rest[..length];
         let place = start..self.at;
-        if let Some(variable) = self.variables.iter().position(|name| *name == word) {
+        let gives_way = || self.variables == SURFACE && OF_FORMULAS.contains(&word);
+        if let Some(variable) = self.variables.iter().position(|name| *name == word)
+            && !((self.named)(word).is_some() && gives_way())
+        {
             if (self.named)(word).is_some() {
                 let message = format!("`{word}` is a variable of this formula and a number of the scene");
                 return Err(self.fault(place, message));

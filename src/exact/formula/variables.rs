@@ -6,5 +6,9 @@ pub const HEIGHT: &[&str] = &["y"];
 /// The variables of a formula of space.
 pub const SPACE: &[&str] = &["x", "y", "z"];
 
-/// The variables of a formula of a surface: the point, u and v, and the unit normal.
-pub const SURFACE: &[&str] = &["x", "y", "z", "u", "v", "nx", "ny", "nz"];
+/// The variables of a formula of a surface: the point, u and v, the unit normal, and [`OF_FORMULAS`].
+pub const SURFACE: &[&str] =
+    &["x", "y", "z", "u", "v", "nx", "ny", "nz", "gradient", "mean_curvature", "gauss_curvature"];
+
+/// Those of a surface that is given by a formula. A scene's own number of such a name is meant in place of the variable.
+pub const OF_FORMULAS: &[&str] = SURFACE.split_at(8).1;

@@ -13,6 +13,7 @@ use tabray_core::simd::soa::{LANES, Vectors};
 use tabray_core::world::background::Background;
 use tabray_core::world::body::ShaderFactory;
 use tabray_core::world::emitter::{Emitter, LightSample};
+use tabray_core::world::hittable::Curvature;
 use tabray_core::world::interface::Crossing;
 use tabray_core::world::material::{Look, Material, Rgb};
 use tabray_core::world::packets::light::PacketLight;
@@ -123,7 +124,9 @@ pub fn paint(paint: &ShaderFactory, draw: &mut Draw) -> Result<(), Fault> {
             let sides = [draw.part() * draw.direction(), draw.part() * draw.direction()];
             let patch = (index % 3 == 1).then_some(Patch { sides, uv: ends });
             let tangents = has_more.then(|| normal.any_orthonormal_pair().into());
-            shader(&*made, &SurfacePoint { position, normal, side, uv, face, tangents, patch })?;
+            let curvature = has_more.then_some(Curvature { gradient: 1.5, mean: -0.5, gauss: 0.25 });
+            let point = SurfacePoint { position, normal, side, uv, face, tangents, curvature, patch };
+            shader(&*made, &point)?;
         }
     }
     Ok(())

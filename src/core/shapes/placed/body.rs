@@ -8,11 +8,9 @@ use crate::world::hittable::{ByPackets, Shape};
 use crate::world::material::{Look, Material, Rgb};
 use crate::world::packets::shader::PacketShader;
 use crate::world::patch::Patch;
-use crate::world::shader::EncloseLook;
-use crate::world::shader::{LookBounds, Plain, PointBounds, Shader, ShaderInputs, SurfacePoint};
+use crate::world::shader::{self, LookBounds, Plain, PointBounds, Shader, ShaderInputs, SurfacePoint};
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
-use tabray_exact::interval::{Fine, Fraction};
 
 impl Placed {
     /// Makes a copy of an object with this material, which ends at a z of the world if the object is cut off as planes are.
@@ -113,12 +111,9 @@ impl Shader for PlacedShader {
     }
 
     fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        let position = self.placed.placement.point(at.position).map(F::widen);
+        let position = self.placed.placement.point(at.position);
         let own = PointBounds { position, normal: None, uv: at.uv, face: at.face };
-        let look = EncloseLook::<Fraction>::look(self.own(), material, &own)?;
-        let narrow = |colour: [Fine; 3]| colour.map(F::narrow);
-        let LookBounds { ambient, diffuse, specular } = look;
-        Some(LookBounds { ambient: narrow(ambient), diffuse: narrow(diffuse), specular: narrow(specular) })
+        shader::enclosed(self.own(), material, &own)
     }
 
     fn uniform(&self, material: &Material) -> Option<Look> {

@@ -9,7 +9,7 @@ use crate::geometry::sight::Sight;
 use crate::world::body::Body;
 use crate::world::certify::{Enclosure, Precision, Premise, ProofMethods};
 use crate::world::coincidence::{CLOSE, ROUNDING, close};
-use crate::world::hittable::{ByPackets, Facts, Hittable, Shape};
+use crate::world::hittable::{ByPackets, Curvature, Facts, Hittable, Shape};
 use crate::world::packets::shape::HitQueries;
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
@@ -255,6 +255,11 @@ impl Hittable for Placed {
 
     fn uv(&self, at: DVec3) -> Option<DVec2> {
         self.body.shape.uv(self.object_point(at))
+    }
+
+    /// That of the object itself, as its shader sees the object's own coordinates.
+    fn curvature(&self, at: DVec3) -> Option<Curvature> {
+        self.body.shape.curvature(self.object_point(at))
     }
 
     fn face(&self, at: DVec3) -> Option<u32> {

@@ -3,11 +3,9 @@
 use crate::world::body::Body;
 use crate::world::certify::Precise;
 use crate::world::material::{Look, Material, Rgb};
-use crate::world::shader::EncloseLook;
-use crate::world::shader::{LookBounds, PointBounds, Shader, ShaderInputs, SurfacePoint};
+use crate::world::shader::{self, LookBounds, PointBounds, Shader, ShaderInputs, SurfacePoint};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
-use tabray_exact::interval::{Fine, Fraction};
 
 /// The reflectivities of the object that is a part.
 pub struct PartShader(pub Arc<Body>);
@@ -42,16 +40,7 @@ impl Shader for PartShader {
     }
 
     fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        let own = PointBounds {
-            position: at.position.map(F::widen),
-            normal: at.normal.map(|normal| normal.map(F::widen)),
-            uv: at.uv,
-            face: at.face,
-        };
-        let look = EncloseLook::<Fraction>::look(&*self.0.shader, material, &own)?;
-        let narrow = |colour: [Fine; 3]| colour.map(F::narrow);
-        let LookBounds { ambient, diffuse, specular } = look;
-        Some(LookBounds { ambient: narrow(ambient), diffuse: narrow(diffuse), specular: narrow(specular) })
+        shader::enclosed(&*self.0.shader, material, at)
     }
 
     fn uniform(&self, material: &Material) -> Option<Look> {

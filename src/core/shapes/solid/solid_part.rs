@@ -7,7 +7,7 @@ use crate::world::any_shape::AnyShape;
 use crate::world::body::Part;
 use crate::world::certify::{Enclosure, HitProofs, Precision, Premise, ProofMethods};
 use crate::world::coincidence::{self, CLOSE, LEAST_COSINE, ROUNDING};
-use crate::world::hittable::{ByPackets, Facts, Hittable, Shape};
+use crate::world::hittable::{ByPackets, Curvature, Facts, Hittable, Shape};
 use crate::world::packets::shape::{HitQueries, by_distance};
 use crate::world::solid::Tree;
 use f256::f256;
@@ -175,7 +175,8 @@ impl SolidPart {
         let mut error = range.origin_error;
         let (low, high) = (ray.origin - error, ray.origin + error);
         let is_clipped = self.parts[self.index].is_clipped;
-        let is_apart = !is_clipped && self.around[self.index].is_some_and(|own| !own.overlaps(&Aabb { low, high }));
+        let is_apart =
+            !is_clipped && self.around[self.index].is_some_and(|own| !own.overlaps(&Aabb { low, high }));
         // The side from which the next hit comes: inside and outside alternate.
         let mut from = leaves.or(is_apart.then_some(Side::Outside));
         for _ in 0..MOST_HITS {
@@ -277,6 +278,10 @@ impl Hittable for SolidPart {
 
     fn uv(&self, at: DVec3) -> Option<DVec2> {
         self.own().uv(at)
+    }
+
+    fn curvature(&self, at: DVec3) -> Option<Curvature> {
+        self.own().curvature(at)
     }
 
     fn face(&self, at: DVec3) -> Option<u32> {
