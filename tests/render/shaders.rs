@@ -230,3 +230,15 @@ fn a_ramp_is_what_a_formula_says() {
     let formula = ball("formula s { ambient \"5*max(0, 1 - abs(x - 4))\" \"2.5*max(0, 1 - abs(x - 4))\" 0 }");
     assert!(off(&ramp, &formula) <= 1);
 }
+
+#[test]
+fn lines_are_as_wide_as_they_say() {
+    // A wall that is seen at a right angle: 16 pixels for 2 units.
+    let wall = |shader: &str| {
+        picture(&format!("{shader} plane w {{ material white normal 0 0 1 point 0 0 0 shader s }}"))
+    };
+    let dark = |picture: &RgbImage| picture.pixels().filter(|pixel| pixel.0 == [0; 3]).count();
+    assert_eq!(dark(&wall("lines s { formula \"2*(x - 3.97)\" width 1 altmaterial black }")), 8 * 48);
+    let levels = wall("lines s { formula \"2*(x - 3.97)\" spacing 4 width 0.5 altmaterial black }");
+    assert_eq!(dark(&levels), 4 * 4 * 48);
+}

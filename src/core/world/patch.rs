@@ -15,6 +15,8 @@ pub struct Window {
     pub start: f64,
     /// The width that is added for each unit of the way.
     pub spread: f64,
+    /// The width of a pixel, in widths of the window.
+    pub pixel: f64,
 }
 
 /// The least cosine of the angle at which a patch is seen; at smaller ones, patches are as long as at this.
@@ -25,19 +27,22 @@ pub(crate) const LEAST_COSINE: f64 = 1e-6;
 pub struct Patch {
     /// Its sides, in world units.
     pub sides: [DVec3; 2],
+    /// How many times as wide as the patch what a pixel shows is.
+    pub pixel: f64,
     /// The least and the greatest u and v; `None` where the shape has none, or the shader does not see them. They may lie
     /// beyond the ends of the surface.
     pub uv: Option<[DVec2; 2]>,
 }
 
 impl Patch {
-    /// Returns the patch that a ray shows through a window of this width, given its unit direction and the unit normal.
-    pub(crate) fn seen(dir: DVec3, normal: DVec3, width: f64) -> Self {
+    /// Returns the patch that a ray shows through a window of this width, given its unit direction and the unit normal,
+    /// where a pixel is so many times as wide.
+    pub(crate) fn seen(dir: DVec3, normal: DVec3, (width, pixel): (f64, f64)) -> Self {
         let cosine = dir.dot(normal);
         let along =
             (dir - cosine * normal).try_normalize().unwrap_or_else(|| normal.any_orthonormal_vector());
         let across = normal.cross(along);
-        Self { sides: [width / cosine.abs().max(LEAST_COSINE) * along, width * across], uv: None }
+        Self { sides: [width / cosine.abs().max(LEAST_COSINE) * along, width * across], pixel, uv: None }
     }
 
     /// Finds u and v at the corners of the patch around a point of a shape, where they are these in the middle.

@@ -104,7 +104,11 @@ impl Sensor {
             let apart = next.each_ref().map(|next| (of(next) - of(&middle)).length());
             part * apart[0].max(apart[1])
         };
-        let window = Window { start: widest(|ray| ray.origin), spread: widest(|ray| ray.dir) };
+        let window = Window {
+            start: widest(|ray| ray.origin),
+            spread: widest(|ray| ray.dir),
+            pixel: f64::from(self.samples).sqrt(),
+        };
         (window.start.is_finite() && window.spread.is_finite()).then_some(window)
     }
 

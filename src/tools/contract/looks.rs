@@ -122,7 +122,7 @@ pub fn paint(paint: &ShaderFactory, draw: &mut Draw) -> Result<(), Fault> {
             let side = if index % 3 == 0 { Side::Inside } else { Side::Outside };
             let ends = uv.map(|uv| [uv - draw.part(), uv + draw.part()]);
             let sides = [draw.part() * draw.direction(), draw.part() * draw.direction()];
-            let patch = (index % 3 == 1).then_some(Patch { sides, uv: ends });
+            let patch = (index % 3 == 1).then_some(Patch { sides, pixel: 2.0, uv: ends });
             let tangents = has_more.then(|| normal.any_orthonormal_pair().into());
             let curvature = has_more.then_some(Curvature { gradient: 1.5, mean: -0.5, gauss: 0.25 });
             let point = SurfacePoint { position, normal, side, uv, face, tangents, curvature, patch };

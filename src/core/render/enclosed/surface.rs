@@ -55,7 +55,7 @@ impl<N: Number> HitPoints<N> {
             Interval::point(N::of(-1.0))
         };
         let window = window.filter(|_| object.shader.sees().patch);
-        let reach = window.map(|Window { start, spread }| {
+        let reach = window.map(|Window { start, spread, .. }| {
             let width = (t * length_of_dir).coarse() * Interval::point(spread) + Interval::point(start);
             let cosine = (dot(outward, line.dir) / length_of_dir).abs().coarse().low;
             (1.0 + 1e-9) * width.high / cosine.max(LEAST_COSINE)

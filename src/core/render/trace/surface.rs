@@ -77,10 +77,10 @@ impl Surface {
             let (position, normal) = (self.points.get(lane), self.normals.get(lane));
             let normal = if is_two_sided && *side == Side::Inside { -normal } else { normal };
             let mut point = SurfacePoint::seen(&**shape, sees, position, normal, *side);
-            if let Some(SeenPatches { dir, distances, window: Window { start, spread } }) = patches {
+            if let Some(SeenPatches { dir, distances, window: Window { start, spread, pixel } }) = patches {
                 let normals = if shape.is_smooth() { &self.unbent } else { &self.normals };
                 let width = start + spread * distances[lane];
-                let mut patch = Patch::seen(dir.get(lane), normals.get(lane), width);
+                let mut patch = Patch::seen(dir.get(lane), normals.get(lane), (width, pixel));
                 point.uv.into_iter().for_each(|uv| patch.find_uv(&**shape, position, uv));
                 point.patch = Some(patch);
             }
