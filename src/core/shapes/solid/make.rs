@@ -83,7 +83,10 @@ impl Solid {
         let name = object.name.clone().unwrap_or_default();
         if let Some(solid) = &object.solid {
             if solid.is_open {
-                return Err(NoSolid::Open(name, "its `clip` cuts it open; `capped yes` closes it".to_owned()));
+                return Err(NoSolid::Open(
+                    name,
+                    "its `clip` cuts it open; `capped yes` closes it".to_owned(),
+                ));
             }
             let named =
                 |part: &Part| Part { name: format!("{} of {name}", part.name).into(), ..part.clone() };
@@ -123,6 +126,22 @@ impl Body {
     ) -> Result<Self, NoSolid> {
         let solids: Result<Vec<_>, _> = objects.iter().map(Solid::of).collect();
         Self::of_solid(Solid::combined(operation, solids?), material)
+    }
+
+    /// Makes the union of closed shapes, each with its name and its material. An object may be made of several.
+    ///
+    /// # Errors
+    /// The reason why the shapes make no solid.
+    pub fn union(of: impl IntoIterator<Item = (String, Self, Arc<Material>)>) -> Result<Self, Refusal> {
+        let solids = of.into_iter().map(|(name, body, material)| {
+            Solid::of(&Arc::new(Self { name: Some(name.into()), material: Some(material), ..body }))
+        });
+        let solids: Result<Vec<_>, _> = solids.collect();
+        let made = solids.and_then(|of| Self::of_solid(Solid::combined(Operation::Union, of), None));
+        made.map_err(|fault| {
+            let (message, help) = fault.message();
+            Refusal { attribute: None, message, help }
+        })
     }
 
     /// Makes a copy of an object, which may be a solid, with this material or its own. A copy of a plane ends at a z of the
