@@ -19,7 +19,7 @@ inventory::submit! {
             Cylinder { height: args.get(&HEIGHT), radius: args.get(&RADIUS), is_open: args.get(&OPEN) };
         Ok(Body::implicit(cylinder, Frame::around(args.get(&BASE), args.get(&DIRECTION))))
     })
-    .known_as(&["tube", "pipe"])
+    .known_as(&["pipe"])
 }
 
 /// A cylinder around the y axis, from the origin upward.

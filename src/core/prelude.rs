@@ -43,7 +43,7 @@ pub use crate::scene::choice::{Choice, ChoiceName};
 pub use crate::scene::procedural::{OnPlane, OnSphere};
 pub use crate::scene::profile::{Profile, ProfileLine};
 pub use tabray_exact::formula::Formula;
-pub use tabray_exact::formula::field::{Field, SurfaceField};
+pub use tabray_exact::formula::field::{CurveField, Field, PatchField, SurfaceField};
 
 // What the traits of shapes and cameras take and return.
 pub use crate::geometry::aabb::{Aabb, SLACK};
@@ -54,6 +54,7 @@ pub use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, 
 pub use crate::geometry::sight::{Line, Sight};
 pub use crate::geometry::view_frame::{ViewFrame, half_tangent};
 pub use crate::shapes::implicit::Implicit;
+pub use crate::shapes::parametric::Parametric;
 pub use crate::world::certify::{Equation, Precise};
 pub use tabray_exact::double_double::DoubleDouble;
 pub use tabray_exact::dual::Dual;

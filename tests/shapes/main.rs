@@ -19,6 +19,7 @@ mod implicit;
 mod mesh;
 mod models;
 mod notes;
+mod parametric;
 mod places;
 mod polynomials;
 mod query;

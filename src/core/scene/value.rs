@@ -10,8 +10,8 @@ use glam::{DVec2, DVec3};
 use std::path::PathBuf;
 use std::sync::Arc;
 use tabray_exact::formula::Formula;
-use tabray_exact::formula::field::{Field, SurfaceField};
-use tabray_exact::formula::variables::{HEIGHT, SPACE, SURFACE};
+use tabray_exact::formula::field::{CurveField, Field, PatchField, SurfaceField};
+use tabray_exact::formula::variables::{CURVE, HEIGHT, PATCH, SPACE, SURFACE};
 
 /// The names of the values of a colour. Editors show a swatch for an attribute whose values have these names.
 pub const COLOUR: &[&str] = &["red", "green", "blue"];
@@ -272,6 +272,20 @@ one_word!(
 one_word!(
     /// A formula in x, y and z.
     Field, Type::Formula(SPACE),
+    field => Datum::Formula(field.formula().clone()),
+    Datum::Formula(formula) => Self::new(formula.clone())
+);
+
+one_word!(
+    /// A formula in u and v.
+    PatchField, Type::Formula(PATCH),
+    field => Datum::Formula(field.formula().clone()),
+    Datum::Formula(formula) => Self::new(formula.clone())
+);
+
+one_word!(
+    /// A formula in t.
+    CurveField, Type::Formula(CURVE),
     field => Datum::Formula(field.formula().clone()),
     Datum::Formula(formula) => Self::new(formula.clone())
 );

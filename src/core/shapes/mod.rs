@@ -8,6 +8,7 @@ mod finite_plane;
 pub mod implicit;
 pub mod mesh;
 pub mod outline;
+pub mod parametric;
 pub mod placed;
 pub mod plane;
 pub mod quadratic;

@@ -4,7 +4,7 @@ use super::along::{Products, by_products};
 use super::cells::{Cells, is_choice};
 use super::program::{MOST_REGISTERS, Program, Values};
 use super::step::{Function, Step};
-use super::variables::{SPACE, SURFACE};
+use super::variables::{CURVE, PATCH, SPACE, SURFACE};
 use super::{FEW_REGISTERS, Formula};
 use crate::interval::Interval;
 use crate::polynomial::{Coefficient, Polynomial};
@@ -24,7 +24,13 @@ pub type Field = FieldOf<3>;
 /// A formula in the variables of [`SURFACE`]: `0.5 + 0.5*sin(4*x)`.
 pub type SurfaceField = FieldOf<{ SURFACE.len() }>;
 
-/// A formula in 3 variables, those of [`SPACE`], or in those of [`SURFACE`].
+/// A formula in u and v.
+pub type PatchField = FieldOf<{ PATCH.len() }>;
+
+/// A formula in t.
+pub type CurveField = FieldOf<{ CURVE.len() }>;
+
+/// A formula in the variables of [`SPACE`], [`PATCH`], [`CURVE`] or [`SURFACE`], by their number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldOf<const N: usize> {
     /// The formula as it was read.
@@ -39,7 +45,12 @@ pub struct FieldOf<const N: usize> {
 
 impl<const COUNT: usize> FieldOf<COUNT> {
     /// The names of the variables.
-    pub const VARIABLES: &'static [&'static str] = if COUNT == SURFACE.len() { SURFACE } else { SPACE };
+    pub const VARIABLES: &'static [&'static str] = match COUNT {
+        1 => CURVE,
+        2 => PATCH,
+        3 => SPACE,
+        _ => SURFACE,
+    };
 
     /// Takes a formula, if its variables are these.
     pub fn new(formula: Arc<Formula>) -> Option<Self> {
@@ -93,7 +104,10 @@ impl<const COUNT: usize> FieldOf<COUNT> {
     /// Evaluates the formula at a point.
     #[inline(always)]
     pub fn at<N: Scalar>(&self, at: [N; COUNT]) -> N {
-        let cell = self.cells.as_ref().and_then(|cells| cells.program(bounds_of([at[0], at[1], at[2]])));
+        let cell = match (&self.cells, at.first_chunk()) {
+            (Some(cells), Some(at)) => cells.program(bounds_of(*at)),
+            _ => None,
+        };
         let program = cell.unwrap_or(&self.quick.program);
         let with = |registers: &mut [N]| {
             registers[..COUNT].copy_from_slice(&at);

@@ -6,6 +6,12 @@ pub const HEIGHT: &[&str] = &["y"];
 /// The variables of a formula of space.
 pub const SPACE: &[&str] = &["x", "y", "z"];
 
+/// The variable of a formula of a curve.
+pub const CURVE: &[&str] = &["t"];
+
+/// The variables of a formula of a surface that is given by two parameters.
+pub const PATCH: &[&str] = &["u", "v"];
+
 /// The variables of a formula of a surface: the point, u and v, the unit normal, and [`OF_FORMULAS`].
 pub const SURFACE: &[&str] =
     &["x", "y", "z", "u", "v", "nx", "ny", "nz", "gradient", "mean_curvature", "gauss_curvature"];

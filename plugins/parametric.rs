@@ -1,0 +1,49 @@
+//! A surface by formulas of its coordinates in u and v.
+
+use tabray::prelude::*;
+
+static X: Pparm<PatchField> = Pparm::required("x", "the x of the point of u and v").unit("world units");
+static Y: Pparm<PatchField> = Pparm::required("y", "its y").unit("world units");
+static Z: Pparm<PatchField> = Pparm::required("z", "its z").unit("world units");
+static U: Pparm<[f64; 2]> = Pparm::required("u", "the least and the greatest u").must("rising", rises);
+static V: Pparm<[f64; 2]> = Pparm::required("v", "the least and the greatest v").must("rising", rises);
+static CENTER: Pparm<DVec3> = Pparm::or("center", "the origin of these coordinates", DVec3::ZERO)
+    .alias(&["centre"])
+    .unit("world coordinates");
+
+const TABLE: Table = &[&X, &Y, &Z, &U, &V, &CENTER];
+
+fn rises([low, high]: &[f64; 2]) -> bool {
+    low < high
+}
+
+inventory::submit! {
+    Entity::shape("parametric", "a surface by formulas of its coordinates in u and v", &[TABLE], |args| {
+        let surface = Surface {
+            at: [args.get(&X), args.get(&Y), args.get(&Z)],
+            ends: [args.get(&U), args.get(&V)],
+            center: args.get(&CENTER),
+        };
+        Body::parametric(surface).ok_or(Refusal {
+            attribute: None,
+            message: "has formulas that are not bounded where u and v are".to_owned(),
+            help: "a quotient by 0, a logarithm of 0 and a tangent are not: change the formulas, or the ends of `u` and `v`",
+        })
+    })
+}
+
+struct Surface {
+    at: [PatchField; 3],
+    ends: [[f64; 2]; 2],
+    center: DVec3,
+}
+
+impl Parametric for Surface {
+    fn point<N: Scalar>(&self, uv: [N; 2]) -> [N; 3] {
+        per_axis(|axis| self.at[axis].at(uv) + N::constant(self.center[axis]))
+    }
+
+    fn ends(&self) -> [[f64; 2]; 2] {
+        self.ends
+    }
+}

@@ -1,0 +1,65 @@
+//! The u and v of a point of a parametric surface.
+
+use super::ParametricShape;
+use super::patch::Rectangle;
+use crate::world::coincidence::ROUNDING;
+use glam::{DVec2, DVec3};
+
+/// The most steps of Gauss and Newton's method.
+const STEPS: usize = 24;
+
+/// A place on a surface.
+#[derive(Clone, Copy)]
+pub(super) struct Place {
+    pub uv: DVec2,
+    /// The distance from the point that was looked for, in world units.
+    pub off: f64,
+}
+
+impl ParametricShape {
+    /// Returns the place of a point that was computed as one of the surface.
+    pub(super) fn locate(&self, at: DVec3) -> Option<Place> {
+        let error = ROUNDING * (at.abs().max_element() + self.size());
+        // The error along a ray is larger by the reciprocal of the cosine.
+        [16.0, 1e4, 1e9].into_iter().find_map(|times| self.nearest(at, times * error))
+    }
+
+    /// Returns the place of the surface that is nearest to a point, of those whose boxes are within a distance.
+    pub(super) fn nearest(&self, at: DVec3, distance: f64) -> Option<Place> {
+        let mut nearest: Option<Place> = None;
+        let is_near =
+            |low: DVec3, high: DVec3| (low - distance).cmple(at).all() && at.cmple(high + distance).all();
+        self.tree.visit(&|around| is_near(around.low, around.high), &mut |_, part, _| {
+            let (uv, off) = self.nearest_in(at, part);
+            if nearest.is_none_or(|known| off < known.off) {
+                nearest = Some(Place { uv, off });
+            }
+        });
+        nearest
+    }
+
+    /// Returns the place in a part that is nearest to a point, and its distance, by Gauss and Newton's method.
+    fn nearest_in(&self, at: DVec3, part: &Rectangle<f64>) -> (DVec2, f64) {
+        let [low, high] = [part.map(|side| side.low), part.map(|side| side.high)].map(DVec2::from);
+        let mut uv = 0.5 * (low + high);
+        let mut best = (uv, f64::INFINITY);
+        for _ in 0..STEPS {
+            let [point, along_u, along_v] = self.patches.at(uv.to_array());
+            let off = at - point;
+            if off.length() < best.1 {
+                best = (uv, off.length());
+            }
+            let (a, b, c) = (along_u.length_squared(), along_u.dot(along_v), along_v.length_squared());
+            let (right, above) = (off.dot(along_u), off.dot(along_v));
+            // A little more than 0, so that there is a step at a pole, too.
+            let determinant = a * c - b * b + f64::MIN_POSITIVE + 1e-14 * a * c;
+            let step = DVec2::new(c * right - b * above, a * above - b * right) / determinant;
+            let next = (uv + step).clamp(low, high);
+            if !next.is_finite() || next == uv {
+                break;
+            }
+            uv = next;
+        }
+        best
+    }
+}

@@ -1,0 +1,68 @@
+//! What a plugin says of a parametric surface, and parts of it.
+
+use f256::f256;
+use glam::DVec3;
+use tabray_exact::dual::Dual;
+use tabray_exact::interval::{Float, Interval};
+use tabray_exact::scalar::Scalar;
+
+/// A surface that is given by two parameters.
+pub trait Parametric: Send + Sync {
+    /// Returns the point of u and v, in world coordinates.
+    fn point<N: Scalar>(&self, uv: [N; 2]) -> [N; 3];
+
+    /// Returns the least and the greatest u and v.
+    fn ends(&self) -> [[f64; 2]; 2];
+}
+
+/// A part of the rectangle of u and v.
+pub(super) type Rectangle<F> = [Interval<F>; 2];
+
+/// The points of a part of a surface, and their derivatives with respect to u and to v.
+pub(super) struct Patch<F> {
+    pub at: [Interval<F>; 3],
+    pub along: [[Interval<F>; 3]; 2],
+}
+
+/// A surface in one precision.
+pub(super) trait PatchesIn<F: Float> {
+    /// Encloses a part of the surface.
+    fn patch(&self, part: &Rectangle<F>) -> Patch<F>;
+}
+
+impl<T: Parametric, F: Float> PatchesIn<F> for T {
+    fn patch(&self, [u, v]: &Rectangle<F>) -> Patch<F> {
+        let of = |one: [Dual<Interval<F>>; 2]| self.point(one);
+        let along_u = of([Dual::variable(*u), Dual::fixed(*v)]);
+        let along_v = of([Dual::fixed(*u), Dual::variable(*v)]);
+        Patch {
+            at: along_u.map(|along| along.value),
+            along: [along_u, along_v].map(|along| along.map(|axis| axis.slope)),
+        }
+    }
+}
+
+/// A surface in each precision, and at single points.
+pub(super) trait Patches: PatchesIn<f64> + PatchesIn<f256> + Send + Sync {
+    /// Returns a point, and its derivatives with respect to u and to v.
+    fn at(&self, uv: [f64; 2]) -> [DVec3; 3];
+}
+
+impl<T: Parametric> Patches for T {
+    fn at(&self, [u, v]: [f64; 2]) -> [DVec3; 3] {
+        let along_u = self.point([Dual::variable(u), Dual::constant(v)]);
+        let along_v = self.point([Dual::constant(u), Dual::variable(v)]);
+        let of = |of: [Dual; 3], part: fn(Dual) -> f64| DVec3::from(of.map(part));
+        [of(along_u, |of| of.value), of(along_u, |of| of.slope), of(along_v, |of| of.slope)]
+    }
+}
+
+/// Returns the unit normal at u and v: that to the right of which v grows where u grows ahead. At a pole, where there is none,
+/// it is that of a point beside it.
+pub(super) fn normal(patches: &dyn Patches, [u, v]: [f64; 2]) -> DVec3 {
+    let beside = [0.0, 1e-7, -1e-7].into_iter().map(|step| {
+        let [_, along_u, along_v] = patches.at([u + step, v + step]);
+        along_u.normalize_or_zero().cross(along_v.normalize_or_zero())
+    });
+    beside.filter(|normal| normal.length_squared() > 1e-20).map(DVec3::normalize).next().unwrap_or(DVec3::Y)
+}

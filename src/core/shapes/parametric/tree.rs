@@ -1,0 +1,90 @@
+//! A tree of boxes around the parts of a parametric surface.
+
+use super::patch::{Patches, PatchesIn, Rectangle};
+use crate::geometry::aabb::Aabb;
+use glam::DVec3;
+use tabray_exact::interval::Interval;
+
+/// The number of times that the rectangle is halved.
+const HALVINGS: u32 = 12;
+
+/// Boxes around the parts that halving the rectangle of u and v makes, each as often.
+pub(super) struct Tree {
+    ends: Rectangle<f64>,
+    /// The box of the whole surface first; those of the halves of the part of index i are at 2 i + 1 and 2 i + 2.
+    boxes: Vec<Aabb>,
+    /// The parts of the last halving, in their order.
+    leaves: Vec<Rectangle<f64>>,
+}
+
+impl Tree {
+    pub fn new(patches: &dyn Patches, ends: [[f64; 2]; 2]) -> Self {
+        let ends = ends.map(|[low, high]| Interval { low, high });
+        let (inner, mut leaves) = ((1_usize << HALVINGS) - 1, vec![ends]);
+        for _ in 0..HALVINGS {
+            leaves = leaves.into_iter().flat_map(|part| halves(patches, part)).collect();
+        }
+        let mut boxes = vec![Aabb::EMPTY; inner];
+        boxes.extend(leaves.iter().map(|part| around(patches, part)));
+        for index in (0..inner).rev() {
+            boxes[index] = boxes[2 * index + 1].and(&boxes[2 * index + 2]);
+        }
+        Self { ends, boxes, leaves }
+    }
+
+    pub fn ends(&self) -> &Rectangle<f64> {
+        &self.ends
+    }
+
+    /// Returns a box around the surface, if it is bounded.
+    pub fn bounds(&self) -> Option<Aabb> {
+        let Aabb { low, high } = self.boxes[0];
+        (low.is_finite() && high.is_finite()).then_some(self.boxes[0])
+    }
+
+    /// Calls a function with the leaves in their order, each with its box, of which all boxes around them meet a condition.
+    pub fn visit(&self, meets: &dyn Fn(&Aabb) -> bool, each: &mut dyn FnMut(usize, &Rectangle<f64>, &Aabb)) {
+        let mut waiting = vec![0];
+        let inner = self.boxes.len() - self.leaves.len();
+        while let Some(index) = waiting.pop() {
+            if !meets(&self.boxes[index]) {
+                continue;
+            }
+            match index.checked_sub(inner) {
+                Some(leaf) => each(leaf, &self.leaves[leaf], &self.boxes[index]),
+                None => waiting.extend([2 * index + 2, 2 * index + 1]),
+            }
+        }
+    }
+
+    /// Returns the leaf of an index.
+    pub fn leaf(&self, index: usize) -> &Rectangle<f64> {
+        &self.leaves[index]
+    }
+}
+
+/// Returns a box around a part: the values of the formula, and what its slopes allow around the middle.
+fn around(patches: &dyn Patches, part: &Rectangle<f64>) -> Aabb {
+    let whole = PatchesIn::<f64>::patch(patches, part);
+    let middle = part.map(|side| Interval::point(side.middle()));
+    let centre = PatchesIn::<f64>::patch(patches, &middle).at;
+    let (mut low, mut high) = (DVec3::ZERO, DVec3::ZERO);
+    for axis in 0..3 {
+        let by_slopes = centre[axis]
+            + whole.along[0][axis] * (part[0] - middle[0])
+            + whole.along[1][axis] * (part[1] - middle[1]);
+        // Written so that a slope that is not known leaves the values.
+        low[axis] = whole.at[axis].low.max(by_slopes.low);
+        high[axis] = whole.at[axis].high.min(by_slopes.high);
+    }
+    Aabb { low, high }
+}
+
+/// Returns the halves of a part, cut across the side along which the surface is longer.
+pub(super) fn halves(patches: &dyn Patches, part: Rectangle<f64>) -> [Rectangle<f64>; 2] {
+    let [_, along_u, along_v] = patches.at(part.map(|side| side.middle()));
+    let axis = usize::from(along_v.length() * part[1].width() > along_u.length() * part[0].width());
+    let (mut one, mut other, middle) = (part, part, part[axis].middle());
+    (one[axis].high, other[axis].low) = (middle, middle);
+    [one, other]
+}
