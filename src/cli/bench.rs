@@ -75,7 +75,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let accuracy = args.method.accuracy()?;
     let mut models = Vec::new();
     for path in &args.scenes {
-        models.push((path.display().to_string(), input::load(registry, path, &args.set, accuracy)?));
+        models.push((text::shown(path), input::load(registry, path, &args.set, accuracy)?));
     }
     if args.scenes.is_empty() {
         for (name, scene) in scenes::all() {

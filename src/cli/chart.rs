@@ -16,6 +16,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 use tabray_core::scene::choice::Choice;
 use tabray_core::scene::model::Model;
+use tabray_core::text;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::reader::ReadOptions;
 use tabray_lang::registry::Registry;
@@ -70,7 +71,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     };
     thread::scope(|scope| {
         let (sender, measured) = mpsc::channel();
-        let (title, load) = (name.clone(), &load);
+        let (title, load) = (text::shown(&name), &load);
         scope.spawn(move || {
             let chart = chart::measure(&title, load, &mut work);
             work.end();

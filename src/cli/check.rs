@@ -5,6 +5,7 @@ use crate::options::set;
 use crate::process::failure::{Failure, report, status};
 use crate::process::messages;
 use std::path::PathBuf;
+use tabray_core::text;
 use tabray_lang::reader;
 use tabray_lang::registry::Registry;
 use tabray_tools::diagnosis;
@@ -35,7 +36,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
                 if !reader::is_black(&model) {
                     messages::remark(diagnosis::tried(&model));
                 }
-                messages::note(&format!("{}: no errors", scene.display()));
+                messages::note(&format!("{}: no errors", text::shown(scene)));
             }
             // The scene may be sound: the machine is at fault.
             Err(failure @ Failure::Failed(_)) => return Err(failure),

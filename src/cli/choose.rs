@@ -19,7 +19,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 use tabray_core::render::plan::Plan;
 use tabray_core::scene::choice::Choice;
-use tabray_core::text::short;
+use tabray_core::text::{self, short};
 use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::registry::Registry;
 use tabray_tools::bench::clock;
@@ -223,7 +223,7 @@ impl<'e> Selection<'e> {
             self.table(chosen),
             self.times(chosen),
             program::name(),
-            scene.display(),
+            text::shown(scene),
             set.words(),
             chosen.numbers()
         )

@@ -3,10 +3,11 @@
 use crate::files::{input, output};
 use crate::options::named::by_name;
 use crate::options::scene;
-use crate::process::failure::{Failure, print};
+use crate::process::failure::{Failure, print_scene};
 use crate::process::messages;
 use std::path::{Path, PathBuf};
 use tabray_core::scene::model::Model;
+use tabray_core::text;
 use tabray_lang::dump;
 use tabray_lang::reader;
 use tabray_lang::registry::Registry;
@@ -38,17 +39,17 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let model = args.scene.load(registry, None)?;
     let text = dump::scene(&model, syntax);
     if input::is_standard(&args.output) {
-        return print(&text);
+        return print_scene(&text);
     }
     if let Some(what) = output::source(&args.output, &args.scene.path, &model) {
         return Err(Failure::Usage(
-            format!("`{}` is {what}, which the copy would replace", args.output.display()),
+            format!("`{}` is {what}, which the copy would replace", text::shown(&args.output)),
             Some("name another file: a copy has no comments and no formulas".to_owned()),
         ));
     }
     is_the_same_scene(registry, &model, &text, &args.output)?;
     output::replace(&args.output, text.as_bytes())?;
-    messages::note(&format!("wrote {} (without comments)", args.output.display()));
+    messages::note(&format!("wrote {} (without comments)", text::shown(&args.output)));
     Ok(())
 }
 
@@ -56,11 +57,11 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
 fn syntax(args: &Args) -> Result<Syntax, Failure> {
     match (args.to, Syntax::of_name(&args.output)) {
         (Some(Syntax::Notes), Some(Syntax::Toml)) => Err(Failure::Usage(
-            format!("the file `{}` would be read as TOML", args.output.display()),
+            format!("the file `{}` would be read as TOML", text::shown(&args.output)),
             Some("end its name in .ray".to_owned()),
         )),
         (None, None) => Err(Failure::Usage(
-            format!("the name `{}` does not determine the syntax to write", args.output.display()),
+            format!("the name `{}` does not determine the syntax to write", text::shown(&args.output)),
             Some("give `--to toml` or `--to ray`, or end it in .toml or .ray".to_owned()),
         )),
         (asked, by_name) => Ok(asked.or(by_name).unwrap_or_default()),
@@ -71,13 +72,13 @@ fn syntax(args: &Args) -> Result<Syntax, Failure> {
 /// that the scene names.
 fn is_the_same_scene(registry: &Registry, model: &Model, text: &str, path: &Path) -> Result<(), Failure> {
     let folder = path.parent().unwrap_or(path);
-    match reader::read(registry, &path.display().to_string(), folder, text.as_bytes(), None) {
+    match reader::read(registry, &text::shown(path), folder, text.as_bytes(), None) {
         Ok(copy) if dump::scene(&copy.model, Syntax::Notes) == dump::scene(model, Syntax::Notes) => Ok(()),
         Ok(_) => {
-            Err(Failure::Failed(format!("the copy in `{}` would not be the same scene", path.display())))
+            Err(Failure::Failed(format!("the copy in `{}` would not be the same scene", text::shown(path))))
         }
         Err(_) => Err(Failure::Usage(
-            format!("the scene would not find its files from `{}`", path.display()),
+            format!("the scene would not find its files from `{}`", text::shown(path)),
             Some("file names are relative to the scene's folder: write the copy there".to_owned()),
         )),
     }

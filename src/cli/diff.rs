@@ -10,6 +10,7 @@ use crate::process::failure::{Failure, print, report};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use tabray_core::output::compare::{Comparison, FullRangeComparison, Pixel};
+use tabray_core::text;
 use tabray_lang::registry::Registry;
 
 /// Compare two images
@@ -73,7 +74,7 @@ fn compare(registry: &Registry, args: &Args) -> Result<bool, Failure> {
     let model =
         args.scene.as_deref().map(|scene| input::load(registry, scene, &args.set, None)).transpose()?;
     let (old, new) = (Picture::read(&args.old)?, Picture::read(&args.new)?);
-    let names = [&args.old, &args.new].map(|path| path.display().to_string());
+    let names = [&args.old, &args.new].map(|path| text::shown(path));
     let sizes = [old.size(), new.size()];
     let other_size = || {
         let size =

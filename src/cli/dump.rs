@@ -1,7 +1,7 @@
 //! `tabray dump`: a scene as the program understands it.
 
 use crate::options::scene;
-use crate::process::failure::{Failure, print};
+use crate::process::failure::{Failure, print, print_scene};
 use tabray_lang::dump;
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
@@ -35,9 +35,9 @@ enum Format {
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let model = args.scene.load(registry, None)?;
-    print(&match args.format {
-        Format::Notes => dump::notes(&model),
-        Format::Ray => dump::scene(&model, Syntax::Notes),
-        Format::Toml => dump::scene(&model, Syntax::Toml),
-    })
+    match args.format {
+        Format::Notes => print(&dump::notes(&model)),
+        Format::Ray => print_scene(&dump::scene(&model, Syntax::Notes)),
+        Format::Toml => print_scene(&dump::scene(&model, Syntax::Toml)),
+    }
 }

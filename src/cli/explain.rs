@@ -36,9 +36,9 @@ impl Place<'_> {
     /// Explains how the pixel came about: in the old image if there is an older program, and in the new one.
     pub fn explained(self, before: Option<&Path>) -> Vec<Explanation> {
         let Pixel { old, new, .. } = self.pixel;
-        let scene = self.scene.display();
+        let scene = text::shown(self.scene);
         let by_another = before.map(|program| {
-            let title = format!("Before, by {}", program.display());
+            let title = format!("Before, by {}", text::shown(program));
             explanation(title, self.by_another(program), old)
         });
         let title = format!("After: {scene}");
@@ -67,7 +67,7 @@ impl Place<'_> {
             .args([self.pixel.x.to_string(), self.pixel.y.to_string()])
             .stdin(Stdio::null())
             .output()
-            .map_err(|error| format!("cannot start `{}`: {}", program.display(), text::reason(&error)))?;
+            .map_err(|error| format!("cannot start `{}`: {}", text::shown(program), text::reason(&error)))?;
         if !output.status.success() {
             return Err(format!(
                 "the program says\n\n{}",

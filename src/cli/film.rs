@@ -57,7 +57,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     for path in &outputs {
         if let Some(frame) = frames.iter().find(|frame| are_same(frame, path)) {
             return Err(Failure::Usage(
-                format!("`{}` is a frame, which would be replaced", frame.display()),
+                format!("`{}` is a frame, which would be replaced", text::shown(frame)),
                 Some("name another file".to_owned()),
             ));
         }
@@ -66,7 +66,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         && sheet == animation
     {
         return Err(Failure::Usage(
-            format!("the sheet and the animation cannot both be `{}`", sheet.display()),
+            format!("the sheet and the animation cannot both be `{}`", text::shown(sheet)),
             Some("name two files".to_owned()),
         ));
     }
@@ -87,7 +87,7 @@ fn refuse_name(animation: &Path) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::Usage(
-        format!("an animation is an animated PNG, and `{}` is not named like one", animation.display()),
+        format!("an animation is an animated PNG, and `{}` is not named like one", text::shown(animation)),
         Some("end the name in .apng or .png".to_owned()),
     ))
 }
@@ -113,14 +113,14 @@ fn frames(name: &Path) -> Result<Vec<PathBuf>, Failure> {
         (Some((first, _)), Some((last, _))) => (*first, *last),
         _ => {
             return Err(Failure::Usage(
-                format!("there is no frame of `{}`", name.display()),
+                format!("there is no frame of `{}`", text::shown(name)),
                 Some("`tabray render SCENE --frames 1..240 -o IMAGE` renders frames".to_owned()),
             ));
         }
     };
     if let Some(missing) = (first..=last).zip(&found).find(|(number, (is, _))| number != is) {
         return Err(Failure::Usage(
-            format!("frame {} of `{}` is missing", missing.0, name.display()),
+            format!("frame {} of `{}` is missing", missing.0, text::shown(name)),
             Some(
                 "its render may have been stopped, or its name may have another number of digits".to_owned(),
             ),
@@ -175,7 +175,7 @@ fn animation(path: &Path, frames: &[PathBuf], rate: u16) -> Result<(), Failure> 
             return Err(Failure::Usage(
                 format!(
                     "`{}` does not have {width} x {height} pixels, as the first frame does",
-                    file.display()
+                    text::shown(file)
                 ),
                 None,
             ));
@@ -186,6 +186,6 @@ fn animation(path: &Path, frames: &[PathBuf], rate: u16) -> Result<(), Failure> 
     progress.end();
     writer.finish().map_err(cannot)?;
     output::finished(path, Ok(()), out)?;
-    messages::note(&format!("wrote {} ({})", path.display(), text::count(frames.len(), "frame")));
+    messages::note(&format!("wrote {} ({})", text::shown(path), text::count(frames.len(), "frame")));
     Ok(())
 }

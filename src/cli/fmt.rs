@@ -1,7 +1,7 @@
 //! `tabray fmt`: formats scenes.
 
 use crate::files::{input, output};
-use crate::process::failure::{Failure, print, report, status};
+use crate::process::failure::{Failure, print_scene, report, status};
 use crate::process::messages;
 use std::path::{Path, PathBuf};
 use tabray_lang::editor::{self, Text, formatted, problem};
@@ -65,7 +65,7 @@ fn one(registry: &Registry, path: &Path, only_check: bool) -> Result<bool, Failu
     match (input::is_standard(path), only_check) {
         (_, true) if !is_formatted => messages::error(&format!("{name}: not formatted"), None),
         (_, true) => {}
-        (true, false) => print(&format!("{mark}{new}"))?,
+        (true, false) => print_scene(&format!("{mark}{new}"))?,
         (false, false) if is_formatted => {}
         (false, false) => {
             output::replace(path, format!("{mark}{new}").as_bytes())?;

@@ -6,6 +6,7 @@ use crate::process::{messages, program};
 use clap::Command;
 use clap_mangen::Man;
 use std::path::{Path, PathBuf};
+use tabray_core::text;
 use tabray_lang::registry::Registry;
 
 /// Write the man pages, one for each command
@@ -26,7 +27,7 @@ pub fn run(registry: &Registry, args: &Args, command: clap::Command) -> Result<(
     let mut command = program::described(command, registry).disable_help_subcommand(true);
     command.build();
     let count = pages(command, folder)?;
-    messages::note(&format!("wrote {count} pages to {}", folder.display()));
+    messages::note(&format!("wrote {count} pages to {}", text::shown(folder)));
     Ok(())
 }
 

@@ -79,7 +79,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     if args.remove_parts {
         for path in all.flat_map(|parts| &parts.paths) {
             let cannot = |error| {
-                Failure::Failed(format!("cannot remove `{}`: {}", path.display(), text::reason(&error)))
+                Failure::Failed(format!("cannot remove `{}`: {}", text::shown(path), text::reason(&error)))
             };
             fs::remove_file(path).map_err(cannot)?;
         }
@@ -106,7 +106,7 @@ impl Parts {
             return Ok(());
         }
         Err(refuse(
-            format!("the parts are those of a .{extension} image, not of `{}`", image.display()),
+            format!("the parts are those of a .{extension} image, not of `{}`", text::shown(image)),
             &format!("end the name in .{extension}"),
         ))
     }
@@ -142,7 +142,7 @@ impl Parts {
         }
         if path != Path::new("-") {
             let ([width, height], seconds) = (self.label.size, start.elapsed().as_secs_f64());
-            let (shown, parts) = (path.display(), text::count(self.paths.len(), "part"));
+            let (shown, parts) = (text::shown(path), text::count(self.paths.len(), "part"));
             messages::note(&format!("wrote {shown} ({width} x {height} pixels, of {parts}, {seconds:.2} s)"));
         }
         Ok(())
@@ -152,7 +152,7 @@ impl Parts {
     fn open(&self, path: &Path) -> Result<Output, Failure> {
         if self.paths.iter().any(|part| are_same(part, path)) {
             return Err(refuse(
-                format!("`{}` is a part, which the image would replace", path.display()),
+                format!("`{}` is a part, which the image would replace", text::shown(path)),
                 "name another file for the image",
             ));
         }
@@ -232,7 +232,7 @@ impl Parts {
         }
         let is_damaged = |path: &&PathBuf| open(path).is_ok_and(|mut part| part.check().is_err());
         let damaged: Vec<_> =
-            self.paths.iter().filter(is_damaged).map(|path| format!("`{}`", path.display())).collect();
+            self.paths.iter().filter(is_damaged).map(|path| format!("`{}`", text::shown(path))).collect();
         let (shown, rest) = damaged.split_at(damaged.len().min(NAMED));
         let more = if rest.is_empty() { String::new() } else { format!(" and {} more", rest.len()) };
         refuse(

@@ -14,6 +14,7 @@ use std::path::Path;
 use tabray_core::output::picture::Format;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::tiles::BAND;
+use tabray_core::text::visible_lines;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::dump;
 use tabray_lang::reader::{Loaded, ReadOptions};
@@ -29,7 +30,7 @@ pub fn run(registry: &Registry) -> Result<(), Failure> {
     let source = Source::read(standard, &set::Args::default())?;
     let Loaded { model, warnings, .. } = source.load_by(registry, chosen).map_err(Failure::Scene)?;
     interrupt::catch(InterruptAction::Exit("the image was not finished"))?;
-    let _ = write!(std::io::stderr(), "{}", dump::notes(&model));
+    let _ = write!(std::io::stderr(), "{}", visible_lines(&dump::notes(&model)));
     // The dump comes first, as the course's logs have it.
     messages::warnings(&warnings);
     let job = Job {

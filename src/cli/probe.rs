@@ -2,6 +2,7 @@
 
 use crate::options::{method, scene};
 use crate::process::failure::Failure;
+use crate::process::visible::Visible;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 use tabray_core::render::plan::Plan;
@@ -49,7 +50,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let printed = renderer_with(1)?.run(|| {
         match args.json {
             true => out.write_all(text::json_in_lines(&probe::explained(&plan, x, y)).as_bytes())?,
-            false => probe::pixel(&plan, x, y, &mut out)?,
+            false => probe::pixel(&plan, x, y, &mut Visible(&mut out))?,
         }
         out.flush()
     });

@@ -24,6 +24,7 @@ use tabray_core::output::picture::Format;
 use tabray_core::scene::model::Model;
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::world::accuracy::Accuracy;
+use tabray_core::text;
 use tabray_lang::reader::{self, Loaded, ReadOptions};
 use tabray_lang::registry::Registry;
 use tabray_tools::diagnosis;
@@ -240,7 +241,7 @@ fn render_image(
         return image.part(number, stats);
     }
     if args.skips(&path, &image.model)? && provenance::is_up_to_date(&path, &image.made, warnings.files()) {
-        messages::note(&format!("{} exists already", path.display()));
+        messages::note(&format!("{} exists already", text::shown(path)));
         return Ok(());
     }
     image.whole(stats)
@@ -374,7 +375,10 @@ fn render_bytes(
     }
     let [width, height] = region.size();
     let (which, seconds) = (progress::count(), start.elapsed().as_secs_f64());
-    messages::note(&format!("{which}wrote {} ({width} x {height} pixels, {seconds:.2} s)", path.display()));
+    messages::note(&format!(
+        "{which}wrote {} ({width} x {height} pixels, {seconds:.2} s)",
+        text::shown(path)
+    ));
     differences.print();
     job::tell_of_far(far);
     if !reader::is_black(plan.model) {

@@ -11,6 +11,7 @@ use image::codecs::png::PngEncoder;
 use serde::Serialize;
 use similar::algorithms::{Capture, Compact, Replace, myers};
 use similar::{Change as LineChange, ChangeTag, DiffableStr};
+use std::borrow::Cow;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tabray_core::output::compare::{Comparison, Pixel};
@@ -86,7 +87,7 @@ impl Page {
     pub fn open(path: &Path) -> Result<Self, Failure> {
         if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("html")) {
             return Err(Failure::Usage(
-                format!("`{}` is not the name of an HTML file", path.display()),
+                format!("`{}` is not the name of an HTML file", text::shown(path)),
                 Some("end it in .html".to_owned()),
             ));
         }
@@ -99,7 +100,7 @@ impl Page {
             .and_then(|html| self.output.write_all(html.as_bytes()))
             .and_then(|()| self.output.finish());
         written.map_err(|error| Failure::cannot_write(&self.path, &error))?;
-        messages::note(&format!("wrote {}", self.path.display()));
+        messages::note(&format!("wrote {}", text::shown(&self.path)));
         Ok(())
     }
 }
@@ -130,7 +131,7 @@ struct Shown<'d> {
     #[serde(skip_serializing_if = "Option::is_none")]
     decision: Option<&'d Decision>,
     /// Explanations of the pixel that differs most: titles and texts.
-    explanations: Vec<(&'d str, &'d str)>,
+    explanations: Vec<(&'d str, Cow<'d, str>)>,
     /// The name.
     name: &'d str,
     /// A summary of the change in a few words.
@@ -199,7 +200,8 @@ impl<'d> Shown<'d> {
             }
             Change::Text { old, new } => Sides::Text { lines: diff(old.as_deref().unwrap_or_default(), new) },
         };
-        let explanation = |Explanation { title, text }: &'d Explanation| (title.as_str(), text.as_str());
+        let explanation =
+            |Explanation { title, text }: &'d Explanation| (title.as_str(), text::visible_lines(text));
         Ok(Self {
             decision: item.decision.as_ref(),
             explanations: item.explanations.iter().map(explanation).collect(),
@@ -235,6 +237,6 @@ fn line_of(line: &LineChange<&str>) -> Line {
         ChangeTag::Insert => '+',
     };
     let number = |index: usize| index + 1;
-    let text = line.value().trim_end_matches('\n').to_owned();
+    let text = text::visible_lines(line.value().trim_end_matches('\n')).into_owned();
     (sign, line.old_index().map(number), line.new_index().map(number), text)
 }

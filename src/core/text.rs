@@ -83,26 +83,64 @@ fn cut(text: &str, (max_len, [first, last]): (usize, [usize; 2])) -> Cow<'_, str
     Cow::Owned(format!("{}…{}", &text[..first], &text[last..]))
 }
 
-/// Characters that have no width, or that turn the direction of those around them.
-const UNSEEN: [RangeInclusive<char>; 5] = [
+/// Characters beside controls that have no width, that turn the direction of those around them, or that end a line.
+const UNSEEN: [RangeInclusive<char>; 15] = [
     '\u{ad}'..='\u{ad}',
     '\u{200b}'..='\u{200f}',
-    '\u{202a}'..='\u{202e}',
-    '\u{2060}'..='\u{2069}',
+    '\u{34f}'..='\u{34f}',
+    '\u{61c}'..='\u{61c}',
+    '\u{115f}'..='\u{1160}',
+    '\u{17b4}'..='\u{17b5}',
+    '\u{180b}'..='\u{180f}',
+    '\u{2028}'..='\u{202e}',
+    '\u{2060}'..='\u{206f}',
+    '\u{3164}'..='\u{3164}',
+    '\u{fe00}'..='\u{fe0f}',
     '\u{feff}'..='\u{feff}',
 ];
+    '\u{ffa0}'..='\u{ffa0}',
+    '\u{fff0}'..='\u{fffb}',
+    '\u{e0000}'..='\u{e0fff}',
 
-/// Writes characters that are not seen as `\u{200b}`: a word with one of them looks like another word.
-pub fn visible(text: &str) -> String {
-    let mut shown = String::with_capacity(text.len());
-    for letter in text.chars() {
-        if UNSEEN.iter().any(|range| range.contains(&letter)) {
-            shown.extend(letter.escape_unicode());
-        } else {
+/// Tells whether a character is not seen, or does something to a terminal.
+pub fn is_unseen(letter: char) -> bool {
+    letter.is_control() || letter > '~' && UNSEEN.iter().any(|range| range.contains(&letter))
+}
+
+/// Writes characters that are not seen as `\u{200b}`, and line ends as `\n`: a word with one of them looks like another
+/// word, and a control character commands the terminal.
+pub fn visible(text: &str) -> Cow<'_, str> {
+    visible_but(text, &[])
+}
+
+/// Writes characters that are not seen as [`visible`] does, but keeps line ends and tabs: what people read on a terminal
+/// or on a page.
+pub fn visible_lines(text: &str) -> Cow<'_, str> {
+    visible_but(text, &['\n', '\t'])
+}
+
+fn visible_but<'t>(text: &'t str, kept: &[char]) -> Cow<'t, str> {
+    let is_shown = |letter: char| !is_unseen(letter) || kept.contains(&letter);
+    let Some(first) = text.find(|letter| !is_shown(letter)) else { return Cow::Borrowed(text) };
+    let mut shown = text[..first].to_owned();
+    for letter in text[first..].chars() {
+        if is_shown(letter) {
             shown.push(letter);
         }
+        } else {
+            shown.extend(letter.escape_default());
     }
     shown
+    Cow::Owned(shown)
+}
+
+/// Writes a path, or another word of the system, for people: as [`visible`] does, and bytes that are no UTF-8 as `\xff`.
+pub fn shown(word: impl AsRef<OsStr>) -> String {
+    let mut shown = String::new();
+    for chunk in word.as_ref().as_encoded_bytes().utf8_chunks() {
+        shown += &visible(chunk.valid());
+        shown.extend(chunk.invalid().iter().map(|byte| format!("\\x{byte:02x}")));
+    }
 }
 
 /// Returns the last boundary between two characters of a text that is not after byte `at`.
@@ -110,14 +148,22 @@ pub fn boundary(text: &str, at: usize) -> usize {
     (0..=at.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0)
 }
 
-/// Quotes a word of a command for a shell.
+/// Quotes a word of a command for a shell. What is not seen, or is no UTF-8, is written as `$'\033'`, as bash, zsh, and
+/// POSIX of 2024 read it.
 pub fn quoted(word: &OsStr) -> String {
-    let word = word.to_string_lossy();
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-./:=+,@%".contains(c);
-    if !word.is_empty() && word.chars().all(is_plain) {
-        word.into_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
+    match word.to_str() {
+        Some(word) if !word.is_empty() && word.chars().all(is_plain) => word.to_owned(),
+        Some(word) if !word.contains(is_unseen) => format!("'{}'", word.replace('\'', r"'\''")),
+        _ => {
+            let seen = |byte: u8| match byte {
+                b'\'' | b'\\' => format!("\\{}", char::from(byte)),
+                b' '..=b'~' => char::from(byte).to_string(),
+                // Three octal digits: of hexadecimal ones, a shell may take more than two.
+                byte => format!("\\{byte:03o}"),
+            };
+            format!("$'{}'", word.as_encoded_bytes().iter().map(|byte| seen(*byte)).collect::<String>())
+        }
     }
 }
 
@@ -215,14 +261,33 @@ pub fn short(number: f64) -> String {
     }
 }
 
-/// Writes a value as JSON on one line. The fields stand in the order in which its type declares them.
+/// Writes a value as JSON on one line. The fields stand in the order in which its type declares them; characters that are
+/// not seen are escaped.
 pub fn json(value: &impl Serialize) -> String {
-    serde_json::to_string(value).expect(NAMED)
+    escaped(serde_json::to_string(value).expect(NAMED))
 }
 
 /// Writes a value as JSON with a field on each line, and a line end after the last.
 pub fn json_in_lines(value: &impl Serialize) -> String {
-    serde_json::to_string_pretty(value).expect(NAMED) + "\n"
+    escaped(serde_json::to_string_pretty(value).expect(NAMED)) + "\n"
+}
+
+/// Escapes what is not seen in JSON. Except for line ends between values, it can stand in strings alone.
+fn escaped(json: String) -> String {
+    let is_shown = |letter: char| letter == '\n' || !is_unseen(letter);
+    if json.chars().all(is_shown) {
+        return json;
+    }
+    let mut escaped = String::with_capacity(json.len());
+    for letter in json.chars() {
+        if is_shown(letter) {
+            escaped.push(letter);
+        } else {
+            let units = letter.encode_utf16(&mut [0; 2]).to_vec();
+            escaped.extend(units.iter().map(|unit| format!("\\u{unit:04x}")));
+        }
+    }
+    escaped
 }
 
 const NAMED: &str = "only a map whose keys are no names has no JSON";
@@ -281,6 +346,38 @@ mod tests {
 
     #[test]
     fn articles_are_those_of_spoken_words() {
+    #[test]
+    fn what_is_not_seen_is_shown_as_an_escape_and_shown_words_stay() {
+        for (word, told) in [
+            ("a\x1b[2Jb", "a\\u{1b}[2Jb"),
+            ("\u{9b}2J", "\\u{9b}2J"),
+            ("a\nb\tc\x7f", "a\\nb\\tc\\u{7f}"),
+            ("\u{202e}yar\u{2066}\u{200d}", "\\u{202e}yar\\u{2066}\\u{200d}"),
+            ("Ä \\ 'é' 👍", "Ä \\ 'é' 👍"),
+        ] {
+            assert_eq!((&*visible(word), &*visible(told), shown(word)), (told, told, told.to_owned()));
+            let json = json(&word);
+            assert!(!json.contains(is_unseen), "{json}");
+            assert_eq!(serde_json::from_str::<String>(&json).expect("JSON"), word);
+        }
+        assert_eq!(visible_lines("a\n\tb\r\x1b"), "a\n\tb\\r\\u{1b}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn words_for_a_shell_keep_every_byte_and_show_it() {
+        use std::os::unix::ffi::OsStrExt;
+        for (bytes, told) in [
+            (&b"a.ray"[..], "a.ray"),
+            (b"it's", r"'it'\''s'"),
+            (b"a\x1b'\\b", r"$'a\033\'\\b'"),
+            (b"\xff7", r"$'\3777'"),
+        ] {
+            assert_eq!(quoted(OsStr::from_bytes(bytes)), told);
+        }
+        assert_eq!(shown(OsStr::from_bytes(b"a\xff\xc3\xa4\xc3")), "a\\xff\u{e4}\\xc3");
+    }
+
         for word in ["ellipsoid", "angle", "object", "image", "umbrella", "fplane", "hdr", "nx", "rgb"] {
             assert_eq!(article(word), "an", "{word}");
         }

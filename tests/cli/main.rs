@@ -28,4 +28,10 @@ mod samples;
 mod server;
 mod size;
 mod undecided;
+#[cfg(target_os = "linux")]
+mod stops;
+#[cfg(unix)]
+mod terminals;
+#[cfg(target_os = "linux")]
+mod trust;
 mod watch;

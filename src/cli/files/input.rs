@@ -78,13 +78,7 @@ impl Source {
     /// Takes a text for that of a file.
     pub fn of_text(path: &Path, text: String, sets: &set::Args) -> Self {
         let folder = path.parent().unwrap_or(path).to_owned();
-        Self { name: path.display().to_string(), folder, bytes: text.into_bytes(), sets: sets.clone() }
-    }
-
-    /// Returns the syntax, by the name or, where that does not tell, by the text.
-    pub fn syntax(&self) -> Syntax {
-        let of_text = || std::str::from_utf8(&self.bytes).map_or(Syntax::Notes, Syntax::of_text);
-        Syntax::of_name(Path::new(&self.name)).unwrap_or_else(of_text)
+        Self { name: text::shown(path), folder, bytes: text.into_bytes(), sets: sets.clone() }
     }
 
     /// Returns the SHA-256 of the text, as `sha256sum` prints it.
@@ -118,7 +112,7 @@ pub fn read(path: &Path) -> Result<(String, Vec<u8>), Failure> {
     let (name, bytes) = if is_standard(path) {
         ("<stdin>".to_owned(), to_first_nul(io::stdin().lock()))
     } else {
-        (path.display().to_string(), open_stream(path).and_then(to_first_nul))
+        (text::shown(path), open_stream(path).and_then(to_first_nul))
     };
     crash::set_scene(&name);
     match bytes {
@@ -131,7 +125,7 @@ pub fn read(path: &Path) -> Result<(String, Vec<u8>), Failure> {
             let near = text::nearest_file(path).filter(|_| error.kind() == io::ErrorKind::NotFound);
             Err(Failure::Unread(
                 format!("cannot read `{name}`: {}", text::reason(&error)),
-                near.map(|near| format!("did you mean `{}`?", path.with_file_name(near).display())),
+                near.map(|near| format!("did you mean `{}`?", text::shown(&path.with_file_name(near)))),
             ))
         }
     }

@@ -6,7 +6,7 @@ use std::path::Path;
 use tabray_core::geometry::Rotation;
 use tabray_core::shapes::mesh::read::{self, Attributes, Model, Remark, Wanted};
 use tabray_core::shapes::mesh::{Look, Surface, ToWorld};
-use tabray_core::text::{count, shortest};
+use tabray_core::text::{self, count, shortest};
 use tabray_core::world::sensor::Sensor;
 
 /// Reads the surface of a file as a mesh of a scene is read, in the file's own coordinates.
@@ -23,7 +23,7 @@ fn model(path: &Path, wanted: Wanted) -> Result<Model, Failure> {
 
 fn refused(path: &Path, what: &str) -> Failure {
     let help = "a mesh is an OBJ, PLY, STL or glTF file".to_owned();
-    Failure::Usage(format!("cannot read `{}` as a mesh: {what}", path.display()), Some(help))
+    Failure::Usage(format!("cannot read `{}` as a mesh: {what}", text::shown(path)), Some(help))
 }
 
 fn surface(path: &Path, model: Model) -> Result<Surface, Failure> {

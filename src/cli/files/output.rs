@@ -59,7 +59,7 @@ pub fn write_image(
     let mut out = BufWriter::new(output);
     let written = write(&mut out);
     finished(path, written, out)?;
-    messages::note(&format!("wrote {}", path.display()));
+    messages::note(&format!("wrote {}", text::shown(path)));
     Ok(())
 }
 
@@ -86,7 +86,7 @@ pub fn create_folder(path: &Path) -> Result<(), Failure> {
             io::ErrorKind::AlreadyExists => "a file of this name exists".to_owned(),
             _ => text::reason(&error),
         };
-        Failure::Failed(format!("cannot create the folder `{}`: {reason}", path.display()))
+        Failure::Failed(format!("cannot create the folder `{}`: {reason}", text::shown(path)))
     })
 }
 
@@ -97,7 +97,7 @@ pub fn refuse_existing(path: &Path) -> Result<(), Failure> {
 
 fn already_exists(path: &Path) -> Failure {
     Failure::Usage(
-        format!("`{}` already exists", path.display()),
+        format!("`{}` already exists", text::shown(path)),
         Some("existing files are not overwritten: choose another name".to_owned()),
     )
 }
@@ -123,7 +123,7 @@ pub fn refuse_source(path: &Path, scene: &Path, model: &Model) -> Result<(), Fai
 pub fn refuse_source_by(path: &Path, what: &str, scene: &Path, model: &Model) -> Result<(), Failure> {
     let refused = |source| {
         Err(Failure::Usage(
-            format!("`{}` is {source}, which {what} would replace", path.display()),
+            format!("`{}` is {source}, which {what} would replace", text::shown(path)),
             Some("name another file with `-o FILE`".to_owned()),
         ))
     };
@@ -239,7 +239,7 @@ impl Write for Output {
 /// Returns the format that a file's name implies, or an error with this help.
 pub fn format_by_name(path: &Path, help: &str) -> Result<Format, Failure> {
     Format::of(path).ok_or_else(|| {
-        let message = format!("the name `{}` does not determine the format of the image", path.display());
+        let message = format!("the name `{}` does not determine the format of the image", text::shown(path));
         Failure::Usage(message, Some(help.to_owned()))
     })
 }

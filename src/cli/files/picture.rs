@@ -10,7 +10,8 @@ use tabray_core::text;
 
 /// Reads the image in a file.
 pub fn read(path: &Path) -> Result<RgbImage, Failure> {
-    let cannot = |reason: String| Failure::Usage(format!("cannot read `{}`: {reason}", path.display()), None);
+    let cannot =
+        |reason: String| Failure::Usage(format!("cannot read `{}`: {reason}", text::shown(path)), None);
     let file = files::open(path).map_err(|error| Failure::cannot_read(path, &error))?;
     decode(&mut BufReader::new(file)).map_err(cannot)
 }
@@ -25,7 +26,7 @@ impl Picture {
     /// Reads the image in a file.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let cannot =
-            |reason: String| Failure::Usage(format!("cannot read `{}`: {reason}", path.display()), None);
+            |reason: String| Failure::Usage(format!("cannot read `{}`: {reason}", text::shown(path)), None);
         let Some(format) = FullRange::of(path) else { return read(path).map(Self::Bytes) };
         let file = files::open(path).map_err(|error| Failure::cannot_read(path, &error))?;
         let file: &mut dyn ImageBytes = &mut BufReader::new(file);

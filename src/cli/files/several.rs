@@ -36,7 +36,7 @@ pub fn targets(scenes: &[PathBuf], output: Option<&Path>, extension: &str) -> Re
     let usage = |message: String, help: &str| Failure::Usage(message, Some(help.to_owned()));
     if let Some(file) = output.filter(|path| is_file_name(path)) {
         let message =
-            format!("`{}` is not a folder for the images of {} scenes", file.display(), scenes.len());
+            format!("`{}` is not a folder for the images of {} scenes", text::shown(file), scenes.len());
         return Err(usage(message, "name a folder with `-o DIR`; the images have the names of their scenes"));
     }
     let mut of: HashMap<PathBuf, &Path> = HashMap::new();
@@ -48,7 +48,7 @@ pub fn targets(scenes: &[PathBuf], output: Option<&Path>, extension: &str) -> Re
         })?;
         let target = output.unwrap_or(Path::new("")).join(Path::new(name).with_extension(extension));
         if let Some(other) = of.insert(target.clone(), scene) {
-            let (one, other, target) = (other.display(), scene.display(), target.display());
+            let (one, other, target) = (text::shown(other), text::shown(scene), text::shown(target));
             let message = format!("`{one}` and `{other}` would have the same image, `{target}`");
             return Err(usage(message, "render them one after the other, into folders of their own"));
         }
@@ -80,7 +80,7 @@ pub fn for_each_scene(
         if let Err(failure) = one(index) {
             report(&failure);
             worst = worst.max(status(&failure));
-            failed.push(scene.display().to_string());
+            failed.push(text::shown(scene));
         }
     }
     progress::clear_overall();

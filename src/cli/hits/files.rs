@@ -37,7 +37,7 @@ const BUFFER: usize = 1 << 20;
 
 /// Returns the name of the rays in messages.
 pub fn name(rays: &Path) -> String {
-    if is_standard(rays) { "<stdin>".to_owned() } else { rays.display().to_string() }
+    if is_standard(rays) { "<stdin>".to_owned() } else { text::shown(rays) }
 }
 
 /// Returns the format of a file of answers, by its name.
@@ -50,7 +50,7 @@ pub fn of_name(path: &Path) -> Result<AnswerFormat, Failure> {
         _ if is_standard(path) => Ok(AnswerFormat::JsonLines),
         _ => {
             let help = "end it in .jsonl, .csv or .npy";
-            Err(Failure::Usage(format!("`{}` has no known format", path.display()), Some(help.to_owned())))
+            Err(Failure::Usage(format!("`{}` has no known format", text::shown(path)), Some(help.to_owned())))
         }
     }
 }
@@ -64,7 +64,7 @@ pub fn open<'r>(path: &Path, what: &str) -> Result<Input<'r>, Failure> {
         Box::new(io::stdin())
     } else {
         let file = open_stream(path).map_err(|error| {
-            Failure::Unread(format!("cannot read `{}`: {}", path.display(), text::reason(&error)), None)
+            Failure::Unread(format!("cannot read `{}`: {}", text::shown(path), text::reason(&error)), None)
         })?;
         Box::new(file)
     };

@@ -8,6 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
+use tabray_core::text;
 use tabray_lang::editor::{Diagnosis, diagnose};
 use tabray_lang::reader::Severity;
 use tabray_lang::registry::Registry;
@@ -107,7 +108,7 @@ impl Faults {
             };
             let start = Instant::now();
             let read = |scene: &documents::Scene| {
-                crash::set_scene(&path.display().to_string());
+                crash::set_scene(&text::shown(&path));
                 let faults = || {
                     let faults = diagnose(registry, &path, scene.text.as_str(), &scene.open);
                     let is_scene =

@@ -35,7 +35,7 @@ pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
     let syntax = match ending {
         Some("ray") if args.toml => {
             return Err(Failure::Usage(
-                format!("the file `{}` would not be read as TOML", args.name.display()),
+                format!("the file `{}` would not be read as TOML", text::shown(&args.name)),
                 Some("end its name in .toml, or leave out `--toml`".to_owned()),
             ));
         }
@@ -59,6 +59,6 @@ pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
     let program = program::name();
     output::create(&path, &text.replace("`tabray ", &format!("`{program} ")))?;
     let word = text::quoted(path.as_os_str());
-    messages::note(&format!("wrote {}; render it with `{program} render {word}`", path.display()));
+    messages::note(&format!("wrote {}; render it with `{program} render {word}`", text::shown(path)));
     Ok(())
 }

@@ -110,7 +110,7 @@ impl Args {
         Err(Failure::Usage(
             format!(
                 "`{}` is an image of {width} x {height} pixels, and this one would have {new_width} x {new_height}",
-                path.display()
+                text::shown(path)
             ),
             Some(format!(
                 "write it beside that one with `-o {}`, or replace that one with `--force`",

@@ -9,7 +9,7 @@ use std::ffi::OsString;
 use std::io::{self, Write};
 use std::path::Path;
 use std::process;
-use tabray_core::text::{nearest, quoted};
+use tabray_core::text::{is_unseen, nearest, quoted, visible_lines};
 use tabray_lang::syntax::Syntax;
 
 /// Parses the program's arguments. What is wrong with them is printed, and ends the program; so do `--help` and
@@ -62,6 +62,11 @@ pub fn matches(mut command: Command) -> Result<ArgMatches, Failure> {
             }
             _ => process::exit(error.exit_code()),
         }
+    }
+    let plain = error.render().to_string();
+    if plain.contains(|letter| letter != '\n' && is_unseen(letter)) {
+        let _ = write!(io::stderr(), "{}", visible_lines(&plain));
+        process::exit(error.exit_code());
     }
     error.exit()
 }

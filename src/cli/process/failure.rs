@@ -1,7 +1,7 @@
 //! The end of a command: its output, or a failure.
 
 use crate::process::{messages, progress, temporary};
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 use std::process::{self, ExitCode};
 use std::thread;
@@ -47,17 +47,17 @@ impl Failure {
         let folder = path.parent().filter(|folder| *folder != Path::new("") && !folder.exists());
         let reason = match folder {
             Some(folder) if error.kind() == io::ErrorKind::NotFound => {
-                format!("there is no folder `{}`", folder.display())
+                format!("there is no folder `{}`", text::shown(folder))
             }
             _ => text::reason(error),
         };
-        Self::Failed(format!("cannot write `{}`: {reason}", path.display()))
+        Self::Failed(format!("cannot write `{}`: {reason}", text::shown(path)))
     }
 
     /// Makes a failure of a path that could not be read, with the reason: that of the system, or what is wrong with a file
     /// that is not what the command needs.
     pub fn cannot_read(path: &Path, error: &io::Error) -> Self {
-        let message = format!("cannot read `{}`: {}", path.display(), text::reason(error));
+        let message = format!("cannot read `{}`: {}", text::shown(path), text::reason(error));
         match error.kind() {
             io::ErrorKind::InvalidData => Self::Usage(message, None),
             _ => Self::Unread(message, None),
@@ -130,9 +130,18 @@ pub fn status(failure: &Failure) -> u8 {
     }
 }
 
-/// Prints to standard output. A reader that closes the pipe is no failure.
+/// Prints to standard output what people read. A reader that closes the pipe is no failure.
 pub fn print(text: &str) -> Result<(), Failure> {
-    match io::stdout().write_all(text.as_bytes()).and_then(|()| io::stdout().flush()) {
+    print_bytes(text::visible_lines(text).as_bytes())
+}
+
+/// Prints a scene, which another program may read, to standard output: as it is, unless that is a terminal.
+pub fn print_scene(text: &str) -> Result<(), Failure> {
+    if io::stdout().is_terminal() { print(text) } else { print_bytes(text.as_bytes()) }
+}
+
+fn print_bytes(bytes: &[u8]) -> Result<(), Failure> {
+    match io::stdout().write_all(bytes).and_then(|()| io::stdout().flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(Failure::cannot_write(Path::new("-"), &error))
         }

@@ -4,6 +4,7 @@ use annotate_snippets::{Group, Level, Renderer};
 use anstream::AutoStream;
 use std::io::{self, Write};
 use std::sync::OnceLock;
+use tabray_core::text;
 use tabray_lang::reader::{Message, Report};
 use tabray_tools::diagnosis::Remark;
 
@@ -85,6 +86,8 @@ pub fn remark(remark: Option<Remark>) {
 }
 
 fn titled(word: &str, level: Level, message: &str, help: Option<&str>) {
+    let (message, help) = (&*text::visible_lines(message), help.map(text::visible_lines));
+    let help = help.as_deref();
     let rendered = |renderer: Renderer| {
         let help = help.map(|help| Level::HELP.message(help));
         renderer.render(&[Group::with_title(level.clone().primary_title(message)).elements(help)])
@@ -101,6 +104,7 @@ pub fn note(message: &str) {
     if is_quiet() {
         return;
     }
+    let message = &*text::visible_lines(message);
     say(&match form() {
         Form::Human | Form::Short => format!("{message}\n"),
         Form::Json => json("note", message, None, message),

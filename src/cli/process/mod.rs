@@ -11,3 +11,4 @@ pub mod messages;
 pub mod program;
 pub mod progress;
 pub mod temporary;
+pub mod visible;

@@ -15,7 +15,7 @@ use tabray_core::output::aov::{Aov, Layer};
 use tabray_core::output::picture::Format;
 use tabray_core::render::plan::Plan;
 use tabray_core::scene::model::Model;
-use tabray_core::text::Named;
+use tabray_core::text::{self, Named};
 use tabray_core::world::sample::{SCRAMBLE, Sampler};
 
 /// The maximum number of pixels of an image with auxiliary images: unlike the main image, they are held in memory as a
@@ -46,7 +46,7 @@ pub fn open(model: &Model, args: &Args, main: &Path, output: &Output) -> Result<
     }
     if !matches!(output, Output::File(..)) {
         return Err(Failure::Usage(
-            format!("cannot write the images of `--aov` beside `{}`", main.display()),
+            format!("cannot write the images of `--aov` beside `{}`", text::shown(main)),
             Some("name a file for the main image with `-o FILE`".to_owned()),
         ));
     }

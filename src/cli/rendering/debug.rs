@@ -3,6 +3,7 @@
 use crate::options::named::by_name;
 use crate::probe;
 use crate::process::failure::Failure;
+use crate::process::visible::Visible;
 use std::io::{self, BufWriter, Write};
 use tabray_core::render::plan::Plan;
 use tabray_core::scene::model::Model;
@@ -40,7 +41,7 @@ pub fn print(model: &Model, args: &Args) -> Result<(), Failure> {
         // The notes' order of pixels.
         for y in a[1].min(b[1])..=a[1].max(b[1]) {
             for x in a[0].min(b[0])..=a[0].max(b[0]) {
-                debug::pixel(&plan, x, y, &args.debug, &mut out)?;
+                debug::pixel(&plan, x, y, &args.debug, &mut Visible(&mut out))?;
             }
         }
         // The notes' lines begin with a line end and have none at their end, so later output needs one here.

@@ -13,6 +13,7 @@ use tabray_core::output::full_range::FullRange;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::ray_stats::RayStats;
 use tabray_core::render::renderer::{RenderCallbacks, Renderer};
+use tabray_core::text;
 
 /// The memory for a pixel, in bytes: its colour, and what encodes it.
 pub const PIXEL: usize = 12 * 4;
@@ -53,7 +54,10 @@ pub fn render(
 /// Returns the error for options that these formats cannot serve.
 pub fn refuse(path: &Path, what: &str) -> Failure {
     Failure::Usage(
-        format!("`{}` cannot be {what}: an EXR or a PFM is written only when it is complete", path.display()),
+        format!(
+            "`{}` cannot be {what}: an EXR or a PFM is written only when it is complete",
+            text::shown(path)
+        ),
         Some("name a .png or .ppm file, or leave out the option".to_owned()),
     )
 }

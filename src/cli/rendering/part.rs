@@ -274,7 +274,7 @@ impl PartRender<'_> {
         checkpoint.finish().map_err(cannot)?;
         let of_all = rendered.pixels() as f64 / self.grid().pixels_of(tiles) as f64;
         let share = (1000.0 * of_all).floor() / 10.0;
-        let ([number, of], path) = (self.part, path.display());
+        let ([number, of], path) = (self.part, text::shown(path));
         messages::note(&format!(
             "wrote {share:.1} % of part {number}/{of} to {path}, from which `--resume` renders the rest"
         ));
@@ -357,7 +357,7 @@ fn is_complete((path, label): &(PathBuf, Label)) -> Result<bool, Failure> {
         && (label.tiles, label.what, &label.beside) == (there.tiles, there.what, &there.beside);
     let is_complete = is_same && reader.check().is_ok();
     if is_complete {
-        messages::note(&format!("{} exists already", path.display()));
+        messages::note(&format!("{} exists already", text::shown(path)));
     }
     Ok(is_complete)
 }
@@ -393,5 +393,5 @@ fn read_from(written: &mut Writer<BufWriter<Output>>, byte: u64) -> io::Result<F
 fn add_writing_time(path: &Path, label: &Label) {
     let [number, of] = label.part;
     let tiles = text::count(label.tiles().len(), "tile");
-    messages::note(&format!("wrote {} (part {number} of {of}, {tiles})", path.display()));
+    messages::note(&format!("wrote {} (part {number} of {of}, {tiles})", text::shown(path)));
 }

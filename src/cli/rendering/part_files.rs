@@ -9,6 +9,7 @@ use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use tabray_core::files;
+use tabray_core::text;
 use tabray_tools::checkpoint::Identity;
 use tabray_tools::part::{Label, PixelFormat, Reader};
 
@@ -55,7 +56,7 @@ impl Parts {
                         .checksum()
                         .map_err(|error| Failure::cannot_read(&other.path, &error))?
                 {
-                    let (one, other) = (other.path.display(), path.display());
+                    let (one, other) = (text::shown(&other.path), text::shown(path));
                     return Err(refuse(
                         format!("`{one}` and `{other}` are two versions of part {number}"),
                         "leave out the one that is wrong",
@@ -68,7 +69,7 @@ impl Parts {
         }
         let Some((_, label)) = first else {
             return Err(refuse(
-                format!("there is no part of `{}`", image.display()),
+                format!("there is no part of `{}`", text::shown(image)),
                 "`tabray render SCENE -o IMAGE --part 1/16` makes the first of 16 parts",
             ));
         };
@@ -78,7 +79,7 @@ impl Parts {
             let begun =
                 missing.iter().find(|number| resume::beside(&part::beside(image, [**number, of])).exists());
             return Err(Failure::Usage(
-                format!("`{}` lacks {} of {of}", image.display(), named(&missing)),
+                format!("`{}` lacks {} of {of}", text::shown(image), named(&missing)),
                 Some(match begun {
                     Some(number) => format!(
                         "part {number} is begun: `tabray render --part {number}/{of} --resume` renders the rest"
@@ -114,7 +115,7 @@ fn refuse_gaps(found: &BTreeMap<usize, PartFile>, label: &Label, image: &Path) -
         if part.tiles.start != next {
             return refuse_part(format!(
                 "`{}` does not begin where part {} ends",
-                part.path.display(),
+                text::shown(&part.path),
                 number - 1
             ));
         }
@@ -122,7 +123,7 @@ fn refuse_gaps(found: &BTreeMap<usize, PartFile>, label: &Label, image: &Path) -
     }
     if next != label.grid().count() {
         let of = label.part[1];
-        return refuse_part(format!("part {of} of `{}` ends before the image does", image.display()));
+        return refuse_part(format!("part {of} of `{}` ends before the image does", text::shown(image)));
     }
     Ok(())
 }
@@ -168,8 +169,8 @@ fn same((path, label): (&Path, &Label), (other, first): (&Path, &Label)) -> Resu
     Err(refuse(
         format!(
             "`{}` is not a part of the same image as `{}`: {}",
-            path.display(),
-            other.display(),
+            text::shown(path),
+            text::shown(other),
             differences.join(", ")
         ),
         "name the parts that belong together: `tabray merge IMAGE PARTS`",

@@ -37,7 +37,7 @@ impl ResumedImage {
         if !matches!(output, Output::File(..)) {
             return if wanted {
                 Err(Failure::Usage(
-                    format!("cannot keep a checkpoint beside `{}`", picture.display()),
+                    format!("cannot keep a checkpoint beside `{}`", text::shown(picture)),
                     Some("name a file for the image with `-o FILE`, or leave out `--resume`".to_owned()),
                 ))
             } else {
@@ -45,7 +45,7 @@ impl ResumedImage {
             };
         }
         let path = beside(picture);
-        let shown = path.display();
+        let shown = text::shown(&path);
         if !wanted {
             if path.exists() {
                 messages::note(&format!("{shown} exists: with `--resume` the render would continue from it"));
@@ -88,7 +88,7 @@ impl ResumedImage {
         let differences = identity.differences(&self.checkpoint.identity);
         if !differences.is_empty() {
             return Err(Failure::Usage(
-                format!("`{}` belongs to another image: {}", self.path.display(), differences.join(", ")),
+                format!("`{}` belongs to another image: {}", text::shown(&self.path), differences.join(", ")),
                 Some(BEGIN_ANEW.to_owned()),
             ));
         }
@@ -111,7 +111,7 @@ impl ResumedImage {
     /// Removes the checkpoint after its image is finished.
     pub fn remove(self) -> Result<(), Failure> {
         fs::remove_file(&self.path).map_err(|error| {
-            let (path, reason) = (self.path.display(), text::reason(&error));
+            let (path, reason) = (text::shown(&self.path), text::reason(&error));
             Failure::Failed(format!(
                 "cannot remove `{path}`: {reason}; the image is finished, so remove the file by hand"
             ))
@@ -126,7 +126,7 @@ fn cannot_read(path: &Path, error: &io::Error) -> Failure {
         io::ErrorKind::InvalidData => "it is not a checkpoint, or it is corrupt".to_owned(),
         _ => text::reason(error),
     };
-    Failure::Usage(format!("cannot read `{}`: {reason}", path.display()), Some(BEGIN_ANEW.to_owned()))
+    Failure::Usage(format!("cannot read `{}`: {reason}", text::shown(path)), Some(BEGIN_ANEW.to_owned()))
 }
 
 /// Writes a checkpoint, which is not moved to its path yet. The other arguments are those of [`checkpoint::write`].

@@ -12,7 +12,7 @@ use tabray_core::render::flaws::{BudgetCuts, Flaws};
 use tabray_core::render::observer::RayKind;
 use tabray_core::render::ray_stats::{Proofs, RayStats, TestCounts};
 use tabray_core::scene::model::Model;
-use tabray_core::text::{json, short};
+use tabray_core::text::{json, short, visible_lines};
 use tabray_core::world::certify::Doubt;
 
 #[derive(clap::Args)]
@@ -57,7 +57,7 @@ impl Args {
     pub fn print(&self, stats: &Stats, model: &Model) {
         let text = match self.stats {
             None => return,
-            Some(Format::Table) => stats.table(model),
+            Some(Format::Table) => visible_lines(&stats.table(model)).into_owned(),
             Some(Format::Json) => json(&stats.counts(model)) + "\n",
         };
         // If standard error is closed, no one can be told.

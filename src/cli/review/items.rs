@@ -12,7 +12,7 @@ use std::ffi::OsStr;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use tabray_core::output::compare::Comparison;
-use tabray_core::text::quoted;
+use tabray_core::text::{self, quoted};
 use tabray_lang::registry::Registry;
 
 /// Returns the pending snapshots below a folder, and whether all of them could be read; errors were printed.
@@ -61,13 +61,13 @@ fn item(registry: &Registry, snapshot: &Pending, before: Option<&Path>) -> Resul
     };
     let decision =
         Decision { accept: command("--accept"), reject: command("--reject"), version: snapshot.version() };
-    Ok(Item { name: path.display().to_string(), change, explanations, decision: Some(decision) })
+    Ok(Item { name: text::shown(path), change, explanations, decision: Some(decision) })
 }
 
 /// Returns the old and the new content of a snapshot.
 fn change(snapshot: &Pending) -> Result<Change, Failure> {
     let unreadable = |reason: String| {
-        Failure::Usage(format!("cannot show the snapshot `{}`: {reason}", snapshot.path.display()), None)
+        Failure::Usage(format!("cannot show the snapshot `{}`: {reason}", text::shown(&snapshot.path)), None)
     };
     let (old, new) = (snapshot.old.as_ref(), &snapshot.new);
     if let Some(new) = new.text() {

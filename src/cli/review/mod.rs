@@ -10,6 +10,7 @@ use crate::process::failure::Failure;
 use crate::process::messages;
 use pending::Pending;
 use std::path::PathBuf;
+use tabray_core::text;
 use tabray_lang::registry::Registry;
 
 /// Review the snapshots that failing tests left
@@ -58,7 +59,7 @@ pub fn run(registry: &'static Registry, args: &Args) -> Result<(), Failure> {
         return each(&args.reject, "rejected", Pending::reject);
     }
     if pending::find(&args.folder)?.is_empty() {
-        messages::note(&format!("nothing is pending in `{}`", args.folder.display()));
+        messages::note(&format!("nothing is pending in `{}`", text::shown(&args.folder)));
         return Ok(());
     }
     if args.serve {
@@ -83,7 +84,7 @@ fn each(
         for new in pending::find(path)? {
             let snapshot = Pending::read(&new)?;
             decide(&snapshot)?;
-            messages::note(&format!("{verdict} {}", snapshot.path.display()));
+            messages::note(&format!("{verdict} {}", text::shown(&snapshot.path)));
         }
     }
     Ok(())

@@ -60,10 +60,10 @@ pub fn find(path: &Path) -> Result<Vec<PathBuf>, Failure> {
         return match output::append_to_path(snapshot, ".new") {
             new if new.is_file() => Ok(vec![new]),
             _ if snapshot.is_file() => {
-                Err(Failure::Usage(format!("nothing is pending for `{}`", path.display()), None))
+                Err(Failure::Usage(format!("nothing is pending for `{}`", text::shown(path)), None))
             }
             _ => Err(Failure::Usage(
-                format!("there is no folder or snapshot `{}`", path.display()),
+                format!("there is no folder or snapshot `{}`", text::shown(path)),
                 Some("name a folder of snapshots, or the `.snap` file of one".to_owned()),
             )),
         };
@@ -90,7 +90,7 @@ impl Pending {
     pub fn read(new: &Path) -> Result<Self, Failure> {
         let path = new.with_extension("");
         let cannot = |file: &Path, reason: &str| {
-            Failure::Usage(format!("cannot read the snapshot `{}`: {reason}", file.display()), None)
+            Failure::Usage(format!("cannot read the snapshot `{}`: {reason}", text::shown(file)), None)
         };
         let file = files::open(new)
             .and_then(io::read_to_string)
@@ -134,7 +134,7 @@ impl Pending {
         };
         [Some(new), binary].into_iter().flatten().try_for_each(|file| {
             fs::remove_file(&file).map_err(|error| {
-                Failure::Failed(format!("cannot remove `{}`: {}", file.display(), text::reason(&error)))
+                Failure::Failed(format!("cannot remove `{}`: {}", text::shown(file), text::reason(&error)))
             })
         })
     }

@@ -233,10 +233,9 @@ fn pixel(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
                 }
                 written => written?,
             }
-            let explained = PixelExplanation {
-                lines: frame.lines_of([x, y]),
-                text: &String::from_utf8_lossy(&told.text),
-            };
+            let told = String::from_utf8_lossy(&told.text);
+            let explained =
+                PixelExplanation { lines: frame.lines_of([x, y]), text: &text::visible_lines(&told) };
             Ok(("application/json", text::json(&explained).into_bytes()))
         })
     }))
@@ -289,7 +288,7 @@ fn layer(frame: Arc<Frame>, name: &str) -> Option<Job> {
 fn plan(frame: Arc<Frame>) -> Option<Job> {
     Some(Box::new(move |_| {
         let words = plan::text(&Plan::for_picture(&frame.model));
-        Ok(("text/plain; charset=utf-8", words.into_bytes()))
+        Ok(("text/plain; charset=utf-8", text::visible_lines(&words).into_owned().into_bytes()))
     }))
 }
 

@@ -103,7 +103,7 @@ pub fn measure(
     };
     let name = Path::new(&frame.name).file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let (sender, measured) = mpsc::channel();
-    let title = name.clone();
+    let title = text::shown(&name);
     thread::Builder::new().spawn(move || {
         let mut measurement = measurement;
         let frame = measurement.frame.clone();

@@ -186,7 +186,7 @@ impl Files {
                 Err(_) if !folder.exists() => {}
                 Err(error) => {
                     let words =
-                        || format!("cannot watch the folder `{}`: {}", folder.display(), reason(&error));
+                        || format!("cannot watch the folder `{}`: {}", text::shown(&folder), reason(&error));
                     self.refused.get_or_insert_with(words);
                 }
             }

@@ -53,7 +53,7 @@ impl Scenes {
         let (folders, alone) = (of_kind(true), of_kind(false));
         for folder in &folders {
             if found(folder)?.is_empty() {
-                let message = format!("there is no scene in the folder `{}`", folder.display());
+                let message = format!("there is no scene in the folder `{}`", text::shown(folder));
                 return Err(Failure::Unread(
                     message,
                     Some("the names of scenes end in .ray or .toml".to_owned()),
@@ -88,7 +88,7 @@ impl Scenes {
     /// Returns the name of the watched scenes, for messages.
     pub fn name(&self) -> String {
         let count = || text::count(self.known().list.len(), "scene");
-        self.only().map_or_else(count, |scene| scene.display().to_string())
+        self.only().map_or_else(count, |scene| text::shown(scene))
     }
 
     /// Finds the scenes that there are now, and tells all pages if they are others than before.
@@ -117,7 +117,7 @@ impl Scenes {
             return;
         }
         let name = |number: &usize| {
-            let name = known.sessions[*number].path.display().to_string();
+            let name = text::shown(&known.sessions[*number].path);
             SceneEntry { number: *number, name }
         };
         let event = events::scenes(&known.list.iter().map(name).collect::<Vec<_>>());
@@ -169,6 +169,6 @@ fn found(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     };
     list().map_err(|error| {
         let reason = text::reason(&error);
-        Failure::Unread(format!("cannot read the folder `{}`: {reason}", folder.display()), None)
+        Failure::Unread(format!("cannot read the folder `{}`: {reason}", text::shown(folder)), None)
     })
 }

@@ -10,6 +10,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use tabray_core::text;
 use tabray_lang::registry::Registry;
 
 /// The state of a watched scene that the program and its pages share.
@@ -79,7 +80,7 @@ impl Session {
 
     /// Writes the values that are tried out into the scene's file, unless the file is another than the page shows.
     pub fn write(&self) -> Response<Body> {
-        let file = self.path.display().to_string();
+        let file = text::shown(&self.path);
         let written = |text: &str| {
             let written = self.trial_values.written(self.registry, &file, text);
             written.map_err(|name| format!("`{name}` has no place of its own in the text: change the text"))

@@ -19,6 +19,7 @@ use tabray_core::render::Levels;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::progressive::{self, Area};
 use tabray_core::scene::model::Model;
+use tabray_core::text;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::reader::{self, Loaded, ReadOptions};
 use tabray_tools::diagnosis;
@@ -127,7 +128,7 @@ impl Watched {
         let (name, bytes) = match input::read(&session.path) {
             Ok(read) => read,
             Err(Failure::Usage(message, _) | Failure::Unread(message, _)) => {
-                let name = session.path.display().to_string();
+                let name = text::shown(&session.path);
                 let report = &format!("error: {message}");
                 feed.tell(
                     News::Fault,

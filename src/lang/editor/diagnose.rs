@@ -7,6 +7,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use tabray_core::files::plain;
+use tabray_core::text;
 
 /// A fault in a file.
 #[derive(Clone, Debug)]
@@ -44,7 +45,7 @@ pub fn diagnose(
     open: &[(PathBuf, Arc<str>)],
 ) -> Vec<Diagnosis> {
     let folder = path.parent().unwrap_or(path);
-    let name = path.display().to_string();
+    let name = text::shown(path);
     let report = match reader::read_by(
         registry,
         &name,

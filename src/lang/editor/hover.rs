@@ -10,7 +10,7 @@ use std::ops::Range;
 use tabray_core::scene::attribute;
 use tabray_core::scene::entity;
 use tabray_core::scene::value::Datum;
-use tabray_core::text::list;
+use tabray_core::text::{list, shown};
 
 /// The most lines of a definition that are shown.
 const MOST_LINES: usize = 16;
@@ -106,7 +106,7 @@ fn name(group: &Group, view: &View, at: usize) -> Option<Hover> {
         lines[MOST_LINES] = "...";
     }
     let language = if view.syntax == Syntax::Toml { "toml" } else { "tabray" };
-    let file = if *path == group[0].0 { String::new() } else { format!(" of `{}`", path.display()) };
+    let file = if *path == group[0].0 { String::new() } else { format!(" of `{}`", shown(path)) };
     let text = format!(
         "{} `{}`{file}\n\n```{language}\n{}\n```",
         describe(name.namespace),

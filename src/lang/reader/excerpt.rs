@@ -48,7 +48,9 @@ pub fn rendered(fault: &Fault, parts: &Parts<'_>, renderer: &Renderer) -> String
     let first = marks.iter().map(|(place, _)| place.start).min().unwrap_or(0);
     let last = marks.iter().map(|(place, _)| place.end).max().unwrap_or(0);
     let lines = lines(text, first..last, newlines);
-    if lines.len() <= WHOLE {
+    // The renderer shows some of what is not seen, in its own ways.
+    let is_seen = |letter: char| letter == '\n' || letter == '\t' || !text::is_unseen(letter);
+    if lines.len() <= WHOLE && text[lines.clone()].replace("\r\n", "\n").chars().all(is_seen) {
         let shift = |place: &Range<usize>| place.start - lines.start..place.end - lines.start;
         let mut kind = AnnotationKind::Primary;
         let annotations = marks.iter().map(|(place, label)| {
@@ -103,7 +105,7 @@ fn lines(text: &str, place: Range<usize>, newlines: &[usize]) -> Range<usize> {
     start..end
 }
 
-/// The line of a marked place, shortened around it where it is long.
+/// The line of a marked place, shortened around it where it is long, with what is not seen as escapes.
 struct Piece {
     text: String,
     /// The marked range within the shortened text, in bytes.
@@ -129,12 +131,13 @@ impl Piece {
         };
         let [before, after] =
             [(start > own.start), (end < own.end)].map(|is_cut| if is_cut { "…" } else { "" });
-        let shift = |at: usize| before.len() + at - start;
-        let shown = format!("{before}{}{after}", &text[start..end]);
+        let [left, marked, right] =
+            [start..mark.start, mark.clone(), mark.end..end].map(|part| text::visible_lines(&text[part]));
+        let at = before.len() + left.len();
         Self {
-            shown: 1 + shown[..shift(mark.start)].chars().count(),
-            text: shown,
-            mark: shift(mark.start)..shift(mark.end),
+            shown: 1 + before.chars().count() + left.chars().count(),
+            text: format!("{before}{left}{marked}{right}{after}"),
+            mark: at..at + marked.len(),
             line: line(place.start, newlines),
             column: 1 + text[own.start..place.start].chars().count(),
         }

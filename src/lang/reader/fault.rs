@@ -131,10 +131,10 @@ impl Fault {
         self.severity == other.severity && self.message == other.message
     }
 
-    /// Shortens texts that are too long to be read, and replaces control characters in the message, where a name with a
-    /// line end could look like a message of its own, and characters that are not seen. Afterwards the fault's places lie within `text`, and none begins after
-    /// it ends.
+    /// Shortens texts that are too long to be read, and writes what is not seen as escapes: a name with a line end could
+    /// look like a message of its own. Afterwards the fault's places lie within `text`, and none begins after it ends.
     pub(super) fn tidy(&mut self, text: &str) {
+        let tidy = |words: &str| text::visible(&text::abridged(words)).into_owned();
         let also = self.also.iter_mut().map(|(place, label)| (place, label));
         let whole = |place: &mut Place| {
             if let Some(place) = place {
@@ -143,11 +143,11 @@ impl Fault {
             }
         };
         for (place, label) in also.chain([(&mut self.place, &mut self.label)]) {
-            *label = text::abridged(label).into_owned();
+            *label = tidy(label);
             whole(place);
         }
         self.similar_faults.1.iter_mut().for_each(whole);
-        self.help = self.help.as_deref().map(|help| text::abridged(help).into_owned());
-        self.message = text::visible(&text::abridged(&self.message).replace(char::is_control, "\u{fffd}"));
+        self.help = self.help.as_deref().map(tidy);
+        self.message = tidy(&self.message);
     }
 }

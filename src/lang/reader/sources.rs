@@ -111,7 +111,7 @@ impl<'t> Sources<'t> {
             self.add(OPTION.to_owned(), &own.join("\n"));
         }
         for (name, set) in set_by.iter().zip(others) {
-            self.add(name.clone(), set);
+            self.add(text::visible(name).into_owned(), set);
         }
         self.options = Some(start..self.text.len());
     }
@@ -181,7 +181,7 @@ impl<'t> Sources<'t> {
             let help = "a scene is plain text, in UTF-8";
             return Err((format!("`{file}` is {what}"), Some(help.to_owned())));
         };
-        let name = Path::new(&self.parts[includer].name).with_file_name(file).display().to_string();
+        let name = text::shown(Path::new(&self.parts[includer].name).with_file_name(file));
         self.add(name, text.strip_prefix('\u{feff}').unwrap_or(text));
         readings.push(OpenSource { path, includer: Some(includer) });
         Ok(self.parts.len() - 1)
@@ -227,7 +227,7 @@ fn read(file: &str, path: &Path, open: &[(PathBuf, Arc<str>)], room: u64) -> Res
     let near = nearest_file(path).filter(|_| error.kind() == io::ErrorKind::NotFound);
     let near = near.map(|near| Path::new(file).with_file_name(near));
     let help = match near {
-        Some(near) => format!("did you mean `{}`?", near.display()),
+        Some(near) => format!("did you mean `{}`?", text::shown(near)),
         None => "the name is relative to the file that includes it".to_owned(),
     };
     Err((format!("cannot read `{file}`: {}", text::reason(&error)), Some(help)))

@@ -18,6 +18,7 @@ use tabray_core::parallel;
 use tabray_core::scene::model::Model;
 use tabray_core::shapes::by_method::is_searched;
 use tabray_core::simd::cpu::Cpu;
+use tabray_core::text::visible;
 use tabray_core::world::any_shape::AnyShape;
 use tabray_core::world::certify::{Enclosure, Precision};
 use tabray_exact::roots::bisection::bisect;
@@ -54,7 +55,7 @@ pub fn sets(model: &Model, [of_camera, of_grazing]: [usize; 2]) -> Vec<Set> {
             continue;
         }
         let names: Vec<_> = group.iter().map(|index| model.objects[*index].args.name()).collect();
-        let what = list(names);
+        let what = visible(&list(names)).into_owned();
         let mut add = |kind: &str, packets: Vec<Packet>| {
             if !packets.is_empty() {
                 let title = format!("{what}: {kind}");

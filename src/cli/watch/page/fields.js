@@ -37,7 +37,7 @@ const open = (entity, all) => {
   $('aside').classList.add('explains')
   const select = $('#fields select')
   if (!all.some((one) => key(one) === key(entity))) all.push(entity)
-  select.replaceChildren(...all.map((one) => new Option(key(one), key(one), false, key(one) === key(entity))))
+  select.replaceChildren(...all.map((one) => new Option(visible(key(one)), key(one), false, key(one) === key(entity))))
   showFields(entity)
   // There is less room for the text now.
   reveal(marked)
@@ -57,7 +57,7 @@ const showFields = ({ name, attributes }) => {
       if (fixed) {
         const words = document.createElement('span')
         words.className = 'fixed'
-        words.textContent = `${value} (${fixed})`
+        words.textContent = visible(`${value} (${fixed})`)
         label.removeAttribute('for')
         return [label, words]
       }

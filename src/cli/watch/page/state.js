@@ -1,5 +1,8 @@
 'use strict'
 const $ = (selector) => document.querySelector(selector)
+// Characters that are not seen, as the program shows them in its messages.
+const visible = (text) => text.replace(/(?!\t)[\p{Cc}\p{Default_Ignorable_Code_Point}\p{Zl}\p{Zp}\p{Bidi_Control}]/gu,
+  (letter) => `\\u{${letter.codePointAt(0).toString(16)}}`)
 const root = document.documentElement, stage = $('#stage'), sheet = $('#sheet'), canvas = $('canvas')
 const paper = canvas.getContext('2d')
 

@@ -5,7 +5,7 @@ const lineAt = (line) => $('#text').children[line - 1]
 const write = (text) => {
   $('#text').replaceChildren(...text.split('\n').map((line) => {
     const row = document.createElement('div')
-    row.textContent = line
+    row.textContent = visible(line)
     return row
   }))
 }
