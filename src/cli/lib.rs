@@ -51,7 +51,7 @@ use process::failure::{Failure, report};
 #[cfg(target_os = "linux")]
 use process::interrupt;
 use process::messages::Told;
-use process::{arguments, color, crash, help, memory, messages, program, progress};
+use process::{arguments, bounds, color, crash, help, memory, messages, program, progress};
 use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
 use tabray_lang::registry::Registry;
@@ -78,6 +78,8 @@ struct Cli {
     /// Whether messages have colours
     #[arg(long, global = true, value_name = "WHEN", default_value = "auto")]
     color: color::Color,
+    #[command(flatten)]
+    bounds: bounds::Args,
 }
 
 #[derive(Subcommand)]
@@ -167,6 +169,9 @@ fn chosen() -> ExitCode {
     };
     messages::choose(cli.message_format, told);
     progress::choose(cli.progress);
+    if let Err(failure) = cli.bounds.keep() {
+        return report(&failure);
+    }
     let outcome = match Registry::get() {
         Ok(registry) => match cli.command {
             Some(Command::Render(args)) => render::run(registry, *args),

@@ -1,28 +1,96 @@
-//! Opens files that a scene or a command names; the path may lead to something else than a file.
+//! Opens files that a scene or a command names; the path may lead to something else than a file, or out of a folder that the
+//! program is confined to.
 
-use std::fs::{self, File};
+use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, BufRead, Seek};
 use std::path::{Component, Path, PathBuf};
+use std::sync::OnceLock;
 
 /// The bytes of an image's file. Decoders are given a `&mut dyn` of it, so that each is compiled once.
 pub trait ImageBytes: BufRead + Seek {}
 
 impl<B: BufRead + Seek> ImageBytes for B {}
 
+/// The real path of the folder that the program is confined to, if it is.
+static ROOT: OnceLock<PathBuf> = OnceLock::new();
+
+/// Confines the program to a folder, once and for good: outside of it, nothing is opened.
+///
+/// # Errors
+/// Those of the system, and an error where the path does not lead to a folder.
+pub fn confine(root: &Path) -> io::Result<()> {
+    let root = root.canonicalize()?;
+    if !root.is_dir() {
+        return Err(io::ErrorKind::NotADirectory.into());
+    }
+    ROOT.get_or_init(|| root);
+    Ok(())
+}
+
+/// Refuses a path that leads out of the folder that the program is confined to, by its real path: after all links. What does
+/// not exist is where the nearest folder that does is.
+///
+/// # Errors
+/// An error that says so.
+pub fn refuse_outside(path: &Path) -> io::Result<()> {
+    let is_inside = |root: &PathBuf| {
+        let around = |path: &Path| match path.parent() {
+            Some(folder) if folder == Path::new("") => Some(PathBuf::from(".")),
+            folder => folder.map(Path::to_owned),
+        };
+        let mut folder = Some(path.to_owned());
+        let real = loop {
+            match &folder {
+                Some(path) => match path.canonicalize() {
+                    Ok(real) => break real,
+                    // A link to what does not exist may lead anywhere.
+                    Err(_) if path.is_symlink() => return false,
+                    Err(_) => folder = around(path),
+                },
+                None => return false,
+            }
+        };
+        // Behind a folder that does not exist, `..` leads nowhere yet.
+        let is_plain = path.exists() || !path.components().any(|part| part == Component::ParentDir);
+        real.starts_with(root) && is_plain
+    };
+    if ROOT.get().is_none_or(is_inside) {
+        return Ok(());
+    }
+    Err(io::Error::new(io::ErrorKind::PermissionDenied, "it is outside of the folder of `--root`"))
+}
+
 /// Opens a file to read it. Refuses a pipe, at which opening might wait for ever, and a device, which might have no
 /// end.
 ///
 /// # Errors
-/// Those of the system, and an error where the path does not lead to a file.
+/// Those of the system, and an error where the path does not lead to a file, or [leads outside](refuse_outside).
 pub fn open(path: &Path) -> io::Result<File> {
-    let kind = fs::metadata(path)?;
+    refuse_outside(path)?;
+    // Opening a device may already do something. What is opened may be something else by then.
+    refuse_other(&fs::metadata(path)?)?;
+    let file = without_waiting().read(true).open(path)?;
+    refuse_other(&file.metadata()?)?;
+    Ok(file)
+}
+
+fn refuse_other(kind: &Metadata) -> io::Result<()> {
     if kind.is_dir() {
         return Err(io::ErrorKind::IsADirectory.into());
     }
     if !kind.is_file() {
         return Err(io::Error::other("it is a pipe or a device, not a file"));
     }
-    File::open(path)
+    Ok(())
+}
+
+/// Returns options of opening and reading that never wait: some files of the system's, as `/proc/kmsg`, have more to read
+/// only later.
+fn without_waiting() -> OpenOptions {
+    let mut options = OpenOptions::new();
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, libc::O_NONBLOCK | libc::O_NOCTTY);
+    options
 }
 
 /// Returns a path without `..` where the folder before it is named.

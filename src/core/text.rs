@@ -1,5 +1,6 @@
 //! Small helpers for the text of messages: guesses at misspelt words, lists of words, reasons, and JSON.
 
+use crate::files::refuse_outside;
 use image::ImageError;
 use image::error::ImageFormatHint;
 use serde::Serialize;
@@ -86,21 +87,21 @@ fn cut(text: &str, (max_len, [first, last]): (usize, [usize; 2])) -> Cow<'_, str
 /// Characters beside controls that have no width, that turn the direction of those around them, or that end a line.
 const UNSEEN: [RangeInclusive<char>; 15] = [
     '\u{ad}'..='\u{ad}',
-    '\u{200b}'..='\u{200f}',
     '\u{34f}'..='\u{34f}',
     '\u{61c}'..='\u{61c}',
     '\u{115f}'..='\u{1160}',
     '\u{17b4}'..='\u{17b5}',
     '\u{180b}'..='\u{180f}',
+    '\u{200b}'..='\u{200f}',
     '\u{2028}'..='\u{202e}',
     '\u{2060}'..='\u{206f}',
     '\u{3164}'..='\u{3164}',
     '\u{fe00}'..='\u{fe0f}',
     '\u{feff}'..='\u{feff}',
-];
     '\u{ffa0}'..='\u{ffa0}',
     '\u{fff0}'..='\u{fffb}',
     '\u{e0000}'..='\u{e0fff}',
+];
 
 /// Tells whether a character is not seen, or does something to a terminal.
 pub fn is_unseen(letter: char) -> bool {
@@ -126,11 +127,10 @@ fn visible_but<'t>(text: &'t str, kept: &[char]) -> Cow<'t, str> {
     for letter in text[first..].chars() {
         if is_shown(letter) {
             shown.push(letter);
-        }
         } else {
             shown.extend(letter.escape_default());
+        }
     }
-    shown
     Cow::Owned(shown)
 }
 
@@ -141,6 +141,7 @@ pub fn shown(word: impl AsRef<OsStr>) -> String {
         shown += &visible(chunk.valid());
         shown.extend(chunk.invalid().iter().map(|byte| format!("\\x{byte:02x}")));
     }
+    shown
 }
 
 /// Returns the last boundary between two characters of a text that is not after byte `at`.
@@ -170,6 +171,7 @@ pub fn quoted(word: &OsStr) -> String {
 /// Returns the file that was probably meant by a path that leads nowhere: the name of a file in the same folder.
 pub fn nearest_file(path: &Path) -> Option<String> {
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    refuse_outside(folder).ok()?;
     let entries = folder.read_dir().ok()?.filter_map(Result::ok);
     let mut names: Vec<_> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
     // A folder lists its files in any order.
@@ -345,8 +347,6 @@ mod tests {
     }
 
     #[test]
-    fn articles_are_those_of_spoken_words() {
-    #[test]
     fn what_is_not_seen_is_shown_as_an_escape_and_shown_words_stay() {
         for (word, told) in [
             ("a\x1b[2Jb", "a\\u{1b}[2Jb"),
@@ -378,6 +378,8 @@ mod tests {
         assert_eq!(shown(OsStr::from_bytes(b"a\xff\xc3\xa4\xc3")), "a\\xff\u{e4}\\xc3");
     }
 
+    #[test]
+    fn articles_are_those_of_spoken_words() {
         for word in ["ellipsoid", "angle", "object", "image", "umbrella", "fplane", "hdr", "nx", "rgb"] {
             assert_eq!(article(word), "an", "{word}");
         }

@@ -265,3 +265,59 @@ fn a_picture_that_claims_to_be_huge_takes_no_memory() {
     assert_eq!(status, 2, "{said}");
     assert!(said.contains("it takes more than 1.0 GiB of memory"), "{said}");
 }
+
+/// A PNG with a colour profile of 100 MB, which is not read at all.
+#[test]
+fn a_colour_profile_takes_no_memory() {
+    let folder = textured();
+    let mut info = png::Info::with_size(2, 2);
+    (info.color_type, info.icc_profile) = (png::ColorType::Rgb, Some(vec![0; 100_000_000].into()));
+    let mut png = Vec::new();
+    let encoder = png::Encoder::with_info(&mut png, info).expect("an encoder");
+    let mut writer = encoder.write_header().expect("a header");
+    writer.write_image_data(&[9; 12]).expect("pixels");
+    writer.finish().expect("an end");
+    assert!(png.len() < 1_000_000);
+    fs::write(folder.path().join("picture"), png).expect("a picture");
+    let args = ["check", "textured.ray", "--max-memory", "64MiB"];
+    assert_eq!(outcome(tabray(&folder).args(args)), (0, Vec::new(), "textured.ray: no errors\n".to_owned()));
+}
+
+/// Each command keeps to the limit, and names it.
+#[test]
+fn every_command_that_reads_a_scene_keeps_to_the_limit_on_memory() {
+    let folder = folder();
+    let head = "camera eye { pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 }\nmaterial m { ambient 1 1 1 }\n";
+    let balls = "repeat i 400000 { sphere s { material m center 1 2 3 radius 1 } }\n";
+    fs::write(folder.path().join("balls.ray"), format!("{head}{balls}")).expect("a scene");
+    fs::write(folder.path().join("rays.txt"), "0 0 9 0 0 -1\n").expect("a file");
+    for command in [
+        "check",
+        "dump",
+        "plan",
+        "probe @ 1 1",
+        "verify",
+        "hits @ rays.txt",
+        "hard",
+        "choose @ --max-error 9",
+        "chart",
+        "bench",
+        "convert @ x.toml",
+        "render @ -o x.png",
+        "farm commands @ -o x.png --parts 2",
+    ] {
+        let line = if command.contains('@') {
+            command.replace('@', "balls.ray")
+        } else {
+            format!("{command} balls.ray")
+        };
+        let mut program = tabray(&folder);
+        let (status, _, said) = outcome(program.args(line.split(' ')).args(["--max-memory", "64MiB"]));
+        assert_eq!(status, 1, "{line}: {said}");
+        assert!(
+            said.contains("not enough memory") && said.contains("`--max-memory` is 64.0 MiB"),
+            "{line}: {said}"
+        );
+        assert_eq!(names_in(folder.path()), ["balls.ray", "rays.txt"], "{line}");
+    }
+}

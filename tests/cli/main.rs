@@ -34,4 +34,5 @@ mod stops;
 mod terminals;
 #[cfg(target_os = "linux")]
 mod trust;
+mod undecided;
 mod watch;

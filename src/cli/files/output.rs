@@ -11,6 +11,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, IsTerminal, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use tabray_core::files::refuse_outside;
 use tabray_core::output::deflate::Compression;
 use tabray_core::output::picture::Format;
 use tabray_core::scene::model::{Item, Model};
@@ -81,7 +82,7 @@ pub fn append_to_path(path: &Path, end: impl AsRef<OsStr>) -> PathBuf {
 
 /// Makes a folder and its parents, where they do not exist.
 pub fn create_folder(path: &Path) -> Result<(), Failure> {
-    fs::create_dir_all(path).map_err(|error| {
+    refuse_outside(path).and_then(|()| fs::create_dir_all(path)).map_err(|error| {
         let reason = match error.kind() {
             io::ErrorKind::AlreadyExists => "a file of this name exists".to_owned(),
             _ => text::reason(&error),

@@ -6,6 +6,7 @@ use std::path::Path;
 use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
+use tabray_core::files::refuse_outside;
 
 /// The time that a program may take to open the other end of a named pipe.
 const PATIENCE: Duration = Duration::from_secs(5);
@@ -15,6 +16,7 @@ const PATIENCE: Duration = Duration::from_secs(5);
 /// # Errors
 /// Those of the system, and an error where no program writes to the pipe.
 pub fn open_stream(path: &Path) -> io::Result<File> {
+    refuse_outside(path)?;
     patiently(path, "writes to", OpenOptions::new().read(true))
 }
 
@@ -23,6 +25,7 @@ pub fn open_stream(path: &Path) -> io::Result<File> {
 /// # Errors
 /// Those of the system, and an error where no program reads the pipe.
 pub fn open_sink(path: &Path) -> io::Result<File> {
+    refuse_outside(path)?;
     patiently(path, "reads", OpenOptions::new().write(true))
 }
 

@@ -46,10 +46,6 @@ pub struct Args {
     /// for --resume; the time includes reading the scene and writing the image
     #[arg(long, value_name = "TIME", value_parser = time)]
     time_limit: Option<Duration>,
-    /// Hold less of the image at a time to stay within this memory, such as 200MiB; if that is not enough, stop as
-    /// Ctrl-C does
-    #[arg(long, value_name = "SIZE", value_parser = size)]
-    max_memory: Option<ByteSize>,
 }
 
 /// A limit on a render.
@@ -106,6 +102,7 @@ impl Stop {
     /// Lets interruptions and limits only be noted from now on, because there is something to keep.
     pub fn begin(&self) {
         interrupt::set_action(InterruptAction::SetFlag);
+        memory::stops_at_limit();
         let _ = self.begun.set(());
     }
 
@@ -113,6 +110,7 @@ impl Stop {
     /// kept.
     pub fn begin_unkept(&self, said: &'static str) {
         interrupt::set_action(InterruptAction::Exit(said));
+        memory::stops_at_limit();
         let _ = self.begun.set(());
     }
 
@@ -136,7 +134,7 @@ impl Args {
     pub fn watch(&self) -> Result<Stop, Failure> {
         interrupt::catch(InterruptAction::Exit(NOT_FINISHED))?;
         let stop = Stop::default();
-        let &Self { time_limit, max_memory, .. } = self;
+        let (time_limit, max_memory) = (self.time_limit, memory::chosen());
         if time_limit.is_none() && max_memory.is_none() {
             return Ok(stop);
         }
@@ -176,12 +174,12 @@ impl Args {
     /// Returns the memory that the textures and the objects of a scene may take, in bytes, if there is a limit.
     pub fn memory_left(&self) -> Option<u64> {
         let now = memory::now().unwrap_or(0) + ASIDE;
-        self.max_memory.map(|limit| limit.as_u64().saturating_sub(now))
+        memory::chosen().map(|limit| limit.as_u64().saturating_sub(now))
     }
 
     /// Refuses an image that takes more memory at one time, in bytes, than the limit leaves.
     pub fn refuse_too_large(&self, bytes: usize) -> Result<(), Failure> {
-        match (self.max_memory, self.memory_left()) {
+        match (memory::chosen(), self.memory_left()) {
             (Some(limit), Some(left)) if left < bytes as u64 => Err(Failure::Usage(
                 format!("{limit} of memory is not enough for this image"),
                 Some(format!("it needs about {} more", ByteSize(bytes as u64 - left))),
@@ -192,7 +190,7 @@ impl Args {
 
     /// Returns how many pixels of an image of this width may be in memory at one time.
     pub fn band(&self, width: usize) -> Result<usize, Failure> {
-        let Some(limit) = self.max_memory else { return Ok(BAND) };
+        let Some(limit) = memory::chosen() else { return Ok(BAND) };
         let Some(now) = memory::now() else {
             let message = "this system does not report how much memory the program uses";
             return Err(Failure::Usage(message.to_owned(), Some("leave out `--max-memory`".to_owned())));
@@ -215,8 +213,4 @@ impl Args {
 pub fn time(text: &str) -> Result<Duration, String> {
     let time = humantime::parse_duration(text).ok().filter(|time| !time.is_zero());
     time.ok_or_else(|| "give a time above 0 and its unit, as `90s`, `5m` or `1.5h`".to_owned())
-}
-
-fn size(text: &str) -> Result<ByteSize, String> {
-    text.parse().map_err(|_| "give a size as `200MiB` or `1.5GiB`".to_owned())
 }

@@ -6,8 +6,8 @@ use crate::process::failure::{self, Failure};
 use bytesize::ByteSize;
 use std::fs;
 use std::io::{self, Write};
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, OnceLock};
 use std::thread;
 use std::time::Duration;
 use tabray_core::memory::may_fail;
@@ -18,14 +18,43 @@ const KEPT: usize = 1 << 20;
 
 static RESERVE: Mutex<Vec<u8>> = Mutex::new(Vec::new());
 
+/// The least limit on allocations, in bytes: less would not even do for messages. A render keeps to a smaller limit by
+/// itself.
+const LEAST: u64 = 64 << 20;
+
+/// The limit that was chosen, if it was, and the one that holds.
+static LIMIT: OnceLock<(Option<ByteSize>, ByteSize)> = OnceLock::new();
+
 static IS_ENDING: AtomicBool = AtomicBool::new(false);
+
+/// Limits the memory that the program allocates from here on: to half of the machine's, unless another limit is chosen.
+pub fn limit(chosen: Option<ByteSize>) {
+    let half = || Some(ByteSize(in_kib("/proc/meminfo", "MemTotal:")? / 2));
+    if let Some(limit) = chosen.or_else(half) {
+        LIMIT.get_or_init(|| (chosen, limit));
+        heap::limit(usize::try_from(limit.as_u64().max(LEAST)).unwrap_or(usize::MAX));
+    }
+}
+
+/// Returns the limit that was chosen.
+pub fn chosen() -> Option<ByteSize> {
+    LIMIT.get().and_then(|(chosen, _)| *chosen)
+}
+
+/// Lets a render take more than the limit that was chosen for a moment: it stops soon, and keeps what is done.
+pub fn stops_at_limit() {
+    if chosen().is_some() {
+        heap::limit(usize::MAX);
+    }
+}
 
 /// Returns an error if the system would not provide about `bytes` bytes.
 pub fn refuse_too_large(bytes: usize, what: &str) -> Result<(), Failure> {
     if heap::has_room(bytes) {
         return Ok(());
     }
-    Err(Failure::Failed(format!("not enough memory for {what}: it takes about {}", ByteSize(bytes as u64))))
+    let bytes = ByteSize(bytes as u64);
+    Err(Failure::Failed(format!("not enough memory for {what}: it takes about {bytes}{}", beyond_limit())))
 }
 
 /// Ends the program with a message, from now on, if the system refuses it memory.
@@ -48,9 +77,20 @@ fn end(bytes: usize) {
         *reserve = Vec::new();
     }
     let scene = crash::scene().map_or(String::new(), |scene| format!(" for `{scene}`"));
+    let is_full = heap::is_full(bytes);
+    // The message takes memory, too.
+    heap::limit(usize::MAX);
     let bytes = ByteSize(bytes as u64);
-    let message = format!("not enough memory{scene}: the system refused {bytes} more");
+    let message = match is_full {
+        true => format!("not enough memory{scene}: it takes {bytes} more{}", beyond_limit()),
+        false => format!("not enough memory{scene}: the system refused {bytes} more"),
+    };
     failure::end_keeping_bar(&Failure::Failed(message))
+}
+
+/// Says what the limit is.
+fn beyond_limit() -> String {
+    LIMIT.get().map_or(String::new(), |(_, limit)| format!(", and `--max-memory` is {limit}"))
 }
 
 /// Returns the memory that the program uses now, in bytes.
@@ -66,7 +106,12 @@ pub fn peak() -> Option<u64> {
 }
 
 fn status(name: &str) -> Option<u64> {
-    let status = fs::read_to_string("/proc/self/status").ok()?;
+    in_kib("/proc/self/status", name)
+}
+
+/// Returns a size that a file of the system's tells in KiB, in bytes.
+fn in_kib(file: &str, name: &str) -> Option<u64> {
+    let status = fs::read_to_string(file).ok()?;
     let size = status.lines().find_map(|line| line.strip_prefix(name))?;
     Some(size.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? << 10)
 }

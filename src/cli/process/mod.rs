@@ -1,6 +1,7 @@
 //! What all commands share as a process: arguments, messages, interrupts, limits, exit statuses.
 
 pub mod arguments;
+pub mod bounds;
 pub mod color;
 pub mod crash;
 pub mod failure;

@@ -7,6 +7,7 @@ use std::mem;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
+use tabray_core::files::refuse_outside;
 use tempfile::NamedTempFile;
 
 /// The paths of all files with hidden names, including files that no longer exist.
@@ -39,6 +40,7 @@ pub enum Temporary {
 impl Temporary {
     /// Makes a temporary file, with the permissions of any new file.
     pub fn new(folder: &Path) -> io::Result<Self> {
+        refuse_outside(folder)?;
         #[cfg(target_os = "linux")]
         if let Some(file) = unnamed::open(folder) {
             return Ok(Self::Unnamed(file));

@@ -64,6 +64,12 @@ const OTHERS: [(&[u8], usize, &str); 7] = [
     (b"%PDF", 0, "a PDF"),
 ];
 
+/// Returns the greatest length of a row of a PNG that begins so, in bytes; `None` for another image.
+fn row_of_png(head: &[u8]) -> Option<u64> {
+    let width = head.strip_prefix(b"\x89PNG\r\n\x1a\n")?.get(8..12)?;
+    Some(8 * u64::from(u32::from_be_bytes(width.try_into().ok()?)))
+}
+
 /// Textures are equal if their paths are, and both cut surfaces out or none does.
 impl PartialEq for Texture {
     fn eq(&self, other: &Self) -> bool {
@@ -139,13 +145,16 @@ impl Texture {
         if length > most {
             return Err(too_much());
         }
-        let mut limits = Limits::no_limits();
-        limits.max_alloc = Some(most.saturating_add(ASIDE));
         let (mut of_file, mut held) = (file.map(BufReader::new), Cursor::new(contents));
         let bytes: &mut dyn ImageBytes = match &mut of_file {
             Some(file) => file,
             None => &mut held,
         };
+        // A colour profile, of which nothing is used, may be a thousand times as long as a PNG tells it.
+        let row = row_of_png(bytes.fill_buf().map_err(|error| text::reason(&error))?);
+        let beside = row.map_or(most, |row| most.min(row + length));
+        let mut limits = Limits::no_limits();
+        limits.max_alloc = Some(beside.saturating_add(ASIDE));
         let reader = ImageReader::new(bytes).with_guessed_format();
         let mut reader = reader.map_err(|error| text::reason(&error))?;
         reader.limits(limits);

@@ -87,6 +87,9 @@ impl<'t> Report<'t> {
 
     /// Adds a fault at its position in the text's order, or counts it where enough others come before it.
     pub fn add(&mut self, mut fault: Fault) {
+        if self.conceal(&mut fault) && self.faults.iter().any(|told| told.is_like(&fault)) {
+            return;
+        }
         self.notes.counts[fault.severity as usize] += 1;
         fault.tidy(&self.text);
         if self.is_again(&fault) {
@@ -100,8 +103,35 @@ impl<'t> Report<'t> {
         }
     }
 
+    /// Replaces a fault in a part of which nothing is shown; tells whether it is in one.
+    fn conceal(&self, fault: &mut Fault) -> bool {
+        let part_at = |place: &Place| {
+            let place = place.as_ref()?;
+            let after = self.notes.parts.partition_point(|part| part.range.start <= place.start);
+            self.notes.parts.get(after.checked_sub(1)?).filter(|part| part.included_at.is_some())
+        };
+        fault.also.retain(|(place, _)| part_at(place).is_none());
+        let mut concealed = false;
+        while let Some(part) = part_at(&fault.place) {
+            concealed = true;
+            let what = match fault.severity {
+                Severity::Error => "is not a scene",
+                Severity::Warning => "may not mean what was intended",
+            };
+            *fault = Fault {
+                severity: fault.severity,
+                ..Fault::error(part.included_at.clone(), format!("`{}` {what}", part.name))
+                    .help("what is wrong there is told of files whose names end in .ray or .toml")
+            };
+        }
+        concealed
+    }
+
     /// Adds a fault that stands for others like it.
     pub(super) fn add_gathered(&mut self, mut fault: Fault) {
+        if self.conceal(&mut fault) {
+            return self.add(fault);
+        }
         self.notes.counts[fault.severity as usize] += 1 + fault.similar_faults.0;
         fault.tidy(&self.text);
         self.insert(fault);

@@ -62,14 +62,15 @@ impl<'t> Sources<'t> {
         if !text.contains("include") && options.sets.is_empty() {
             return sources;
         }
-        sources.parts.push(TextPart { name: name.to_owned(), range: sources.own.clone() });
+        sources.parts.push(TextPart { name: name.to_owned(), range: sources.own.clone(), included_at: None });
         let own = folder.join(Path::new(name).file_name().unwrap_or_default());
         let mut readings = vec![OpenSource { path: own, includer: None }];
         let mut room = room.min(LARGEST).saturating_sub(text.len() as u64);
         let mut at = 0;
         while at < readings.len() {
             for (place, file) in included(syntax, &sources.text, sources.parts[at].range.clone()) {
-                let read = sources.include(&mut readings, at, &file, (syntax, options.open), &mut room);
+                let word = (place.clone(), &*file);
+                let read = sources.include(&mut readings, at, word, (syntax, options.open), &mut room);
                 let read = read.map_err(|(message, help)| {
                     let fault = Fault::error(Some(place.clone()), message);
                     Fault { help, ..fault }
@@ -85,7 +86,7 @@ impl<'t> Sources<'t> {
     /// Adds the options to a text that includes no file.
     pub fn alone(name: &str, text: &'t str, options: ReadOptions<'_>) -> Self {
         let mut sources = Self::of(text);
-        sources.parts.push(TextPart { name: name.to_owned(), range: sources.own.clone() });
+        sources.parts.push(TextPart { name: name.to_owned(), range: sources.own.clone(), included_at: None });
         sources.add_options(options);
         sources
     }
@@ -150,7 +151,7 @@ impl<'t> Sources<'t> {
         all.push('\n');
         let range = all.len()..all.len() + text.len();
         *all += text;
-        self.parts.push(TextPart { name, range: range.clone() });
+        self.parts.push(TextPart { name, range: range.clone(), included_at: None });
         range
     }
 
@@ -159,7 +160,7 @@ impl<'t> Sources<'t> {
         &mut self,
         readings: &mut Vec<OpenSource>,
         includer: usize,
-        file: &str,
+        (place, file): (Range<usize>, &str),
         (syntax, open): (Syntax, &[(PathBuf, Arc<str>)]),
         room: &mut u64,
     ) -> Result<usize, Refused> {
@@ -183,6 +184,12 @@ impl<'t> Sources<'t> {
         };
         let name = text::shown(Path::new(&self.parts[includer].name).with_file_name(file));
         self.add(name, text.strip_prefix('\u{feff}').unwrap_or(text));
+        let real = path.canonicalize().unwrap_or_else(|_| path.clone());
+        if Syntax::of_name(&real).is_none()
+            && let Some(part) = self.parts.last_mut()
+        {
+            part.included_at = Some(place);
+        }
         readings.push(OpenSource { path, includer: Some(includer) });
         Ok(self.parts.len() - 1)
     }

@@ -1,0 +1,38 @@
+//! `--root` and `--max-memory`: what a scene may reach, and how much memory it may take, for every command.
+
+use super::failure::Failure;
+use super::memory;
+use bytesize::ByteSize;
+use std::path::PathBuf;
+use tabray_core::{files, text};
+
+#[derive(clap::Args)]
+#[group(skip)]
+#[command(next_help_heading = "Limits")]
+pub struct Args {
+    /// Read and write nothing outside of this folder, by real path: no scene, included file, texture, mesh or image,
+    /// through no link
+    #[arg(long, global = true, value_name = "DIR")]
+    root: Option<PathBuf>,
+    /// Take at most this memory, such as 200MiB, and refuse what takes more: a text, its model, textures, meshes; by
+    /// default half of the machine's memory. A render holds less of the image at a time to stay within it, and if that is
+    /// not enough, it stops as Ctrl-C does
+    #[arg(long, global = true, value_name = "SIZE", value_parser = size)]
+    max_memory: Option<ByteSize>,
+}
+
+impl Args {
+    /// Keeps to the bounds from here on.
+    pub fn keep(&self) -> Result<(), Failure> {
+        memory::limit(self.max_memory);
+        let Some(root) = &self.root else { return Ok(()) };
+        files::confine(root).map_err(|error| {
+            let reason = text::reason(&error);
+            Failure::Usage(format!("cannot keep to the folder `{}`: {reason}", text::shown(root)), None)
+        })
+    }
+}
+
+fn size(text: &str) -> Result<ByteSize, String> {
+    text.parse().map_err(|_| "give a size as `200MiB` or `1.5GiB`".to_owned())
+}
