@@ -13,15 +13,12 @@ use tabray_core::text;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::reader::{self, Loaded, ReadOptions, Report};
 use tabray_lang::registry::Registry;
-use tabray_lang::syntax::Syntax;
 
 /// The maximum size of a scene, in bytes: far more than written scenes have, and far less than memory holds.
 const LARGEST: u64 = 1 << 30;
 
-/// The memory for making a model of many objects of few words, in bytes per byte of a text in the notes' syntax. In TOML
-/// it is more: all of the text is parsed before any of it is checked.
+/// The memory for making a model of many objects of few words, in bytes per byte of its text.
 const MODEL: usize = 8;
-const MODEL_IN_TOML: usize = 48;
 
 /// Tells whether this path stands for standard input.
 pub fn is_standard(path: &Path) -> bool {
@@ -69,8 +66,7 @@ impl Source {
         let (name, bytes) = read(path)?;
         let source =
             Self { name, folder: path.parent().unwrap_or(path).to_owned(), bytes, sets: sets.clone() };
-        let model = if source.syntax() == Syntax::Toml { MODEL_IN_TOML } else { MODEL };
-        let size = model.saturating_mul(source.bytes.len());
+        let size = MODEL.saturating_mul(source.bytes.len());
         memory::refuse_too_large(size, &format!("the model of `{}`", source.name))?;
         Ok(source)
     }

@@ -37,6 +37,20 @@ pub fn model(
             parsed.chunks(TOGETHER).for_each(|parsed| check.entities(&parsed.iter().collect::<Vec<_>>()));
             time += now() - start;
         }
+        Source::Stream(stream) => {
+            let mut entities = stream.next();
+            while !entities.is_empty() {
+                let work = || {
+                    let start = now();
+                    entities
+                        .chunks(TOGETHER)
+                        .for_each(|some| check.entities(&some.iter().collect::<Vec<_>>()));
+                    time += now() - start;
+                };
+                let ((), next) = parallel::join(true, work, || stream.next());
+                entities = next;
+            }
+        }
         Source::Text(_, parser) => {
             // While some are checked, the next ones are parsed.
             let [mut memory, mut other] = [vec![None; TOGETHER], vec![None; TOGETHER]];

@@ -4,6 +4,7 @@ use super::attributes::{AttributeChecker, whole};
 use super::fault::{Fault, Place, Places};
 use super::guesses::find_attribute;
 use super::levels;
+use super::listed::Stream;
 use super::missing::Missing;
 use super::names::{Names, placeholder};
 use super::notes;
@@ -38,6 +39,9 @@ use tabray_core::world::texture::Texture;
 pub enum Source<'s, 'a> {
     /// A text in the notes' syntax, and its parser.
     Text(&'a str, Box<Parser<'a, 's>>),
+    /// A long text in TOML. Of its entities, nothing is known later: if there is anything to say of them, the text is read
+    /// again as a list.
+    Stream(Box<Stream<'a, 's, 'a>>),
     /// Entities in their order.
     List(&'s [Parsed<'a>]),
 }
@@ -56,6 +60,7 @@ impl<'a> Source<'_, 'a> {
                 parser.rounds.sets.put(&mut parsed, registry, None);
                 Some(Cow::Owned(parsed))
             }
+            Self::Stream(_) => None,
             Self::List(parsed) => parsed.get(order).map(Cow::Borrowed),
         }
     }

@@ -1,20 +1,26 @@
 //! What a scene in TOML says, in the order of its text: entities, and numbers, files and rounds, from which more entities
 //! follow.
 
-use super::fault::Severity;
+use super::fault::{Place, Severity};
 use super::guesses::Tables;
 use super::parsed::{Parsed, Word};
 use super::report::Report;
 use super::rounds::Rounds;
 use super::sources::Sources;
+use super::toml::{self, IndependentParts};
 use crate::registry::Registry;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
+use std::mem::take;
 use std::ops::Range;
+use tabray_core::parallel;
 
 /// How much more memory an entity takes than one in the notes' syntax: all of them are in memory before any is checked.
 const WEIGHT: usize = 8;
 
-/// A part of a scene in TOML.
+/// The number of parts that are parsed at one time.
+const TOGETHER: usize = 16;
+
+/// What a scene in TOML says.
 pub enum Statement<'a> {
     Entity(Parsed<'a>),
     Let { name: Word<'a>, value: Word<'a> },
@@ -34,6 +40,14 @@ impl Statement<'_> {
         place.as_ref().map(|place| place.start)
     }
 
+    /// Returns the name of a number, and its place.
+    pub fn number(&self) -> Option<(String, Place)> {
+        match self {
+            Self::Let { name, .. } => Some((name.text.to_string(), name.place.clone())),
+            _ => None,
+        }
+    }
+
     /// Returns the length of its text, in bytes, without empty space between its parts.
     fn len(&self) -> usize {
         match self {
@@ -45,7 +59,7 @@ impl Statement<'_> {
 }
 
 /// Parses a part of a text.
-pub type Parse<'p, 'a, 't> = &'p dyn Fn(Range<usize>, &mut Report<'t>) -> Vec<Statement<'a>>;
+pub type Parse<'p, 'a, 't> = &'p (dyn Fn(Range<usize>, &mut Report<'t>) -> Vec<Statement<'a>> + Sync);
 
 /// Finds the entities that follow from what a scene says.
 pub struct Lister<'a, 'r, 't> {
@@ -67,33 +81,67 @@ pub fn entities<'a, 't>(
 ) -> Vec<Parsed<'a>> {
     let sets = sources.sets(report);
     let all = parse(sources.own.clone(), report);
-    let mut names = HashMap::new();
-    for statement in &all {
-        if let Statement::Let { name, .. } = statement {
-            names.insert(name.text.to_string(), name.place.clone());
-        }
-    }
-    let mut lister = Lister {
-        registry,
-        sources,
-        parse,
-        report,
-        rounds: Rounds::of_names(names, sets),
-        tables: Tables::default(),
-        entities: Vec::with_capacity(all.len()),
-    };
-    for statement in all {
-        match statement {
-            // Most entities are where they will stay.
-            Statement::Entity(entity) => lister.entity(entity),
-            statement => lister.statement(&statement),
-        }
-    }
+    let names = all.iter().filter_map(Statement::number).collect();
+    let rounds = Rounds::of_names(names, sets);
+    let entities = Vec::with_capacity(all.len());
+    let mut lister = Lister { registry, sources, parse, report, rounds, tables: Tables::default(), entities };
+    lister.statements(all);
     lister.rounds.sets.report_unmatched(lister.report);
     lister.entities
 }
 
+/// The entities of a long scene, some thousand at a time: while some are checked, the next ones are parsed, so that only
+/// these are in memory.
+pub struct Stream<'a, 'r, 't> {
+    lister: Lister<'a, 'r, 't>,
+    parts: IndependentParts,
+    /// The number of parts that were parsed.
+    parsed: usize,
+}
+
+impl<'a, 'r, 't> Stream<'a, 'r, 't> {
+    /// Begins with the parts of a scene.
+    pub fn new(
+        registry: &'r Registry,
+        sources: &'a Sources<'_>,
+        parse: Parse<'r, 'a, 't>,
+        report: &'r mut Report<'t>,
+        mut parts: IndependentParts,
+    ) -> Self {
+        let rounds = Rounds::of_names(take(&mut parts.numbers), sources.sets(report));
+        let (tables, entities) = (Tables::default(), Vec::new());
+        let lister = Lister { registry, sources, parse, report, rounds, tables, entities };
+        Self { lister, parts, parsed: 0 }
+    }
+
+    /// Returns the next entities; none after the last ones.
+    pub fn next(&mut self) -> Vec<Parsed<'a>> {
+        let Self { lister, parts: IndependentParts { ranges, .. }, parsed } = self;
+        while lister.entities.is_empty() && *parsed < ranges.len() {
+            let some = &ranges[*parsed..ranges.len().min(*parsed + TOGETHER)];
+            let text = &lister.sources.text[..lister.sources.own.end];
+            let statements = parallel::map(some.len(), |part| toml::part(text, some[part].clone()));
+            *parsed += some.len();
+            statements.into_iter().for_each(|statements| lister.statements(statements));
+            if *parsed == ranges.len() {
+                lister.rounds.sets.report_unmatched(lister.report);
+            }
+        }
+        take(&mut lister.entities)
+    }
+}
+
 impl<'a> Lister<'a, '_, '_> {
+    fn statements(&mut self, statements: Vec<Statement<'a>>) {
+        for statement in statements {
+            match statement {
+                // Most entities are where they will stay.
+                Statement::Entity(entity) => self.entity(entity),
+                statement => self.statement(&statement),
+            }
+        }
+    }
+
     fn entity(&mut self, mut entity: Parsed<'a>) {
         let table = self.tables.named(self.registry, &entity.kind.text).map(|table| &self.tables[table]);
         self.rounds.entity(&mut entity, table, self.registry, self.report);

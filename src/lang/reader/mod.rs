@@ -55,12 +55,16 @@ use crate::syntax::Syntax;
 use build::Checked;
 use check::Source;
 use encoding::decode;
+use listed::Stream;
 use sources::Sources;
 use std::ops::Range;
 use std::path::Path;
 use std::time::Duration;
 use tabray_core::scene::model::Model;
 use tabray_core::world::accuracy::Accuracy;
+
+/// The memory for making a model, in bytes per byte of its text.
+const WEIGHT: u64 = 8;
 
 /// The faults of one scene.
 pub type Report = report::Report<'static>;
@@ -172,9 +176,7 @@ fn read_text(
     syntax: Syntax,
     options: ReadOptions<'_>,
 ) -> Result<Loaded, Report> {
-    // The memory for making a model, in bytes per byte of its text.
-    let weight = if syntax == Syntax::Toml { 48 } else { 8 };
-    let room = options.memory.map_or(u64::MAX, |memory| memory / weight);
+    let room = options.memory.map_or(u64::MAX, |memory| memory / WEIGHT);
     let sources = Sources::read((name, folder), text, syntax, options, room);
     let begin = || sources.report(name, syntax);
     let checked = |report: &mut report::Report<'_>, mut source: Source<'_, '_>| {
@@ -185,6 +187,16 @@ fn read_text(
         let parse = |part: Range<usize>, report: &mut report::Report<'_>| {
             toml::parse(registry, &sources.text[..part.end], part.start, report)
         };
+        // A long and sound text is parsed and checked at one go.
+        if let Some(parts) = toml::independent_parts(&sources.text[..sources.own.end]) {
+            let mut errors = report.clone();
+            let stream = Stream::new(registry, &sources, &parse, &mut errors, parts);
+            let all = checked(&mut report, Source::Stream(Box::new(stream)));
+            if all.0.is_some() && errors.faults().is_empty() && report.faults().is_empty() {
+                return finish(all, registry, report, options);
+            }
+            report = begin();
+        }
         return read_list(registry, folder, &sources, &parse, report, options);
     }
     // A sound text is parsed and checked at one go.

@@ -1,13 +1,14 @@
 //! Parses scenes in TOML: long ones in parts at the same time, and those with syntax errors in pieces.
 
-use super::fault::{Fault, Severity};
+use super::fault::{Fault, Place, Severity};
 use super::listed::Statement;
 use super::report::Report;
 use super::toml_document::Reader;
 use super::toml_faults::{LINE, is_duplicate, is_title, long_line, parts, pieces};
 use crate::registry::Registry;
 use crate::syntax::Syntax;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::ops::Range;
 use std::sync::OnceLock;
 use tabray_core::parallel;
@@ -104,6 +105,61 @@ fn in_parts(text: &str, start: usize) -> Outcome<'_> {
     }
 }
 
+/// The parts of a long text that can be parsed one after the other.
+pub struct IndependentParts {
+    /// Their ranges of the text, in bytes.
+    pub ranges: Vec<Range<usize>>,
+    /// The numbers that they define, with their places.
+    pub numbers: HashMap<String, Place>,
+}
+
+/// Finds the parts of a text, if it is long, all of them have the form of a scene, and none depends
+/// on another.
+pub fn independent_parts(text: &str) -> Option<IndependentParts> {
+    let ranges = if long_line(text).is_none() { parts(text) } else { Vec::new() };
+    if ranges.len() <= 1 {
+        return None;
+    }
+    // Names that have the same hash by chance are taken for the same, which costs memory and nothing else.
+    let named = |part: usize| {
+        let Outcome::Statements(statements) = one(text, ranges[part].clone(), 0) else { return None };
+        let numbers: Vec<_> = statements.iter().filter_map(Statement::number).collect();
+        let hashes = statements.iter().filter_map(name).map(|name| {
+            let mut hasher = DefaultHasher::new();
+            name.hash(&mut hasher);
+            hasher.finish()
+        });
+        Some((hashes.collect::<HashSet<u64>>(), numbers))
+    };
+    let found: Vec<_> = parallel::map(ranges.len(), named).into_iter().collect::<Option<_>>()?;
+    let (mut known, mut numbers) = (HashSet::new(), HashMap::new());
+    for (hashes, of_part) in found {
+        if hashes.into_iter().any(|hash| !known.insert(hash)) {
+            return None;
+        }
+        numbers.extend(of_part);
+    }
+    Some(IndependentParts { ranges, numbers })
+}
+
+/// Parses an independent part of a text.
+pub fn part(text: &str, part: Range<usize>) -> Vec<Statement<'_>> {
+    match one(text, part, 0) {
+        Outcome::Statements(statements) => statements,
+        _ => Vec::new(),
+    }
+}
+
+/// Returns the type and the name of what other parts may name, too. Values by name and `include` stand before the first
+/// title.
+fn name<'s>(statement: &'s Statement<'_>) -> Option<(&'s str, &'s str)> {
+    match statement {
+        Statement::Entity(entity) => Some((entity.kind.text.as_ref(), entity.name.text.as_ref())),
+        Statement::Repeat { name, .. } => Some(("repeat", name.text.as_ref())),
+        Statement::Let { .. } | Statement::Include { .. } => None,
+    }
+}
+
 /// Parses one part of a text.
 fn one(text: &str, part: Range<usize>, start: usize) -> Outcome<'_> {
     let (at, text) = (part.start, &text[part]);
@@ -131,13 +187,7 @@ fn one(text: &str, part: Range<usize>, start: usize) -> Outcome<'_> {
 fn depend_on_each_other(parts: &[Vec<Statement<'_>>]) -> bool {
     let mut known = HashMap::new();
     for (index, part) in parts.iter().enumerate() {
-        for statement in part {
-            let name = match statement {
-                Statement::Entity(entity) => (entity.kind.text.as_ref(), entity.name.text.as_ref()),
-                Statement::Repeat { name, .. } => ("repeat", name.text.as_ref()),
-                // Values by name and `include` stand before the first title.
-                Statement::Let { .. } | Statement::Include { .. } => continue,
-            };
+        for name in part.iter().filter_map(name) {
             if *known.entry(name).or_insert(index) != index {
                 return true;
             }

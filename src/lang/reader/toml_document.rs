@@ -276,19 +276,28 @@ impl<'a, 'r, 't> Reader<'a, 'r, 't> {
         }
     }
 
+    /// Returns a number without memory of its own, where the text has it as it is.
+    fn as_written(&self, number: &str, place: &Range<usize>) -> Cow<'a, str> {
+        let text: &'a str = self.text;
+        match text.get(place.clone()) {
+            Some(written) if written == number => Cow::Borrowed(written),
+            _ => Cow::Owned(number.to_owned()),
+        }
+    }
+
     /// Reads the values of an attribute; returns whether they have the form of values.
     fn values(&mut self, value: &Value<'a>, entity: &mut Parsed<'a>) -> bool {
         let place = value.span();
         match value.get_ref() {
             DeValue::String(text) => entity.value(self.word(text.clone(), Form::Text, place)),
             DeValue::Float(number) => {
-                entity.value(self.word(number.as_str().to_owned(), Form::Number, place))
+                entity.value(self.word(self.as_written(number.as_str(), &place), Form::Number, place))
             }
             DeValue::Integer(number) => {
                 let digits = match number.radix() {
-                    10 => number.as_str().to_owned(),
+                    10 => self.as_written(number.as_str(), &place),
                     radix => i64::from_str_radix(number.as_str(), radix)
-                        .map_or_else(|_| self.text[place.clone()].to_owned(), |number| number.to_string()),
+                        .map_or_else(|_| self.text[place.clone()].into(), |number| number.to_string().into()),
                 };
                 entity.value(self.word(digits, Form::Number, place));
             }
