@@ -1,14 +1,25 @@
-//! `tabray farm`: writes scripts with which a job scheduler renders the parts of an image.
+//! `tabray farm`: what a job scheduler takes to render an image in parts, or the frames of a film.
 
-use crate::files::output;
+mod commands;
+mod kubernetes;
+mod slurm;
+
+use crate::command;
 use crate::options::number::whole;
-use crate::process::failure::{self, Failure};
+use crate::process::failure::{Failure, print};
+use crate::process::messages;
+use crate::render;
+use clap::FromArgMatches;
 use std::env;
-use std::fmt::Write;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
+use tabray_core::output::full_range::FullRange;
 use tabray_core::text;
+use tabray_lang::registry::Registry;
 
-/// Write scripts that render the parts of an image on a cluster
+/// Write what renders the parts of an image, or the frames of a film, on a cluster
+///
+/// The options and the scene are checked first, as `render` does. Nothing is submitted.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
@@ -18,26 +29,57 @@ pub struct Args {
 
 const EXAMPLES: &str = "\
 Examples:
-  tabray farm slurm hall.ray -o big.png --parts 64 -- --samples 256";
+  tabray farm slurm hall.ray -o big.png --parts 64 -- --samples 256
+  tabray farm slurm ball.ray -o film.png --parts 24 -- --frames 1..240 --sweep ball.radius=1..2
+  tabray farm commands hall.ray -o big.png --parts 64 > parts.txt
+  tabray farm kubernetes hall.ray -o big.png --parts 64 > big.yaml";
 
 #[derive(clap::Subcommand)]
 enum Engine {
-    Slurm(Slurm),
+    /// Write the scripts of a Slurm job array into the folder IMAGE.slurm, and print the command that submits them
+    ///
+    /// Each task of the array renders a part, and a job that depends on all of them puts the image or the film together.
+    #[command(after_long_help = EXAMPLES)]
+    Slurm(Order),
+    /// Print the commands that render the parts, one a line, in any order or at the same time
+    ///
+    /// GNU parallel, `xargs`, OpenCue's `cuecmd`, Flamenco's scripts and arrays of AWS Batch take them. The command that
+    /// puts the image or the film together afterwards is printed to standard error.
+    #[command(after_long_help = EXAMPLES)]
+    Commands {
+        #[command(flatten)]
+        order: Order,
+        /// Run each command by `podman` in this container image, with the working directory as /scenes
+        #[arg(long, value_name = "NAME")]
+        container: Option<String>,
+    },
+    /// Print the manifests of two Kubernetes jobs: one renders the parts, and one puts the image or the film together
+    ///
+    /// The second job is suspended until the first one is complete; the commands are printed to standard error. Paths are
+    /// relative to the volume with the scene, which all nodes mount.
+    #[command(after_long_help = EXAMPLES)]
+    Kubernetes {
+        #[command(flatten)]
+        order: Order,
+        /// The container image; docs/cluster/Containerfile makes one
+        #[arg(long, value_name = "NAME", default_value = concat!("tabray:", env!("CARGO_PKG_VERSION")))]
+        container: String,
+        /// The claim of the volume with the scene
+        #[arg(long, value_name = "NAME", default_value = "scenes")]
+        claim: String,
+    },
 }
 
-/// Write the scripts of a Slurm job array into the folder IMAGE.slurm, and print the command that submits them
-///
-/// Each task of the array renders a part, and a job that depends on all of them puts the image together. Nothing is
-/// submitted.
+/// What is to be rendered.
 #[derive(clap::Args)]
-#[command(after_long_help = EXAMPLES)]
-struct Slurm {
+#[group(skip)]
+struct Order {
     /// The scene
     scene: PathBuf,
-    /// The image, in a folder that all nodes share
+    /// The image, or the name of the frames, in a folder that all nodes share
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// The number of parts
+    /// The number of parts; with `--frames`, each has every Nth frame
     #[arg(long, value_name = "N", value_parser = whole::<u32>(1..=100_000))]
     parts: u32,
     /// Options of `render` for each part
@@ -45,51 +87,116 @@ struct Slurm {
     options: Vec<String>,
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
-    let Engine::Slurm(Slurm { scene, output: image, parts, options }) = &args.engine;
-    let (program, image_word) = (quoted(&env::current_exe()?), quoted(image));
-    let folder = output::append_to_path(image, ".slurm");
-    let [render, merge] = ["render.sbatch", "merge.sbatch"].map(|name| folder.join(name));
-    let mut words = String::new();
-    for option in options {
-        let _ = write!(words, " {}", text::quoted(option.as_ref()));
-    }
-    let name = image.file_stem().unwrap_or_default();
-    let log = |name: &str| quoted(&folder.join(name));
-    let (label, scene) = (text::quoted(name), quoted(scene));
-    let render_text = format!(
-        "#!/bin/bash
-#SBATCH --job-name={label}
-#SBATCH --array=1-{parts}
-#SBATCH --requeue
-#SBATCH --open-mode=append
-#SBATCH --output={}
-#SBATCH --signal=B:INT@60
-# A part whose node fails is queued again, and --resume renders what is left of it. A minute before the time limit, the
-# program is interrupted and keeps what is done.
-echo \"part $SLURM_ARRAY_TASK_ID of {parts}, on ${{SLURMD_NODENAME:-$(hostname)}}, start ${{SLURM_RESTART_COUNT:-0}}\" >&2
-exec {program} render {scene} -o {image_word} --part \"$SLURM_ARRAY_TASK_ID/{parts}\" --resume \\
-    --threads \"${{SLURM_CPUS_PER_TASK:-1}}\"{words}
-",
-        log("part-%a.log")
-    );
-    let merge_text = format!(
-        "#!/bin/bash
-#SBATCH --job-name={label}
-#SBATCH --requeue
-#SBATCH --open-mode=append
-#SBATCH --output={}
-exec {program} merge {image_word} --threads \"${{SLURM_CPUS_PER_TASK:-1}}\"
-",
-        log("merge.log")
-    );
-    output::create_folder(&folder)?;
-    output::replace(&render, render_text.as_bytes())?;
-    output::replace(&merge, merge_text.as_bytes())?;
-    let [render, merge] = [&render, &merge].map(|path| quoted(path));
-    failure::print(&format!("sbatch --dependency=afterok:$(sbatch --parsable {render}) {merge}\n"))
+/// An order that was checked, in words for a shell.
+struct Job {
+    scene: String,
+    image: String,
+    /// The image, or the name of the frames.
+    path: PathBuf,
+    parts: u32,
+    /// The options of each part, each after a space.
+    options: String,
+    /// The command that puts the parts together, without the program.
+    last: String,
 }
 
-fn quoted(path: &Path) -> String {
-    text::quoted(path.as_os_str())
+pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
+    match &args.engine {
+        Engine::Slurm(order) => slurm::write(&order.checked(registry)?, &program()?),
+        Engine::Commands { order, container } => {
+            let job = order.checked(registry)?;
+            let program = match container {
+                Some(name) => {
+                    job.refuse_absolute("the working directory")?;
+                    commands::in_container(name)
+                }
+                None => program()?,
+            };
+            print(&commands::text(&job, &program))?;
+            messages::note(&format!("when all of them have ended: {program} {}", job.last));
+            Ok(())
+        }
+        Engine::Kubernetes { order, container, claim } => {
+            let job = order.checked(registry)?;
+            job.refuse_absolute("the volume")?;
+            let name = kubernetes::name(&job.path);
+            print(&kubernetes::manifests(&job, &name, container, claim))?;
+            messages::note(&kubernetes::steps(&name));
+            Ok(())
+        }
+    }
+}
+
+/// Returns this program, as a word for a shell.
+fn program() -> Result<String, Failure> {
+    word(&env::current_exe()?)
+}
+
+/// Quotes a path for a shell. What a script or a log could show as something else is refused.
+fn word(path: &Path) -> Result<String, Failure> {
+    let sound = path.to_str().filter(|path| !path.contains(char::is_control));
+    let Some(sound) = sound else {
+        return Err(Failure::Usage(
+            format!("a script cannot name `{}`", text::shown(path)),
+            Some("give it a name in UTF-8 without line ends and other control characters".to_owned()),
+        ));
+    };
+    // A path is no option.
+    let own = if sound.starts_with('-') { Path::new(".").join(path) } else { path.to_owned() };
+    Ok(text::quoted(own.as_os_str()))
+}
+
+impl Order {
+    /// Checks the scene and the options of the parts.
+    fn checked(&self, registry: &Registry) -> Result<Job, Failure> {
+        let Self { scene, output, parts, options } = self;
+        let [scene_word, image] = [word(scene)?, word(output)?];
+        if let Some(option) = options.iter().find(|option| option.contains(char::is_control)) {
+            return Err(Failure::Usage(
+                format!("a script cannot have the option `{}`", text::visible(option)),
+                Some("give options without line ends and other control characters".to_owned()),
+            ));
+        }
+        let part = format!("1/{parts}");
+        let words = ["tabray", "render", "--resume", "--part", &part].map(OsString::from);
+        let given = options.iter().map(OsString::from);
+        let files = ["-o".into(), output.into(), "--".into(), scene.into()];
+        let words = words.into_iter().chain(given).chain(files);
+        let matches = command().try_get_matches_from(words).unwrap_or_else(|error| error.exit());
+        let args = matches.subcommand_matches("render").map(render::Args::from_arg_matches);
+        let Some(Ok(args)) = args else { return Err(Failure::Told) };
+        let is_film = args.check(registry)?;
+        let last = match is_film {
+            false => format!("merge {image}"),
+            true if FullRange::of(output).is_some() => {
+                return Err(Failure::Usage(
+                    format!("frames as `{}` cannot be resumed or put together", text::shown(output)),
+                    Some("name .png or .ppm files".to_owned()),
+                ));
+            }
+            true => format!("film {image} --animation {}", word(&output.with_extension("apng"))?),
+        };
+        let options = options.iter().map(|option| format!(" {}", text::quoted(option.as_ref()))).collect();
+        Ok(Job { scene: scene_word, image, path: output.clone(), parts: *parts, options, last })
+    }
+}
+
+impl Job {
+    /// Returns the command that renders a part, without the program; the number of the part is a word for the shell.
+    fn part(&self, number: &str) -> String {
+        let Self { scene, image, parts, options, .. } = self;
+        format!("render {scene} -o {image} --part {number}/{parts} --resume{options}")
+    }
+
+    /// Refuses an absolute path where all paths are relative to a folder.
+    fn refuse_absolute(&self, folder: &str) -> Result<(), Failure> {
+        let is_outside = |word: &str| word.trim_start_matches(['\'', '$']).starts_with('/');
+        match [&self.scene, &self.image].into_iter().find(|word| is_outside(word)) {
+            Some(path) => Err(Failure::Usage(
+                format!("{path} is not relative to {folder}"),
+                Some(format!("in the container, {folder} is mounted as /scenes")),
+            )),
+            None => Ok(()),
+        }
+    }
 }

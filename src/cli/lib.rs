@@ -177,7 +177,7 @@ fn chosen() -> ExitCode {
             Some(Command::Render(args)) => render::run(registry, *args),
             Some(Command::Merge(args)) => merge::run(&args),
             Some(Command::Film(args)) => film::run(&args),
-            Some(Command::Farm(args)) => farm::run(&args),
+            Some(Command::Farm(args)) => farm::run(registry, &args),
             Some(Command::Dump(args)) => dump::run(registry, args),
             Some(Command::Convert(args)) => convert::run(registry, args),
             Some(Command::Check(args)) => check::run(registry, args),

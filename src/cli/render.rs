@@ -4,6 +4,7 @@ use super::course::Differences;
 use crate::files::input::Source;
 use crate::files::output::{Output, format_of};
 use crate::files::{input, output, provenance, several};
+use crate::options::frames::Frame;
 use crate::options::named::by_name;
 use crate::options::size::Region;
 use crate::options::stop::{self, Stop};
@@ -23,8 +24,8 @@ use tabray_core::output::full_range::FullRange;
 use tabray_core::output::picture::Format;
 use tabray_core::scene::model::Model;
 use tabray_core::simd::cpu::Cpu;
-use tabray_core::world::accuracy::Accuracy;
 use tabray_core::text;
+use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::reader::{self, Loaded, ReadOptions};
 use tabray_lang::registry::Registry;
 use tabray_tools::diagnosis;
@@ -139,6 +140,43 @@ pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
 }
 
 impl Args {
+    /// Checks, for commands that let others render, that one scene and the options make an image, or frames, and tells
+    /// which; nothing is written.
+    pub fn check(mut self, registry: &Registry) -> Result<bool, Failure> {
+        let [scene] = &self.scenes[..] else { return Err(Failure::Told) };
+        let scene = scene.clone();
+        let path = several::target(self.output.as_deref(), &scene, self.extension())?;
+        if path == Path::new("-") || input::is_standard(&scene) {
+            return Err(Failure::Usage(
+                "standard input and output are those of one machine".to_owned(),
+                Some(
+                    "name the scene, and the image with `-o FILE`, in a folder that all machines share"
+                        .to_owned(),
+                ),
+            ));
+        }
+        let (set, mut whole) = (self.set.values.clone(), None);
+        self.set.set_by = self.frames.set_by();
+        let frames = self.frames.of(&path, &mut whole)?;
+        if frames.is_none() && self.full_range(&path).is_none() {
+            format_of(self.format, &path, self.compress)?;
+        }
+        self.cpu.cpu()?;
+        let is_film = frames.is_some();
+        let mut frames = frames.unwrap_or_else(|| vec![Frame { path, sets: Vec::new() }]);
+        let last = frames.len() - 1;
+        frames.drain(1.min(last)..last);
+        for frame in frames {
+            self.set.values = [&set[..], &frame.sets].concat();
+            let loaded = Source::read(&scene, &self.set)?.load(registry, self.method.accuracy()?);
+            let mut model = input::print_warnings(loaded)?.model;
+            self.samples.apply(&mut model.camera.value)?;
+            self.size.apply(&mut model.camera.value)?;
+            self.refuse_sources(&frame.path, &scene, &model)?;
+        }
+        Ok(is_film)
+    }
+
     /// Returns the extension of an image whose name derives from its scene's.
     fn extension(&self) -> &'static str {
         if self.format == Some(Format::Ppm) { "ppm" } else { "png" }

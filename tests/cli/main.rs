@@ -13,6 +13,7 @@ mod colours;
 mod discovery;
 mod editor;
 mod failures;
+mod farm;
 mod firsthour;
 mod full_range;
 mod hits;
