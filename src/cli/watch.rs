@@ -19,7 +19,7 @@ use super::serve::{Server, Work};
 use crate::files::input;
 use crate::options::number::whole;
 use crate::options::{method, set};
-use crate::process::failure::Failure;
+use crate::process::failure::{self, Failure};
 use crate::process::{interrupt, messages};
 use files::Files;
 use hyper::Request;
@@ -40,6 +40,9 @@ const SETTLED: Duration = Duration::from_millis(10);
 
 /// How often files are looked at, as the system does not tell of every change.
 const LOOK: Duration = Duration::from_secs(1);
+
+/// The time in which the program ends by itself when it is interrupted.
+const PATIENCE: Duration = Duration::from_millis(300);
 
 /// Show the image in the browser, and render it again whenever the scene changes
 ///
@@ -92,7 +95,15 @@ pub fn run(registry: &'static Registry, args: Args) -> Result<(), Failure> {
         Scenes::new(registry, &args.scenes, Arc::new(notifier(&sender, || Event::Changed)), &mut files)?;
     let server = Server::open(args.port)?;
     let url = server.url();
-    interrupt::catch_with(notifier(&sender, || Event::Interrupted))?;
+    let interrupted = notifier(&sender, || Event::Interrupted);
+    interrupt::catch_with(move || {
+        interrupted();
+        // The loop below may be reading a large scene.
+        thread::spawn(|| {
+            thread::sleep(PATIENCE);
+            failure::exit();
+        });
+    })?;
 
     let scenes = Arc::new(scenes);
     thread::spawn({

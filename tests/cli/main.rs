@@ -28,7 +28,6 @@ mod review;
 mod samples;
 mod server;
 mod size;
-mod undecided;
 #[cfg(target_os = "linux")]
 mod stops;
 #[cfg(unix)]
