@@ -115,23 +115,40 @@ fn serve(input: &mut StdinLock<'_>, sender: &Sender<String>, server: &mut Server
         match next(input, sender)? {
             Message::Request(request) if request.method == "shutdown" => {
                 send(sender, response(&request.id, "null"))?;
-                return match next(input, sender)? {
-                    Message::Notification(notification) if notification.method == "exit" => Ok(()),
-                    _ => Err(gone()),
-                };
+                return end(input, sender);
+            }
+            Message::Request(Request { id, method, .. }) if method == "initialize" => {
+                send(sender, error_response(&id, ErrorCode::InvalidRequest, "`initialize` comes once"))?;
             }
             Message::Request(request) => send(sender, answer(server, request))?,
             Message::Notification(notification) if notification.method == "exit" => return Err(gone()),
             Message::Notification(notification) => {
                 let handled = crash::catch(|| server.note(&notification.method, notification.params));
-                if let Err(Failure::Failed(said)) = handled {
-                    send(
-                        sender,
-                        protocol::notification("window/logMessage", &json!({ "type": 1, "message": said })),
-                    )?;
+                let told = match handled {
+                    Err(Failure::Failed(said)) => {
+                        Some(("window/logMessage", json!({ "type": 1, "message": said })))
+                    }
+                    Ok(Some(said)) => Some(("window/showMessage", json!({ "type": 2, "message": said }))),
+                    _ => None,
+                };
+                if let Some((method, parameters)) = told {
+                    send(sender, protocol::notification(method, &parameters))?;
                 }
             }
             Message::Response(_) => {}
+        }
+    }
+}
+
+/// Waits for the editor to end, and answers nothing more.
+fn end(input: &mut StdinLock<'_>, sender: &Sender<String>) -> Result<(), Failure> {
+    loop {
+        match next(input, sender)? {
+            Message::Request(Request { id, .. }) => {
+                send(sender, error_response(&id, ErrorCode::InvalidRequest, "`shutdown` came before"))?;
+            }
+            Message::Notification(notification) if notification.method == "exit" => return Ok(()),
+            _ => {}
         }
     }
 }

@@ -50,6 +50,7 @@ impl Client {
     }
 
     /// Asks a question, and returns the answer, or the reason why there is none.
+    /// What is refused for its place in the session has the number that the protocol has for it.
     fn ask(&mut self, method: &str, parameters: Value) -> Result<Value, String> {
         self.asked += 1;
         let message = Message::from(Request::new(self.asked.into(), method.to_owned(), parameters));
@@ -341,6 +342,40 @@ fn what_is_no_message_is_answered_with_the_reason() {
 
 const UNTIDY: &str = "camera eye {\npixeldim 8 6 # wide\nworlddim 8 6   viewpoint 4 3 6\n}\n";
 const TIDY: &str = "camera eye\n{\n    pixeldim  8 6 # wide\n    worlddim  8 6\n    viewpoint 4 3 6\n}\n";
+
+#[test]
+fn after_shutdown_and_for_a_second_initialize_the_request_is_refused() {
+    let folder = folder();
+    let mut client = Client::start(&folder);
+    let refused = |answer: Result<Value, String>, said: &str| assert_eq!(answer, Err(said.to_owned()));
+    refused(client.ask("initialize", json!({ "capabilities": {} })), "`initialize` comes once");
+    client.ask("shutdown", Value::Null).expect("an answer");
+    for method in ["shutdown", "initialize", "textDocument/hover", "nonsense"] {
+        refused(client.ask(method, json!({})), "`shutdown` came before");
+    }
+    client.note("textDocument/didOpen", json!({}));
+    client.note("exit", Value::Null);
+    assert!(client.program.wait().expect("an end").success());
+}
+
+/// A text that is too large is not read, and the server goes on.
+#[test]
+fn a_text_of_94_mb_is_refused() {
+    let folder = folder();
+    let mut client = Client::start(&folder);
+    let uri = uri(folder.path(), "large.ray");
+    for length in [17 << 20, 94_000_000] {
+        client.open(&uri, &"# nothing\n".repeat(length / 10));
+        let asked = json!({ "textDocument": { "uri": uri }, "options": {} });
+        assert!(client.ask("textDocument/formatting", asked).is_err());
+    }
+    let told = client.told.iter().find(|told| told.method == "window/showMessage").expect("a message");
+    let message = told.params["message"].as_str().expect("text");
+    assert!(message.contains("large.ray` is larger than 16 MiB, and is not read"), "{message}");
+    client.open(&uri, "sphere a { radius 1 }\n");
+    assert!(!client.faults(&uri).as_array().expect("faults").is_empty());
+    client.end();
+}
 
 #[test]
 fn fmt_formats_in_place_checks_and_reads_standard_input() {

@@ -1,6 +1,6 @@
 //! Answers to what an editor asks.
 
-use super::documents::{Document, Documents};
+use super::documents::{Document, Documents, LARGEST};
 use super::faults::{Faults, diagnostic};
 use super::protocol::{
     ColorInformation, DocumentSymbol, FoldingRange, InlayHint, RequestParams, Span, markdown, path, range,
@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use tabray_core::text::short;
+use tabray_core::text::{self, short};
 use tabray_lang::editor::{self, CompletionKind, Files, Group, Location, Position, View};
 use tabray_lang::syntax::Syntax;
 
@@ -53,9 +53,9 @@ impl<'r> Server<'r> {
         Self { documents, faults, has_snippets, has_disabled }
     }
 
-    /// Takes note of what happens in the editor.
-    pub fn note(&mut self, method: &str, parameters: Value) {
-        let Ok(params) = serde_json::from_value::<RequestParams>(parameters) else { return };
+    /// Takes note of what happens in the editor; returns what it is to be told.
+    pub fn note(&mut self, method: &str, parameters: Value) -> Option<String> {
+        let params = serde_json::from_value::<RequestParams>(parameters).ok()?;
         let RequestParams { text_document: document, content_changes, .. } = params;
         let path = path(&document.uri);
         match method {
@@ -64,6 +64,8 @@ impl<'r> Server<'r> {
                 self.read(&path);
             }
             "textDocument/didChange" => {
+                // A text that was too large before was told then.
+                self.documents.get(&path)?;
                 self.documents.change(&path, document.version, &content_changes);
                 self.read(&path);
             }
@@ -78,6 +80,11 @@ impl<'r> Server<'r> {
             }
             _ => {}
         }
+        let is_gone = ["textDocument/didOpen", "textDocument/didChange"].contains(&method)
+            && self.documents.get(&path).is_none();
+        is_gone.then(|| {
+            format!("`{}` is larger than {} MiB, and is not read", text::shown(&path), LARGEST >> 20)
+        })
     }
 
     /// Has a scene read. Of a file that open scenes include, these are read.

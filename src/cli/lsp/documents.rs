@@ -12,8 +12,8 @@ use tabray_core::files;
 use tabray_lang::editor::{self, Files, Text, View};
 use tabray_lang::registry::Registry;
 
-/// The largest file that is read beside the open ones, in bytes.
-const LARGEST: u64 = 1 << 24;
+/// The largest text that is read, open or not, in bytes.
+pub const LARGEST: u64 = 1 << 24;
 
 /// A text that is open in the editor.
 pub struct Document {
@@ -68,9 +68,13 @@ impl<'r> Documents<'r> {
         self.registry
     }
 
-    /// Opens a text, or replaces it.
+    /// Opens a text, or replaces it. One that is too large counts as not open.
     pub fn open(&mut self, uri: String, version: i64, text: String) -> PathBuf {
         let path = path(&uri);
+        if text.len() as u64 > LARGEST {
+            self.open.remove(&path);
+            return path;
+        }
         let document = Document { uri, version, text: Text::new(text), view: SharedView::default() };
         self.open.insert(path.clone(), document);
         path
@@ -90,6 +94,9 @@ impl<'r> Documents<'r> {
         }
         document.version = version;
         document.view = SharedView::default();
+        if document.text.as_str().len() as u64 > LARGEST {
+            self.open.remove(path);
+        }
     }
 
     pub fn close(&mut self, path: &Path) {

@@ -1,12 +1,16 @@
 //! Reads the messages of an editor. The length that one claims to have costs no memory before as much has come, and a
 //! header that does not end is refused.
 
+use super::documents::LARGEST;
 use lsp_server::Message;
 use std::io::{self, BufRead, Read};
 use std::str;
 
 /// The maximum length of a line of a header in bytes.
 const LONGEST_LINE: u64 = 1 << 10;
+
+/// The maximum length of a message in bytes: twice the largest text, which may have as many escapes as letters.
+const LONGEST: u64 = 2 * LARGEST;
 
 /// Reads the next message, or why what its header announces is none; `None` if there are no more.
 ///
@@ -34,6 +38,13 @@ pub fn read(input: &mut impl BufRead) -> io::Result<Option<Result<Message, Strin
         }
     }
     let length: u64 = length.ok_or_else(|| wrong("a header has no `Content-Length`".to_owned()))?;
+    if length > LONGEST {
+        let skipped = io::copy(&mut input.by_ref().take(length), &mut io::sink())?;
+        if skipped < length {
+            return Err(wrong(format!("a message ends after {skipped} of {length} bytes")));
+        }
+        return Ok(Some(Err(format!("a message of {length} bytes is too long: the maximum is {LONGEST}"))));
+    }
     let mut text = Vec::new();
     input.by_ref().take(length).read_to_end(&mut text)?;
     if (text.len() as u64) < length {
