@@ -1,5 +1,6 @@
-//! `tabray convert`: writes a scene in the other syntax.
+//! `tabray convert`: writes a scene in the other syntax, or what a file of another program shows as a scene.
 
+use crate::files::input::Source;
 use crate::files::{input, output};
 use crate::options::named::by_name;
 use crate::options::scene;
@@ -9,13 +10,18 @@ use std::path::{Path, PathBuf};
 use tabray_core::scene::model::Model;
 use tabray_core::text;
 use tabray_lang::dump;
+use tabray_lang::import::{self, Imported};
 use tabray_lang::reader;
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
 
-/// Write a scene in the other syntax
+/// Write a scene in the other syntax, or the surface of another program as a scene
 ///
 /// Everything but comments is kept, and what the scene computes is written out: the copy loads to the identical model.
+///
+/// A SCENE whose name ends in .jsurf is a surface of SURFER, and one in .surf or .pic a script of surf; of other names and
+/// of standard input, the text tells. The scene has the formula and its parameters, the view, what cuts the surface, the
+/// colours and the lamps. What it leaves out is said.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
@@ -32,14 +38,24 @@ pub struct Args {
 const EXAMPLES: &str = "\
 Examples:
   tabray convert ball.ray ball.toml
-  tabray convert ball.toml - --to ray";
+  tabray convert ball.toml - --to ray
+  tabray convert barth.jsurf barth.ray     # a surface of SURFER
+  tabray convert barth.pic barth.ray       # a script of surf";
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let syntax = syntax(&args)?;
-    let model = args.scene.load(registry, None)?;
-    let text = dump::scene(&model, syntax);
+    let mut source = args.scene.read()?;
+    let imported = imported(&source)?;
+    if let Some(text) = &imported {
+        source = Source::of_text(&args.scene.path.with_extension("ray"), text.clone(), &args.scene.set);
+    }
+    let model = input::print_warnings(source.load(registry, None))?.model;
+    // What was written for people to read stays as it is.
+    let readable = imported.filter(|_| syntax == Syntax::Notes && args.scene.set.values.is_empty());
+    let is_copy = readable.is_none();
+    let scene = readable.unwrap_or_else(|| dump::scene(&model, syntax));
     if input::is_standard(&args.output) {
-        return print_scene(&text);
+        return print_scene(&scene);
     }
     if let Some(what) = output::source(&args.output, &args.scene.path, &model) {
         return Err(Failure::Usage(
@@ -47,10 +63,25 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             Some("name another file: a copy has no comments and no formulas".to_owned()),
         ));
     }
-    is_the_same_scene(registry, &model, &text, &args.output)?;
-    output::replace(&args.output, text.as_bytes())?;
-    messages::note(&format!("wrote {} (without comments)", text::shown(&args.output)));
+    is_the_same_scene(registry, &model, &scene, &args.output)?;
+    output::replace(&args.output, scene.as_bytes())?;
+    let without = if is_copy { " (without comments)" } else { "" };
+    messages::note(&format!("wrote {}{without}", text::shown(&args.output)));
     Ok(())
+}
+
+/// Returns the scene of a file of another program, if it is one, and says what it leaves out.
+fn imported(source: &Source) -> Result<Option<String>, Failure> {
+    let (name, bytes) = source.named();
+    let Some(Imported { text, warnings, left }) = import::scene(name, bytes).map_err(Failure::Scene)? else {
+        return Ok(None);
+    };
+    messages::warnings(&warnings);
+    if !left.is_empty() {
+        let words: Vec<_> = left.iter().map(|(word, line)| format!("`{word}` (line {line})")).collect();
+        messages::note(&format!("left out, as no part of what is seen: {}", words.join(", ")));
+    }
+    Ok(Some(text))
 }
 
 /// Returns the syntax that is asked for.

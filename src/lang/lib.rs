@@ -25,6 +25,7 @@
 pub mod dump;
 pub mod editor;
 pub mod grammar;
+pub mod import;
 mod json_schema;
 pub mod list_json;
 pub mod reader;

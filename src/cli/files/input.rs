@@ -77,6 +77,11 @@ impl Source {
         Self { name: text::shown(path), folder, bytes: text.into_bytes(), sets: sets.clone() }
     }
 
+    /// Returns what messages call the text, and its bytes.
+    pub fn named(&self) -> (&str, &[u8]) {
+        (&self.name, &self.bytes)
+    }
+
     /// Returns the SHA-256 of the text, as `sha256sum` prints it.
     pub fn hash(&self) -> String {
         text::sha256(&Sha256::digest(&self.bytes))

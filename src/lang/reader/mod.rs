@@ -54,7 +54,7 @@ use crate::registry::Registry;
 use crate::syntax::Syntax;
 use build::Checked;
 use check::Source;
-use encoding::decode;
+pub(crate) use encoding::decode;
 use listed::Stream;
 use sources::Sources;
 use std::ops::Range;

@@ -1,0 +1,392 @@
+//! Reads a formula of SURFER or surf, and writes it as one of a scene.
+
+use crate::reader::Fault;
+use glam::DMat3;
+use std::ops::Range;
+use tabray_core::text::shortest;
+
+/// How deep parentheses, signs and powers may nest.
+const DEEPEST: usize = 200;
+
+/// The greatest length of a formula that is written, in bytes: a script multiplies what it names.
+const LONGEST: usize = 1 << 20;
+
+/// A formula in x, y and z, or a number.
+#[derive(Clone, Debug)]
+pub struct Value {
+    /// The formula as a scene writes it.
+    pub text: String,
+    level: Level,
+    /// Its value, where it is a number.
+    pub number: Option<f64>,
+    /// How the surface on which it is 0 was turned since.
+    pub turn: DMat3,
+}
+
+/// How tightly the outermost operation of a formula binds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Level {
+    Sum,
+    Product,
+    Power,
+    Atom,
+}
+
+impl Value {
+    /// Makes a number that has a name.
+    pub fn named(name: &str, number: f64) -> Self {
+        Self { text: name.to_owned(), level: Level::Atom, number: Some(number), turn: DMat3::IDENTITY }
+    }
+
+    fn of(text: String, level: Level, number: Option<f64>) -> Self {
+        Self { text, level, number, turn: DMat3::IDENTITY }
+    }
+
+    /// Returns the formula in parentheses if it binds less tightly.
+    fn within(&self, level: Level) -> String {
+        if self.level < level { format!("({})", self.text) } else { self.text.clone() }
+    }
+}
+
+/// What names stand for.
+pub trait Names {
+    /// Returns what a name stands for; `None` where it is unknown.
+    fn value(&self, name: &str) -> Option<Value>;
+
+    /// Names a formula as a function of x, y and z.
+    fn function(&mut self, formula: &str) -> String;
+
+    /// Says what would be right in place of an unknown name.
+    fn help(&self, name: &str) -> String;
+}
+
+/// How signs and powers bind.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Dialect {
+    /// `-x^2` is -(x^2), and powers of powers are read from the right.
+    Surfer,
+    /// `-x^2` is (-x)^2, and powers of powers are read from the left.
+    Surf,
+}
+
+/// The functions of both: as they are called there and in scenes, and what they compute.
+const FUNCTIONS: [(&str, &str, fn(f64) -> f64); 17] = [
+    ("sin", "sin", libm::sin),
+    ("cos", "cos", libm::cos),
+    ("tan", "tan", libm::tan),
+    ("asin", "asin", libm::asin),
+    ("acos", "acos", libm::acos),
+    ("atan", "atan", libm::atan),
+    ("arcsin", "asin", libm::asin),
+    ("arccos", "acos", libm::acos),
+    ("arctan", "atan", libm::atan),
+    ("exp", "exp", libm::exp),
+    ("log", "ln", libm::log),
+    ("ln", "ln", libm::log),
+    ("sqrt", "sqrt", libm::sqrt),
+    ("ceil", "ceil", libm::ceil),
+    ("floor", "floor", libm::floor),
+    ("abs", "abs", libm::fabs),
+    ("sign", "sign", |x| if x < 0.0 { -1.0 } else { 1.0 }),
+];
+
+/// Reads the formula that a range of a text holds.
+pub fn read(
+    text: &str,
+    range: Range<usize>,
+    dialect: Dialect,
+    names: &mut dyn Names,
+) -> Result<Value, Fault> {
+    let mut reader = Reader { text, at: range.start, end: range.end, dialect, names, depth: 0 };
+    let value = reader.sum()?;
+    match reader.peek() {
+        None => Ok(value),
+        Some(')') => Err(reader.fault_here("this parenthesis closes none")),
+        Some(_) => Err(reader.fault_here("the formula does not go on like this")),
+    }
+}
+
+/// Turns a surface around an axis as surf does: around y the other way round.
+pub fn turn(axis: usize, angle: f64) -> DMat3 {
+    let (sine, cosine) = (libm::sin(angle), libm::cos(angle));
+    let rows = match axis {
+        0 => [[1.0, 0.0, 0.0], [0.0, cosine, -sine], [0.0, sine, cosine]],
+        1 => [[cosine, 0.0, -sine], [0.0, 1.0, 0.0], [sine, 0.0, cosine]],
+        _ => [[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]],
+    };
+    DMat3::from_cols_array_2d(&rows).transpose()
+}
+
+/// Writes a sum of multiples of x, y and z and a constant.
+pub fn linear(factors: [f64; 3], constant: f64) -> String {
+    let mut text = String::new();
+    let terms = factors.into_iter().zip(["x", "y", "z"]).chain([(constant, "")]);
+    for (factor, name) in terms.filter(|(factor, _)| *factor != 0.0) {
+        let sign = match (factor < 0.0, text.is_empty()) {
+            (true, true) => "-",
+            (true, false) => " - ",
+            (false, true) => "",
+            (false, false) => " + ",
+        };
+        text += sign;
+        text += &match (factor.abs(), name) {
+            (size, "") => shortest(size),
+            (1.0, name) => name.to_owned(),
+            (size, name) => format!("{}*{name}", shortest(size)),
+        };
+    }
+    if text.is_empty() { "0".to_owned() } else { text }
+}
+
+struct Reader<'t, 'n> {
+    text: &'t str,
+    at: usize,
+    end: usize,
+    dialect: Dialect,
+    names: &'n mut dyn Names,
+    depth: usize,
+}
+
+impl Reader<'_, '_> {
+    /// Returns the next character that is no white space, and goes to it. A `\` at the end of a line continues it.
+    fn peek(&mut self) -> Option<char> {
+        loop {
+            let rest = &self.text[self.at..self.end];
+            let next = rest.chars().next()?;
+            if !next.is_whitespace() && !(next == '\\' && rest[1..].starts_with(['\n', '\r'])) {
+                return Some(next);
+            }
+            self.at += next.len_utf8();
+        }
+    }
+
+    fn takes(&mut self, sign: char) -> bool {
+        let is_there = self.peek() == Some(sign);
+        self.at += if is_there { sign.len_utf8() } else { 0 };
+        is_there
+    }
+
+    fn fault_here(&mut self, message: &str) -> Fault {
+        let next = self.peek().map_or(0, char::len_utf8);
+        Fault::error(Some(self.at..self.at + next), message)
+    }
+
+    fn deeper<T>(&mut self, read: impl FnOnce(&mut Self) -> Result<T, Fault>) -> Result<T, Fault> {
+        if self.depth == DEEPEST {
+            return Err(self.fault_here(&format!("the formula nests more than {DEEPEST} deep here")));
+        }
+        self.depth += 1;
+        let read = read(self);
+        self.depth -= 1;
+        read
+    }
+
+    /// Returns a formula in which no turn is left to be done.
+    fn done(&mut self, value: Value) -> Value {
+        if value.turn == DMat3::IDENTITY {
+            return value;
+        }
+        // The turned surface is where the formula is 0 of the point turned back.
+        let back = value.turn.transpose();
+        let arguments = [0, 1, 2].map(|row| linear(back.row(row).to_array(), 0.0)).join(", ");
+        let name = self.names.function(&value.text);
+        Value::of(format!("{name}({arguments})"), Level::Atom, None)
+    }
+
+    fn joined(&mut self, one: Value, sign: &str, other: Value, level: Level) -> Result<Value, Fault> {
+        let (one, other) = (self.done(one), self.done(other));
+        let (left, right) = match level {
+            // On the right, the operation itself needs parentheses: a - (b - c).
+            Level::Sum => (Level::Sum, Level::Product),
+            Level::Product => (Level::Product, Level::Power),
+            _ => (Level::Atom, Level::Atom),
+        };
+        let text = format!("{}{sign}{}", one.within(left), other.within(right));
+        if text.len() > LONGEST {
+            return Err(self.fault_here(&format!("written out, the formula has more than {LONGEST} letters")));
+        }
+        let number = one.number.zip(other.number).map(|(one, other)| match sign.trim() {
+            "+" => one + other,
+            "-" => one - other,
+            "*" => one * other,
+            "/" => one / other,
+            _ => libm::pow(one, other),
+        });
+        Ok(Value::of(text, level, number))
+    }
+
+    fn sum(&mut self) -> Result<Value, Fault> {
+        let mut sum = self.product()?;
+        while let Some(sign @ ('+' | '-')) = self.peek() {
+            self.at += 1;
+            let next = self.product()?;
+            sum = self.joined(sum, if sign == '+' { " + " } else { " - " }, next, Level::Sum)?;
+        }
+        Ok(sum)
+    }
+
+    fn product(&mut self) -> Result<Value, Fault> {
+        let mut product = self.factor()?;
+        while let Some(next) = self.peek() {
+            let sign = match next {
+                '*' => "*",
+                '/' => "/",
+                _ if next == '(' || next == '.' || next.is_alphanumeric() => "",
+                _ => break,
+            };
+            self.at += sign.len();
+            let factor = self.factor()?;
+            product =
+                self.joined(product, if sign.is_empty() { "*" } else { sign }, factor, Level::Product)?;
+        }
+        Ok(product)
+    }
+
+    fn factor(&mut self) -> Result<Value, Fault> {
+        match self.dialect {
+            Dialect::Surfer => {
+                if self.takes('-') {
+                    let factor = self.deeper(Self::factor)?;
+                    return Ok(self.negative(factor));
+                }
+                let base = self.atom()?;
+                if !self.takes('^') {
+                    return Ok(base);
+                }
+                let exponent = self.deeper(Self::factor)?;
+                self.joined(base, "^", exponent, Level::Power)
+            }
+            Dialect::Surf => {
+                let mut power = self.signed()?;
+                while self.takes('^') {
+                    let exponent = self.signed()?;
+                    power = self.joined(power, "^", exponent, Level::Power)?;
+                }
+                Ok(power)
+            }
+        }
+    }
+
+    /// Reads an operand with its sign, which binds more tightly than a power.
+    fn signed(&mut self) -> Result<Value, Fault> {
+        if !self.takes('-') {
+            return self.atom();
+        }
+        let value = self.deeper(Self::signed)?;
+        Ok(self.negative(value))
+    }
+
+    fn negative(&mut self, value: Value) -> Value {
+        let value = self.done(value);
+        Value::of(
+            format!("-{}", value.within(Level::Product)),
+            Level::Sum,
+            value.number.map(|number| -number),
+        )
+    }
+
+    fn atom(&mut self) -> Result<Value, Fault> {
+        match self.peek() {
+            Some('(') => {
+                self.at += 1;
+                let value = self.deeper(Self::sum)?;
+                self.close()?;
+                Ok(value)
+            }
+            Some('.' | '0'..='9') => self.number(),
+            Some(letter) if letter.is_ascii_alphabetic() || letter == '_' => self.name(),
+            Some(_) => Err(self
+                .fault_here("this is no part of a formula")
+                .help("a formula consists of numbers, names, + - * / ^ and parentheses")),
+            None => Err(self.fault_here("a number or a name is missing here")),
+        }
+    }
+
+    fn close(&mut self) -> Result<(), Fault> {
+        if self.takes(')') { Ok(()) } else { Err(self.fault_here("a closing parenthesis is missing here")) }
+    }
+
+    fn number(&mut self) -> Result<Value, Fault> {
+        let rest = &self.text[self.at..self.end];
+        let digits = |from: usize| {
+            rest[from..].find(|c: char| !c.is_ascii_digit()).map_or(rest.len(), |length| from + length)
+        };
+        let whole = digits(0);
+        let mut end = if rest[whole..].starts_with('.') { digits(whole + 1) } else { whole };
+        if rest[end..].starts_with(['e', 'E']) {
+            let signed = end + 1 + usize::from(rest[end + 1..].starts_with(['+', '-']));
+            end = if digits(signed) > signed { digits(signed) } else { end };
+        }
+        let word = &rest[..end];
+        let number = word.parse::<f64>().ok().filter(|number| number.is_finite());
+        let number = number.ok_or_else(|| {
+            Fault::error(Some(self.at..self.at + end), "this is no number")
+                .help("a number is as `2` or `0.5e-3`")
+        })?;
+        self.at += end;
+        // Scenes have digits on both sides of a point.
+        let is_plain = whole > 0
+            && rest[whole..]
+                .strip_prefix('.')
+                .is_none_or(|rest| rest.starts_with(|c: char| c.is_ascii_digit()));
+        Ok(Value::of(if is_plain { word.to_owned() } else { shortest(number) }, Level::Atom, Some(number)))
+    }
+
+    fn name(&mut self) -> Result<Value, Fault> {
+        let start = self.at;
+        let rest = &self.text[start..self.end];
+        let length = rest.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).unwrap_or(rest.len());
+        let name = &rest[..length];
+        self.at += length;
+        if let Some(value) = self.names.value(name) {
+            return Ok(value);
+        }
+        if self.peek() == Some('(') {
+            if name == "rotate" && self.dialect == Dialect::Surf {
+                return self.rotated();
+            }
+            if let Some((_, ours, compute)) = FUNCTIONS.iter().find(|(theirs, ..)| *theirs == name) {
+                self.at += 1;
+                let value = self.deeper(Self::sum)?;
+                let value = self.done(value);
+                self.close()?;
+                return Ok(Value::of(
+                    format!("{ours}({})", value.text),
+                    Level::Atom,
+                    value.number.map(compute),
+                ));
+            }
+            let fault =
+                Fault::error(Some(start..start + length), format!("the function `{name}` is not read"));
+            return Err(fault.help("write out what it stands for"));
+        }
+        if ["x", "y", "z"].contains(&name) {
+            return Ok(Value::of(name.to_owned(), Level::Atom, None));
+        }
+        let help = self.names.help(name);
+        Err(Fault::error(Some(start..start + length), format!("`{name}` has no value")).help(help))
+    }
+
+    /// Reads the arguments of `rotate`: a surface, an angle and an axis.
+    fn rotated(&mut self) -> Result<Value, Fault> {
+        self.at += 1;
+        let value = self.deeper(Self::sum)?;
+        self.comma()?;
+        let angle = self.deeper(Self::sum)?;
+        self.comma()?;
+        self.peek();
+        let axis = ["xAxis", "yAxis", "zAxis"]
+            .iter()
+            .position(|axis| self.text[self.at..self.end].starts_with(axis));
+        let (Some(axis), Some(angle)) = (axis, angle.number.filter(|angle| angle.is_finite())) else {
+            return Err(self.fault_here("`rotate` needs a number, and `xAxis`, `yAxis` or `zAxis`"));
+        };
+        self.at += "xAxis".len();
+        self.close()?;
+        Ok(Value { turn: turn(axis, angle) * value.turn, ..value })
+    }
+
+    fn comma(&mut self) -> Result<(), Fault> {
+        if self.takes(',') { Ok(()) } else { Err(self.fault_here("a comma is missing here")) }
+    }
+}

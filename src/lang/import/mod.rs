@@ -1,0 +1,121 @@
+//! Surfaces in the files of other programs: SURFER's `.jsurf`, and the scripts of surf 1.0.6. [`scene`] writes what such a
+//! file shows as a scene in the notes' syntax: the formula as it is, with its parameters, seen from the same side, cut by
+//! the same body, in the same colours.
+
+mod expression;
+mod jsurf;
+mod picture;
+mod surf;
+#[cfg(test)]
+mod tests;
+
+use crate::reader::{Fault, Report, decode};
+use crate::syntax::Syntax;
+use std::path::Path;
+
+/// A program whose files are read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Program {
+    /// SURFER, with files of properties.
+    Surfer,
+    /// surf, with scripts.
+    Surf,
+}
+
+impl Program {
+    /// Recognises a file by the ending of its name.
+    fn of_name(name: &str) -> Option<Self> {
+        let ending = Path::new(name).extension()?.to_str()?;
+        let is = |known: &str| ending.eq_ignore_ascii_case(known);
+        if is("jsurf") { Some(Self::Surfer) } else { (is("surf") || is("pic")).then_some(Self::Surf) }
+    }
+
+    /// Recognises a file by its text, as scenes have neither word.
+    fn of_text(text: &str) -> Option<Self> {
+        let has = |word: &str| text.lines().any(|line| line.trim_start().starts_with(word));
+        if has("surface_equation") {
+            Some(Self::Surfer)
+        } else {
+            (has("draw_surface") && text.contains(';')).then_some(Self::Surf)
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Surfer => "SURFER",
+            Self::Surf => "surf",
+        }
+    }
+}
+
+/// What a file of another program shows.
+pub struct Imported {
+    /// The scene, in the notes' syntax.
+    pub text: String,
+    /// What the scene shows in another way.
+    pub warnings: Report,
+    /// The words that have no part in what is seen, in the order of the file, each with the line where it stands first.
+    pub left: Vec<(String, usize)>,
+}
+
+/// Returns what a file shows, if it is one of these programs by its name or, if this is no scene's, by its text. `name` is
+/// what messages call it.
+///
+/// # Errors
+/// The faults of the file.
+pub fn scene(name: &str, bytes: &[u8]) -> Result<Option<Imported>, Report> {
+    let by_name = Program::of_name(name);
+    if by_name.is_none()
+        && ["ray", "toml"].iter().any(|ending| Path::new(name).extension().is_some_and(|own| own == *ending))
+    {
+        return Ok(None);
+    }
+    let text = match decode(name, bytes) {
+        Ok(text) => text,
+        Err(report) => return if by_name.is_some() { Err(report) } else { Ok(None) },
+    };
+    by_name.or_else(|| Program::of_text(text)).map(|program| read(program, name, text)).transpose()
+}
+
+fn read(program: Program, name: &str, text: &str) -> Result<Imported, Report> {
+    let mut notes = Notes { report: Report::new(name, text.to_owned(), Syntax::Notes), left: Vec::new() };
+    let read = match program {
+        Program::Surfer => jsurf::read(text, &mut notes),
+        Program::Surf => surf::read(text, &mut notes),
+    };
+    let Notes { report, left } = notes;
+    let picture = match read {
+        Some(picture) if !report.is_fatal() => picture,
+        _ => return Err(report),
+    };
+    let mut lines: Vec<(String, usize)> = Vec::new();
+    for (word, at) in left {
+        if !lines.iter().any(|(known, _)| *known == word) {
+            let line = 1 + text[..at].matches('\n').count();
+            lines.push((word, line));
+        }
+    }
+    let mut head = format!("# Written by `tabray convert` from a file of {}.\n", program.name());
+    if !lines.is_empty() {
+        let words: Vec<_> = lines.iter().map(|(word, line)| format!("{word} (line {line})")).collect();
+        head += &format!("# Left out: {}.\n", words.join(", "));
+    }
+    Ok(Imported { text: head + &picture.scene(), warnings: report, left: lines })
+}
+
+/// What is to be said of a file.
+struct Notes {
+    report: Report,
+    /// Words that have no part in what is seen, and where they stand.
+    left: Vec<(String, usize)>,
+}
+
+impl Notes {
+    fn add(&mut self, fault: Fault) {
+        self.report.add(fault);
+    }
+
+    fn leave(&mut self, word: &str, at: usize) {
+        self.left.push((word.to_owned(), at));
+    }
+}

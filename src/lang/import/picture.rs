@@ -1,0 +1,240 @@
+//! What a file of SURFER or surf shows, and how a scene says it.
+
+use super::expression::{Value, linear};
+use glam::{DMat3, DVec3};
+use std::fmt::Write;
+use tabray_core::text::shortest;
+
+/// How much the axes of a view may differ from each other and from right angles, relative to their length: files have
+/// seven digits.
+const SIMILAR: f64 = 1e-5;
+
+/// How far from its middle a picture without a clip reaches, in heights of the picture.
+const DEEP: f64 = 5.0;
+
+/// What is seen, in the coordinates of the picture: x right, y up and z toward the viewer.
+pub struct Picture {
+    /// Named numbers, each with its formula.
+    pub numbers: Vec<(String, String)>,
+    /// Functions of x, y and z.
+    pub functions: Vec<(String, String)>,
+    pub surfaces: Vec<Surface>,
+    /// The body that cuts the surfaces open.
+    pub clips: Vec<Clip>,
+    pub lights: Vec<Light>,
+    pub background: DVec3,
+    /// The width and height of what is seen.
+    pub size: [f64; 2],
+    pub pixels: [u32; 2],
+}
+
+/// A surface, and how it lies in the picture.
+pub struct Surface {
+    pub formula: Value,
+    /// From the picture's coordinates to those of the formula: a linear map and an offset.
+    pub map: (DMat3, DVec3),
+    /// Outside, where the formula is above 0, and inside.
+    pub sides: [Look; 2],
+}
+
+/// How one side looks.
+#[derive(Clone, Copy, PartialEq)]
+pub struct Look {
+    pub ambient: DVec3,
+    pub diffuse: DVec3,
+}
+
+/// A lamp.
+pub struct Light {
+    pub at: DVec3,
+    pub colour: DVec3,
+}
+
+/// What a surface is cut by.
+pub enum Clip {
+    /// A ball, by its centre and radius.
+    Ball(DVec3, f64),
+    /// A cylinder around the z axis, by its centre and radius.
+    Cylinder(DVec3, f64),
+    /// A cube, by its centre and half its side.
+    Cube(DVec3, f64),
+    /// What lies on this side of a plane across the z axis: below it if the sign is 1, above it if it is -1.
+    Plane(f64, f64),
+}
+
+impl Picture {
+    /// Writes the scene. Its coordinates are those of the formula, so that this stays as it is; those of the picture where
+    /// there are several formulas in different places, or one that is stretched.
+    pub fn scene(&self) -> String {
+        let common = self.surfaces[0].map;
+        let is_common = self.surfaces.iter().all(|surface| surface.map == common) && is_similar(common.0);
+        let (turn, offset) = if is_common { common } else { (DMat3::IDENTITY, DVec3::ZERO) };
+        let size = turn.x_axis.length();
+        let at = |point: DVec3| turn * point + offset;
+        let [low, high] = self.bounds();
+        let far = low.abs().max(high.abs()).length() + 1.0;
+        let mut bodies = String::new();
+        let mut functions = self.functions.clone();
+        let middle = at((low + high) / 2.0);
+        let half = if self.is_ball() {
+            DVec3::splat(size * (high - low).x / 2.0)
+        } else {
+            let half = (high - low) / 2.0;
+            (turn.x_axis * half.x).abs() + (turn.y_axis * half.y).abs() + (turn.z_axis * half.z).abs()
+        };
+        let clip = self.clip(turn, offset);
+        for (index, surface) in self.surfaces.iter().enumerate() {
+            let number = if index == 0 { String::new() } else { (index + 1).to_string() };
+            let mut formula = surface.formula.text.clone();
+            if !is_common && surface.map != (DMat3::IDENTITY, DVec3::ZERO) {
+                let (map, offset) = surface.map;
+                let arguments = [0, 1, 2].map(|row| linear(map.row(row).to_array(), offset[row]));
+                let name = format!("formula_{}", index + 1);
+                functions.push((name.clone(), formula));
+                formula = format!("{name}({})", arguments.join(", "));
+            }
+            if !clip.is_empty() {
+                formula = format!("if({clip} < 0, {formula}, 1)");
+            }
+            let [front, back] = &surface.sides;
+            bodies += &material(&format!("front{number}"), front);
+            let shader = if front == back {
+                String::new()
+            } else {
+                bodies += &material(&format!("back{number}"), back);
+                let _ = writeln!(bodies, "sides both{number} {{ back back{number} }}\n");
+                format!("    shader   both{number}\n")
+            };
+            let _ = writeln!(
+                bodies,
+                "implicit surface{number}\n{{\n    material front{number}\n{shader}    formula  \"{formula}\"\n    box      {}  {}\n}}\n",
+                point(middle - half),
+                point(middle + half)
+            );
+        }
+        let mut text = String::new();
+        let used = self.used(&bodies, &functions);
+        for (name, formula) in &self.numbers {
+            if used.contains(&name.as_str()) {
+                let is_number = formula.parse::<f64>().is_ok();
+                let _ = if is_number {
+                    writeln!(text, "let {name} {formula}")
+                } else {
+                    writeln!(text, "let {name} \"{formula}\"")
+                };
+            }
+        }
+        for (name, formula) in &functions {
+            let _ = writeln!(text, "let {name}(x, y, z) \"{formula}\"");
+        }
+        let [wide, high] = self.pixels;
+        let _ = writeln!(
+            text,
+            "\northographic eye\n{{\n    pixeldim {wide} {high}\n    position {}\n    target   {}\n    up       {}\n    width    {}\n    samples  16\n    \
+             transfer linear           # colours are bytes there\n}}\n\nbackground behind {{ colour {} }}\n",
+            point(at(DVec3::new(0.0, 0.0, far))),
+            point(at(DVec3::ZERO)),
+            point(turn * DVec3::Y),
+            shortest(size * self.size[0]),
+            point(self.background),
+        );
+        text += &bodies;
+        for (index, light) in self.lights.iter().enumerate() {
+            let (at, colour) = (point(at(light.at)), point(light.colour));
+            let _ = writeln!(text, "light lamp_{} {{ location {at}  emissivity {colour} }}", index + 1);
+        }
+        text
+    }
+
+    fn is_ball(&self) -> bool {
+        matches!(self.clips[..], [Clip::Ball(..)])
+    }
+
+    /// Returns a box around what is kept, in the picture's coordinates.
+    fn bounds(&self) -> [DVec3; 2] {
+        let [wide, high] = self.size;
+        // Without a clip, what is seen is cut at the edges of the picture, with a margin for the outermost pixels.
+        let seen = DVec3::new(0.6 * wide, 0.6 * high, DEEP * wide.max(high));
+        let mut bounds = [-seen, seen];
+        for clip in &self.clips {
+            let (middle, half) = match *clip {
+                Clip::Ball(middle, radius) | Clip::Cube(middle, radius) => (middle, DVec3::splat(radius)),
+                Clip::Cylinder(middle, radius) => (middle, DVec3::new(radius, radius, seen.z)),
+                Clip::Plane(..) => continue,
+            };
+            bounds = [middle - half, middle + half];
+        }
+        for clip in &self.clips {
+            match *clip {
+                Clip::Plane(z, 1.0) => bounds[1].z = bounds[1].z.min(z),
+                Clip::Plane(z, _) => bounds[0].z = bounds[0].z.max(z),
+                _ => {}
+            }
+        }
+        bounds
+    }
+
+    /// Writes a formula in the scene's coordinates that is below 0 where the surface is kept; empty if all is.
+    fn clip(&self, turn: DMat3, offset: DVec3) -> String {
+        let back = turn.inverse();
+        let size = turn.x_axis.length();
+        let row = |row: usize, at: f64| linear(back.row(row).to_array(), -back.row(row).dot(offset) - at);
+        let square = |text: String| if text.len() == 1 { format!("{text}^2") } else { format!("({text})^2") };
+        let one = |clip: &Clip| match *clip {
+            Clip::Ball(middle, radius) => {
+                let middle = turn * middle + offset;
+                let squares =
+                    [0, 1, 2].map(|axis| square(linear(DMat3::IDENTITY.col(axis).to_array(), -middle[axis])));
+                format!("{} - {}", squares.join(" + "), square(shortest(size * radius)))
+            }
+            Clip::Cylinder(middle, radius) => {
+                let squares = [0, 1].map(|axis| square(row(axis, middle[axis])));
+                format!("{} - {}", squares.join(" + "), square(shortest(radius)))
+            }
+            Clip::Cube(middle, half) => {
+                let sides = [0, 1, 2].map(|axis| format!("abs({})", row(axis, middle[axis])));
+                format!("max({}) - {}", sides.join(", "), shortest(half))
+            }
+            Clip::Plane(z, 1.0) => row(2, z),
+            Clip::Plane(z, _) => format!("-({})", row(2, z)),
+        };
+        let all: Vec<_> = self.clips.iter().map(one).collect();
+        if all.len() > 1 { format!("max({})", all.join(", ")) } else { all.concat() }
+    }
+
+    /// Returns the names of the numbers that the scene needs.
+    fn used<'s>(&'s self, bodies: &str, functions: &[(String, String)]) -> Vec<&'s str> {
+        let mut needed: String = bodies.to_owned();
+        functions.iter().for_each(|(_, formula)| needed = format!("{needed} {formula}"));
+        let mut used = Vec::new();
+        for (name, formula) in self.numbers.iter().rev() {
+            let mut words = needed.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'));
+            if words.any(|word| word == name) {
+                used.push(name.as_str());
+                needed = format!("{needed} {formula}");
+            }
+        }
+        used
+    }
+}
+
+/// Tells whether a map keeps shapes, and does not mirror them.
+fn is_similar(map: DMat3) -> bool {
+    let size = map.x_axis.length_squared();
+    let product = map.transpose() * map - DMat3::from_diagonal(DVec3::splat(size));
+    size > 0.0
+        && map.determinant() > 0.0
+        && product.to_cols_array().iter().all(|element| element.abs() <= SIMILAR * size)
+}
+
+fn material(name: &str, look: &Look) -> String {
+    format!(
+        "material {name}\n{{\n    ambient {}\n    diffuse {}\n}}\n\n",
+        point(look.ambient),
+        point(look.diffuse)
+    )
+}
+
+fn point(at: DVec3) -> String {
+    at.to_array().map(|side| shortest(side + 0.0)).join(" ")
+}
