@@ -10,7 +10,7 @@ use crate::rendering::part::beside as beside_image;
 use crate::rendering::part_files::{Parts, open, refuse};
 use crate::rendering::{aov, full_range};
 use std::fs;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter};
 use std::iter;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -128,11 +128,9 @@ impl Parts {
                 drop(numbers);
                 let layer = Aov::layer(aov, &values, &setting);
                 aov::print_remarks(&layer);
-                if aov.is_exact() {
-                    let exact = aov::exact(path);
-                    let bytes =
-                        layer.exr(self.label.size).map_err(|error| Failure::cannot_write(&exact, &error))?;
-                    output::write_image(&exact, self.open(&exact)?, |out| out.write_all(&bytes))?;
+                for (format, path) in aov::numbers(aov, path) {
+                    let output = self.open(&path)?;
+                    aov::write_numbers(&layer, (format, path, output), self.label.size)?;
                 }
                 let rows = iter::once(Ok(layer.bytes));
                 return output::write_image(path, self.open(path)?, |out| {

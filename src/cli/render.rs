@@ -199,8 +199,8 @@ impl Args {
         let refuse = |path: &Path, what| output::refuse_source_by(path, what, scene, model);
         let mut images = vec![path.to_owned()];
         for (aov, picture) in aov::pictures(&self.aov, &self.main(path)) {
-            if aov.is_exact() {
-                refuse(&aov::exact(&picture), "the image")?;
+            for (_, path) in aov::numbers(aov, &picture) {
+                refuse(&path, "the image")?;
             }
             images.push(picture);
         }

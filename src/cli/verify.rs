@@ -48,7 +48,7 @@ pub struct Args {
     colours: bool,
     #[command(flatten)]
     of_colours: colours::Args,
-    /// Print the counts, the first pixels of each kind and what is assumed as JSON
+    /// Print the counts, of all pixels and of each object's, the first pixels of each kind and what is assumed as JSON
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -87,11 +87,11 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         progress.end();
         return colours::report(&args.of_colours, proof?, &form, picture);
     }
-    let verdicts = verify::picture(&renderer, &plan, &|| {
+    let pixels = verify::picture(&renderer, &plan, &|| {
         progress.step();
         ControlFlow::Continue(())
     });
     progress.end();
-    let verdicts = verdicts.map_err(|_| Failure::Interrupted("the image was not finished"))?;
-    objects::report(&verdicts, &form, picture)
+    let pixels = pixels.map_err(|_| Failure::Interrupted("the image was not finished"))?;
+    objects::report(&model, &pixels, &form, picture)
 }

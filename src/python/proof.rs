@@ -27,7 +27,10 @@ pub fn verify(py: Python<'_>, model: &Model, how: &How) -> PyResult<Proof> {
         };
         verify::picture(renderer, &Plan::new(model), &done).ok()
     })?;
-    let verdicts = verdicts.and_then(|verdicts| Array2::from_shape_vec((height, width), verdicts).ok());
+    let verdicts = verdicts.and_then(|pixels| {
+        let verdicts = pixels.iter().map(|pixel| pixel.verdict).collect();
+        Array2::from_shape_vec((height, width), verdicts).ok()
+    });
     // It ends early only where a signal is raised.
     Ok(Proof { verdicts: verdicts.ok_or_else(|| PyKeyboardInterrupt::new_err(()))? })
 }

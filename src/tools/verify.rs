@@ -23,23 +23,33 @@ pub enum Verdict {
     Contradicted,
 }
 
-/// Returns the verdict on a pixel: `x` counts from the left, `y` from the bottom.
-pub fn pixel(plan: &Plan, x: usize, y: usize) -> Verdict {
+/// A pixel, and what is known of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Pixel {
+    /// What is proven.
+    pub verdict: Verdict,
+    /// The index of the object that the tracer finds, where it finds one.
+    pub object: Option<usize>,
+}
+
+/// Returns what is known of a pixel: `x` counts from the left, `y` from the bottom.
+pub fn pixel(plan: &Plan, x: usize, y: usize) -> Pixel {
     let sight = plan.camera.sight(x as f64, y as f64);
     let found = trace::first_hit(plan, &sight).map(|hit| hit.index);
     let shape = |index: usize| &plan.model.objects[index].shape;
     let (first, _) = first_of((0..plan.model.objects.len()).map(|index| (index, shape(index))), &sight);
-    match first {
+    let verdict = match first {
         _ if !first.may_be(found) => Verdict::Contradicted,
         FirstHits::Certain(_) => Verdict::Proven,
         FirstHits::OneOf { any, .. } if any.iter().all(|(index, _)| shape(*index).is_certified()) => {
             Verdict::Tie
         }
         FirstHits::OneOf { .. } => Verdict::Uncertified,
-    }
+    };
+    Pixel { verdict, object: found }
 }
 
-/// Returns the verdicts on all pixels, row by row from the top. `done` is called after each row, and may break off.
+/// Returns what is known of all pixels, row by row from the top. `done` is called after each row, and may break off.
 ///
 /// # Errors
 /// `Interrupted` if `done` broke off.
@@ -47,8 +57,9 @@ pub fn picture(
     renderer: &Renderer,
     plan: &Plan,
     done: &(dyn Fn() -> ControlFlow<()> + Sync),
-) -> io::Result<Vec<Verdict>> {
+) -> io::Result<Vec<Pixel>> {
     let [_, height] = plan.camera.pixels;
-    let verdict = |x, y| pixel(plan, x, y);
-    renderer.pixels(plan, 0..height, done, verdict).ok_or_else(|| io::ErrorKind::Interrupted.into())
+    renderer
+        .pixels(plan, 0..height, done, |x, y| pixel(plan, x, y))
+        .ok_or_else(|| io::ErrorKind::Interrupted.into())
 }

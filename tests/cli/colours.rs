@@ -81,6 +81,17 @@ fn proofs_of_objects_are_printed_as_json_with_what_they_assume() {
     let of = |kind: &str| numbers["pixels"][kind].as_u64().expect("a number");
     assert_eq!(of("proven") + of("ties"), of("all"), "{numbers}");
     assert_eq!((of("not_certified"), of("contradicted")), (0, 0), "{numbers}");
+    assert_eq!(of("undecided"), of("ties"));
+    assert_eq!(numbers["share"].as_f64(), Some(of("proven") as f64 / of("all") as f64), "to the last digit");
+    let size = |side: usize| numbers["size"][side].as_u64().expect("a number");
+    assert_eq!(size(0) * size(1), of("all"));
+    let objects = numbers["objects"].as_array().expect("objects");
+    let names: Vec<_> = objects.iter().map(|object| object["object"].as_str()).collect();
+    assert!(names.contains(&Some("brick")), "{names:?}");
+    for kind in ["all", "proven", "ties"] {
+        let sum: u64 = objects.iter().filter_map(|object| object[kind].as_u64()).sum();
+        assert_eq!(sum, of(kind), "{kind} of all objects");
+    }
     assert_eq!(numbers["uncertified"], Value::Array(Vec::new()));
     assert_eq!(numbers["assumptions"][0]["assumed"], "vertices as placed, rounded to f64");
     assert_eq!(numbers["assumptions"][0]["of"][0], "box");

@@ -1,7 +1,10 @@
 //! Images whose colours are neither clamped nor rounded, and `--exposure`.
 
 use crate::common::program::{folder, outcome, scene, tabray};
+use serde_json::Value;
+use std::collections::BTreeSet;
 use std::fs;
+use std::iter;
 use tempfile::TempDir;
 
 /// Runs a command in a folder, and returns its status, and what it says.
@@ -72,4 +75,46 @@ fn full_range_images_are_refused_where_they_cannot_be_had() {
     let (status, said) = run(&folder, &["diff", "bad.pfm", "bad.pfm"]);
     assert!(status == 2 && said.contains("it is not a PFM of three channels"), "{said}");
     assert!(!fs::exists(folder.path().join("a.exr")).expect("a folder"));
+}
+
+/// Returns the numbers of a NumPy array in a file, 4 or 8 bytes each, if it begins like this.
+fn array<const N: usize>(folder: &TempDir, name: &str, head: &str) -> Vec<[u8; N]> {
+    let bytes = fs::read(folder.path().join(name)).expect("an array");
+    let at = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
+    assert_eq!(String::from_utf8_lossy(&bytes[10..at]).trim_end(), head, "{name}");
+    bytes[at..].as_chunks().0.to_vec()
+}
+
+#[test]
+fn objects_faces_and_distances_are_numbers_in_files() {
+    let folder = folder();
+    let scene = scene("entities/box.ray");
+    let scene = scene.to_str().expect("a path");
+    let options = ["--size", "24", "--aov", "object,face,depth", "-o", "a.png"];
+    let (status, said) = run(&folder, &[&["render", scene], &options[..]].concat());
+    assert_eq!(status, 0, "{said}");
+    let head = |descr: &str| format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': (18, 24), }}");
+    let [objects, faces] = ["a-object.npy", "a-face.npy"].map(|name| {
+        array(&folder, name, &head("<i4")).into_iter().map(i32::from_le_bytes).collect::<Vec<_>>()
+    });
+    let depths: Vec<_> =
+        array(&folder, "a-depth.npy", &head("<f8")).into_iter().map(f64::from_le_bytes).collect();
+    for index in (0..24 * 18).step_by(43) {
+        let [x, y] = [index % 24, 17 - index / 24].map(|at| at.to_string());
+        let (_, told) = run(&folder, &["probe", scene, &x, &y, "--set", "eye.pixeldim=24 18", "--json"]);
+        let told: Value = serde_json::from_str(&told).expect("JSON");
+        let first = &told["rays"][0];
+        assert_eq!(i64::from(objects[index]), first["number"].as_i64().unwrap_or(-1), "{x} {y}");
+        let depth = first["distance"].as_f64().unwrap_or(f64::INFINITY);
+        assert_eq!(depths[index], depth, "{x} {y}: to the last digit");
+    }
+    // Only the boxes have faces, and of none all six are seen.
+    let seen: BTreeSet<_> = iter::zip(&objects, &faces).filter(|(_, face)| **face >= 0).collect();
+    assert!((4..=10).contains(&seen.len()), "{seen:?}");
+    assert!(seen.iter().all(|(object, face)| **object >= 2 && **face < 6), "{seen:?}");
+    for name in ["a-object.exr", "a-face.exr"] {
+        let bytes = fs::read(folder.path().join(name)).expect("an EXR");
+        assert!(bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]), "{name}");
+    }
+    assert!(fs::exists(folder.path().join("a-face.png")).expect("a folder"), "it can be looked at");
 }

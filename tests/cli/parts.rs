@@ -85,7 +85,7 @@ fn an_image_of_parts_may_be_of_any_kind() {
         ("a.png", &["--samples", "2..16", "--aov", "depth,normal,object,colour,cost,samples,error"]),
         ("a.png", &["--max-error", "6", "--certain", "--aov", "error,samples"]),
         ("a.exr", &["--aov", "depth,error"]),
-        ("a.ppm", &["--aov", "object"]),
+        ("a.ppm", &["--aov", "object,face"]),
     ] {
         let folder = folder();
         let size = match options[0] {

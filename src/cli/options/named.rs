@@ -46,6 +46,7 @@ impl Value for Aov {
             Self::Depth => "Distance of the first hit, near ones bright",
             Self::Normal => "Surface normal: red, green and blue are x, y and z",
             Self::Object => "Object seen, each in its own colour",
+            Self::Face => "Face seen of a mesh, a box, a prism or a polygon, each in its own colour",
             Self::Colour => "Colour, before it is clamped and rounded",
             Self::Cost => "Number of rays that a pixel takes",
             Self::Samples => "Number of samples that a pixel takes",

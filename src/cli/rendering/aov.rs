@@ -12,6 +12,7 @@ use std::iter;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use tabray_core::output::aov::{Aov, Layer};
+use tabray_core::output::numbers::NumberFormat;
 use tabray_core::output::picture::Format;
 use tabray_core::render::plan::Plan;
 use tabray_core::scene::model::Model;
@@ -27,7 +28,7 @@ const LARGEST: usize = 1 << 26;
 #[command(next_help_heading = "Looking inside")]
 pub struct Args {
     /// Also write these auxiliary images, beside the main one: `-o a.png --aov depth` writes a-depth.png, and
-    /// a-depth.exr with exact numbers
+    /// a-depth.exr and, of depth, object and face, a-depth.npy with the numbers
     #[arg(long, value_name = "IMAGES", value_delimiter = ',', value_parser = by_name::<Aov>())]
     aov: Vec<Aov>,
 }
@@ -36,7 +37,7 @@ pub struct Args {
 pub struct Files {
     aov: Aov,
     picture: (PathBuf, Output),
-    exact: Option<(PathBuf, Output)>,
+    numbers: Vec<(NumberFormat, PathBuf, Output)>,
 }
 
 /// Opens all files that are asked for; their names are derived from the main image's.
@@ -55,9 +56,11 @@ pub fn open(model: &Model, args: &Args, main: &Path, output: &Output) -> Result<
     aovs.into_iter()
         .map(|aov| {
             let picture = picture(main, aov);
-            let exact = aov.is_exact().then(|| opened(exact(&picture))).transpose()?;
+            let numbers = numbers(aov, &picture)
+                .map(|(format, path)| opened(path).map(|(path, output)| (format, path, output)))
+                .collect::<Result<_, _>>()?;
             let picture = opened(picture)?;
-            Ok(Files { aov, picture, exact })
+            Ok(Files { aov, picture, numbers })
         })
         .collect()
 }
@@ -94,9 +97,20 @@ pub fn picture(main: &Path, aov: Aov) -> PathBuf {
     main.extension().map_or_else(|| picture.clone(), with)
 }
 
-/// Returns the path of the exact numbers of an image beside the main one.
-pub fn exact(picture: &Path) -> PathBuf {
-    picture.with_extension("exr")
+/// Returns the paths of the numbers of an image beside the main one.
+pub fn numbers(aov: Aov, picture: &Path) -> impl Iterator<Item = (NumberFormat, PathBuf)> {
+    aov.number_formats().iter().map(|format| (*format, picture.with_extension(format.name())))
+}
+
+/// Writes the numbers of an image.
+pub fn write_numbers(
+    layer: &Layer,
+    (format, path, output): (NumberFormat, PathBuf, Output),
+    size: [usize; 2],
+) -> Result<(), Failure> {
+    let Some(numbers) = &layer.numbers else { return Ok(()) };
+    let bytes = numbers.file(format, size).map_err(|error| Failure::cannot_write(&path, &error))?;
+    output::write_image(&path, output, |out| out.write_all(&bytes))
 }
 
 /// The samples per pixel of the reference for errors: this many times the model's own, and at least [`TRUE_LEAST`].
@@ -152,7 +166,7 @@ fn all(
 ) -> Result<(), Failure> {
     let renderer = threads.renderer()?;
     let size = plan.camera.pixels;
-    for Files { aov, picture, exact } in files {
+    for Files { aov, picture, numbers } in files {
         let progress = Progress::new(size[1]);
         let layer = aov.render(&renderer, plan, truth, &|| {
             progress.step();
@@ -161,9 +175,8 @@ fn all(
         progress.end();
         let layer = layer.map_err(|_| Failure::Interrupted("the image was not finished"))?;
         print_remarks(&layer);
-        if let Some((path, output)) = exact {
-            let bytes = layer.exr(size).map_err(|error| Failure::cannot_write(&path, &error))?;
-            output::write_image(&path, output, |out| out.write_all(&bytes))?;
+        for file in numbers {
+            write_numbers(&layer, file, size)?;
         }
         let (path, output) = picture;
         output::write_image(&path, output, |out| format.write(out, size, iter::once(Ok(layer.bytes))))?;

@@ -2,7 +2,7 @@
 
 use crate::geometry::sight::Sight;
 use crate::named;
-use crate::output::full_range::FullRange;
+use crate::output::numbers::{NumberFormat, Numbers};
 use crate::render::bytes::to_byte;
 use crate::render::observer::{Event, TraceObserver};
 use crate::render::plan::Plan;
@@ -32,6 +32,10 @@ pub enum Aov {
     Normal,
     /// Object seen, each in its own colour.
     Object,
+    /// Face seen of a mesh, a box, a prism or a polygon, each in its own colour.
+    ///
+    /// Black where nothing is hit, or a shape without faces.
+    Face,
     /// Colour, before it is clamped and rounded.
     ///
     /// With all samples, as in the main image.
@@ -59,13 +63,12 @@ pub enum Aov {
 pub struct Layer {
     /// Red, green and blue of each pixel, to be looked at.
     pub bytes: Vec<u8>,
-    /// The numbers behind the image, three for each pixel, where they say more than the bytes. A depth, in world units,
-    /// fills all three channels and is infinite where nothing is hit; a normal is 0 there. Samples consist of their
+    /// The numbers behind the image, where they say more than the bytes. A normal is 0 where nothing is hit. Samples consist of their
     /// number, the estimated error of the colour, and 1 where that is above the limit, else 0. An error consists of the
     /// error of the colour, the root of the mean square over its channels; the error of the distance to the first hit,
     /// in world units; and 1 where another object is hit, else 0. A proven bound consists of the bound, where 1 is white,
     /// the number of footprints, and 1 where the bound is above the limit, else 0.
-    pub exact: Option<Vec<f32>>,
+    pub numbers: Option<Numbers>,
     /// The number of rays of the most expensive pixel, and that pixel: its column from the left and its row from the
     /// bottom.
     pub most: Option<(u64, [usize; 2])>,
@@ -80,6 +83,7 @@ named!(Aov {
     Depth => "depth",
     Normal => "normal",
     Object => "object",
+    Face => "face",
     Colour => "colour",
     Cost => "cost",
     Samples => "samples",
@@ -88,9 +92,13 @@ named!(Aov {
 });
 
 impl Aov {
-    /// Tells whether the image has exact numbers.
-    pub fn is_exact(self) -> bool {
-        matches!(self, Self::Depth | Self::Normal | Self::Colour | Self::Samples | Self::Error)
+    /// Returns the formats of the files that hold the numbers of the image.
+    pub fn number_formats(self) -> &'static [NumberFormat] {
+        match self {
+            Self::Depth | Self::Object | Self::Face => &[NumberFormat::Exr, NumberFormat::Npy],
+            Self::Normal | Self::Colour | Self::Samples | Self::Error => &[NumberFormat::Exr],
+            Self::Cost | Self::Undecided => &[],
+        }
     }
 
     /// Renders this image. `truth` is a plan of the same scene, exact and with many samples; only the error uses it.
@@ -109,7 +117,8 @@ impl Aov {
         match self {
             Self::Depth => Ok(depth(&each(renderer, plan, done, |x, y| depth_at(plan, x, y))?)),
             Self::Normal => Ok(normal(&each(renderer, plan, done, |x, y| normal_at(plan, x, y))?)),
-            Self::Object => Ok(object(&each(renderer, plan, done, |x, y| object_at(plan, x, y))?)),
+            Self::Object => Ok(indices("object", each(renderer, plan, done, |x, y| object_at(plan, x, y))?)),
+            Self::Face => Ok(indices("face", each(renderer, plan, done, |x, y| face_at(plan, x, y))?)),
             Self::Colour => {
                 Ok(colour(&each(renderer, plan, done, |x, y| trace::pixel(plan, x, y))?, &setting.display()))
             }
@@ -171,19 +180,6 @@ impl Setting {
     }
 }
 
-impl Layer {
-    /// Encodes the exact numbers as an OpenEXR file.
-    ///
-    /// # Errors
-    /// If there are no exact numbers, or if the format cannot hold the size.
-    pub fn exr(&self, size: [usize; 2]) -> io::Result<Vec<u8>> {
-        let numbers = self.exact.as_ref().ok_or(io::ErrorKind::InvalidInput)?;
-        let mut file = Vec::new();
-        FullRange::Exr.write(&mut file, size, numbers)?;
-        Ok(file)
-    }
-}
-
 /// Counts the rays of a pixel.
 struct Rays(u64);
 
@@ -215,8 +211,13 @@ pub(super) fn normal_at(plan: &Plan, x: usize, y: usize) -> Option<DVec3> {
     trace::first_hit(plan, &middle(plan, x, y)).map(|hit| hit.object.shape.normal(hit.point))
 }
 
-pub(super) fn object_at(plan: &Plan, x: usize, y: usize) -> Option<usize> {
-    trace::first_hit(plan, &middle(plan, x, y)).map(|hit| hit.index)
+pub(super) fn object_at(plan: &Plan, x: usize, y: usize) -> Option<u32> {
+    trace::first_hit(plan, &middle(plan, x, y)).map(|hit| hit.index as u32)
+}
+
+pub(super) fn face_at(plan: &Plan, x: usize, y: usize) -> Option<u32> {
+    let sight = middle(plan, x, y);
+    trace::first_hit(plan, &sight).and_then(|hit| hit.object.shape.face_hit(&sight.ray(), hit.distance))
 }
 
 pub(super) fn cost_at(plan: &Plan, x: usize, y: usize) -> u64 {
@@ -245,7 +246,7 @@ pub(super) fn depth(depths: &[f64]) -> Layer {
     };
     Layer {
         bytes: shown_all(depths.iter().map(grey).map(DVec3::splat)),
-        exact: Some(depths.iter().flat_map(|depth| [*depth as f32; 3]).collect()),
+        numbers: Some(Numbers::Distances(depths.to_vec())),
         most: None,
         worst: None,
     }
@@ -254,9 +255,9 @@ pub(super) fn depth(depths: &[f64]) -> Layer {
 pub(super) fn normal(normals: &[Option<DVec3>]) -> Layer {
     Layer {
         bytes: shown_all(normals.iter().map(|normal| normal.map_or(DVec3::ZERO, |n| 0.5 * n + 0.5))),
-        exact: Some(
+        numbers: Some(Numbers::Triples(
             normals.iter().flat_map(|n| n.unwrap_or_default().to_array().map(|part| part as f32)).collect(),
-        ),
+        )),
         most: None,
         worst: None,
     }
@@ -266,16 +267,16 @@ pub(super) fn colour(colours: &[Rgb], display: &Display) -> Layer {
     let exact = |colour: &Rgb| display.full_range(*colour).as_vec3().to_array();
     Layer {
         bytes: colours.iter().flat_map(|colour| display.bytes(*colour)).collect(),
-        exact: Some(colours.iter().flat_map(exact).collect()),
+        numbers: Some(Numbers::Triples(colours.iter().flat_map(exact).collect())),
         most: None,
         worst: None,
     }
 }
 
-pub(super) fn object(objects: &[Option<usize>]) -> Layer {
+pub(super) fn indices(of: &'static str, indices: Vec<Option<u32>>) -> Layer {
     Layer {
-        bytes: shown_all(objects.iter().map(|object| object.map_or(DVec3::ZERO, colour_of))),
-        exact: None,
+        bytes: shown_all(indices.iter().map(|index| index.map_or(DVec3::ZERO, colour_of))),
+        numbers: Some(Numbers::Indices { of, indices }),
         most: None,
         worst: None,
     }
@@ -284,7 +285,7 @@ pub(super) fn object(objects: &[Option<usize>]) -> Layer {
 pub(super) fn undecided(pixels: &[bool]) -> Layer {
     Layer {
         bytes: pixels.iter().flat_map(|is_undecided| [if *is_undecided { 255 } else { 0 }; 3]).collect(),
-        exact: None,
+        numbers: None,
         most: None,
         worst: None,
     }
@@ -295,7 +296,7 @@ pub(super) fn cost(costs: &[u64], [width, height]: [usize; 2]) -> Layer {
     let place = costs.iter().position(|cost| *cost == most).unwrap_or(0);
     Layer {
         bytes: shown_all(costs.iter().map(|cost| DVec3::splat(*cost as f64 / most.max(1) as f64))),
-        exact: None,
+        numbers: None,
         most: Some((most, [place % width, height - 1 - place / width])),
         worst: None,
     }
@@ -314,7 +315,7 @@ pub(super) fn samples(pixels: &[(u32, Option<f64>)], setting: &Setting) -> Layer
     };
     Layer {
         bytes: shown_all(pixels.iter().map(shade)),
-        exact: Some(pixels.iter().flat_map(numbers).collect()),
+        numbers: Some(Numbers::Triples(pixels.iter().flat_map(numbers).collect())),
         most: None,
         worst: None,
     }
@@ -336,7 +337,7 @@ pub(super) fn bounds(pixels: &[PixelBound], setting: &Setting) -> Layer {
     };
     Layer {
         bytes: shown_all(pixels.iter().map(shade)),
-        exact: Some(pixels.iter().flat_map(numbers).collect()),
+        numbers: Some(Numbers::Triples(pixels.iter().flat_map(numbers).collect())),
         most: None,
         worst: Some((worst, [place % width, height - 1 - place / width])),
     }
@@ -381,16 +382,16 @@ pub(super) fn error(errors: &[PixelError], [width, height]: [usize; 2]) -> Layer
     };
     Layer {
         bytes: shown_all(errors.iter().map(shade)),
-        exact: Some(errors.iter().flat_map(numbers).collect()),
+        numbers: Some(Numbers::Triples(errors.iter().flat_map(numbers).collect())),
         most: None,
         worst: Some((worst, [place % width, height - 1 - place / width])),
     }
 }
 
-/// Returns a colour for the object of this index. Hues advance by the golden ratio, so that the first few differ well
+/// Returns a colour for this index. Hues advance by the golden ratio, so that the first few differ well
 /// however many there are.
-fn colour_of(index: usize) -> DVec3 {
-    let hue = (index as f64 * 0.618_033_988_749_895).fract();
+fn colour_of(index: u32) -> DVec3 {
+    let hue = (f64::from(index) * 0.618_033_988_749_895).fract();
     let channel = |shift: f64| ((6.0 * (hue + shift).fract() - 3.0).abs() - 1.0).clamp(0.0, 1.0);
     let pure = DVec3::new(channel(0.0), channel(2.0 / 3.0), channel(1.0 / 3.0));
     0.25 + 0.75 * pure

@@ -16,7 +16,8 @@ impl Aov {
         match self {
             Self::Depth => [aov::depth_at(plan, x, y), 0.0, 0.0],
             Self::Normal => aov::normal_at(plan, x, y).map_or([f64::NAN; 3], |normal| normal.to_array()),
-            Self::Object => [aov::object_at(plan, x, y).map_or(f64::NAN, |index| index as f64), 0.0, 0.0],
+            Self::Object => [aov::object_at(plan, x, y).map_or(f64::NAN, f64::from), 0.0, 0.0],
+            Self::Face => [aov::face_at(plan, x, y).map_or(f64::NAN, f64::from), 0.0, 0.0],
             Self::Colour => trace::pixel(plan, x, y).to_array(),
             Self::Cost => [aov::cost_at(plan, x, y) as f64, 0.0, 0.0],
             Self::Samples => {
@@ -43,15 +44,15 @@ impl Aov {
             values.iter().map(of).collect()
         }
         let is = |number: f64| number != 0.0;
+        let index = |[index, ..]: &Values| (!index.is_nan()).then_some(*index as u32);
         match self {
             Self::Depth => aov::depth(&all(values, |[depth, ..]| *depth)),
             Self::Normal => {
                 let normal = |numbers: &Values| DVec3::from_array(*numbers);
                 aov::normal(&all(values, |numbers| (!numbers[0].is_nan()).then(|| normal(numbers))))
             }
-            Self::Object => {
-                aov::object(&all(values, |[index, ..]| (!index.is_nan()).then_some(*index as usize)))
-            }
+            Self::Object => aov::indices("object", all(values, index)),
+            Self::Face => aov::indices("face", all(values, index)),
             Self::Colour => {
                 aov::colour(&all(values, |colour| DVec3::from_array(*colour)), &setting.display())
             }

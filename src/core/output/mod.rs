@@ -6,6 +6,8 @@ pub mod compare;
 pub mod deflate;
 mod filter;
 pub mod full_range;
+pub mod npy;
+pub mod numbers;
 pub mod packing;
 pub mod picture;
 

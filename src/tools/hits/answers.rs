@@ -3,6 +3,7 @@
 use super::npy;
 use serde::Serialize;
 use std::io::{self, Write};
+use tabray_core::output;
 use tabray_core::query::{Answer, Surroundings, Verdict};
 use tabray_core::scene::model::Model;
 use tabray_core::world::certify::Precision;
@@ -149,7 +150,7 @@ impl AnswerFormat {
             (Self::JsonLines, _) => Ok(()),
             (Self::Csv, _) if are_all => writeln!(out, "{COLUMNS_OF_ALL},{COLUMNS}"),
             (Self::Csv, _) => writeln!(out, "{COLUMNS}"),
-            (Self::Npy, Some(count)) => npy::begin(npy::RECORD, &format!("({count},)"), out),
+            (Self::Npy, Some(count)) => output::npy::begin(npy::RECORD, &format!("({count},)"), out),
             (Self::Npy, None) => {
                 Err(io::Error::new(io::ErrorKind::InvalidInput, "an array needs its length first"))
             }

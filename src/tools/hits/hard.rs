@@ -4,7 +4,6 @@
 //! another lies one that passes between them, and in a triangle of three such rays lies a corner, where three things meet.
 
 use super::answers::AnswerFormat;
-use super::npy;
 use glam::DVec3;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
@@ -12,6 +11,7 @@ use rayon::prelude::*;
 use serde_json::json;
 use std::io::{self, Write};
 use tabray_core::geometry::aabb::Aabb;
+use tabray_core::output;
 use tabray_core::query::{ExactRay, Query};
 use tabray_core::render::Renderer;
 
@@ -279,7 +279,7 @@ pub fn write(format: AnswerFormat, rays: &[HardRay], out: &mut dyn Write) -> io:
             }
         }
         AnswerFormat::Npy => {
-            npy::begin("'<f8'", &format!("({}, 6)", rays.len()), out)?;
+            output::npy::begin("'<f8'", &format!("({}, 6)", rays.len()), out)?;
             for HardRay { origin, dir, .. } in rays {
                 let numbers = [origin.to_array(), dir.to_array()];
                 for number in numbers.as_flattened() {

@@ -1,14 +1,12 @@
 //! NumPy arrays of rays and of answers, in NumPy's own format ("NPY format", versions 1 to 3). The crates that read it bring
 //! a parser of Python's literals that needs a C compiler.
 
-use std::io::{self, BufRead, Read, Write};
+use std::io::{self, BufRead, Read};
+use tabray_core::output::npy::MAGIC;
 use tabray_core::text::reason;
 
 /// The origin, the direction and the end of a ray.
 pub(super) type Numbers = ([f64; 6], Option<f64>);
-
-/// How each file begins.
-pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
 
 /// The maximum length of a head, in bytes.
 const LONGEST: usize = 1 << 12;
@@ -138,17 +136,6 @@ impl Record {
         let numbers = self.along.iter().chain(&self.point).chain(&self.normal).chain(&self.uv);
         numbers.for_each(|number| out.extend(number.to_le_bytes()));
     }
-}
-
-/// Writes what comes before the numbers of an array of this type and shape, both as NumPy writes them.
-pub(super) fn begin(descr: &str, shape: &str, out: &mut dyn Write) -> io::Result<()> {
-    let head = format!("{{'descr': {descr}, 'fortran_order': False, 'shape': {shape}, }}");
-    // The records begin at a multiple of 64 bytes.
-    let length = (MAGIC.len() + 4 + head.len() + 1).next_multiple_of(64) - MAGIC.len() - 4;
-    out.write_all(MAGIC)?;
-    out.write_all(&[1, 0])?;
-    out.write_all(&(length as u16).to_le_bytes())?;
-    writeln!(out, "{head:0$}", length - 1)
 }
 
 #[cfg(test)]

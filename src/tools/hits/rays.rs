@@ -5,6 +5,7 @@ use glam::DVec3;
 use serde::Deserialize;
 use std::fmt;
 use std::io::{BufRead, BufReader, Read};
+use tabray_core::output;
 use tabray_core::query::ExactRay;
 use tabray_core::text::reason;
 
@@ -169,7 +170,7 @@ impl Iterator for RayReader<'_> {
 
 /// Returns the format that the first bytes of rays show.
 fn of_content(head: &[u8]) -> RayFormat {
-    if head.starts_with(npy::MAGIC) {
+    if head.starts_with(output::npy::MAGIC) {
         return RayFormat::Npy;
     }
     let text = String::from_utf8_lossy(head);
