@@ -10,6 +10,11 @@ use tabray_exact::scalar::Scalar;
 /// The largest number of columns, and of rows, of a [`SkyMap`].
 const MOST_CELLS: [u32; 2] = [1024, 512];
 
+/// The largest number of cells along each side of a texel. Of colours that are interpolated between the middles of texels, the
+/// brightest part of a lone bright texel is 16 times as bright as the corner to which its light reaches: one cell for all of
+/// it would choose directions by a density from which the light differs as much.
+const FINEST: usize = 4;
+
 /// The number of rows of a map from which on they are filled on all threads.
 const MANY: usize = 64;
 
@@ -31,20 +36,28 @@ impl SkyMap {
         if width == 0 || height == 0 {
             return None;
         }
-        let [columns, rows] = [width.min(MOST_CELLS[0]) as usize, height.min(MOST_CELLS[1]) as usize];
-        let (width, height) = (width as usize, height as usize);
+        let most = MOST_CELLS.map(|most| most as usize);
+        let size = [width as usize, height as usize];
+        let mut fine = FINEST;
+        while fine > 1 && (fine * size[0] > most[0] || fine * size[1] > most[1]) {
+            fine /= 2;
+        }
+        let [width, height] = size.map(|texels| fine * texels);
+        let [columns, rows] = [width.min(most[0]), height.min(most[1])];
         let light = |y: usize| -> Vec<f32> {
             let up = (y as f64 + 0.5) / height as f64;
             let place = |x: usize| DVec2::new((x as f64 + 0.5) / width as f64, up);
             (0..width).map(|x| background.colour(direction(place(x))).max_element().max(0.0) as f32).collect()
         };
-        let texels = parallel::map_ranges(height, MANY, &|range| range.map(light).collect());
-        // The mean over a texel of colours that are interpolated between the middles of texels.
+        let looks = parallel::map_ranges(height, MANY, &|range| range.map(light).collect());
+        // The mean of colours that are interpolated between the middles of texels: over a part of a texel on one side of its
+        // middle, that of its own middle; over a texel, one to which the texels around add.
         let mean = |x: usize, y: usize| {
-            let along = |y: usize| {
-                let at = |x: usize| f64::from(texels[y][x % width]);
-                0.75 * at(x) + 0.125 * (at(x + width - 1) + at(x + 1))
-            };
+            let at = |x: usize, y: usize| f64::from(looks[y][x % width]);
+            if fine > 1 {
+                return at(x, y);
+            }
+            let along = |y: usize| 0.75 * at(x, y) + 0.125 * (at(x + width - 1, y) + at(x + 1, y));
             0.75 * along(y) + 0.125 * (along(y.saturating_sub(1)) + along((y + 1).min(height - 1)))
         };
         let cells = |row: usize| {
