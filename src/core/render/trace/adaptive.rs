@@ -58,6 +58,12 @@ fn most_error(adaptive: Adaptive, samples: u32) -> f64 {
 }
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
+    /// Tells whether areas, a sun or a sky light the scene.
+    fn is_light_spread_out(&self) -> bool {
+        let lights = &self.model.lights;
+        self.plan.needs.lights.iter().any(|index| lights[*index].value.emitter().is_some())
+    }
+
     /// Computes the colours of pixels, given by column and row, each with as many samples as it needs.
     pub(super) fn adaptive_pixels(
         &mut self,
@@ -79,7 +85,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         };
         self.scratch.trails.is_on = true;
         let mut rays = Rays { tracer: self, group, seen, is_unbounded, runs: take(runs) };
-        rays.begin(pixels, probes, grid, estimates);
+        let is_careful = adaptive.error.is_some() && rays.tracer.is_light_spread_out();
+        rays.begin(pixels, probes, grid, estimates, is_careful);
         let next_goal = |estimate: &Estimate, pixel: &[usize; 2], mut goal: u32| {
             // If nothing bounds the light, a pixel may end with the first number of samples.
             while !is_unbounded && goal < adaptive.most && is_short(estimate, pixel, goal) {
@@ -106,7 +113,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 let goes_on = goal < adaptive.most
                     && estimate.missing != f64::INFINITY
                     && (is_short(estimate, pixel, goal)
-                        || estimate.error(&display, doubt) > most_error(adaptive, goal));
+                        || estimate.next_error(&display, doubt) > most_error(adaptive, goal));
                 if goes_on {
                     estimate.set_goal(next_goal(estimate, pixel, 2 * goal));
                 }
@@ -142,6 +149,7 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
         probes: &mut Vec<[usize; 2]>,
         grid: &mut Vec<RaySummary>,
         estimates: &mut Vec<Estimate>,
+        is_careful: bool,
     ) {
         let [left, low] = [0, 1].map(|axis| pixels.iter().map(|pixel| pixel[axis]).min().unwrap_or(0));
         let [right, high] = [0, 1].map(|axis| pixels.iter().map(|pixel| pixel[axis]).max().unwrap_or(0));
@@ -173,7 +181,7 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
         estimates.resize(pixels.len(), Estimate::default());
         let least = self.tracer.plan.camera.samples;
         for (estimate, pixel) in estimates.iter_mut().zip(pixels) {
-            estimate.begin(grid[place(*pixel)], least);
+            estimate.begin(grid[place(*pixel)], least, is_careful);
         }
     }
 
