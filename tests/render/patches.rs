@@ -44,6 +44,23 @@ fn one_sample_of_a_floor_shows_what_many_do() {
     }
 }
 
+/// Objects through which, or in which, the floor is seen.
+const WAYS: [&str; 2] = [
+    "material mirror { specular 1 1 1 } plane m { material mirror normal 0 0 1 point 0 0 -1 }",
+    "material pane { transparency 1 } plane p { material pane normal 0 0 1 point 0 0 -1 }",
+];
+
+#[test]
+fn one_sample_of_a_floor_in_a_flat_mirror_or_behind_a_pane_shows_what_many_do() {
+    for way in WAYS {
+        let free = floor("free", &format!("{} {way}", FLOORS[0]));
+        let [one, mut many] = [Plan::new(&free), Plan::new(&free)];
+        many.camera.samples = 256;
+        let off = difference(&one, &many);
+        assert!(off < 0.09, "{way}: {off}");
+    }
+}
+
 #[test]
 fn a_pattern_that_is_near_shows_as_it_is() {
     let scene = floor(
@@ -61,6 +78,7 @@ fn a_pattern_that_is_near_shows_as_it_is() {
 #[test]
 fn means_are_never_proven_wrong() {
     let mut scenes: Vec<_> = FLOORS.iter().map(|shape| floor("free", shape)).collect();
+    scenes.extend(WAYS.iter().map(|way| floor("free", &format!("{} {way}", FLOORS[0]))));
     scenes.push(load(&root().join("scenes/tiled_plane/far.ray")));
     for (index, scene) in scenes.iter().enumerate() {
         for samples in [1, 4] {

@@ -104,6 +104,13 @@ pub struct Object {
 }
 
 impl Object {
+    /// Tells whether the object, as a mirror, keeps apart what it mirrors as it was: a patch of a surface is as large in it
+    /// as it would be at the end of the whole path.
+    pub(crate) fn is_flat_mirror(&self) -> bool {
+        let is_bent = self.shape.is_smooth() || self.shader.bends();
+        self.shape.facts().plane.is_some() && !is_bent && self.material.roughness() == 0.0
+    }
+
     /// Tells whether another object certainly has the same shape: it is of the same type, and has the same values but for
     /// its material and its shader. Of objects that may be made of several, such as solids and meshes, that is not told.
     pub fn is_shaped_as(&self, other: &Self) -> bool {

@@ -38,6 +38,8 @@ struct Ray<N> {
     /// A bound on the factor by which the rays' light is multiplied.
     weight: f64,
     depth: usize,
+    /// Whether samples show patches of surfaces along the rays.
+    shows_patches: bool,
 }
 
 /// Traces rays that start as one.
@@ -74,7 +76,8 @@ impl<'s> EnclosingTracer<'s> {
     pub fn primary<N: Number>(&mut self, line: &Line<N>) -> Option<Colour<N>> {
         let length = dot(line.dir, line.dir).sqrt();
         let path = Path { line: *line, leaves: None };
-        self.colour(&Ray { path, length, travelled: N::constant(0.0), weight: 1.0, depth: 0 })
+        let travelled = N::constant(0.0);
+        self.colour(&Ray { path, length, travelled, weight: 1.0, depth: 0, shows_patches: true })
     }
 
     fn colour<N: Number>(&mut self, ray: &Ray<N>) -> Option<Colour<N>> {
@@ -141,7 +144,8 @@ impl<'s> EnclosingTracer<'s> {
     fn seen<N: Number>(&mut self, ray: &Ray<N>, t: N, place: Place) -> Option<Colour<N>> {
         let interface = self.scene.model.objects[place.object].material.interface.as_deref();
         let mut any = None;
-        let window = self.scene.window.filter(|_| ray.depth == 0);
+        let window = self.scene.window.filter(|_| ray.shows_patches);
+        let window = window.map(|window| (window, ray.travelled.coarse()));
         for surface in HitPoints::facing(self.scene, (&ray.path.line, ray.length), t, place, window)? {
             let shaded = match interface {
                 None => self.shaded(ray, t, &surface)?,
@@ -155,15 +159,17 @@ impl<'s> EnclosingTracer<'s> {
     fn shaded<N: Number>(&mut self, ray: &Ray<N>, t: N, surface: &HitPoints<N>) -> Option<Colour<N>> {
         let (dir, travelled) = (ray.path.line.dir, ray.travelled + t * ray.length);
         let mut colour = self.own(ray, travelled, surface)?;
-        let transparency = self.scene.model.objects[surface.place.object].material.transparency;
+        let object = &self.scene.model.objects[surface.place.object];
+        let (transparency, is_flat) = (object.material.transparency, object.is_flat_mirror());
         if transparency != 0.0 {
             let tint = tint(transparency, surface.diffuse)?;
             let kept = N::constant(1.0) - N::constant(transparency);
-            let behind = self.secondary(ray, surface, travelled, dir, &tint)?;
+            let behind = self.secondary(ray, surface, travelled, (dir, true), &tint)?;
             colour = per_axis(|at| rules::transmitted(colour[at], kept, behind[at], tint[at]));
         }
         if !is_black(&surface.specular) {
-            let seen = self.secondary(ray, surface, travelled, surface.mirrored(dir)?, &surface.specular)?;
+            let onward = (surface.mirrored(dir)?, is_flat);
+            let seen = self.secondary(ray, surface, travelled, onward, &surface.specular)?;
             colour = per_axis(|at| rules::reflected(colour[at], seen[at], surface.specular[at]));
         }
         Some(colour)
@@ -178,7 +184,8 @@ impl<'s> EnclosingTracer<'s> {
         surface: &HitPoints<N>,
         interface: &dyn Interface,
     ) -> Option<Colour<N>> {
-        let Object { material, shape, .. } = &self.scene.model.objects[surface.place.object];
+        let object = &self.scene.model.objects[surface.place.object];
+        let (Object { material, shape, .. }, is_flat) = (object, object.is_flat_mirror());
         let is_smooth = interface.roughness() == 0.0 || matches!(self.lights, LightPoints::Middle);
         if !is_smooth || !shape.is_two_sided() || material.glints() || self.scene.bounds.has_media {
             return None;
@@ -196,11 +203,12 @@ impl<'s> EnclosingTracer<'s> {
             let tint = tint(transparency, surface.diffuse)?;
             let through = per_axis(|channel| tint[channel] * (one - reflected[channel]));
             let onward = onward.map(|along| ray.length * along);
-            let behind = self.secondary(ray, surface, travelled, onward, &through)?;
+            let behind = self.secondary(ray, surface, travelled, (onward, false), &through)?;
             colour = per_axis(|at| rules::reflected(colour[at], behind[at], through[at]));
         }
         if !is_black(&reflected) {
-            let seen = self.secondary(ray, surface, travelled, surface.mirrored(dir)?, &reflected)?;
+            let onward = (surface.mirrored(dir)?, is_flat);
+            let seen = self.secondary(ray, surface, travelled, onward, &reflected)?;
             colour = per_axis(|at| rules::reflected(colour[at], seen[at], reflected[at]));
         }
         Some(colour)
@@ -222,20 +230,22 @@ impl<'s> EnclosingTracer<'s> {
         Some(per_axis(|channel| rules.after(travelled, colour[channel])))
     }
 
-    /// Encloses the colours that rays return which continue from a surface. Their light is multiplied by `factor`.
+    /// Encloses the colours that rays return which continue from a surface in these directions, and show patches as long as
+    /// the surface keeps the rays apart as they were. Their light is multiplied by `factor`.
     fn secondary<N: Number>(
         &mut self,
         ray: &Ray<N>,
         surface: &HitPoints<N>,
         travelled: N,
-        dir: [N; 3],
+        (dir, keeps): ([N; 3], bool),
         factor: &Colour<N>,
     ) -> Option<Colour<N>> {
         let path = Path { line: Line { origin: surface.at, dir }, leaves: Some(surface.place) };
         let most = factor.iter().fold(0.0_f64, |most, channel| most.max(channel.coarse().magnitude()));
         // Rays continue with directions as long as those from which they come.
-        let length = ray.length;
-        self.colour(&Ray { path, length, travelled, weight: ray.weight * most, depth: ray.depth + 1 })
+        let (length, weight, depth) = (ray.length, ray.weight * most, ray.depth + 1);
+        let shows_patches = ray.shows_patches && keeps;
+        self.colour(&Ray { path, length, travelled, weight, depth, shows_patches })
     }
 
     /// Returns all colours up to a magnitude, where nothing else is known of what rays return; `None` where that is no use.

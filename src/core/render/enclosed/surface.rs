@@ -30,13 +30,14 @@ pub(super) struct HitPoints<N> {
 
 impl<N: Number> HitPoints<N> {
     /// Returns the points at t of lines, once for each way that the normals may face; `None` where these or the look are
-    /// open. Through a window, a shader's look is a mean over the points around: all of their looks enclose it.
+    /// open. Through a window, at these lengths of the path before the lines, a shader's look is a mean over the points
+    /// around: all of their looks enclose it.
     pub fn facing(
         scene: &EnclosedScene,
         (line, length_of_dir): (&Line<N>, N),
         t: N,
         place: Place,
-        window: Option<Window>,
+        window: Option<(Window, Interval)>,
     ) -> Option<Vec<Self>> {
         let object = &scene.model.objects[place.object];
         let zero = N::of(0.0);
@@ -55,8 +56,9 @@ impl<N: Number> HitPoints<N> {
             Interval::point(N::of(-1.0))
         };
         let window = window.filter(|_| object.shader.sees().patch);
-        let reach = window.map(|Window { start, spread, .. }| {
-            let width = (t * length_of_dir).coarse() * Interval::point(spread) + Interval::point(start);
+        let reach = window.map(|(Window { start, spread, .. }, travelled)| {
+            let path = travelled + (t * length_of_dir).coarse();
+            let width = path * Interval::point(spread) + Interval::point(start);
             let cosine = (dot(outward, line.dir) / length_of_dir).abs().coarse().low;
             (1.0 + 1e-9) * width.high / cosine.max(LEAST_COSINE)
         });

@@ -149,7 +149,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             return;
         }
         let Some(mut scratch) = self.scratch.trees.take() else { return };
-        let (count, kept) = (group.padded(), 1.0 - transparency);
+        let (count, kept, is_flat) = (group.padded(), 1.0 - transparency, object.is_flat_mirror());
         let crossings = object.material.interface.as_deref();
         let crossings = crossings.map(|interface| surface.crossings(interface, group.dir.view(count)));
         surface.mirror_rays(group.dir.view(count), dir);
@@ -175,8 +175,12 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let passed = surface.passed.get(lane).map_or(before.weight, |passed| before.weight * *passed);
             let ray = surface.open_ray(lane, before);
             let open = |weight: Rgb, dir: DVec3, side: Side, kind: RayKind| {
-                let weight = passed * weight;
-                (weight != Rgb::ZERO).then_some(OpenRay { weight, dir, side, kind, ..ray })
+                let keeps = match kind {
+                    RayKind::Transmitted => crossings.is_none(),
+                    _ => is_flat,
+                };
+                let (weight, shows_patches) = (passed * weight, before.shows_patches && keeps);
+                (weight != Rgb::ZERO).then_some(OpenRay { weight, dir, side, kind, shows_patches, ..ray })
             };
             scratch.outcomes[place].onward = [
                 onward.and_then(|dir| open(through, dir, side.opposite(), RayKind::Transmitted)),

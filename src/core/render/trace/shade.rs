@@ -139,8 +139,15 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         };
         shape.packets().interact(cpu, group.rays(), distances, interaction);
         self.pass_media(group, distances, surface);
-        let window = if self.depth == 0 && shader.sees().patch { self.plan.camera.window() } else { None };
-        let patches = window.map(|window| SeenPatches { dir: group.dir.view(count), distances, window });
+        let window = if shader.sees().patch { self.plan.camera.window() } else { None };
+        // Rays that continue from others are those of a round.
+        let open = self.scratch.trees.as_ref().filter(|_| self.depth != 0);
+        let are_shown = |lane: usize| match open {
+            None => self.depth == 0,
+            Some(trees) => trees.round[group.places[lane.min(group.len - 1)] as usize].shows_patches,
+        };
+        let patches =
+            window.map(|window| SeenPatches { dir: group.dir.view(count), window, are_shown: &are_shown });
         surface.see(object, count, patches);
         surface.look = shader.uniform(material);
         surface.is_mirror = match surface.look {

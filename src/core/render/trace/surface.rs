@@ -52,10 +52,10 @@ pub(super) struct Surface {
 pub(super) struct SeenPatches<'p> {
     /// The directions of the rays.
     pub dir: View<'p>,
-    /// The distances of the points.
-    pub distances: &'p [f64],
     /// The window through which a sample looks.
     pub window: Window,
+    /// Tells whether the sample of the ray in a lane shows a patch.
+    pub are_shown: &'p dyn Fn(usize) -> bool,
 }
 
 impl Surface {
@@ -77,9 +77,11 @@ impl Surface {
             let (position, normal) = (self.points.get(lane), self.normals.get(lane));
             let normal = if is_two_sided && *side == Side::Inside { -normal } else { normal };
             let mut point = SurfacePoint::seen(&**shape, sees, position, normal, *side);
-            if let Some(SeenPatches { dir, distances, window: Window { start, spread, pixel } }) = patches {
+            if let Some(SeenPatches { dir, window: Window { start, spread, pixel }, are_shown }) = patches
+                && are_shown(lane)
+            {
                 let normals = if shape.is_smooth() { &self.unbent } else { &self.normals };
-                let width = start + spread * distances[lane];
+                let width = start + spread * self.travelled[lane];
                 let mut patch = Patch::seen(dir.get(lane), normals.get(lane), (width, pixel));
                 point.uv.into_iter().for_each(|uv| patch.find_uv(&**shape, position, uv));
                 point.patch = Some(patch);

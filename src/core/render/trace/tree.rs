@@ -62,6 +62,8 @@ pub(super) struct OpenRay {
     pub camera: u8,
     /// The number of rays before it on its path.
     pub depth: u32,
+    /// Whether its sample shows patches of surfaces: nothing on its path has spread or gathered rays.
+    pub shows_patches: bool,
 }
 
 impl OpenRay {
@@ -89,6 +91,7 @@ impl OpenRay {
             kind: RayKind::Primary,
             camera: camera as u8,
             depth: 0,
+            shows_patches: true,
         }
     }
 }
