@@ -1,7 +1,7 @@
 //! Proofs of the hits of a parametric surface.
 
 use super::patch::{Patches, PatchesIn, Rectangle};
-use super::search::{Found, Search};
+use super::search::{Found, Search, meet};
 use super::tree::halves;
 use super::{ByPatches, ParametricShape};
 use crate::geometry::ray::Ray;
@@ -13,6 +13,7 @@ use crate::world::hittable::{ByDistance, Shape};
 use crate::world::packets::shape::HitQueries;
 use f256::f256;
 use glam::DVec3;
+use std::cell::Cell;
 use tabray_exact::affine::Affine;
 use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::dual::Dual;
@@ -27,8 +28,16 @@ impl ParametricShape {
     where
         dyn Patches: PatchesIn<F>,
     {
-        // The only solution at a t that may be 0 is the start of the line.
-        let is_left_out = |t: Interval<F>, _: &Rectangle<F>| leaves && t.has_zero();
+        // The one solution whose t may be 0 is the start of the line. If there is another one, either may be it.
+        let start: Cell<Option<Rectangle<F>>> = Cell::new(None);
+        let is_left_out = |t: Interval<F>, place: &Rectangle<F>, is_certain: bool| {
+            if !(leaves && is_certain && t.has_zero()) {
+                return false;
+            }
+            let known = start.get().unwrap_or(*place);
+            start.set(Some(known));
+            meet(&known, place)
+        };
         match (Search { shape: self, line, is_left_out: &is_left_out }).first() {
             Found { hit: None, undecided: None, .. } => (HitEnclosure::Misses, 0),
             Found { hit: Some(hit), undecided, .. } if undecided.is_none_or(|from| from > hit.t.high) => {

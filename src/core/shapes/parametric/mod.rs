@@ -72,7 +72,7 @@ impl Hittable for ParametricShape {
         let size = ray.origin.abs().max_element() + self.size();
         // A ray that starts on the surface leaves it there.
         let error = range.origin_error + ROUNDING * size;
-        let is_left_out = |t: Interval, at: &Rectangle<f64>| {
+        let is_left_out = |t: Interval, at: &Rectangle<f64>, _| {
             if t.high < range.near {
                 return true;
             }

@@ -24,8 +24,8 @@ const STEPS: usize = 40;
 pub(super) struct Search<'s, F: Float> {
     pub shape: &'s ParametricShape,
     pub line: &'s Line<Interval<F>>,
-    /// Tells that a hit at these t does not count, given the place of its u and v.
-    pub is_left_out: &'s dyn Fn(Interval<F>, &Rectangle<F>) -> bool,
+    /// Tells that a hit at these t does not count, given the place of its u and v, and whether the place certainly has one.
+    pub is_left_out: &'s dyn Fn(Interval<F>, &Rectangle<F>, bool) -> bool,
 }
 
 /// A hit.
@@ -121,7 +121,7 @@ where
                         continue;
                     }
                     if !self.is_wide(&place) {
-                        if !(self.is_left_out)(t, &place) {
+                        if !(self.is_left_out)(t, &place, false) {
                             found.doubt(t.low);
                             found.narrow = Some(found.narrow.filter(|known| known.low <= t.low).unwrap_or(t));
                         }
@@ -146,7 +146,7 @@ where
         let ends = self.shape.ends().map(Interval::<F>::from_f64);
         let is_in = |axis: usize| ends[axis].low <= place[axis].low && place[axis].high <= ends[axis].high;
         let t = self.t(&self.near(&place).at);
-        if self.is_off(&place) || t.high <= F::of(0.0) || (self.is_left_out)(t, &place) {
+        if self.is_off(&place) || t.high <= F::of(0.0) || (self.is_left_out)(t, &place, true) {
             return;
         }
         if t.low <= F::of(0.0) {
@@ -155,10 +155,7 @@ where
         let hit = Hit { t, place, leaf, is_edge: !(is_in(0) && is_in(1)) };
         found.hit = Some(match found.hit {
             Some(known) if known.t.low <= t.high && t.low <= known.t.high => {
-                let meets = |axis: usize| {
-                    known.place[axis].low <= place[axis].high && place[axis].low <= known.place[axis].high
-                };
-                if !(meets(0) && meets(1)) {
+                if !meet(&known.place, &place) {
                     // Two sheets, of which either may be hit first.
                     found.doubt(known.t.low.min(t.low));
                 }
@@ -224,7 +221,8 @@ where
                 side + Interval { low: -margin, high: margin }
             });
             let patch = self.shape.patches.patch(&wide);
-            if self.off(&patch.at).iter().any(|value| !value.has_zero()) {
+            // Written so that what is not defined beside the ends of u and v is not free.
+            if self.off(&patch.at).iter().any(|value| value.low > F::of(0.0) || value.high < F::of(0.0)) {
                 return Judged::Free;
             }
             let Some(image) = self.image(&wide, &patch) else { return Judged::In(place) };
@@ -306,6 +304,11 @@ where
         let part = |axis: usize| place[axis].width().to_f64() / self.shape.ends()[axis].width();
         usize::from(part(1) > part(0))
     }
+}
+
+/// Tells whether two places may have a point in common.
+pub(super) fn meet<F: Float>(one: &Rectangle<F>, other: &Rectangle<F>) -> bool {
+    (0..2).all(|axis| one[axis].low <= other[axis].high && other[axis].low <= one[axis].high)
 }
 
 impl<F: Float> Found<F> {
