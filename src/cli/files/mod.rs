@@ -1,5 +1,7 @@
 //! Scenes and images as files: how they are named, read and written.
 
+#[cfg(unix)]
+mod in_place;
 pub mod input;
 pub mod mesh;
 pub mod output;

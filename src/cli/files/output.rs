@@ -1,5 +1,7 @@
 //! Writes images beside their targets first and then replaces the targets, so that a target never holds half an image.
 
+#[cfg(unix)]
+use crate::files::in_place;
 use crate::files::input;
 use crate::files::paths::{are_same, open_sink};
 use crate::process::failure::Failure;
@@ -42,13 +44,21 @@ pub fn create(path: &Path, text: &str) -> Result<(), Failure> {
     file.persist_new(path).map_err(cannot)
 }
 
-/// Writes a file, replacing an existing one.
-pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+/// Writes a text, replacing an existing file, which keeps its names, its owner and its mode.
+pub fn replace(path: &Path, text: &[u8]) -> Result<(), Failure> {
     let mut output = Output::open(path)?;
-    output
-        .write_all(bytes)
-        .and_then(|()| output.finish())
-        .map_err(|error| Failure::cannot_write(path, &error))
+    let write = move || {
+        #[cfg(unix)]
+        if let Output::File(file, target) = &output
+            && target.exists()
+            && in_place::must_remain(target, file.file())?
+        {
+            return in_place::write(target, text);
+        }
+        output.write_all(text)?;
+        output.finish()
+    };
+    write().map_err(|error| Failure::cannot_write(path, &error))
 }
 
 /// Writes an image or a file beside it, moves it to its path, and reports it.
@@ -187,6 +197,8 @@ impl Output {
             Ok(meta) if meta.permissions().readonly() => Err(cannot(io::ErrorKind::PermissionDenied.into())),
             Ok(meta) => {
                 let file = Temporary::new(folder).map_err(cannot)?;
+                #[cfg(unix)]
+                in_place::give_owner(file.file(), &target).map_err(cannot)?;
                 file.file().set_permissions(meta.permissions()).map_err(cannot)?;
                 Ok(Self::File(file, target))
             }

@@ -38,15 +38,22 @@ pub enum Temporary {
 }
 
 impl Temporary {
-    /// Makes a temporary file, with the permissions of any new file.
+    /// Makes a temporary file, with the permissions of any new file. What killed programs have left in the folder is removed.
     pub fn new(folder: &Path) -> io::Result<Self> {
         refuse_outside(folder)?;
+        #[cfg(unix)]
+        left::remove(folder);
         #[cfg(target_os = "linux")]
         if let Some(file) = unnamed::open(folder) {
             return Ok(Self::Unnamed(file));
         }
-        hidden(folder, |path| OpenOptions::new().read(true).write(true).create_new(true).open(path))
-            .map(Self::Named)
+        let make = |path: &Path| {
+            let file = OpenOptions::new().read(true).write(true).create_new(true).open(path)?;
+            #[cfg(unix)]
+            left::keep(&file, path)?;
+            Ok(file)
+        };
+        hidden(folder, make).map(Self::Named)
     }
 
     /// Returns the file, to write it and read it again.
@@ -60,7 +67,8 @@ impl Temporary {
 
     /// Gives the file this name in its folder, replacing an existing file.
     ///
-    /// A file without a name cannot replace another in a single step: for a moment the complete file has a hidden name.
+    /// A file without a name cannot replace another in a single step: for a moment the complete file has a hidden name. If
+    /// the program is killed in this moment, the next one that writes into the folder removes the file.
     ///
     /// The contents are on the disk before the file gets its name, and the name is on the disk when this returns.
     pub fn persist(self, target: &Path) -> io::Result<()> {
@@ -75,6 +83,8 @@ impl Temporary {
             Self::Unnamed(file) => match unnamed::link(&file, target) {
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
                     let folder = target.parent().unwrap_or(target);
+                    // Before it has a name by which another program would find it.
+                    let _ = file.try_lock();
                     Ok(hidden(folder, |path| unnamed::link(&file, path))?.persist(target)?)
                 }
                 linked => linked,
@@ -95,9 +105,12 @@ impl Temporary {
     }
 }
 
+/// The beginning of all hidden names, which is followed by six letters and digits.
+const PREFIX: &str = ".tabray-";
+
 /// Calls `make` with a hidden, unused name in a folder, and returns its result.
 fn hidden<T>(folder: &Path, make: impl FnMut(&Path) -> io::Result<T>) -> io::Result<NamedTempFile<T>> {
-    let file = tempfile::Builder::new().prefix(".tabray-").make_in(folder, make)?;
+    let file = tempfile::Builder::new().prefix(PREFIX).make_in(folder, make)?;
     HIDDEN.lock().unwrap_or_else(PoisonError::into_inner).insert(file.path().to_owned());
     Ok(file)
 }
@@ -109,6 +122,40 @@ fn sync_folder(target: &Path) -> io::Result<()> {
     match File::open(folder).and_then(|folder| folder.sync_all()) {
         Err(error) if !cannot.contains(&error.kind()) => Err(error),
         _ => Ok(()),
+    }
+}
+
+/// Hidden files that killed programs have left. Those of running programs are locked.
+#[cfg(unix)]
+mod left {
+    use super::{BTreeSet, File, Mutex, PREFIX, Path, PathBuf, PoisonError, fs, io};
+    use std::fs::{DirEntry, TryLockError};
+
+    /// Removes those in a folder, the first time that it is asked to.
+    pub fn remove(folder: &Path) {
+        static DONE: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+        if !DONE.lock().unwrap_or_else(PoisonError::into_inner).insert(folder.to_owned()) {
+            return;
+        }
+        let is_hidden = |entry: &DirEntry| {
+            let (name, kind) = (entry.file_name(), entry.file_type());
+            let rest = name.to_str().and_then(|name| name.strip_prefix(PREFIX));
+            let is_ours = rest
+                .is_some_and(|rest| rest.len() == 6 && rest.bytes().all(|byte| byte.is_ascii_alphanumeric()));
+            is_ours && kind.is_ok_and(|kind| kind.is_file())
+        };
+        for entry in fs::read_dir(folder).into_iter().flatten().flatten().filter(is_hidden) {
+            let Ok(file) = File::open(entry.path()) else { continue };
+            if file.try_lock().is_ok() {
+                let _ = fs::remove_file(entry.path());
+            }
+        }
+    }
+
+    /// Locks a new file; fails as if the name were taken where another program has removed it, or is about to.
+    pub fn keep(file: &File, path: &Path) -> io::Result<()> {
+        let is_free = !matches!(file.try_lock(), Err(TryLockError::WouldBlock));
+        if is_free && path.exists() { Ok(()) } else { Err(io::ErrorKind::AlreadyExists.into()) }
     }
 }
 
@@ -136,5 +183,28 @@ mod unnamed {
     /// Gives a file a name; fails if another file has it.
     pub fn link(file: &File, target: &Path) -> io::Result<()> {
         Ok(linkat(AT_FDCWD, &path(file), AT_FDCWD, target, AtFlags::AT_SYMLINK_FOLLOW)?)
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use tempfile::TempDir;
+
+    #[test]
+    fn what_killed_programs_have_left_is_removed_and_nothing_else() {
+        let folder = TempDir::new().expect("a folder");
+        let at = |name: &str| folder.path().join(name);
+        let others = [".tabray-abcde", ".tabray-abcde.x", "tabray-abcdef", ".tabray-held12"];
+        for name in others.into_iter().chain([".tabray-left12"]) {
+            fs::write(at(name), "").expect("a file");
+        }
+        let held = File::open(at(".tabray-held12")).expect("a file");
+        held.try_lock().expect("nobody else has it");
+        let new = Temporary::new(folder.path()).expect("a file");
+        assert!(!at(".tabray-left12").exists());
+        assert!(others.iter().all(|name| at(name).exists()));
+        new.persist(&at("tabray-abcdef")).expect("it is written");
+        assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), others.len());
     }
 }

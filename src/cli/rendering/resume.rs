@@ -108,14 +108,17 @@ impl ResumedImage {
         self.checkpoint.fill(band).map_err(|error| cannot_read(&self.path, &error))
     }
 
-    /// Removes the checkpoint after its image is finished.
+    /// Removes the checkpoint after its image is finished, unless another render that continued from it has done so.
     pub fn remove(self) -> Result<(), Failure> {
-        fs::remove_file(&self.path).map_err(|error| {
-            let (path, reason) = (text::shown(&self.path), text::reason(&error));
-            Failure::Failed(format!(
-                "cannot remove `{path}`: {reason}; the image is finished, so remove the file by hand"
-            ))
-        })
+        match fs::remove_file(&self.path) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                let (path, reason) = (text::shown(&self.path), text::reason(&error));
+                Err(Failure::Failed(format!(
+                    "cannot remove `{path}`: {reason}; the image is finished, so remove the file by hand"
+                )))
+            }
+            _ => Ok(()),
+        }
     }
 }
 

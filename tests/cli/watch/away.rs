@@ -2,9 +2,10 @@
 
 use crate::watch::browser::Browser;
 use crate::watch::page::shown;
-use crate::watch::program::{Watching, ball};
+use crate::watch::program::{Watching, ball, client};
 use assert_cmd::cargo::cargo_bin;
 use std::fs;
+use std::io::Read;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use tempfile::TempDir;
@@ -83,22 +84,32 @@ fn a_folder_of_scenes_that_is_made_anew_is_followed() {
     while !events.until("scenes").to_string().contains("b.ray") {}
 }
 
+/// Returns a command that starts the program such that calls of the system fail, as `strace` injects it; `None`, with a
+/// word, where there is no `strace`.
+#[cfg(target_os = "linux")]
+fn with_fault(fault: &str) -> Option<Command> {
+    let inject = format!("inject={fault}");
+    let command = |program: &Path| {
+        let mut strace = Command::new("strace");
+        strace.args(["-D", "-f", "-qq", "-o", "/dev/null", "-e", &inject]).arg(program);
+        strace
+    };
+    let tried = command(Path::new("true")).stderr(Stdio::null()).status();
+    if !tried.is_ok_and(|status| status.success()) {
+        eprintln!("SKIPPED: there is no `strace`, or it may not trace");
+        return None;
+    }
+    Some(command(cargo_bin!("tabray")))
+}
+
 /// Lets the system refuse to watch anything, as it does when it watches as much as it allows.
 #[cfg(target_os = "linux")]
 #[test]
 fn where_the_system_does_not_watch_files_they_are_looked_at_and_both_say_so() {
-    use std::io::Read;
-    let refusing = ["-D", "-f", "-qq", "-o", "/dev/null", "-e", "inject=inotify_init1:error=EMFILE"];
-    let tried = Command::new("strace").args(refusing).arg("true").stderr(Stdio::null()).status();
-    if !tried.is_ok_and(|status| status.success()) {
-        eprintln!("SKIPPED: there is no `strace`, or it may not trace");
-        return;
-    }
+    let Some(program) = with_fault("inotify_init1:error=EMFILE") else { return };
     let folder = TempDir::new().expect("a folder");
     fs::write(folder.path().join("scene.ray"), ball("9 0 0")).expect("a file");
-    let mut strace = Command::new("strace");
-    strace.args(refusing).arg(cargo_bin!("tabray"));
-    let (mut watching, _, mut stderr) = Watching::start_by(strace, folder, &["scene.ray"], &["--port", "0"]);
+    let (mut watching, _, mut stderr) = Watching::start_by(program, folder, &["scene.ray"], &["--port", "0"]);
     let mut events = watching.events();
     let reason = "cannot watch files: too many open files; its files are looked at once a second";
     assert_eq!(events.until("watching"), reason);
@@ -113,4 +124,38 @@ fn where_the_system_does_not_watch_files_they_are_looked_at_and_both_say_so() {
     let mut said = String::new();
     stderr.read_to_string(&mut said).expect("text");
     assert!(said.contains(&format!("warning: {reason}\n")), "{said}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_fault_while_values_are_written_leaves_the_old_scene_or_the_new_one() {
+    let (old, new) = (ball("9 0 0"), ball("9 0 0").replace("radius 2", "radius 3"));
+    for calls in ["fsync", "linkat", "rename,renameat,renameat2"] {
+        for kill in ["", ":signal=KILL"] {
+            let Some(program) = with_fault(&format!("{calls}:error=EIO{kill}:when=1")) else { return };
+            let folder = TempDir::new().expect("a folder");
+            fs::write(folder.path().join("scene.ray"), &old).expect("a file");
+            let (watching, ..) = Watching::start_by(program, folder, &["scene.ray"], &["--port", "0"]);
+            watching.events().until("done");
+            let origin = format!("http://127.0.0.1:{}", watching.port);
+            let send = |path: &str, body: &str| {
+                client().post(watching.url(path)).header("Origin", &origin).send(body)
+            };
+            let tried = r#"{"name":"ball","attribute":"radius","values":["3"]}"#;
+            assert_eq!(send("try", tried).expect("an answer").status(), 200);
+            let written = send("write", "").is_ok_and(|answer| answer.status() == 200);
+            let text = fs::read_to_string(watching.scene()).expect("a scene");
+            assert!(text == if written { &*new } else { &*old }, "{calls}{kill}: {text}");
+            let names = fs::read_dir(watching.folder.path())
+                .expect("a folder")
+                .flatten()
+                .map(|entry| entry.file_name());
+            let left: Vec<_> = names.filter(|name| name != "scene.ray").collect();
+            // The next program that writes into the folder removes it.
+            assert!(
+                left.is_empty() || (calls.starts_with("rename") && !kill.is_empty()),
+                "{calls}{kill}: {left:?}"
+            );
+        }
+    }
 }
