@@ -91,8 +91,13 @@ pub fn run(registry: &'static Registry, args: Args) -> Result<(), Failure> {
     let accuracy = args.method.accuracy()?;
     let (sender, events) = mpsc::channel();
     let mut files = Files::new(notifier(&sender, || Event::Changed));
-    let scenes =
-        Scenes::new(registry, &args.scenes, Arc::new(notifier(&sender, || Event::Changed)), &mut files)?;
+    let scenes = Scenes::new(
+        registry,
+        &args.scenes,
+        args.set.values,
+        Arc::new(notifier(&sender, || Event::Changed)),
+        &mut files,
+    )?;
     let server = Server::open(args.port)?;
     let url = server.url();
     let interrupted = notifier(&sender, || Event::Interrupted);
@@ -141,7 +146,7 @@ pub fn run(registry: &'static Registry, args: Args) -> Result<(), Failure> {
         }
         told = refused;
         for session in scenes.from(watched.len()) {
-            watched.push(Watched::new(session, watched.len(), args.set.values.clone(), accuracy));
+            watched.push(Watched::new(session, watched.len(), accuracy));
         }
         for (number, scene) in watched.iter_mut().enumerate() {
             scene.follow(scenes.is_wanted(number), &mut files)?;

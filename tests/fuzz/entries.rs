@@ -131,7 +131,8 @@ impl Server {
         let work = Work::new(JOBS);
         Self::new(async move |request: Request<Bytes>| {
             // Events end with their feed.
-            let session = Session::new(registry, PathBuf::from("there/is/no/scene.ray"), Arc::new(|| {}));
+            let session =
+                Session::new(registry, PathBuf::from("there/is/no/scene.ray"), Vec::new(), Arc::new(|| {}));
             session.feed.show(&frame);
             ControlFlow::Continue(answer::answer(&request, &session, &work).await)
         })

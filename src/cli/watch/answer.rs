@@ -82,8 +82,9 @@ pub async fn answer(request: &Request<Bytes>, session: &Session, work: &Work) ->
             ["try"] => session.try_out(request.body()),
             ["move"] => camera::move_by(session, request.body()),
             ["turn"] => camera::turn(session),
-            ["discard"] => session.discard(),
-            ["write"] => session.write(),
+            ["discard"] => session.discard(request.body()),
+            ["write"] => session.write(request.body()),
+            ["save", hash] => session.save(hash, request.body()),
             _ => serve::text(StatusCode::NOT_FOUND, "there is no such page\n"),
         };
     }

@@ -1,6 +1,7 @@
 //! The events that the program sends to a page: server-sent events, each a name and data on one line.
 
 use super::frame::Frame;
+use super::trial_values::Difference;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use hyper::body::Bytes;
@@ -125,6 +126,11 @@ pub struct Fault<'f> {
     pub report: &'f str,
     /// The text of the scene, or null where there is none.
     pub text: Option<&'f str>,
+}
+
+/// Tells which values differ from those in the scene's file.
+pub fn tried(differences: &[Difference]) -> Bytes {
+    event("tried", &differences)
 }
 
 /// Tells why the system does not tell of changes, null if it does.

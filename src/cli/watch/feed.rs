@@ -30,13 +30,15 @@ pub enum News {
     Scenes,
     /// Whether the system tells of changes.
     Watching,
+    /// The values that differ from those in the scene's file.
+    Tried,
     /// The error in the text since the last valid scene.
     Fault,
 }
 
 impl News {
     /// All kinds, in the order in which a page receives them; what is about the scene is between the last two.
-    const ALL: [Self; 3] = [Self::Scenes, Self::Watching, Self::Fault];
+    const ALL: [Self; 4] = [Self::Scenes, Self::Watching, Self::Tried, Self::Fault];
 }
 
 impl State {
@@ -83,6 +85,11 @@ impl EventFeed {
             }
             is_new
         });
+    }
+
+    /// Tells whether there has been news of a kind.
+    pub fn has(&self, kind: News) -> bool {
+        self.state.borrow().news[kind as usize].0.is_some()
     }
 
     /// Forgets the scene, whose image nobody needs any more.

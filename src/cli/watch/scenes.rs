@@ -23,6 +23,8 @@ pub struct Scenes {
     registry: &'static Registry,
     /// The paths that the command names, and whether each is a folder.
     named: Vec<(PathBuf, bool)>,
+    /// The values that the command sets beside their texts.
+    sets: Vec<String>,
     changed: ChangeListener,
     known: Mutex<KnownScenes>,
 }
@@ -42,6 +44,7 @@ impl Scenes {
     pub fn new(
         registry: &'static Registry,
         named: &[PathBuf],
+        sets: Vec<String>,
         changed: ChangeListener,
         files: &mut Files,
     ) -> Result<Self, Failure> {
@@ -61,7 +64,7 @@ impl Scenes {
             }
         }
         files.watch_folders(&folders);
-        let scenes = Self { registry, named, changed, known: Mutex::default() };
+        let scenes = Self { registry, named, sets, changed, known: Mutex::default() };
         scenes.find();
         for (number, session) in scenes.from(0).iter().enumerate() {
             if alone.contains(&session.path) {
@@ -102,7 +105,12 @@ impl Scenes {
                 let next = known.sessions.len();
                 let number = *known.numbers.entry(path.clone()).or_insert(next);
                 if number == next {
-                    known.sessions.push(Arc::new(Session::new(self.registry, path, self.changed.clone())));
+                    known.sessions.push(Arc::new(Session::new(
+                        self.registry,
+                        path,
+                        self.sets.clone(),
+                        self.changed.clone(),
+                    )));
                 }
                 list.push(number);
             }

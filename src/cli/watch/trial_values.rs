@@ -1,6 +1,6 @@
 //! The values that a page tries out beside a scene's text, and how they are written into it.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tabray_core::scene::value::Datum;
@@ -17,6 +17,28 @@ pub struct Try {
     attribute: String,
     /// All its values, as a scene writes them.
     values: Vec<String>,
+}
+
+/// An attribute, as a page names it.
+#[derive(Deserialize)]
+pub struct Which {
+    /// The name of the object.
+    pub name: String,
+    /// The name of the attribute.
+    pub attribute: String,
+}
+
+/// Values that are tried out and are others than those in the text.
+#[derive(Serialize)]
+pub struct Difference {
+    /// The name of the object.
+    name: String,
+    /// The name of the attribute.
+    attribute: String,
+    /// The values that are tried out.
+    values: Vec<String>,
+    /// Those in the text; empty where it has none.
+    text: Vec<String>,
 }
 
 /// The values of all attributes that are tried out.
@@ -48,14 +70,34 @@ impl TrialValues {
         values.iter().map(|value| value.parse().ok()).collect()
     }
 
+    /// Tells whether nothing is tried out.
+    pub fn is_empty(&self) -> bool {
+        self.all().is_empty()
+    }
+
+    /// Lists the values that are others than those in the text.
+    pub fn differences(&self, view: &View) -> Vec<Difference> {
+        let difference = |((name, attribute), values): (&(String, String), &Vec<String>)| {
+            let given = given(view, name, attribute);
+            let words = given.iter().flat_map(|given| &given.values);
+            let text: Vec<_> = words.map(|word| view.word(*word).into_owned()).collect();
+            let numbers =
+                |all: &[String]| all.iter().map(|value| value.parse::<f64>().ok()).collect::<Vec<_>>();
+            let is_same = numbers(&text) == numbers(values);
+            let (name, attribute, values) = (name.clone(), attribute.clone(), values.clone());
+            (!is_same).then_some(Difference { name, attribute, values, text })
+        };
+        self.all().iter().filter_map(difference).collect()
+    }
+
+    /// Returns to the values of the text in one attribute, or in all.
+    pub fn discard(&self, which: Option<&Which>) {
+        self.all().retain(|key, _| which.is_some_and(|which| !is(key, which)));
+    }
+
     /// Returns to the values of the text in one object.
     pub fn clear_of(&self, name: &str) {
         self.all().retain(|(of, _), _| of != name);
-    }
-
-    /// Returns to the values of the text.
-    pub fn clear(&self) {
-        self.all().clear();
     }
 
     /// Returns the values as `--set` takes them.
@@ -66,13 +108,21 @@ impl TrialValues {
         self.all().iter().map(set).collect()
     }
 
-    /// Writes the values into a scene's text, and changes nothing else in it.
+    /// Writes the values of one attribute, or of all, into a scene's text, and changes nothing else in it.
     ///
     /// # Errors
     /// The name of an object that the text does not define in one place.
-    pub fn written(&self, registry: &Registry, file: &str, text: &str) -> Result<String, String> {
+    pub fn written(
+        &self,
+        registry: &Registry,
+        file: &str,
+        text: &str,
+        only: Option<&Which>,
+    ) -> Result<String, String> {
         let mut text = Text::new(text);
-        for ((name, attribute), values) in self.all().iter() {
+        let all = self.all();
+        for (key, values) in all.iter().filter(|(key, _)| only.is_none_or(|only| is(key, only))) {
+            let (name, attribute) = key;
             let view = editor::read(registry, file, text);
             text = write(&view, name, attribute, values).ok_or_else(|| name.clone())?;
         }
@@ -80,11 +130,20 @@ impl TrialValues {
     }
 }
 
+fn is((name, attribute): &(String, String), which: &Which) -> bool {
+    (name, attribute) == (&which.name, &which.attribute)
+}
+
+/// Returns an attribute as the text gives it.
+fn given<'v>(view: &'v View, name: &str, attribute: &str) -> Option<&'v editor::Attribute> {
+    let is_meant = |given: &&editor::Attribute| given.known.is_some_and(|known| known.name() == attribute);
+    view.entity(name)?.attributes.iter().find(is_meant)
+}
+
 /// Writes the values of one attribute.
 fn write(view: &View, name: &str, attribute: &str, values: &[String]) -> Option<Text> {
     let entity = view.entity(name)?;
-    let is_meant = |given: &&editor::Attribute| given.known.is_some_and(|known| known.name() == attribute);
-    let Some(given) = entity.attributes.iter().find(is_meant) else {
+    let Some(given) = given(view, name, attribute) else {
         let (at, between) = view.room(entity);
         let usage = view.syntax.pair(attribute, values);
         return Some(view.text.edited(at..at, &format!("{between}{usage}")));
@@ -116,7 +175,7 @@ mod tests {
                 serde_json::json!({ "name": name, "attribute": attribute, "values": values }).to_string();
             all.set(body.as_bytes()).expect("numbers");
         }
-        all.written(Registry::get().expect("plugins"), file, text)
+        all.written(Registry::get().expect("plugins"), file, text, None)
     }
 
     #[test]
@@ -146,6 +205,23 @@ mod tests {
     fn what_the_text_repeats_is_not_written() {
         let text = "repeat i 2 { sphere ball { radius 1 } }";
         assert_eq!(written("a.ray", text, &[("ball", "radius", &["2"])]), Err("ball".to_owned()));
+    }
+
+    #[test]
+    fn what_the_text_says_already_is_no_difference() {
+        let all = TrialValues::default();
+        all.put("ball", "radius", &[2.0]);
+        all.put("ball", "center", &[1.0, 2.0, 4.0]);
+        let registry = Registry::get().expect("plugins");
+        for (file, text) in [
+            ("a.ray", "sphere ball { center 1 2 3 radius 2.0 }"),
+            ("a.toml", "[sphere.ball]\ncenter = [1, 2, 3]\nradius = 2\n"),
+        ] {
+            let differences = all.differences(&editor::read(registry, file, Text::new(text)));
+            let [Difference { name, attribute, values, text }] = &differences[..] else { panic!("one") };
+            assert_eq!((&**name, &**attribute), ("ball", "center"));
+            assert_eq!((values.join(" "), text.join(" ")), ("1 2 4".to_owned(), "1 2 3".to_owned()));
+        }
     }
 
     #[test]

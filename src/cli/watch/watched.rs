@@ -82,8 +82,6 @@ pub struct Watched {
     session: Arc<Session>,
     /// The number of the scene.
     number: usize,
-    /// The values that are set beside its text.
-    sets: Vec<String>,
     accuracy: Option<Accuracy>,
     /// The files that the scene named when it was read last.
     named: Vec<PathBuf>,
@@ -97,8 +95,8 @@ pub struct Watched {
 
 impl Watched {
     /// Makes a scene that has not been read yet.
-    pub fn new(session: Arc<Session>, number: usize, sets: Vec<String>, accuracy: Option<Accuracy>) -> Self {
-        Self { session, number, sets, accuracy, named: Vec::new(), last: None, version: 0, painter: None }
+    pub fn new(session: Arc<Session>, number: usize, accuracy: Option<Accuracy>) -> Self {
+        Self { session, number, accuracy, named: Vec::new(), last: None, version: 0, painter: None }
     }
 
     /// Shows the current scene if it is wanted; otherwise forgets it, and ends its render.
@@ -139,9 +137,10 @@ impl Watched {
             }
             Err(failure) => return Err(failure),
         };
+        session.tell_differences(&name, &bytes);
         // One save may cause several events. The stamps of the files are taken before the files are read, so that a
         // change in the meantime is noticed.
-        let sets = [&self.sets[..], &session.trial_values.sets()].concat();
+        let sets = [&session.sets[..], &session.trial_values.sets()].concat();
         let stamps = self.named.iter().map(|file| (file.clone(), stamp(file))).collect();
         let now = SourceFiles { bytes, sets, stamps };
         if self.last.as_ref() == Some(&now) {

@@ -54,7 +54,7 @@ pub fn numbers<const N: usize>(text: &str, attribute: &str) -> [f64; N] {
 }
 
 /// Sends a body to a path, as a page does; returns the status and what is said.
-fn post(watching: &Watching, path: &str, body: &str) -> (u16, String) {
+pub fn post(watching: &Watching, path: &str, body: &str) -> (u16, String) {
     let origin = format!("http://127.0.0.1:{}", watching.port);
     let mut answer =
         client().post(watching.url(path)).header("Origin", origin).send(body).expect("an answer");

@@ -5,6 +5,7 @@ mod broken;
 pub mod browser;
 mod camera;
 mod compare;
+mod differs;
 mod everybody;
 mod page;
 mod pictures;

@@ -40,7 +40,7 @@ fn the_plan_is_that_of_the_command_and_follows_the_scene() {
     assert_eq!(browser.text(seen), "chart");
     browser.run("document.activeElement.blur(); document.querySelector('#tab-chart').focus()");
     browser.press('\u{e014}');
-    assert_eq!(browser.text(seen), "text", "the arrow keys go through the tabs");
+    assert_eq!(browser.text(seen), "source", "the arrow keys go through the tabs");
     assert_eq!(browser.text("return document.activeElement.id"), "tab-text");
 }
 

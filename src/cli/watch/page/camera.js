@@ -128,7 +128,6 @@ const turnCamera = async () => {
   stage.focus()
   if (!answer?.ok) return
   $('#fields p span').textContent = (await answer.text()).trim()
-  for (const one of tried) if (one.startsWith(`${cameraName} `)) tried.delete(one)
 }
 
 const toggleSteering = () => {

@@ -18,6 +18,13 @@ const encode = (light) => {
   return light <= 0.0031308 ? 12.92 * light : 1.055 * light ** (1 / 2.4) - 0.055
 }
 
+/// How bright a screen shows light up to white, and the light that it shows so.
+const toScreen = (light) => display.rules === 'notes' ? light : encode(light)
+const toLight = (shown) => {
+  if (display.rules === 'notes' || display.transfer === 'linear') return shown
+  return shown <= 0.04045 ? shown / 12.92 : ((shown + 0.055) / 1.055) ** 2.4
+}
+
 /// Returns the three bytes of a pixel, with more stops of exposure than the scene's own.
 const bytesOf = (colours, at, more = 0) => {
   const gain = 2 ** (display.exposure + more)

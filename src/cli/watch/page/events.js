@@ -25,6 +25,7 @@ const follow = () => {
     $('#deaf').textContent = refused
     $('#deaf').hidden = !refused
   })
+  on('tried', (data) => differ(JSON.parse(data)))
   on('scene', (data) => {
     const scene = JSON.parse(data)
     version = scene.version

@@ -1,7 +1,32 @@
 // The values of an entity, and what is tried out.
 
-/// What is tried out and not yet written, by object and attribute.
+/// What is tried out and not yet written, by object and attribute, as the program tells it to all pages.
 const tried = new Set()
+
+/// Shows which values differ from the file.
+const differ = (all) => {
+  tried.clear()
+  for (const { name, attribute } of all) tried.add(`${name} ${attribute}`)
+  for (const box of document.querySelectorAll('#fields input[type=number]')) {
+    box.classList.toggle('tried', tried.has(box.dataset.of))
+  }
+  $('#differs').hidden = !all.length
+  $('#differs span').textContent = all.length === 1 ? '1 value differs from the file' : `${all.length} values differ from the file`
+  if (!all.length) $('#differs pre').hidden = true
+  $('#differs ul').replaceChildren(...all.map(({ name, attribute, values, text }) => {
+    const row = document.createElement('li'), words = document.createElement('span')
+    words.textContent = `${name} ${attribute} ${text.join(' ') || '(not given)'} → ${values.join(' ')}`
+    const buttons = ['write', 'discard'].map((verb) => {
+      const button = document.createElement('button')
+      button.textContent = verb
+      button.setAttribute('aria-label', `${verb} ${attribute} of ${name}`)
+      button.addEventListener('click', () => settle(verb, { name, attribute }))
+      return button
+    })
+    row.append(words, ...buttons)
+    return row
+  }))
+}
 /// The entity whose values are shown: its name and its index in the scene.
 let shown = null
 
@@ -46,9 +71,15 @@ const open = (entity, all) => {
 const showFields = ({ name, attributes }) => {
   $('#fields form').replaceChildren(...attributes.flatMap((attribute) => {
     const { name: of, about, each, values, range, whole, fixed } = attribute
-    const boxes = []
+    const boxes = [], sliders = []
     const send = () => tryOut(name, of, boxes.map((box) => box.value))
-    return values.flatMap((value, index) => {
+    const pick = (picked) => {
+      picked.forEach((channel, index) => { boxes[index].value = sliders[index].value = channel })
+      send()
+    }
+    const isColour = each.join() === 'red,green,blue' && values.length === 3
+    const picker = isColour ? colourPicker(of, about, values, fixed, pick) : null
+    const rows = values.flatMap((value, index) => {
       const label = document.createElement('label'), box = document.createElement('input')
       const which = values.length > 1 ? ` ${each[index] ?? 'xyz'[index] ?? index + 1}` : ''
       label.textContent = of + which
@@ -67,19 +98,44 @@ const showFields = ({ name, attributes }) => {
       Object.assign(slider, { type: 'range', min: low, max: high, step: whole ? 1 : (high - low) / 400, value, title: about })
       slider.setAttribute('aria-label', of + which)
       Object.assign(box, { type: 'number', step: whole ? 1 : 'any', value })
-      if (tried.has(`${name} ${of}`)) box.classList.add('tried')
+      box.dataset.of = `${name} ${of}`
+      if (tried.has(box.dataset.of)) box.classList.add('tried')
       const change = (from, to) => () => {
         if (from.value === '' || Number.isNaN(+from.value)) return
         to.value = from === slider && !whole ? +(+from.value).toPrecision(4) : from.value
         for (const other of boxes) other.classList.add('tried')
+        picker?.show(boxes.map((box) => box.value))
         send()
       }
       slider.addEventListener('input', change(slider, box))
       box.addEventListener('input', change(box, slider))
       boxes.push(box)
+      sliders.push(slider)
       return [label, slider, box]
     })
+    return picker ? [...picker.row, ...rows] : rows
   }))
+}
+
+/// Makes the swatch of a colour, which picks another. A colour brighter than white is shown, and stays, as bright as its
+/// brightest channel.
+const colourPicker = (of, about, values, fixed, pick) => {
+  const label = document.createElement('label'), box = document.createElement('input')
+  label.textContent = of
+  label.htmlFor = box.id = `field-${of}-colour`
+  Object.assign(box, { type: 'color', title: about, disabled: !!fixed })
+  let most = 1
+  const show = (values) => {
+    most = Math.max(1, ...values.map(Number).filter(Number.isFinite))
+    const digits = values.map((value) => Math.round(255 * toScreen(Math.min(Math.max(+value || 0, 0) / most, 1))))
+    box.value = `#${digits.map((digit) => digit.toString(16).padStart(2, '0')).join('')}`
+  }
+  show(values)
+  box.addEventListener('input', () => {
+    const light = box.value.match(/[0-9a-f]{2}/g).map((digits) => most * toLight(parseInt(digits, 16) / 255))
+    pick(light.map((channel) => +channel.toPrecision(4)))
+  })
+  return { row: [label, box], show }
 }
 
 const post = (path, body) => fetch(path + token, { method: 'POST', body }).catch(() => null)
@@ -99,16 +155,19 @@ const tryOut = async (name, attribute, values) => {
   sending = false
 }
 
-const settle = async (verb) => {
+/// Writes or discards what is tried out: of one attribute if it is given.
+const settle = async (verb, one) => {
   await queue
-  const answer = await post(verb, '')
+  const answer = await post(verb, one ? JSON.stringify(one) : '')
   const said = answer ? (await answer.text()).trim() : 'tabray is not running'
-  $('#fields p span').textContent = said
-  if (!answer?.ok) return
-  tried.clear()
-  document.activeElement?.blur()
-  for (const box of document.querySelectorAll('#fields .tried')) box.classList.remove('tried')
+  $('#fields p span').textContent = said.split('\n')[0]
+  $('#differs pre').textContent = said
+  $('#differs pre').hidden = !!answer?.ok
+  if (answer?.ok) document.activeElement?.blur()
 }
+const [writeAll, discardAll] = document.querySelectorAll('#differs > button')
+writeAll.addEventListener('click', () => settle('write'))
+discardAll.addEventListener('click', () => settle('discard'))
 $('#write').addEventListener('click', () => settle('write'))
 $('#discard').addEventListener('click', () => settle('discard'))
 $('#values').addEventListener('click', refresh)

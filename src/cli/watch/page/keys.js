@@ -22,12 +22,15 @@ const layers = [...document.querySelectorAll('#layers input')].map((input) => in
 const steps = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }
 document.addEventListener('keydown', (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey) return
-  if (event.target.matches?.('#fields input, #chart input, select') && event.key !== 'Escape') return
+  if (event.target.matches?.('textarea')) return
+  // A slider takes no letters and digits.
+  if (event.target.matches?.('#fields input:not([type=range]), #chart input, select') && event.key !== 'Escape') return
   const { key } = event
   if (layers[key - 1]) choose(layers[key - 1])
   else if (key === '0') fit()
   else if (key === 'v') refresh()
   else if (key === 'd') toggleComparing()
+  else if (key === 'e') edit()
   else if (key === ',') moveLine(line - 2)
   else if (key === '.') moveLine(line + 2)
   else if (key === 't') nextTab(1)
