@@ -38,6 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 // Loading a profile takes longer than everything else. `render` starts from such scenes, too.
                 if bytes.len() <= 1024 && !text.contains("profile") {
                     write(if is_toml { "toml" } else { "notes" }, index, &bytes)?;
+                    write("fmt", index, &[&[u8::from(is_toml)], &*bytes].concat())?;
                 }
                 for accuracy in 0..4 {
                     let first = accuracy + if is_toml { 4 } else { 0 };
@@ -71,6 +72,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for (first, name) in [(kind, 1002 + 2 * index), (kind + 5, 1003 + 2 * index)] {
             write("mesh", name, &[&[first], &bytes[..]].concat())?;
         }
+    }
+    write("older", 0, target::OLDER.as_bytes())?;
+    for (index, bytes) in target::rays().into_iter().enumerate() {
+        write("hits", index, &bytes)?;
     }
     for (index, formula) in formulas.iter().enumerate() {
         write("formula", index, formula.as_bytes())?;

@@ -3,15 +3,18 @@
 #![allow(dead_code, reason = "each program uses one of these functions")]
 
 use std::fs::{self, File};
-use std::io::{Seek, Write};
+use std::io::{BufReader, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 use tabray::cli::fuzz::{Image, Server};
 use tabray::exact::double_double::DoubleDouble;
 use tabray::exact::{Dual, Formula, Interval, Jet, Scalar, Wide};
 use tabray::render::{Plan, Renderer, trace};
+use tabray::scene::editor::{self, Text};
 use tabray::scene::{self, Loaded, Registry, Syntax, dump};
 use tabray::simd::Cpu;
+use tabray::tools::hits::rays::{BadRay, RayFormat, RayReader};
+use tabray::tools::hits::theirs::TheirReader;
 use tabray::tools::threads::renderer_with;
 use tabray::world::{Accuracy, Material};
 use tempfile::{NamedTempFile, TempDir, tempfile_in};
@@ -60,6 +63,82 @@ fn load(name: &str, bytes: &[u8], accuracy: Option<Accuracy>) -> Option<Loaded> 
             None
         }
     }
+}
+
+/// An older scene: a sphere, a plane of finite size, and a light.
+pub const OLDER: &str = "8 6\n0 0 3\n13 ball\n1 0 0\n2 1 1\n.2 .2 .3\n.5 -1 -4\n1.5\n15\n1 1 1\n1 1 1\n0 0 0\n0 1 0\n-2 -2 -5\n\
+                         1 0 0\n4 4\n10 lamp\n6 6 6\n0 5 0\n";
+
+/// Reads an older scene, which consists of numbers, or takes it for another text, which must satisfy the same as [`notes`].
+pub fn older(bytes: &[u8]) {
+    load_and_dump("old.txt", bytes);
+}
+
+/// Formats a scene, whose first byte chooses the syntax: it is refused, or the result is formatted, and the same scene.
+pub fn fmt(bytes: &[u8]) {
+    let [kind, text @ ..] = bytes else { return };
+    let Ok(text) = str::from_utf8(text) else { return };
+    let name = ["scene.ray", "scene.toml"][usize::from(kind % 2)];
+    let formatted = |text: &str| editor::formatted(&editor::read(*REGISTRY, name, Text::new(text)));
+    let Some(once) = formatted(text) else { return };
+    assert_eq!(formatted(&once).as_ref(), Some(&once), "what is formatted is not: {text:?}");
+    let dump = |text: &str| load(name, text.as_bytes(), None).map(|loaded| dump::notes(&loaded.model));
+    assert_eq!(dump(text), dump(&once), "it is another scene: {text:?}");
+}
+
+/// Reads rays, or the answers of another tracer. The first byte chooses the format, or that the input shows it. What is refused
+/// has its line and a reason, and memory does not grow with what the input claims.
+pub fn hits(bytes: &[u8]) {
+    let [kind, file @ ..] = bytes else { return };
+    let input = BufReader::new(Box::new(file) as Box<dyn Read>);
+    let is_sound = |bad: &BadRay| {
+        assert!(!bad.message.is_empty() && bad.message.len() < 1 << 12, "{bad}");
+        assert!(bad.number as usize <= file.len() + 1, "{bad}");
+    };
+    // There is nothing after the last fault, and the input has no more rays than bytes.
+    let check = |faults: &mut dyn Iterator<Item = Option<BadRay>>| {
+        let (mut count, mut is_over) = (0, false);
+        for fault in faults {
+            assert!(!is_over && count <= file.len());
+            count += 1;
+            is_over = fault.as_ref().is_some_and(|bad| bad.is_last);
+            fault.iter().for_each(is_sound);
+        }
+    };
+    let format =
+        [None, Some(RayFormat::Text), Some(RayFormat::Csv), Some(RayFormat::JsonLines), Some(RayFormat::Npy)];
+    match format.get(usize::from(kind % 6)) {
+        Some(format) => match RayReader::new(input, *format) {
+            Ok(rays) => check(&mut rays.map(|row| {
+                let end = row.as_ref().map(|row| row.t_max);
+                assert!(!end.is_ok_and(|end| end.is_some_and(f64::is_nan)), "a ray that ends nowhere");
+                row.err()
+            })),
+            Err(bad) => is_sound(&bad),
+        },
+        None => match TheirReader::new(input) {
+            Ok(answers) => check(&mut answers.map(Result::err)),
+            Err(bad) => is_sound(&bad),
+        },
+    }
+}
+
+/// Rays and answers in each format, with the first byte that chooses it.
+pub fn rays() -> Vec<Vec<u8>> {
+    let header = "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 6), }";
+    let header = format!("{header:<117}\n");
+    let mut npy =
+        [&b"\x04\x93NUMPY\x01\x00"[..], &(header.len() as u16).to_le_bytes(), header.as_bytes()].concat();
+    npy.extend((0..12).flat_map(|number| f64::from(number).to_le_bytes()));
+    let texts = [
+        "\x000 0 5  0 0 -1\n# a comment\n1e300,-0,5,0,0.5,-1,7\n",
+        "\x010 0 5  0 0 -1\n",
+        "\x02ox,oy,oz,dx,dy,dz,t_max\n0,0,5,0,0,-1,\n\"1\",2,3,4,5,6,9\n",
+        "\x03{\"origin\": [0, 0, 5], \"direction\": [0, 0, -1], \"t_max\": 9}\n[0, 0, 5, 0, 0, -1]\n",
+        "\x05ox,oy,oz,dx,dy,dz,t,hit,object,face\n0,0,5,0,0,-1,4,hit,ball,-1\n0,0,5,0,1,0,,miss,,\n",
+        "\x05{\"origin\": [0, 0, 5], \"direction\": [0, 0, -1], \"hit\": true, \"t\": 4, \"object\": 0}\n",
+    ];
+    texts.iter().map(|text| text.as_bytes().to_vec()).chain([npy]).collect()
 }
 
 /// Evaluates a formula with every number type.

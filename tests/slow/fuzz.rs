@@ -3,10 +3,11 @@
 use crate::common::{root, scenes};
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::{Rng, SeedableRng};
-use std::fs;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::{env, fs};
 use target::{
-    MESHES, TO_REVIEW, TO_WATCH, checkpoint, formula, mesh, notes, render, review, texture, toml, triangle,
-    watch,
+    MESHES, OLDER, TO_REVIEW, TO_WATCH, checkpoint, fmt, formula, hits, mesh, notes, older, rays, render,
+    review, texture, toml, triangle, watch,
 };
 
 #[path = "../fuzz/target.rs"]
@@ -42,11 +43,16 @@ fn mutated(seeds: &[Vec<u8>], random: &mut Pcg32) -> Vec<u8> {
     bytes
 }
 
-/// Runs a target on `count` mutated inputs.
+/// Runs a target on `count` mutated inputs, or as many as `TABRAY_INPUTS` says; an input that breaks a promise is printed.
 fn run(target: impl Fn(&[u8]), seeds: &[Vec<u8>], count: usize) {
+    let wanted = env::var("TABRAY_INPUTS").ok().map(|count| count.parse().expect("a number"));
     let mut random = Pcg32::seed_from_u64(1);
-    for _ in 0..count {
-        target(&mutated(seeds, &mut random));
+    for _ in 0..wanted.unwrap_or(count) {
+        let input = mutated(seeds, &mut random);
+        if let Err(fault) = catch_unwind(AssertUnwindSafe(|| target(&input))) {
+            eprintln!("the input: b\"{}\"", input.escape_ascii());
+            resume_unwind(fault);
+        }
     }
 }
 
@@ -64,6 +70,29 @@ fn scenes_in_the_notes_syntax_are_refused_or_dumped() {
 #[test]
 fn scenes_in_toml_are_refused_or_dumped() {
     run(toml, &scenes_in("toml"), 4000);
+}
+
+#[test]
+fn older_scenes_are_refused_or_dumped() {
+    run(older, &[OLDER.as_bytes().to_vec()], 2000);
+}
+
+#[test]
+fn what_is_formatted_is_formatted_and_the_same_scene() {
+    let of_kind = |extension, kind: u8| {
+        scenes_in(extension)
+            .into_iter()
+            .filter(|text| text.len() <= 1024)
+            .map(move |text| [&[kind], &*text].concat())
+    };
+    run(fmt, &of_kind("ray", 0).chain(of_kind("toml", 1)).collect::<Vec<_>>(), 2000);
+}
+
+#[test]
+fn rays_and_answers_are_refused_or_read() {
+    let seeds = rays();
+    seeds.iter().for_each(|seed| hits(seed));
+    run(hits, &seeds, 20_000);
 }
 
 #[test]
