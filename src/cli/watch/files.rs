@@ -275,7 +275,7 @@ mod tests {
         let mut files = Files::new(|| {});
         let armed = |files: &Files| files.armed.keys().cloned().collect::<Vec<_>>();
         files.watch(0, [&folder.path().join("a/b/scene.ray")]);
-        assert_eq!(armed(&files), [at.clone()]);
+        assert_eq!(armed(&files), std::slice::from_ref(&at));
         fs::create_dir_all(at.join("a/b")).expect("folders");
         files.look();
         assert_eq!(armed(&files), [at.join("a/b")]);
