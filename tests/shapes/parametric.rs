@@ -5,9 +5,9 @@ use glam::DVec3;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 use std::f64::consts::TAU;
+use tabray::exact::interval::Interval;
 use tabray::geometry::{MISS, Ray, RayRange, Sight};
 use tabray::scene::Model;
-use tabray::world::Hittable;
 use tabray::world::certify::{Enclosure, Precision};
 
 struct Dice(Pcg64);
@@ -150,7 +150,7 @@ fn hits_of_strips_and_bottles_are_proven() {
             match shape.certify(&Sight::along(&ray), Precision::Double) {
                 Enclosure::Misses => assert_eq!(found, MISS, "{ray:?}"),
                 Enclosure::Hits(at) | Enclosure::Edge(at) => {
-                    let (low, high) = (at.low.to_f64(), at.high.to_f64());
+                    let Interval { low, high } = at.coarse();
                     assert!(low - 1e-12 < found && found < high + 1e-12, "{ray:?}: {found} {low} {high}");
                 }
                 Enclosure::Doubtful(_) => continue,
