@@ -8,9 +8,9 @@ use glam::DVec3;
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use std::sync::Arc;
+use std::path::PathBuf;
+use std::sync::{Arc, OnceLock};
 use tabray_core::parallel;
-use tabray_core::query::is_inside;
 use tabray_core::scene::model::Model;
 use tabray_core::shapes::mesh::{Mesh as Shape, Surface};
 use tabray_core::text::count;
@@ -26,6 +26,8 @@ const SCENE: &str = "material grey { }  sphere mesh { material grey  center 0 0 
 #[pyclass(frozen, module = "tabray")]
 pub struct Mesh {
     surface: Arc<Surface>,
+    /// The surface with its faces turned alike, once it is asked for.
+    turned: OnceLock<Arc<Surface>>,
     model: Model,
 }
 
@@ -48,9 +50,35 @@ pub fn mesh(
     let surface =
         how.run(py, 0, |_, _| Surface::of_arrays((0..count).map(|index| view.row(index)).collect(), faces))?;
     let surface = Arc::new(surface.map_err(|error| PyValueError::new_err(error.to_string()))?);
-    let mut model = scene::loaded_for_rays(py, &Source::of_text(SCENE))?.model;
+    let mut model =
+        scene::loaded_for_rays(py, &Source::made("<mesh>".to_owned(), PathBuf::new(), SCENE))?.model;
     model.objects[0].shape = Shape::<Exact>::shape(surface.clone(), Accuracy::Exact).into();
-    Ok(Mesh { surface, model })
+    Ok(Mesh { surface, turned: OnceLock::new(), model })
+}
+
+impl Mesh {
+    /// Returns the surface of a closed mesh with its faces turned alike, so that it tells what is inside.
+    fn turned(&self) -> PyResult<Arc<Surface>> {
+        if self.surface.is_closed() {
+            return Ok(self.surface.clone());
+        }
+        if let Some(turned) = self.turned.get() {
+            return Ok(turned.clone());
+        }
+        let open = self.surface.why_not_closed.open;
+        if open > 0 {
+            let edges = count(open, "edge");
+            return Err(PyValueError::new_err(format!("the mesh is open at {edges}: it has no inside")));
+        }
+        let turned = self.surface.turned_alike().map_err(|error| PyValueError::new_err(error.to_string()))?;
+        match turned.why_not_closed.clashing {
+            0 => Ok(self.turned.get_or_init(|| Arc::new(turned)).clone()),
+            clashing => Err(PyValueError::new_err(format!(
+                "the faces at {} cannot be turned alike: the mesh has no inside",
+                count(clashing, "edge")
+            ))),
+        }
+    }
 }
 
 #[pymethods]
@@ -92,8 +120,10 @@ impl Mesh {
 
     /// Says for each point whether it is inside: 1 inside, 0 outside, and -1 where 237 bits do not tell, as on the surface. int8.
     ///
-    /// It is inside if both halves of a line through it cross the surface an odd number of times, each crossing proven; faces
-    /// need not agree in how they are turned. The mesh must be closed.
+    /// It is inside where the mesh winds around it, each crossing of a line from there proven: where the number of bodies that
+    /// hold it, less that of those turned inside out, is not 0, as in a solid. So bodies that overlap are one, and a body turned
+    /// inward within another is a cavity. Faces that are turned against their neighbours are turned alike first, as those of
+    /// files are. The mesh must be closed.
     #[pyo3(signature = (points, *, threads=None, progress=None))]
     fn inside<'py>(
         &self,
@@ -102,18 +132,14 @@ impl Mesh {
         threads: Option<usize>,
         progress: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<i8>>> {
-        let open = self.surface.why_not_closed.open;
-        if open > 0 {
-            let edges = count(open, "edge");
-            return Err(PyValueError::new_err(format!("the mesh is open at {edges}: it has no inside")));
-        }
+        let surface = self.turned()?;
         let points = Vectors::of(points, "points")?;
         let count = points.count().unwrap_or(1);
         let rows = points.rows(count)?;
-        let (view, shape) = (rows.view(), &self.model.objects[0].shape);
+        let view = rows.view();
         let point = |index: usize| -> Result<i8, usize> {
             let at: DVec3 = view.row(index);
-            let known = at.is_finite().then(|| is_inside(shape, at)).ok_or(index)?;
+            let known = at.is_finite().then(|| surface.winds_around(at)).ok_or(index)?;
             Ok(known.map_or(-1, i8::from))
         };
         let inside: Result<Vec<i8>, usize> = How { threads, progress }.run(py, count, |_, course| {

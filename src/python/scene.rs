@@ -35,13 +35,15 @@ pub struct Source {
     /// What is set beside the text, and what messages call that.
     sets: Vec<String>,
     set_by: Vec<String>,
+    /// Whether somebody wrote the text: only then, messages show it.
+    is_written: bool,
 }
 
 impl Source {
-    /// Takes a text without a name.
-    pub fn of_text(text: &str) -> Self {
-        let (folder, sets, set_by) = (PathBuf::new(), Vec::new(), Vec::new());
-        Self { name: "<text>".to_owned(), folder, bytes: text.as_bytes().to_vec(), sets, set_by }
+    /// Takes a text that nobody wrote, about what has this name.
+    pub fn made(name: String, folder: PathBuf, text: &str) -> Self {
+        let bytes = text.as_bytes().to_vec();
+        Self { name, folder, bytes, sets: Vec::new(), set_by: Vec::new(), is_written: false }
     }
 
     /// Makes a model, with this accuracy or with the scene's own.
@@ -54,9 +56,14 @@ impl Source {
         let registry = Registry::get().map_err(PyRuntimeError::new_err)?;
         let read = if only_rays { reader::read_for_rays } else { reader::read_by };
         let (sets, set_by) = (&self.sets[..], &self.set_by[..]);
-        How::PLAIN.run(py, 0, |_, _| {
+        let loaded = How::PLAIN.run(py, 0, |_, _| {
             let options = ReadOptions { above_all: accuracy, sets, set_by, ..ReadOptions::default() };
             read(registry, &self.name, &self.folder, &self.bytes, options)
+        })?;
+        let shown = |report: Report| if self.is_written { report } else { report.without_places() };
+        Ok(match loaded {
+            Ok(loaded) => Ok(Loaded { warnings: shown(loaded.warnings), ..loaded }),
+            Err(report) => Err(shown(report)),
         })
     }
 }
@@ -88,7 +95,7 @@ pub fn read(
     sets: Vec<String>,
 ) -> PyResult<Scene> {
     let set_by = vec!["set".to_owned(); sets.len()];
-    let source = Source { name, folder, bytes, sets, set_by };
+    let source = Source { name, folder, bytes, sets, set_by, is_written: true };
     let (loaded, has_camera) = match source.load(py, None, false)? {
         Ok(loaded) => (loaded, true),
         Err(report) if report.lacks_camera() => (loaded_for_rays(py, &source)?, false),
@@ -101,9 +108,7 @@ pub fn read(
 #[pyfunction]
 pub fn read_mesh(py: Python<'_>, path: PathBuf) -> PyResult<Scene> {
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    let bytes = reader::mesh_for_rays(&path).into_bytes();
-    let source =
-        Source { name: path.display().to_string(), folder, bytes, sets: Vec::new(), set_by: Vec::new() };
+    let source = Source::made(path.display().to_string(), folder, &reader::mesh_for_rays(&path));
     let loaded = loaded_for_rays(py, &source)?;
     scene(py, source, loaded, false)
 }

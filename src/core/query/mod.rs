@@ -19,12 +19,10 @@
 pub mod answer;
 mod crossings;
 pub mod first;
-mod inside;
 mod ray;
 mod scene;
 
 pub use answer::{Answer, Surroundings, Verdict};
 pub use crossings::Crossing;
-pub use inside::is_inside;
 pub use ray::ExactRay;
 pub use scene::Query;

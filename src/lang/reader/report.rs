@@ -80,6 +80,16 @@ impl<'t> Report<'t> {
         Report { name, text: text.into(), syntax, faults, notes, files }
     }
 
+    /// Leaves out the places of all faults, where nobody wrote the text that they are in.
+    pub fn without_places(mut self) -> Self {
+        for fault in &mut self.faults {
+            fault.place = None;
+            fault.also.clear();
+            fault.similar_faults.1.clear();
+        }
+        self
+    }
+
     /// Returns the syntax in which messages show what would be right.
     pub fn syntax(&self) -> Syntax {
         self.syntax

@@ -85,6 +85,35 @@ def test_points_are_inside_by_proven_crossings():
         cube.inside([[0, 0, 0], [np.inf, 0, 0]])
 
 
+def two_cubes(low, side, inward):
+    """Return a cube of side 3, and another one, turned inward or not."""
+    other = CUBE[:, ::-1] if inward else CUBE
+    return tabray.mesh(np.concatenate([3 * CORNERS, low + side * CORNERS]), np.concatenate([CUBE, 8 + other]))
+
+
+def test_bodies_that_overlap_are_one_and_a_body_turned_inward_is_a_cavity():
+    assert two_cubes(2, 3, False).inside([[1, 1, 1], [2.5, 2.5, 2.5], [4, 4, 4], [5.5, 5, 5]]).tolist() == [1, 1, 1, 0]
+    for inward in [False, True]:
+        assert two_cubes(1, 1, inward).inside([[1.5, 1.5, 1.5], [0.5, 0.5, 0.5]]).tolist() == [not inward, 1]
+
+
+def test_faults_of_the_file_of_a_mesh_show_no_scene(tmp_path):
+    broken = tmp_path / "broken.obj"
+    broken.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n")
+    with pytest.raises(tabray.SceneError) as raised:
+        tabray.load(broken)
+    told = str(raised.value)
+    assert "`broken.obj`, line 4: there is no vertex 9" in told
+    assert "material" not in told and "pixeldim" not in told, told
+    assert all(fault.line is None and fault.span is None for fault in raised.value.faults)
+    flat = tmp_path / "flat.obj"
+    flat.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\n")
+    with pytest.warns(tabray.SceneWarning) as warned:
+        tabray.load(flat)
+    for warning in warned:
+        assert "material" not in str(warning.message)
+
+
 def test_rays_in_the_planes_of_thin_triangles_miss_nothing():
     # Two triangles that share a diagonal, a millionth wide: a ray through the diagonal hits, through whichever.
     width = 1e-6

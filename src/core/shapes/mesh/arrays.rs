@@ -56,10 +56,23 @@ impl Surface {
             let corner = faces[face].iter().position(is_none).unwrap_or(0);
             return Err(ArrayError::Corner(face, corner, faces[face][corner]));
         }
+        Self::of_checked(vertices, faces, Look::default())
+    }
+
+    /// Returns this surface with the faces of each part turned alike, as those of files are: as most of them are turned.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn turned_alike(&self) -> Result<Self, ArrayError> {
+        let look = Look { crease: None, is_two_sided: true };
+        Self::of_checked(self.vertices.clone(), self.faces.clone(), look)
+    }
+
+    fn of_checked(vertices: Vec<DVec3>, faces: Vec<[u32; 3]>, look: Look) -> Result<Self, ArrayError> {
         let placement = ToWorld::new(DVec3::ONE, Rotation::NONE, DVec3::ZERO);
         let model = Model { vertices, faces, ..Model::default() };
         let refused = |error: SurfaceError| ArrayError::Surface(error.message().0);
-        Self::new(model, &placement, Look::default()).map_err(refused)
+        Self::new(model, &placement, look).map_err(refused)
     }
 }
 

@@ -29,6 +29,22 @@ impl Surface {
         self.depths.get_or_init(|| if self.is_star() { None } else { self.find_depths() }).as_ref()
     }
 
+    /// Tells whether a point lies inside of a closed mesh: whether the mesh winds around it. `None` where 237 bits do not
+    /// tell, as on the surface.
+    ///
+    /// Faces must be turned alike, as those of [`turned_alike`](Self::turned_alike) are.
+    pub fn winds_around(&self, at: DVec3) -> Option<bool> {
+        let number = self.number_at::<f64>(at).or_else(|| self.number_at::<f256>(at))?;
+        Some(number != 0)
+    }
+
+    /// Returns the winding number of a point; `None` where no direction tells.
+    fn number_at<F: Precise>(&self, at: DVec3) -> Option<i32> {
+        let origin = constants::<Interval<F>>(at);
+        let mut lines = directions().map(|dir| Line { origin, dir: constants(dir) });
+        lines.find_map(|line| self.winding(&line, &self.met::<Exact, F>(&line, |_| false, false)))
+    }
+
     fn find_depths(&self) -> Option<Arc<[Depth]>> {
         let overlaps = self.overlapping();
         let first_of = self.patches(&overlaps);
@@ -131,4 +147,76 @@ fn top(above: &mut [usize], mut face: usize) -> usize {
         face = above[face];
     }
     face
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns the vertices and the faces of a cube with its low corner at a place and a side of this length, turned outward.
+    fn cube(low: DVec3, side: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let corner = |index: usize| {
+            low + side * DVec3::from([1, 2, 4].map(|bit| f64::from(u8::from(index & bit != 0))))
+        };
+        let faces = [
+            [0, 2, 1],
+            [1, 2, 3],
+            [4, 5, 6],
+            [5, 7, 6],
+            [0, 1, 4],
+            [1, 5, 4],
+            [2, 6, 3],
+            [3, 6, 7],
+            [0, 4, 2],
+            [2, 4, 6],
+            [1, 3, 5],
+            [3, 7, 5],
+        ];
+        ((0..8).map(corner).collect(), faces.to_vec())
+    }
+
+    /// Returns the surface of two cubes, of which the other one may be turned inward.
+    fn two(one: (Vec<DVec3>, Vec<[u32; 3]>), other: (Vec<DVec3>, Vec<[u32; 3]>), inward: bool) -> Surface {
+        let (vertices, mut faces) = ([one.0, other.0].concat(), one.1);
+        for [a, b, c] in other.1.into_iter().map(|face| face.map(|corner| corner + 8)) {
+            faces.push(if inward { [a, c, b] } else { [a, b, c] });
+        }
+        Surface::of_arrays(vertices, faces).expect("two cubes")
+    }
+
+    #[test]
+    fn a_point_is_inside_where_the_mesh_winds_around_it() {
+        let (vertices, mut faces) = cube(DVec3::ZERO, 1.0);
+        for turned in [None, Some(3), Some(8)] {
+            turned.into_iter().for_each(|face: usize| faces[face].reverse());
+            let cube = Surface::of_arrays(vertices.clone(), faces.clone()).expect("a cube");
+            let cube = if turned.is_some() { cube.turned_alike().expect("a cube") } else { cube };
+            for (at, right) in [
+                ([0.5; 3], Some(true)),
+                ([1e-15, 0.5, 0.5], Some(true)),
+                ([-1e-60, 0.5, 0.5], Some(false)),
+                ([0.5, 1.0 + f64::EPSILON, 0.5], Some(false)),
+                ([2.0, 0.3, 0.3], Some(false)),
+                ([1.0, 0.3, 0.4], None),
+                ([0.0; 3], None),
+                ([1.0, 0.0, 0.25], None),
+            ] {
+                assert_eq!(cube.winds_around(DVec3::from(at)), right, "{at:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn bodies_that_overlap_are_one_and_one_turned_inward_is_a_cavity() {
+        let all = || cube(DVec3::ZERO, 3.0);
+        let overlapping = two(all(), cube(DVec3::splat(2.0), 3.0), false);
+        for (at, is_inside) in [(1.0, true), (2.5, true), (4.0, true), (5.5, false)] {
+            assert_eq!(overlapping.winds_around(DVec3::splat(at)), Some(is_inside), "{at}");
+        }
+        for (inward, is_inside) in [(true, false), (false, true)] {
+            let within = two(all(), cube(DVec3::ONE, 1.0), inward);
+            assert_eq!(within.winds_around(DVec3::splat(1.5)), Some(is_inside), "turned inward: {inward}");
+            assert_eq!(within.winds_around(DVec3::splat(0.5)), Some(true));
+        }
+    }
 }
