@@ -11,6 +11,7 @@ use crate::render::trace;
 use crate::scene::model::Model;
 use crate::world::any_shape::AnyShape;
 use crate::world::certify::{Enclosure, HitEnclosure, Precise, Precision};
+use crate::world::hittable::SurfaceHit;
 use f256::f256;
 use tabray_exact::interval::{Float, Fraction, Interval, Wide};
 
@@ -149,8 +150,8 @@ impl Query<'_> {
                 || face::<f256>(shape, ray, answer).or_else(|| face::<Fraction>(shape, ray, answer));
             face::<f64>(shape, ray, answer).or_else(by_more)
         });
-        let face = proven.or_else(|| shape.face_hit(&ray.sight().ray(), answer.distance));
-        Some(Surroundings { point, normal: shape.normal(point), uv: shape.uv(point), face })
+        let SurfaceHit { normal, uv, face } = shape.surface_hit(&ray.sight().ray(), answer.distance, point);
+        Some(Surroundings { point, normal, uv, face: proven.or(face) })
     }
 }
 

@@ -13,6 +13,17 @@ use std::marker::PhantomData;
 use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::roots::Method;
 
+/// The surface where a ray hits a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceHit {
+    /// The outward unit normal.
+    pub normal: DVec3,
+    /// The coordinates u and v, where the shape has some.
+    pub uv: Option<DVec2>,
+    /// The index of the face, from 0, where the shape has several.
+    pub face: Option<u32>,
+}
+
 /// A shape that rays can hit. Shapes do not change while an image is rendered.
 ///
 /// A plugin implements `distance`, `normal` and `facts`, and overrides other methods if it knows more than their defaults.
@@ -78,6 +89,12 @@ pub trait Hittable: Send + Sync {
     /// Returns the index of the face that a ray hits at a distance in world units, from 0. `None` for a shape of one face.
     fn face_hit(&self, ray: &Ray, distance: f64) -> Option<u32> {
         self.face(ray.at(distance))
+    }
+
+    /// Returns what [`normal`](Self::normal), [`uv`](Self::uv) and [`face_hit`](Self::face_hit) say of the point at which a ray
+    /// hits the shape at a distance in world units. A shape of many faces finds the face once.
+    fn surface_hit(&self, ray: &Ray, distance: f64, at: DVec3) -> SurfaceHit {
+        SurfaceHit { normal: self.normal(at), uv: self.uv(at), face: self.face_hit(ray, distance) }
     }
 
     /// Passes to a function what proofs about the shape take for exact, although it was rounded on its way from the numbers

@@ -2,6 +2,7 @@
 
 use super::face::{Face, Leaving};
 use super::hits::NOTHING;
+use super::memo::Memo;
 use super::surface::Surface;
 use super::winding::Openness;
 use crate::geometry::aabb::{Aabb, SLACK};
@@ -16,7 +17,7 @@ use crate::world::certify::{
     ProofMethods,
 };
 use crate::world::coincidence::{CLOSE, ROUNDING};
-use crate::world::hittable::{ByPackets, Facts, Hittable, Shape, Sides};
+use crate::world::hittable::{ByPackets, Facts, Hittable, Shape, Sides, SurfaceHit};
 use crate::world::packets::shape::HitQueries;
 use glam::{DMat3, DVec2, DVec3};
 use std::marker::PhantomData;
@@ -173,6 +174,17 @@ impl<A: Bounded> Hittable for Mesh<A> {
     fn face_hit(&self, ray: &Ray, distance: f64) -> Option<u32> {
         let face = distance.is_finite().then(|| self.surface.face_along(ray, distance))?;
         Some(self.surface.order[face])
+    }
+
+    fn surface_hit(&self, ray: &Ray, distance: f64, at: DVec3) -> SurfaceHit {
+        let surface = &self.surface;
+        let known = Memo::with(|memo| memo.face(surface.id, ray, distance));
+        let face = known.unwrap_or_else(|| surface.face_along(ray, distance));
+        SurfaceHit {
+            normal: surface.triangle::<A>(face).plane.normal,
+            uv: Some(surface.uv_of(face, at)),
+            face: Some(surface.order[face]),
+        }
     }
 
     fn assumes(&self, each: &mut dyn FnMut(Assumption)) {
