@@ -241,7 +241,7 @@ mod tests {
         let nested = |depth: usize| format!("{}sqrt(nz){}", open(depth), ")".repeat(depth));
         let formulas = (1..100).map_while(|depth| Formula::parse_in(&nested(depth), SURFACE).ok());
         let fields = formulas.filter_map(|formula| SurfaceField::new(Arc::new(formula)));
-        let depth = fields.map(|field| assert!(field.at([0.5; 8]).is_finite())).count();
+        let depth = fields.map(|field| assert!(field.at([0.5; SURFACE.len()]).is_finite())).count();
         assert!(depth + 4 >= MAX_DEPTH, "the nesting goes as deep as it may: {depth}");
     }
 }
