@@ -81,7 +81,7 @@ fn scene(seed: u64) -> String {
             ),
         };
         // Glass takes long.
-        if index < 3 || seed % 5 == 0 {
+        if index < 3 || seed.is_multiple_of(5) {
             text += &body;
         }
     }
