@@ -20,12 +20,14 @@ const MARGIN: f64 = 0.125;
 /// The most steps that make the enclosure of a solution narrower.
 const STEPS: usize = 40;
 
+pub(super) type LeavesOut<'s, F> = dyn Fn(Interval<F>, &Rectangle<F>, bool) -> bool + 's;
+
 /// A search for the first hit with t > 0.
 pub(super) struct Search<'s, F: Float> {
     pub shape: &'s ParametricShape,
     pub line: &'s Line<Interval<F>>,
     /// Tells that a hit at these t does not count, given the place of its u and v, and whether the place certainly has one.
-    pub is_left_out: &'s dyn Fn(Interval<F>, &Rectangle<F>, bool) -> bool,
+    pub is_left_out: &'s LeavesOut<'s, F>,
 }
 
 /// A hit.
