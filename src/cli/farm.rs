@@ -160,7 +160,9 @@ impl Order {
         let part = format!("1/{parts}");
         let words = ["tabray", "render", "--resume", "--part", &part].map(OsString::from);
         let given = options.iter().map(OsString::from);
-        let files = ["-o".into(), output.into(), "--".into(), scene.into()];
+        let mut image_option = OsString::from("--output=");
+        image_option.push(output);
+        let files = [image_option, "--".into(), scene.into()];
         let words = words.into_iter().chain(given).chain(files);
         let matches = command().try_get_matches_from(words).unwrap_or_else(|error| error.exit());
         let args = matches.subcommand_matches("render").map(render::Args::from_arg_matches);

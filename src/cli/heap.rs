@@ -37,9 +37,14 @@ pub fn limit(bytes: usize) {
 }
 
 /// Tells whether so many bytes more are beyond the limit.
-pub fn is_full(more: usize) -> bool {
+fn is_full(more: usize) -> bool {
     let used = usize::try_from(USED.load(Ordering::Relaxed)).unwrap_or(0);
     used.saturating_add(more) > LIMIT.load(Ordering::Relaxed)
+}
+
+/// Tells whether the limit is a reason why so many bytes more are refused: with what one thread has not told yet.
+pub fn is_near_full(more: usize) -> bool {
+    is_full(more.saturating_add(UNTOLD.unsigned_abs()))
 }
 
 /// Tells whether this thread may allocate so many bytes more.

@@ -360,15 +360,13 @@ fn after_shutdown_and_for_a_second_initialize_the_request_is_refused() {
 
 /// A text that is too large is not read, and the server goes on.
 #[test]
-fn a_text_of_94_mb_is_refused() {
+fn a_text_of_17_mib_is_refused() {
     let folder = folder();
     let mut client = Client::start(&folder);
     let uri = uri(folder.path(), "large.ray");
-    for length in [17 << 20, 94_000_000] {
-        client.open(&uri, &"# nothing\n".repeat(length / 10));
-        let asked = json!({ "textDocument": { "uri": uri }, "options": {} });
-        assert!(client.ask("textDocument/formatting", asked).is_err());
-    }
+    client.open(&uri, &"# nothing\n".repeat((17 << 20) / 10));
+    let asked = json!({ "textDocument": { "uri": uri }, "options": {} });
+    assert!(client.ask("textDocument/formatting", asked).is_ok_and(|answer| answer.is_null()));
     let told = client.told.iter().find(|told| told.method == "window/showMessage").expect("a message");
     let message = told.params["message"].as_str().expect("text");
     assert!(message.contains("large.ray` is larger than 16 MiB, and is not read"), "{message}");

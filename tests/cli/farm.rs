@@ -90,7 +90,7 @@ fn the_scripts_of_a_film_say_what_they_mean() {
 #[test]
 fn commands_stand_one_a_line_and_make_the_image() {
     let folder = workplace();
-    let (status, out, err) = farm(&folder, &["commands", "ball.ray", "-o", "-x.png", "--parts", "3"]);
+    let (status, out, err) = farm(&folder, &["commands", "ball.ray", "--output=-x.png", "--parts", "3"]);
     assert_eq!(status, 0, "{err}");
     assert_eq!(out.lines().count(), 3);
     let last = err.strip_prefix("when all of them have ended: ").expect("the last command");
@@ -118,6 +118,16 @@ fn kubernetes_is_given_two_jobs() {
         &["kubernetes", "ball.ray", "-o", "Big_1 $(A).png", "--parts", "64", "--", "--samples", "4"],
     );
     assert_eq!(status, 0, "{err}");
-    insta::assert_snapshot!("kubernetes", out.replace(env!("CARGO_PKG_VERSION"), "VERSION"));
+    let part = r#"exec tabray render ball.ray -o 'Big_1 $$(A).png' --part \"$((JOB_COMPLETION_INDEX + 1))\"/64 --resume --samples 4"#;
+    for line in [
+        "  name: big-1---a-parts\nspec:\n  completions: 64\n",
+        concat!("          image: \"tabray:", env!("CARGO_PKG_VERSION"), "\"\n"),
+        &format!("          command: [\"sh\",\"-c\",\"{part}\"]\n"),
+        "  name: big-1---a-merge\nspec:\n  suspend: true\n",
+        "          command: [\"sh\",\"-c\",\"exec tabray merge 'Big_1 $$(A).png'\"]\n",
+        "          persistentVolumeClaim: {claimName: \"scenes\"}\n",
+    ] {
+        assert!(out.contains(line), "{line} is not in\n{out}");
+    }
     assert!(err.contains("kubectl patch job/big-1---a-merge"), "{err}");
 }

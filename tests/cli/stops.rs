@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 /// How long a command is left alone before the signal, and the longest that it may take after it: far more than a second
 /// on an idle machine, and far less than the work.
-const BEFORE: Duration = Duration::from_millis(400);
+const BEFORE: Duration = Duration::from_millis(150);
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// A pixel between mirrors takes minutes.
@@ -23,19 +23,7 @@ plane front { material m normal 0 0 1 point 0 0 -9 } plane back { material m nor
 /// The commands, with the stage in which the signal comes: a pipe without an end, a scene whose model takes minutes, or
 /// work that does.
 const STAGES: [(&str, &[&str]); 3] = [
-    (
-        "reading",
-        &[
-            "check -",
-            "dump -",
-            "plan -",
-            "probe - 1 1",
-            "verify -",
-            "render - -o x.png",
-            "chart -",
-            "hits balls.ray -",
-        ],
-    ),
+    ("reading", &["check -", "dump -", "plan -", "probe - 1 1", "verify -", "render - -o x.png", "chart -"]),
     (
         "loading",
         &[
@@ -72,9 +60,9 @@ const STAGES: [(&str, &[&str]); 3] = [
 #[test]
 fn every_command_ends_soon_at_every_signal_in_every_stage() {
     let folder = folder();
-    // Each of ten million spheres in a shape of its own.
+    // As many spheres as a scene may repeat.
     let balls = "camera eye { pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 } material m { ambient 1 1 1 }
-repeat i 3000 { repeat j 3000 { sphere s { material m center i j 3 radius 1 } } }\n";
+repeat i 490000 { sphere s { material m center i 2 3 radius 1 } }\n";
     fs::write(folder.path().join("balls.ray"), balls).expect("a scene");
     fs::write(folder.path().join("mirrors.ray"), MIRRORS).expect("a scene");
     fs::write(folder.path().join("rays.txt"), "0 0 9 0 0 -1\n").expect("a file");

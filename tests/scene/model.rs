@@ -61,7 +61,7 @@ fn a_built_model_is_checked_as_a_text_is() {
         [
             "`ambient` of material `green` takes 3 numbers, not 2",
             "`a\\nball` cannot be a name",
-            "`radius` of sphere `a\u{fffd}ball` must be positive, not -1.0",
+            "`radius` of sphere `a\\nball` must be positive, not -1.0",
         ]
     );
 }

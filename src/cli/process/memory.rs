@@ -53,8 +53,9 @@ pub fn refuse_too_large(bytes: usize, what: &str) -> Result<(), Failure> {
     if heap::has_room(bytes) {
         return Ok(());
     }
+    let beyond = if heap::is_near_full(bytes) { beyond_limit() } else { String::new() };
     let bytes = ByteSize(bytes as u64);
-    Err(Failure::Failed(format!("not enough memory for {what}: it takes about {bytes}{}", beyond_limit())))
+    Err(Failure::Failed(format!("not enough memory for {what}: it takes about {bytes}{beyond}")))
 }
 
 /// Ends the program with a message, from now on, if the system refuses it memory.
@@ -77,7 +78,7 @@ fn end(bytes: usize) {
         *reserve = Vec::new();
     }
     let scene = crash::scene().map_or(String::new(), |scene| format!(" for `{scene}`"));
-    let is_full = heap::is_full(bytes);
+    let is_full = heap::is_near_full(bytes);
     // The message takes memory, too.
     heap::limit(usize::MAX);
     let bytes = ByteSize(bytes as u64);

@@ -6,6 +6,7 @@ use std::io::{self, Write};
 use tabray_core::output;
 use tabray_core::query::{Answer, Surroundings, Verdict};
 use tabray_core::scene::model::Model;
+use tabray_core::text;
 use tabray_core::world::certify::Precision;
 
 /// How answers are written.
@@ -163,7 +164,7 @@ impl AnswerFormat {
         match self {
             Self::JsonLines => {
                 for answer in answers {
-                    serde_json::to_writer(&mut bytes, &answer.line())?;
+                    bytes.extend_from_slice(text::json(&answer.line()).as_bytes());
                     bytes.push(b'\n');
                 }
             }
@@ -191,7 +192,7 @@ fn fields(line: &Line) -> Vec<String> {
     fields.extend([
         line.verdict.to_owned(),
         line.proof.to_owned(),
-        line.object.unwrap_or_default().to_owned(),
+        text::visible(line.object.unwrap_or_default()).into_owned(),
     ]);
     fields.extend([index(line.number), index(line.face.map(|face| face as usize))]);
     fields.extend([line.t, line.t_low, line.t_high, line.distance].map(number));
