@@ -8,7 +8,7 @@ use tempfile::TempDir;
 /// A folder with a scene of some pixels.
 fn workplace() -> TempDir {
     let folder = folder();
-    let ball = "camera eye { pixeldim 16 12 worlddim 8 6 viewpoint 4 3 6 } material m { ambient 1 0 0 }
+    let ball = "camera eye { pixeldim 64 48 worlddim 8 6 viewpoint 4 3 6 } material m { ambient 1 0 0 }
 sphere ball { material m center 4 3 -3 radius 2 }\n";
     fs::write(folder.path().join("ball.ray"), ball).expect("a scene");
     folder

@@ -74,11 +74,11 @@ fn end(bytes: usize) {
         let _ = io::stderr().write_all(b"error: not enough memory\n");
         heap::exit_at_once(1);
     }
+    let is_full = heap::is_near_full(bytes);
     if let Ok(mut reserve) = RESERVE.try_lock() {
         *reserve = Vec::new();
     }
     let scene = crash::scene().map_or(String::new(), |scene| format!(" for `{scene}`"));
-    let is_full = heap::is_near_full(bytes);
     // The message takes memory, too.
     heap::limit(usize::MAX);
     let bytes = ByteSize(bytes as u64);
