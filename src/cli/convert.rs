@@ -63,7 +63,9 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             Some("name another file: a copy has no comments and no formulas".to_owned()),
         ));
     }
-    is_the_same_scene(registry, &model, &scene, &args.output)?;
+    if is_copy {
+        is_the_same_scene(registry, &model, &scene, &args.output)?;
+    }
     output::replace(&args.output, scene.as_bytes())?;
     let without = if is_copy { " (without comments)" } else { "" };
     messages::note(&format!("wrote {}{without}", text::shown(&args.output)));

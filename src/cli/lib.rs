@@ -27,6 +27,7 @@ mod lsp;
 mod man;
 mod measuring;
 mod merge;
+mod mesh;
 mod new;
 mod notes;
 mod options;
@@ -90,6 +91,7 @@ enum Command {
     Farm(farm::Args),
     Dump(dump::Args),
     Convert(convert::Args),
+    Mesh(mesh::Args),
     Check(check::Args),
     Fmt(fmt::Args),
     Plan(plan::Args),
@@ -180,6 +182,7 @@ fn chosen() -> ExitCode {
             Some(Command::Farm(args)) => farm::run(registry, &args),
             Some(Command::Dump(args)) => dump::run(registry, args),
             Some(Command::Convert(args)) => convert::run(registry, args),
+            Some(Command::Mesh(args)) => mesh::run(registry, &args),
             Some(Command::Check(args)) => check::run(registry, args),
             Some(Command::Fmt(args)) => fmt::run(registry, &args),
             Some(Command::Plan(args)) => plan::run(registry, args),

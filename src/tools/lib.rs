@@ -14,6 +14,7 @@ pub mod navigation;
 pub mod part;
 pub mod probe;
 pub mod sampling;
+pub mod surface_mesh;
 pub mod threads;
 pub mod verify;
 

@@ -30,6 +30,7 @@ mod server;
 mod size;
 #[cfg(target_os = "linux")]
 mod stops;
+mod surfaces;
 #[cfg(unix)]
 mod terminals;
 #[cfg(target_os = "linux")]

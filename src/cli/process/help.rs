@@ -7,7 +7,7 @@ use std::fmt::Write;
 /// The commands by their purpose, as `--help` lists them.
 const GROUPS: [(&str, &[&str]); 6] = [
     ("Rendering", &["render", "watch", "merge", "film", "farm"]),
-    ("Scenes", &["new", "list", "check", "fmt", "convert", "dump"]),
+    ("Scenes", &["new", "list", "check", "fmt", "convert", "mesh", "dump"]),
     ("Looking inside", &["plan", "probe", "diff", "review"]),
     ("Rays", &["hits", "judge", "hard"]),
     ("Speed and accuracy", &["choose", "chart", "verify", "bench"]),

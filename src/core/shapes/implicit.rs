@@ -20,7 +20,7 @@ use crate::world::certify::Equation;
 use crate::world::coincidence::ROUNDING;
 use crate::world::hittable::{Bracketed, Certified, Curvature, Facts, Hittable, Searched, Shape};
 use crate::world::packets::shape::by_distance;
-pub use formula::Implicit;
+pub use formula::{CUT_BY_BOX, Implicit};
 use glam::{DVec2, DVec3};
 use on_ray::{FormulaOnRay, ImplicitShape, shortest};
 use parts::Parts;

@@ -81,9 +81,16 @@ impl AnyShape {
         self.shape.is_on_surface(at, error)
     }
 
-    /// Tells whether a point lies in a closed shape; `None` where the surface may be within an error in world units.
+    /// Tells whether a point lies in a closed shape; `None` where the surface may be within an error in world units
+    /// along each axis. Where a box cuts a surface, what is inside of both is meant.
     pub fn contains(&self, at: DVec3, error: f64) -> Option<bool> {
         self.shape.contains(at, error)
+    }
+
+    /// Tells whether the shape is a part of a solid's surface: [`contains`](Self::contains) then tells what lies in the
+    /// solid.
+    pub fn is_of_solid(&self) -> bool {
+        self.shape.is_of_solid()
     }
 
     /// Returns the plane that contains all of a closed shape's surface within an error, in world units, of a point;

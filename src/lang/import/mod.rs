@@ -40,12 +40,17 @@ impl Program {
         }
     }
 
-    fn name(self) -> &'static str {
+    fn what(self) -> &'static str {
         match self {
-            Self::Surfer => "SURFER",
-            Self::Surf => "surf",
+            Self::Surfer => "a surface of SURFER",
+            Self::Surf => "a script of surf",
         }
     }
+}
+
+/// Says what a file is, if it is of one of these programs.
+pub(crate) fn what(name: &str, text: &str) -> Option<&'static str> {
+    Program::of_name(name).or_else(|| Program::of_text(text)).map(Program::what)
 }
 
 /// What a file of another program shows.
@@ -95,7 +100,7 @@ fn read(program: Program, name: &str, text: &str) -> Result<Imported, Report> {
             lines.push((word, line));
         }
     }
-    let mut head = format!("# Written by `tabray convert` from a file of {}.\n", program.name());
+    let mut head = format!("# Written by `tabray convert` from {}.\n", program.what());
     if !lines.is_empty() {
         let words: Vec<_> = lines.iter().map(|(word, line)| format!("{word} (line {line})")).collect();
         head += &format!("# Left out: {}.\n", words.join(", "));

@@ -136,11 +136,11 @@ impl Picture {
             point(at(DVec3::ZERO)),
             point(turn * DVec3::Y),
             shortest(size * self.size[0]),
-            point(self.background),
+            colour(self.background),
         );
         text += &bodies;
         for (index, light) in self.lights.iter().enumerate() {
-            let (at, colour) = (point(at(light.at)), point(light.colour));
+            let (at, colour) = (point(at(light.at)), colour(light.colour));
             let _ = writeln!(text, "light lamp_{} {{ location {at}  emissivity {colour} }}", index + 1);
         }
         text
@@ -230,9 +230,14 @@ fn is_similar(map: DMat3) -> bool {
 fn material(name: &str, look: &Look) -> String {
     format!(
         "material {name}\n{{\n    ambient {}\n    diffuse {}\n}}\n\n",
-        point(look.ambient),
-        point(look.diffuse)
+        colour(look.ambient),
+        colour(look.diffuse)
     )
+}
+
+/// Writes a colour, to a thousandth of what a byte tells apart.
+fn colour(of: DVec3) -> String {
+    point((1e6 * of).round() / 1e6)
 }
 
 fn point(at: DVec3) -> String {

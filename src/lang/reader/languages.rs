@@ -4,6 +4,7 @@ use super::fault::Fault;
 use super::notes::has_entities;
 use super::report::Report;
 use super::tokens::{Token, Tokens};
+use crate::import;
 use crate::registry::Registry;
 use crate::syntax::Syntax;
 use std::collections::HashSet;
@@ -85,7 +86,11 @@ pub fn recognised(
     let fault = match syntax {
         Syntax::Toml => of_notes(registry, name, text).or_else(|| of_others(text)),
         Syntax::Notes => {
-            of_pov(text, name).or_else(|| of_others(text)).or_else(|| of_numbers(registry, text))
+            let surface = || of_surfaces(name, text);
+            surface()
+                .or_else(|| of_pov(text, name))
+                .or_else(|| of_others(text))
+                .or_else(|| of_numbers(registry, text))
         }
     };
     let Some(fault) = fault else { return Err(report) };
@@ -139,6 +144,14 @@ fn of_pov(text: &str, name: &str) -> Option<Fault> {
     let is_told = found.len() >= ENOUGH || name.ends_with(".pov");
     let place = first.filter(|_| is_told && !found.is_empty())?;
     Some(in_another_language(place, "a POV-Ray scene"))
+}
+
+/// Recognises a file of SURFER or surf.
+fn of_surfaces(name: &str, text: &str) -> Option<Fault> {
+    let what = import::what(name, text)?;
+    let first = text.lines().next().map_or(0, str::len);
+    let fault = Fault::error(Some(0..first), format!("this is {what}, not a scene"));
+    Some(fault.help("`tabray convert` writes it as one: give it this file, and a name that ends in .ray"))
 }
 
 /// Recognises a scene of numbers, which stand for what other scenes say in words.

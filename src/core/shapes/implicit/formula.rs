@@ -6,6 +6,9 @@ use tabray_exact::interval::Interval;
 use tabray_exact::polynomial::{Coefficient, Polynomial};
 use tabray_exact::scalar::Scalar;
 
+/// Why a surface is not closed that the faces of its box would close: [`Implicit::why_not_closed`].
+pub const CUT_BY_BOX: &str = "its box may cut its surface";
+
 /// An implicit surface, in coordinates of its own.
 pub trait Implicit: Send + Sync {
     /// Whether the box may be far larger than the shape, so that most of a ray in the box is far from the surface.

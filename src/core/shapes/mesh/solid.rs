@@ -53,7 +53,8 @@ impl Surface {
         if let Some(planes) = self.planes.get_or_init(|| self.convex::<A>()) {
             return inside(planes, at, error);
         }
-        if self.is_on_surface::<A>(at, error) {
+        // As above: the box reaches no farther.
+        if self.is_on_surface::<A>(at, 1.75 * error) {
             return None;
         }
         for dir in DIRECTIONS {

@@ -210,7 +210,8 @@ fn seen(solid: &Solid) -> Vec<Body> {
         let tree = solid.tree.without(&|other| other != index && !meets(other));
         let (path, is_outer) = tree.path_to(index)?;
         let around = common(around, tree.bounds(&|part| bounds[part]));
-        let shape = SolidPart::new(&parts, &bounds, (index, is_outer), (tree, path), around);
+        let shape =
+            SolidPart::new(&parts, &bounds, (index, is_outer), (tree, solid.tree.clone(), path), around);
         let part = &parts[index];
         let shape = Shape::new(shape).by::<ByPackets, ByParts>();
         Some(Body { material: Some(part.material.clone()), ..seen_as(&part.body, shape) })

@@ -40,6 +40,8 @@ pub struct SolidPart {
     pub(super) is_outer: bool,
     /// The condition on the parts that contain a point near this surface, by which the point lies in the solid.
     pub(super) tree: Tree,
+    /// The condition by which any point lies in the solid.
+    whole: Tree,
     /// The way to the part through the tree.
     path: Vec<usize>,
     facts: Facts,
@@ -51,7 +53,7 @@ impl SolidPart {
         parts: &Arc<[Part]>,
         around: &Arc<[Option<Aabb>]>,
         (index, is_outer): (usize, bool),
-        (tree, path): (Tree, Vec<usize>),
+        (tree, whole, path): (Tree, Tree, Vec<usize>),
         bounds: Option<Aabb>,
     ) -> Self {
         let (parts, around) = (parts.clone(), around.clone());
@@ -59,7 +61,7 @@ impl SolidPart {
         let can_hit_itself = if is_outer { own.can_hit_itself.opposite() } else { own.can_hit_itself };
         let facts =
             Facts { bounds, can_hit_itself, is_two_sided: true, plane: None, ends_as_planes: false, ..own };
-        Self { parts, around, index, is_outer, tree, path, facts }
+        Self { parts, around, index, is_outer, tree, whole, path, facts }
     }
 
     /// Returns the shape of the part.
@@ -91,6 +93,11 @@ impl SolidPart {
             return Some(false);
         }
         self.parts[part].body.shape.contains(at, error)
+    }
+
+    /// Tells whether a point lies in the solid; `None` where its surface may be within an error in world units.
+    fn holds(&self, at: DVec3, error: f64) -> Option<bool> {
+        self.whole.holds(&mut |part| self.contains(part, at, error))
     }
 
     /// Tells whether a hit of the part is the solid's; `None` where the surface of another part may be within an error in
@@ -330,6 +337,14 @@ impl HitQueries for Shape<SolidPart, ByPackets, ByParts> {
                 (low - error).cmple(at).all() && at.cmple(high + error).all()
             });
         is_near && self.shape.own().is_on_surface(at, error)
+    }
+
+    fn contains(&self, at: DVec3, error: f64) -> Option<bool> {
+        self.shape.holds(at, error)
+    }
+
+    fn is_of_solid(&self) -> bool {
+        true
     }
 
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {

@@ -145,7 +145,11 @@ pub fn contains(shape: &impl Equation, at: DVec3, error: f64) -> Option<bool> {
         return Some(false);
     }
     let value = shape.value(origin);
-    (!value.has_zero()).then_some(value.high < 0.0)
+    let is_inside = value.high < 0.0;
+    // Where the box cuts off what is inside, its faces are the surface.
+    let is_cut =
+        is_inside && (0..3).any(|axis| origin[axis].low < low[axis] || origin[axis].high > high[axis]);
+    (!value.has_zero() && !is_cut).then_some(is_inside)
 }
 
 #[cfg(test)]

@@ -23,6 +23,12 @@ pub trait HitQueries: Send + Sync {
         None
     }
 
+    /// Tells whether the shape is a part of a solid's surface, of which [`contains`](Self::contains) tells what lies in the
+    /// solid.
+    fn is_of_solid(&self) -> bool {
+        false
+    }
+
     /// Returns the facet in whose plane all of a closed shape's surface within an error in world units of a point lies;
     /// `None` where that is not known.
     fn facet(&self, _at: DVec3, _error: f64) -> Option<Facet> {

@@ -1,0 +1,171 @@
+//! `tabray mesh`: writes an object of a scene as a closed mesh of triangles.
+
+use crate::files::output::{self, Output};
+use crate::options::named::{Value, by_name};
+use crate::options::{scene, threads};
+use crate::process::failure::Failure;
+use crate::process::messages;
+use glam::DVec3;
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+use tabray_core::text::{count, list, short, shortest};
+use tabray_lang::registry::Registry;
+use tabray_tools::surface_mesh::{Body, Format, NoBody, NoMesh, mesh};
+
+/// How many places are listed.
+const LISTED: usize = 5;
+
+/// Write an object as a closed mesh of triangles, within a proven distance
+///
+/// The mesh is watertight and two-manifold, and its triangles face outward. No point of it is farther than E from the
+/// object's surface, and no point of the surface farther than E from the mesh, as interval arithmetic proves; the command
+/// fails where that is not so, and says where. It warns of places where the surface may be joined otherwise than the mesh,
+/// such as the nodes of an algebraic surface.
+///
+/// The object is one that is closed: an implicit, a surface of revolution, a solid, a copy of these. An implicit that its
+/// box cuts is closed by the faces of the box.
+#[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
+pub struct Args {
+    #[command(flatten)]
+    scene: scene::Args,
+    /// The name of the object
+    name: String,
+    /// The file to write; its name ends in .stl, .obj or .ply, and `-` is standard output
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// The largest distance between the mesh and the surface, in world units; by default a 200th of the object's size
+    #[arg(short, long, value_name = "E", value_parser = above_0)]
+    error: Option<f64>,
+    /// The format, whatever the file name
+    #[arg(long, value_name = "FORMAT", value_parser = by_name::<Format>())]
+    format: Option<Format>,
+    #[command(flatten)]
+    threads: threads::Args,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  tabray mesh ball.ray ball -o ball.stl
+  tabray mesh gyroid.ray gyroid -o gyroid.ply --error 0.01";
+
+/// The part of an object's size that is the error by default.
+const FRACTION: f64 = 1.0 / 200.0;
+
+fn above_0(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| *number > 0.0 && number.is_finite());
+    number.ok_or_else(|| "give a number above 0, in world units".to_owned())
+}
+
+impl Value for Format {
+    fn help(self) -> Option<&'static str> {
+        Some(match self {
+            Self::Stl => "Binary STL, as printers read it",
+            Self::Obj => "Wavefront's text",
+            Self::Ply => "Binary PLY",
+        })
+    }
+}
+
+pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
+    let Args { output, name, .. } = args;
+    let format = args.format.or_else(|| Format::of_name(output)).ok_or_else(|| {
+        let message = format!("the name `{}` does not determine the format of the mesh", output.display());
+        Failure::Usage(message, Some("end it in .stl, .obj or .ply, or give `--format`".to_owned()))
+    })?;
+    let model = args.scene.load(registry, None)?;
+    output::refuse_source_by(output, "the mesh", &args.scene.path, &model)?;
+    let body = Body::of(&model, name).map_err(|fault| no_body(&args.scene.path, name, fault))?;
+    let size = 2.0 * body.bounds.half_size().max_element();
+    let error = args.error.unwrap_or_else(|| short(FRACTION * size).parse().unwrap_or(size));
+    let made =
+        args.threads.renderer()?.run(|| mesh(&body, error)).map_err(|fault| no_mesh(name, error, &fault))?;
+    let mut out = BufWriter::new(Output::open(output)?);
+    let written = format.write(&made, name, &mut out);
+    output::finished(output, written, out)?;
+    messages::note(&format!(
+        "wrote {}: {}, closed, with a volume of {}",
+        output.display(),
+        count(made.faces.len(), "triangle"),
+        short(made.volume())
+    ));
+    if body.is_capped {
+        messages::note("the faces of its box close the object");
+    }
+    match &made.tangled {
+        Some(places) if !places.is_empty() => messages::warning(
+            &format!(
+                "the surface may be joined otherwise than the mesh in {}: {}",
+                count(places.len(), "cell"),
+                listed(places)
+            ),
+            Some("its normals may turn by a right angle there, as at a node or an edge"),
+        ),
+        Some(_) => {}
+        None => messages::note("how the surface is joined at its edges was not examined"),
+    }
+    if made.far.is_empty() {
+        messages::note(&format!(
+            "each point of the mesh is within {} of the surface, and each point of the surface of the mesh",
+            shortest(error)
+        ));
+        return Ok(());
+    }
+    Err(Failure::Failed(format!(
+        "that the mesh is within {} of the surface is not proven in {}: {}",
+        shortest(error),
+        count(made.far.len(), "cell"),
+        listed(&made.far)
+    )))
+}
+
+/// Lists the first places.
+fn listed(places: &[[DVec3; 2]]) -> String {
+    let signed = |number: f64| format!("{}{}", if number < 0.0 { "-" } else { "" }, short(number.abs()));
+    let point = |at: DVec3| at.to_array().map(signed).join(" ");
+    let texts = places.iter().take(LISTED).map(|[low, high]| format!("{} to {}", point(*low), point(*high)));
+    let more =
+        if places.len() > LISTED { format!(", and {} more", places.len() - LISTED) } else { String::new() };
+    texts.collect::<Vec<_>>().join(", ") + &more
+}
+
+fn no_body(scene: &Path, name: &str, fault: NoBody) -> Failure {
+    let (message, help) = match fault {
+        NoBody::Unknown(names) => (
+            format!("`{}` has no object `{name}`", scene.display()),
+            format!("its objects are {}", list(names.iter().map(String::as_str))),
+        ),
+        NoBody::Open(why) => (
+            format!("`{name}` encloses nothing: {why}"),
+            "a mesh is made of closed objects: a sphere, a solid, an `implicit` within its box".to_owned(),
+        ),
+        NoBody::Unbounded => {
+            (format!("`{name}` has no end"), "an `intersection` with a box has one".to_owned())
+        }
+        NoBody::Mesh => (
+            format!("`{name}` is a mesh already, or made of one"),
+            "only objects with an equation are meshed".to_owned(),
+        ),
+    };
+    Failure::Usage(message, Some(help))
+}
+
+fn no_mesh(name: &str, error: f64, fault: &NoMesh) -> Failure {
+    let error = shortest(error);
+    let (message, help) = match fault {
+        NoMesh::Empty => (
+            format!("nothing of `{name}` is larger than the error of {error}"),
+            "give a smaller `--error`".to_owned(),
+        ),
+        NoMesh::TooMany(least) => (
+            format!("a mesh of `{name}` within {error} has too many triangles"),
+            format!("give an `--error` of about {} or more", short(*least)),
+        ),
+        NoMesh::TooFine => (
+            format!("an error of {error} is too small for the digits of files of meshes"),
+            "give a larger `--error`".to_owned(),
+        ),
+        NoMesh::Open => return Failure::Failed(format!("the mesh of `{name}` is not closed")),
+    };
+    Failure::Usage(message, Some(help))
+}

@@ -1,0 +1,97 @@
+//! The body that an object of a scene encloses.
+
+use glam::DVec3;
+use tabray_core::geometry::Aabb;
+use tabray_core::scene::Model;
+use tabray_core::scene::model::Object;
+use tabray_core::shapes::implicit::CUT_BY_BOX;
+use tabray_core::world::AnyShape;
+use tabray_core::world::certify::gradient;
+use tabray_exact::interval::Interval;
+
+/// By how much cells are larger than they are, as a fraction of the numbers that they are made of: rounding is less.
+const MARGIN: f64 = 1e-12;
+
+/// What is inside of an object.
+pub struct Body<'m> {
+    shape: &'m AnyShape,
+    /// A box around it.
+    pub bounds: Aabb,
+    /// Whether its surface has edges of which no gradient tells: it is a solid, or is closed by the faces of its box.
+    has_edges: bool,
+    /// Whether the faces of its box close it.
+    pub is_capped: bool,
+}
+
+/// Why an object encloses nothing.
+#[derive(Debug, PartialEq)]
+pub enum NoBody {
+    /// The scene has no object of this name; with those that it has.
+    Unknown(Vec<String>),
+    /// Its surface is not closed, for this reason.
+    Open(String),
+    /// It has no bounds.
+    Unbounded,
+    /// It is a mesh already, or made of one.
+    Mesh,
+}
+
+impl<'m> Body<'m> {
+    /// Returns the body of an object of a scene.
+    ///
+    /// # Errors
+    /// Why it has none.
+    pub fn of(model: &'m Model, name: &str) -> Result<Self, NoBody> {
+        let named = |object: &&Object| object.args.name() == name;
+        let objects: Vec<_> = model.objects.iter().filter(named).collect();
+        let Some(first) = objects.first() else {
+            let mut names: Vec<_> =
+                model.objects.iter().map(|object| object.args.name().to_owned()).collect();
+            names.dedup();
+            return Err(NoBody::Unknown(names));
+        };
+        let shape = &first.shape;
+        let mut bounds = Aabb::EMPTY;
+        for object in &objects {
+            bounds = bounds.and(&object.shape.facts().bounds.ok_or(NoBody::Unbounded)?);
+        }
+        // Of a solid, each part is an object of its own, and each knows the whole.
+        let is_solid = shape.is_of_solid();
+        let why = shape.why_not_closed().filter(|_| !is_solid);
+        let is_capped = why == Some(CUT_BY_BOX);
+        if let Some(why) = why.filter(|_| !is_capped) {
+            return Err(NoBody::Open(why.to_owned()));
+        }
+        let mut is_read = false;
+        shape.read_from_files(&mut |bytes| is_read |= !bytes.is_empty());
+        if is_read {
+            return Err(NoBody::Mesh);
+        }
+        let has_edges = is_solid || is_capped || shape.proven().is_none();
+        Ok(Self { shape, bounds, has_edges, is_capped })
+    }
+
+    /// Tells whether a cube lies inside or outside; `None` where the surface may pass through it.
+    pub fn contains(&self, middle: DVec3, half: f64) -> Option<bool> {
+        let margin = MARGIN * (middle.abs().max_element() + half);
+        self.shape.contains(middle, half + margin)
+    }
+
+    /// Tells whether a point lies inside or outside; `None` on the surface, or too near to it to tell.
+    pub fn contains_point(&self, at: DVec3) -> Option<bool> {
+        self.shape.contains(at, 0.0)
+    }
+
+    /// Tells whether gradients at any two points of a cube are at less than a right angle: the surface in it is a graph over
+    /// a plane. `None` where gradients do not tell.
+    pub fn is_graph(&self, middle: DVec3, half: f64) -> Option<bool> {
+        let proven = self.shape.proven().filter(|_| !self.has_edges)?;
+        let half = half + MARGIN * (middle.abs().max_element() + half);
+        let at = middle.to_array().map(|at| Interval { low: at - half, high: at + half });
+        let gradient: [Interval; 3] = gradient(proven, at, 0);
+        // Products of two different numbers of an interval, and not squares of one.
+        let products = gradient.map(|Interval { low, high }| (low * low).min(high * high).min(low * high));
+        let size = gradient.iter().map(|of| of.low.abs().max(of.high.abs())).fold(0.0, f64::max);
+        Some(products.iter().sum::<f64>() > 1e-12 * size * size)
+    }
+}

@@ -1,0 +1,113 @@
+//! The cells that a surface may cross: those of a cube that is halved along each axis again and again.
+
+use super::Body;
+use glam::DVec3;
+use tabray_core::parallel;
+
+/// How much larger the cube is than the body.
+const ROOM: f64 = 1.07;
+
+/// How far the middle of the cube is from that of the body, in sizes of the body: faces and axes of bodies run along planes
+/// of round numbers, where corners of cells would be neither inside nor outside.
+const BESIDE: DVec3 = DVec3::new(0.011_735, 0.017_291, 0.013_377);
+
+/// From how many cells on threads share the work.
+const MANY: usize = 64;
+
+/// A cell, or its low corner: the indices along the axes.
+pub type Index = [u32; 3];
+
+/// Returns the corner or the part of an index, of eight.
+pub fn of_eight(at: Index, part: u32) -> Index {
+    [at[0] + (part & 1), at[1] + (part >> 1 & 1), at[2] + (part >> 2)]
+}
+
+/// Returns indices as a point.
+pub fn point(at: Index) -> DVec3 {
+    DVec3::from(at.map(f64::from))
+}
+
+/// The cells.
+pub struct Cells {
+    low: DVec3,
+    size: f64,
+    halvings: u32,
+    /// Their indices along the axes, sorted by their [keys](key).
+    pub list: Vec<Index>,
+}
+
+/// Returns a number for a cell or a corner.
+pub fn key([x, y, z]: Index) -> u64 {
+    (u64::from(z) << 40) | (u64::from(y) << 20) | u64::from(x)
+}
+
+impl Cells {
+    /// Makes one cell around a body.
+    pub fn around(body: &Body<'_>) -> Self {
+        let half = body.bounds.half_size().max_element();
+        let middle = body.bounds.middle() + half * BESIDE;
+        let size = 2.0 * ROOM * half;
+        Self { low: middle - size / 2.0, size, halvings: 0, list: vec![[0; 3]] }
+    }
+
+    /// Returns how often the cube was halved.
+    pub fn halvings(&self) -> u32 {
+        self.halvings
+    }
+
+    /// Returns how often the cube is to be halved until a cell's diagonal is at most this long.
+    pub fn halvings_to(&self, diagonal: f64) -> u32 {
+        let mut halvings = 0;
+        while libm::scalbn(self.size, -halvings) * 3f64.sqrt() > diagonal && halvings < 64 {
+            halvings += 1;
+        }
+        halvings as u32
+    }
+
+    /// Returns the side of a cell.
+    pub fn side(&self) -> f64 {
+        libm::scalbn(self.size, -(self.halvings as i32))
+    }
+
+    /// Returns the diagonal of a cell.
+    pub fn diagonal(&self) -> f64 {
+        3f64.sqrt() * self.side()
+    }
+
+    /// Returns where a corner is.
+    pub fn corner(&self, at: Index) -> DVec3 {
+        self.low + self.side() * point(at)
+    }
+
+    /// Returns the middle of a cell.
+    pub fn middle(&self, cell: Index) -> DVec3 {
+        self.low + self.side() * (point(cell) + 0.5)
+    }
+
+    /// Returns the place of a cell in the list.
+    pub fn find(&self, cell: Index) -> Option<usize> {
+        self.list.binary_search_by_key(&key(cell), |known| key(*known)).ok()
+    }
+
+    /// Cuts each cell into eight, and keeps those that the surface may cross.
+    ///
+    /// # Errors
+    /// If these are more than so many; the cells stay as they are.
+    pub fn halve(&mut self, body: &Body<'_>, most: usize) -> Result<(), ()> {
+        let half = self.side() / 4.0;
+        let low = self.low;
+        let halves = |cell: Index| (0..8).map(move |part| of_eight(cell.map(|index| 2 * index), part));
+        let may_be_crossed =
+            |cell: &Index| body.contains(low + 2.0 * half * (point(*cell) + 0.5), half).is_none();
+        let mut list = parallel::map_ranges(self.list.len(), MANY, &|range| {
+            self.list[range].iter().flat_map(|cell| halves(*cell)).filter(may_be_crossed).collect()
+        });
+        if list.len() > most {
+            return Err(());
+        }
+        list.sort_unstable_by_key(|cell| key(*cell));
+        self.list = list;
+        self.halvings += 1;
+        Ok(())
+    }
+}

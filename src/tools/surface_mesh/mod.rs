@@ -1,0 +1,113 @@
+//! Meshes of objects: closed surfaces of triangles, each point of which is near the object's surface and the other way
+//! round, as intervals prove.
+//!
+//! The object answers one question: whether a cube lies inside of it, outside, or neither for certain. A cube around the
+//! object is halved along each axis until cells that the surface may cross are small. Their corners are inside or outside,
+//! and each cell is cut into six tetrahedra (H. Freudenthal's, which match from cell to cell); the triangles that separate
+//! corners inside from corners outside in each are closed and two-manifold, whatever the corners are. Their vertices are
+//! moved along the cells' edges onto the surface. What is [proven](proof) about the result is so whatever way it was made;
+//! where it is not, cells are halved again, until they are smaller than the error.
+
+mod body;
+mod cells;
+mod file;
+mod proof;
+#[cfg(test)]
+mod tests;
+mod triangles;
+
+pub use body::{Body, NoBody};
+pub use file::Format;
+
+use cells::Cells;
+use glam::DVec3;
+use proof::Proof;
+use triangles::Triangles;
+
+/// The least number of times that the cube is halved: a body is not missed between corners far apart.
+const FEWEST: u32 = 4;
+
+/// The largest number of times: numbers of the files have 24 bits.
+const MOST: u32 = 16;
+
+/// The most cells that the surface may cross: each takes about 300 bytes, with its triangles.
+const MOST_CELLS: usize = 1 << 22;
+
+/// A closed mesh of an object.
+pub struct SurfaceMesh {
+    /// The vertices, in world units; each coordinate is a number of single precision, as files have them.
+    pub vertices: Vec<DVec3>,
+    /// The triangles, counterclockwise seen from outside.
+    pub faces: Vec<[u32; 3]>,
+    /// The side of the cells.
+    pub cell: f64,
+    /// The places where it is not proven that the surface and the mesh are near each other: low and high corners.
+    pub far: Vec<[DVec3; 2]>,
+    /// The places where the surface may have other parts, or may be joined otherwise, than the mesh; `None` where that was
+    /// not examined.
+    pub tangled: Option<Vec<[DVec3; 2]>>,
+}
+
+/// Why there is no mesh.
+#[derive(Debug, PartialEq)]
+pub enum NoMesh {
+    /// Inside of the object there is no corner of a cell, however small: the object may be empty.
+    Empty,
+    /// More cells than are allowed are needed; with the smallest error for which they suffice, about.
+    TooMany(f64),
+    /// The error is too small for numbers of single precision.
+    TooFine,
+    /// The mesh is not closed: a fault of the program.
+    Open,
+}
+
+/// Makes a mesh of a body. Each point of the mesh is at most `error` world units from the surface, and each point of the
+/// surface from the mesh, but for the places that the result lists.
+///
+/// # Errors
+/// Why there is no mesh.
+pub fn mesh(body: &Body<'_>, error: f64) -> Result<SurfaceMesh, NoMesh> {
+    let mut cells = Cells::around(body);
+    let last = cells.halvings_to(error);
+    if last > MOST {
+        return Err(NoMesh::TooFine);
+    }
+    loop {
+        cells.halve(body, MOST_CELLS).map_err(|()| NoMesh::TooMany(2.0 * cells.diagonal()))?;
+        let is_last = cells.halvings() >= last.max(FEWEST);
+        if cells.halvings() < FEWEST {
+            continue;
+        }
+        let triangles = Triangles::of(&cells, body);
+        if triangles.faces.is_empty() {
+            if is_last {
+                return Err(NoMesh::Empty);
+            }
+            continue;
+        }
+        let Proof { far, tangled } = proof::of(&cells, &triangles, body, error, is_last);
+        let is_proven = far.is_empty() && tangled.as_ref().is_none_or(Vec::is_empty);
+        if !(is_proven || is_last) {
+            continue;
+        }
+        if !triangles.is_closed() {
+            return Err(NoMesh::Open);
+        }
+        let Triangles { vertices, faces, .. } = triangles;
+        let vertices = vertices.into_iter().map(|vertex| vertex.at).collect();
+        return Ok(SurfaceMesh { vertices, faces, cell: cells.side(), far, tangled });
+    }
+}
+
+impl SurfaceMesh {
+    /// Returns the volume inside, in cubic world units.
+    pub fn volume(&self) -> f64 {
+        // Around the first vertex, so that a body far from the origin loses no digits.
+        let origin = self.vertices.first().copied().unwrap_or(DVec3::ZERO);
+        let volume = |face: &[u32; 3]| {
+            let [a, b, c] = face.map(|corner| self.vertices[corner as usize] - origin);
+            a.dot(b.cross(c)) / 6.0
+        };
+        self.faces.iter().map(volume).sum()
+    }
+}

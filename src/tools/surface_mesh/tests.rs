@@ -1,0 +1,153 @@
+//! Tests of meshes of objects.
+
+use super::*;
+use std::path::Path;
+use tabray_core::scene::Model;
+use tabray_lang::{Registry, read};
+
+fn model(objects: &str) -> Model {
+    let text = format!(
+        "orthographic eye {{ pixeldim 4 4  position 0 0 9  target 0 0 0  width 4 }} material m {{ diffuse 1 1 1 }} {objects}"
+    );
+    let registry = Registry::get().expect("the entity types of tabray");
+    match read(registry, "a.ray", Path::new(""), text.as_bytes(), None) {
+        Ok(loaded) => loaded.model,
+        Err(report) => panic!("{report}"),
+    }
+}
+
+fn implicit(formula: &str, half: f64) -> String {
+    format!(
+        "implicit a {{ material m  formula \"{formula}\"  box -{half} -{half} -{half}  {half} {half} {half} }}"
+    )
+}
+
+/// Makes the mesh of the object `a`, and counts its edges.
+fn meshed(objects: &str, error: f64) -> SurfaceMesh {
+    let model = model(objects);
+    let body = Body::of(&model, "a").expect("a closed object");
+    let made = mesh(&body, error).expect("a mesh");
+    let mut edges = std::collections::BTreeMap::new();
+    for [a, b, c] in &made.faces {
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            assert_ne!(from, to);
+            assert!(edges.insert((*from, *to), ()).is_none(), "an edge has two triangles on one side");
+        }
+    }
+    assert!(edges.keys().all(|(from, to)| edges.contains_key(&(*to, *from))), "an edge has one triangle");
+    made
+}
+
+/// Returns the number of vertices and faces less that of edges: 2 for a ball, 0 for a ring.
+fn characteristic(mesh: &SurfaceMesh) -> i64 {
+    mesh.vertices.len() as i64 - mesh.faces.len() as i64 / 2
+}
+
+/// Points of the mesh: corners and middles of triangles.
+fn samples(mesh: &SurfaceMesh) -> Vec<DVec3> {
+    let corners = |face: &[u32; 3]| face.map(|corner| mesh.vertices[corner as usize]);
+    mesh.faces.iter().map(corners).flat_map(|[a, b, c]| [a, (a + b) / 2.0, (a + b + c) / 3.0]).collect()
+}
+
+#[test]
+fn a_sphere_is_within_its_error_of_its_mesh() {
+    let error = 0.01;
+    let made = meshed("sphere a { material m  center 1 2 3  radius 1 }", error);
+    assert!(made.far.is_empty() && made.tangled.as_ref().is_some_and(Vec::is_empty), "{:?}", made.tangled);
+    assert_eq!(characteristic(&made), 2);
+    let (center, points) = (DVec3::new(1.0, 2.0, 3.0), samples(&made));
+    assert!(points.iter().all(|at| (at.distance(center) - 1.0).abs() <= error));
+    let ball = 4.0 / 3.0 * std::f64::consts::PI;
+    assert!((made.volume() - ball).abs() < 4.0 * std::f64::consts::PI * error, "{}", made.volume());
+    // And each point of the sphere has a point of the mesh nearby.
+    for at in 0..200 {
+        let (height, angle) = (-0.99 + 0.0099 * f64::from(at), 2.4 * f64::from(at));
+        let side = (1.0 - height * height).sqrt();
+        let on = center + DVec3::new(side * libm::cos(angle), height, side * libm::sin(angle));
+        let nearest = points.iter().map(|point| point.distance(on)).fold(f64::MAX, f64::min);
+        assert!(nearest <= error + made.cell, "{on}: {nearest}");
+    }
+}
+
+#[test]
+fn a_ring_has_a_hole_and_faces_outward() {
+    let made = meshed(&implicit("(x^2 + y^2 + z^2 + 0.84)^2 - 4*(x^2 + y^2)", 1.5), 0.02);
+    assert!(made.far.is_empty());
+    assert_eq!(characteristic(&made), 0);
+    let ring = 2.0 * std::f64::consts::PI.powi(2) * 0.16;
+    assert!((made.volume() - ring).abs() < 0.25, "{} of {ring}", made.volume());
+    let distance = |at: DVec3| ((at.x.hypot(at.y) - 1.0).hypot(at.z) - 0.4).abs();
+    assert!(samples(&made).into_iter().map(distance).all(|distance| distance <= 0.02));
+}
+
+#[test]
+fn what_a_box_cuts_is_closed_by_its_faces() {
+    let gyroid = "sin(3*x)*cos(3*y) + sin(3*y)*cos(3*z) + sin(3*z)*cos(3*x)";
+    let made = meshed(&implicit(gyroid, 1.0), 0.1);
+    assert!(made.far.is_empty() && made.tangled.is_none());
+    // Half of the box is inside, nearly.
+    assert!((3.0..5.0).contains(&made.volume()), "{}", made.volume());
+    let model = model(&implicit("z", 1.0));
+    let body = Body::of(&model, "a").expect("a closed object");
+    assert!(body.is_capped);
+    let half = mesh(&body, 0.1).expect("a mesh");
+    assert!(half.far.is_empty() && (half.volume() - 4.0).abs() < 1.2, "{}", half.volume());
+    assert!(samples(&half).iter().all(|at| at.z < 0.1 && at.abs().max_element() < 1.1));
+}
+
+#[test]
+fn a_solid_with_edges_is_within_its_error() {
+    let solid = "box cube { material m  center 0 0 0  size 2 2 2 }
+                 sphere ball { material m  center 1 1 1  radius 1 }
+                 difference a { objects cube ball }";
+    let made = meshed(solid, 0.08);
+    assert!(made.far.is_empty(), "{:?}", made.far);
+    assert_eq!(characteristic(&made), 2);
+    let volume = 8.0 - std::f64::consts::PI / 6.0;
+    assert!((made.volume() - volume).abs() < 24.0 * 0.08, "{}", made.volume());
+}
+
+#[test]
+fn nodes_are_named_where_parts_meet() {
+    // Two cones that meet in a point, within a ball.
+    let made = meshed(&implicit("max(x^2 + y^2 - z^2, x^2 + y^2 + z^2 - 1)", 1.5), 0.05);
+    let tangled = made.tangled.expect("it was examined");
+    assert!(
+        tangled.iter().any(|[low, high]| low.max_element() <= 0.0 && high.min_element() >= 0.0),
+        "{tangled:?}"
+    );
+    assert!(made.far.is_empty());
+}
+
+#[test]
+fn threads_change_no_byte() {
+    let model = model(&implicit("x^4 + y^4 + z^4 - 1", 1.2));
+    let body = Body::of(&model, "a").expect("a closed object");
+    let bytes = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        let made = pool.install(|| mesh(&body, 0.02)).expect("a mesh");
+        [Format::Stl, Format::Obj, Format::Ply].map(|format| {
+            let mut bytes = Vec::new();
+            format.write(&made, "a", &mut bytes).expect("memory");
+            bytes
+        })
+    };
+    assert!(bytes(1) == bytes(3));
+}
+
+#[test]
+fn what_encloses_nothing_is_refused() {
+    let refused = |objects: &str| Body::of(&model(objects), "a").map(|_| ()).expect_err("no body");
+    assert_eq!(
+        refused("sphere b { material m  center 0 0 0  radius 1 }"),
+        NoBody::Unknown(vec!["b".to_owned()])
+    );
+    assert!(matches!(
+        refused("disc a { material m  center 0 0 0  normal 0 1 0  radius 1 }"),
+        NoBody::Open(_)
+    ));
+    assert!(matches!(refused(&implicit("1/x + y + z", 1.0)), NoBody::Open(_)));
+    let tiny = model("sphere a { material m  center 0 0 0  radius 1 }");
+    let body = Body::of(&tiny, "a").expect("a sphere");
+    assert!(matches!(mesh(&body, 1e-9), Err(NoMesh::TooFine)));
+}

@@ -1,0 +1,64 @@
+//! Surfaces of other programs become scenes, and objects of scenes meshes.
+
+use crate::common::program::{folder, names_in, outcome, tabray};
+use std::fs;
+
+const JSURF: &str = "surface_equation=x^2+y^2+z^2-a\nsurface_parameter_a=0.5\nsurface_title=A ball\n";
+
+#[test]
+fn a_surface_of_surfer_is_converted_and_says_what_it_leaves() {
+    let folder = folder();
+    fs::write(folder.path().join("a.jsurf"), JSURF).expect("written");
+    let (status, _, err) = outcome(tabray(&folder).args(["convert", "a.jsurf", "a.ray"]));
+    assert_eq!(
+        (status, err.as_str()),
+        (0, "left out, as no part of what is seen: `surface_title` (line 3)\nwrote a.ray\n")
+    );
+    let text = fs::read_to_string(folder.path().join("a.ray")).expect("a scene");
+    assert!(text.contains("let a 0.5\n") && text.contains("# Left out: surface_title (line 3).\n"), "{text}");
+    let (status, out, err) = outcome(tabray(&folder).args(["convert", "a.jsurf", "-", "--to", "toml"]));
+    assert_eq!(status, 0, "{err}");
+    assert!(
+        String::from_utf8_lossy(&out).contains("[implicit.surface]"),
+        "{}",
+        String::from_utf8_lossy(&out)
+    );
+    // Other commands say how to get there.
+    let (status, _, err) = outcome(tabray(&folder).args(["check", "a.jsurf"]));
+    assert_eq!(status, 2);
+    assert!(
+        err.contains("this is a surface of SURFER, not a scene") && err.contains("tabray convert"),
+        "{err}"
+    );
+}
+
+#[test]
+fn an_object_becomes_a_mesh_that_is_read_again() {
+    let folder = folder();
+    let scene = "orthographic eye { pixeldim 4 4  position 0 0 9  target 0 0 0  width 4 }
+        material m { diffuse 1 1 1 }
+        sphere ball { material m  center 0 0 0  radius 1 }
+        plane floor { material m  normal 0 1 0  point 0 -1 0 }";
+    fs::write(folder.path().join("a.ray"), scene).expect("written");
+    for file in ["a.stl", "a.obj", "a.ply"] {
+        let (status, _, err) =
+            outcome(tabray(&folder).args(["mesh", "a.ray", "ball", "-o", file, "--error", "0.05"]));
+        assert_eq!(status, 0, "{err}");
+        assert!(err.contains("each point of the mesh is within 0.05 of the surface"), "{err}");
+        let (status, out, err) = outcome(tabray(&folder).args(["list", file]));
+        assert_eq!(status, 0, "{err}");
+        let out = String::from_utf8_lossy(&out);
+        assert!(out.contains("parts   1\nclosed  yes\n"), "{out}");
+    }
+    for (args, fault) in [
+        (["mesh", "a.ray", "bal", "-o", "b.stl"], "`a.ray` has no object `bal`"),
+        (["mesh", "a.ray", "floor", "-o", "b.stl"], "`floor` has no end"),
+        (["mesh", "a.ray", "ball", "-o", "b.txt"], "does not determine the format of the mesh"),
+        (["mesh", "a.ray", "ball", "-o", "a.ray"], "does not determine the format of the mesh"),
+    ] {
+        let (status, _, err) = outcome(tabray(&folder).args(args));
+        assert_eq!(status, 2, "{err}");
+        assert!(err.contains(fault), "{err}");
+    }
+    assert_eq!(names_in(folder.path()), ["a.obj", "a.ply", "a.ray", "a.stl"]);
+}
