@@ -19,6 +19,7 @@ mod fmt;
 #[doc(hidden)]
 #[path = "../../tests/fuzz/entries.rs"]
 pub mod fuzz;
+mod grade;
 mod grammar;
 mod heap;
 mod hits;
@@ -103,6 +104,7 @@ enum Command {
     Chart(chart::Args),
     Choose(choose::Args),
     Diff(diff::Args),
+    Grade(grade::Args),
     Review(review::Args),
     Watch(watch::Args),
     Bench(bench::Args),
@@ -194,6 +196,7 @@ fn chosen() -> ExitCode {
             Some(Command::Chart(args)) => chart::run(registry, args),
             Some(Command::Choose(args)) => choose::run(registry, args),
             Some(Command::Diff(args)) => return diff::run(registry, &args),
+            Some(Command::Grade(args)) => return grade::run(registry, &args),
             Some(Command::Review(args)) => review::run(registry, &args),
             Some(Command::Watch(args)) => watch::run(registry, args),
             Some(Command::Bench(args)) => bench::run(registry, args),

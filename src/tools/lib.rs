@@ -9,6 +9,7 @@ pub mod colours;
 pub mod contract;
 pub mod debug;
 pub mod diagnosis;
+pub mod grade;
 pub mod hits;
 pub mod navigation;
 pub mod part;

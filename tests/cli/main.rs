@@ -16,6 +16,7 @@ mod failures;
 mod farm;
 mod firsthour;
 mod full_range;
+mod grade;
 mod hits;
 mod light;
 mod limits;

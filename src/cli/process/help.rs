@@ -8,7 +8,7 @@ use std::fmt::Write;
 const GROUPS: [(&str, &[&str]); 6] = [
     ("Rendering", &["render", "watch", "merge", "film", "farm"]),
     ("Scenes", &["new", "list", "check", "fmt", "convert", "mesh", "dump"]),
-    ("Looking inside", &["plan", "probe", "diff", "review"]),
+    ("Looking inside", &["plan", "probe", "diff", "grade", "review"]),
     ("Rays", &["hits", "judge", "hard"]),
     ("Speed and accuracy", &["choose", "chart", "verify", "bench"]),
     ("Tools", &["lsp", "schema", "grammar", "completions", "man", "help"]),

@@ -3,7 +3,7 @@
 mod json;
 
 use glam::DVec3;
-pub use json::explained;
+pub use json::{PixelExplained, explained};
 use std::io::{self, Write};
 use tabray_core::geometry::ray::{MISS, Ray, RayRange};
 use tabray_core::render::limits::{MAX_DIST, MAX_RAYS, MAX_TREE};
