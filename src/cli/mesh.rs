@@ -143,8 +143,8 @@ fn no_body(scene: &Path, name: &str, fault: NoBody) -> Failure {
             (format!("`{name}` has no end"), "an `intersection` with a box has one".to_owned())
         }
         NoBody::Mesh => (
-            format!("`{name}` is a mesh already, or made of one"),
-            "only objects with an equation are meshed".to_owned(),
+            format!("`{name}` is a mesh already, or may be made of one"),
+            "no intervals tell what is inside of a mesh: leave it out of the scene".to_owned(),
         ),
     };
     Failure::Usage(message, Some(help))

@@ -62,9 +62,9 @@ impl<'m> Body<'m> {
         if let Some(why) = why.filter(|_| !is_capped) {
             return Err(NoBody::Open(why.to_owned()));
         }
-        let mut is_read = false;
-        shape.read_from_files(&mut |bytes| is_read |= !bytes.is_empty());
-        if is_read {
+        // Of a mesh of many faces, no intervals tell what is inside, and a solid does not tell what it is made of.
+        let parts = model.patterns.iter().map(|pattern| &pattern.args).filter(|_| is_solid);
+        if parts.chain([&first.args]).any(|args| args.entity().reads_files()) {
             return Err(NoBody::Mesh);
         }
         let has_edges = is_solid || is_capped || shape.proven().is_none();
