@@ -82,6 +82,6 @@ fn first_hits_before_a_background_are_proven() {
     ));
     let plan = Plan::new(&model);
     for x in 0..41 {
-        assert_eq!(verify::pixel(&plan, x, 15), Verdict::Proven);
+        assert_eq!(verify::pixel(&plan, x, 15).verdict, Verdict::Proven);
     }
 }

@@ -35,7 +35,7 @@ fn all_counts(model: &tabray::scene::Model, step: usize) -> [usize; 4] {
     let mut counts = [0; 4];
     for y in (0..height).step_by(step) {
         for x in (0..width).step_by(step) {
-            counts[match verify::pixel(&plan, x, y) {
+            counts[match verify::pixel(&plan, x, y).verdict {
                 Verdict::Proven => 0,
                 Verdict::Tie => 1,
                 Verdict::Contradicted => 2,
@@ -223,7 +223,7 @@ fn hits_at_the_rim_of_a_lathe_are_those_of_the_curve_through_its_points() {
             };
             let hit = trace::first_hit(&plan, &plan.camera.sight(x as f64, 0.0));
             assert_eq!(hit.is_some(), is_outside, "pixel {x} of lathe {case}");
-            assert_eq!(verify::pixel(&plan, x, 0), Verdict::Proven, "pixel {x} of lathe {case}");
+            assert_eq!(verify::pixel(&plan, x, 0).verdict, Verdict::Proven, "pixel {x} of lathe {case}");
         }
     }
 }
@@ -279,7 +279,7 @@ fn a_sliver_before_another_triangle_is_proven_from_its_corners() {
          triangle other { material green vertex1 0 0 -4.628004657281974 vertex2 10 0 -4.628004657281974
              vertex3 4 9 -4.628004657281974 }",
     );
-    assert_eq!(verify::pixel(&Plan::new(&model), 0, 0), Verdict::Proven);
+    assert_eq!(verify::pixel(&Plan::new(&model), 0, 0).verdict, Verdict::Proven);
     let sight = model.camera.value.sight(0.0, 0.0);
     let met = tabray::render::trace::first_hit(&Plan::new(&model), &sight).expect("a triangle").index;
     assert_eq!(met, 0, "rational arithmetic says that the sliver is nearer, by 6e-10");

@@ -79,7 +79,7 @@ fn nothing_is_proven_of_a_hit_that_may_be_cut_out() {
     let plan = Plan::new(&model);
     let [width, height] = plan.camera.pixels;
     let verdicts = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-    let verdicts: Vec<_> = verdicts.map(|(x, y)| verify::pixel(&plan, x, y)).collect();
+    let verdicts: Vec<_> = verdicts.map(|(x, y)| verify::pixel(&plan, x, y).verdict).collect();
     let count = |of: Verdict| verdicts.iter().filter(|verdict| **verdict == of).count();
     assert_eq!(count(Verdict::Contradicted), 0);
     // Rays that miss the whole square miss what is left of it.

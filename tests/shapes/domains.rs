@@ -5,7 +5,6 @@ use crate::oracle::rays::Random;
 use glam::DVec3;
 use tabray::geometry::{MISS, Ray, RayRange};
 use tabray::scene::Model;
-use tabray::world::packets::shape::PacketShape;
 
 /// Half the length of an edge of the box.
 const SIZE: f64 = 2.0;

@@ -44,7 +44,7 @@ fn few_hits_of_copies_of_implicit_surfaces_take_a_proof() {
         let (plan, shape) = (Plan::new(&model), &model.objects[0].shape);
         let (mut hits, mut doubtful) = (0, 0);
         for (x, y) in (0..30).flat_map(|y| (0..40).map(move |x| (x, y))) {
-            assert_eq!(verify::pixel(&plan, x, y), Verdict::Proven, "{pattern} {x} {y}");
+            assert_eq!(verify::pixel(&plan, x, y).verdict, Verdict::Proven, "{pattern} {x} {y}");
             let sight = model.camera.value.sight(x as f64, y as f64);
             let bracket = shape.t_bounds(&sight.ray(), &RayRange::ALL);
             let hit = trace::first_hit(&plan, &sight).map_or(MISS, |hit| hit.distance);
@@ -96,8 +96,8 @@ fn copies_of_planes_end_where_planes_end_in_the_world() {
             assert_eq!(render(&copied), render(&written), "{method}: {:?}", copied.objects[1].args.name());
             let plan = Plan::new(&copied);
             for (x, y) in (0..12).flat_map(|y| (0..16).map(move |x| (10 * x, 10 * y))) {
-                let is_open = method == "classic" && verify::pixel(&plan, x, y) == Verdict::Tie;
-                assert!(is_open || verify::pixel(&plan, x, y) == Verdict::Proven, "{method} {x} {y}");
+                let is_open = method == "classic" && verify::pixel(&plan, x, y).verdict == Verdict::Tie;
+                assert!(is_open || verify::pixel(&plan, x, y).verdict == Verdict::Proven, "{method} {x} {y}");
             }
         }
     }
@@ -269,7 +269,7 @@ fn first_hits_of_placed_objects_are_proven() {
         let plan = Plan::new(&model);
         let mut proven = 0;
         for (x, y) in (0..120).step_by(3).flat_map(|y| (0..160).step_by(3).map(move |x| (x, y))) {
-            let verdict = verify::pixel(&plan, x, y);
+            let verdict = verify::pixel(&plan, x, y).verdict;
             assert!(verdict != Verdict::Contradicted, "{object}: {x} {y}");
             proven += usize::from(verdict == Verdict::Proven);
         }

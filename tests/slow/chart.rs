@@ -115,7 +115,7 @@ fn is_contradicted(load: &dyn Fn() -> Model) -> bool {
         let plan = Plan::new(&model);
         let [width, height] = plan.camera.pixels;
         (0..width * height)
-            .any(|pixel| verify::pixel(&plan, pixel % width, pixel / width) == Verdict::Contradicted)
+            .any(|pixel| verify::pixel(&plan, pixel % width, pixel / width).verdict == Verdict::Contradicted)
     })
 }
 

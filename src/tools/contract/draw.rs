@@ -118,10 +118,10 @@ impl Draw {
                 text += &self.entity(other, name(kind));
             }
         }
-        let is_plain = |other: &&Entity| other.kind() == Kind::Object && !refers_to(other, Kind::Object);
+        let is_plain = |other: &Entity| other.kind() == Kind::Object && !refers_to(other, Kind::Object);
         let mut objects = String::new();
         if refers_to(entity, Kind::Object)
-            && let Some(other) = registry.iter().find(is_plain)
+            && let Some(other) = registry.simplest(is_plain)
         {
             let most = entity.attributes().filter(|its| is_name_of(*its, Kind::Object));
             let most = most.map(|its| its.arity().examples().into_iter().max().unwrap_or(1)).max();

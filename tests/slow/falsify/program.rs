@@ -66,7 +66,7 @@ impl Program {
     }
 
     pub fn claim(&self, [x, y]: [usize; 2]) -> Claim {
-        match verify::pixel(&Plan::new(&self.0), x, y) {
+        match verify::pixel(&Plan::new(&self.0), x, y).verdict {
             Verdict::Proven => Claim::Right,
             Verdict::Contradicted => Claim::Wrong,
             Verdict::Tie | Verdict::Uncertified => Claim::Unknown,
