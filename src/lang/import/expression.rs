@@ -341,6 +341,9 @@ impl Reader<'_, '_> {
         if let Some(value) = self.names.value(name) {
             return Ok(value);
         }
+        if ["x", "y", "z"].contains(&name) {
+            return Ok(Value::of(name.to_owned(), Level::Atom, None));
+        }
         if self.peek() == Some('(') {
             if name == "rotate" && self.dialect == Dialect::Surf {
                 return self.rotated();
@@ -359,9 +362,6 @@ impl Reader<'_, '_> {
             let fault =
                 Fault::error(Some(start..start + length), format!("the function `{name}` is not read"));
             return Err(fault.help("write out what it stands for"));
-        }
-        if ["x", "y", "z"].contains(&name) {
-            return Ok(Value::of(name.to_owned(), Level::Atom, None));
         }
         let help = self.names.help(name);
         Err(Fault::error(Some(start..start + length), format!("`{name}` has no value")).help(help))

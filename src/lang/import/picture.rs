@@ -135,7 +135,7 @@ impl Picture {
             point(at(DVec3::new(0.0, 0.0, far))),
             point(at(DVec3::ZERO)),
             point(turn * DVec3::Y),
-            shortest(size * self.size[0]),
+            number(size * self.size[0]),
             colour(self.background),
         );
         text += &bodies;
@@ -185,7 +185,7 @@ impl Picture {
                 let middle = turn * middle + offset;
                 let squares =
                     [0, 1, 2].map(|axis| square(linear(DMat3::IDENTITY.col(axis).to_array(), -middle[axis])));
-                format!("{} - {}", squares.join(" + "), square(shortest(size * radius)))
+                format!("{} - {}", squares.join(" + "), square(number(size * radius)))
             }
             Clip::Cylinder(middle, radius) => {
                 let squares = [0, 1].map(|axis| square(row(axis, middle[axis])));
@@ -241,5 +241,10 @@ fn colour(of: DVec3) -> String {
 }
 
 fn point(at: DVec3) -> String {
-    at.to_array().map(|side| shortest(side + 0.0)).join(" ")
+    at.to_array().map(number).join(" ")
+}
+
+/// Writes a number to 12 digits: those after it are of rounding.
+fn number(of: f64) -> String {
+    shortest(format!("{of:.11e}").parse::<f64>().unwrap_or(of) + 0.0)
 }

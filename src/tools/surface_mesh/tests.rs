@@ -71,28 +71,28 @@ fn a_sphere_is_within_its_error_of_its_mesh() {
 
 #[test]
 fn a_ring_has_a_hole_and_faces_outward() {
-    let made = meshed(&implicit("(x^2 + y^2 + z^2 + 0.84)^2 - 4*(x^2 + y^2)", 1.5), 0.02);
+    let made = meshed(&implicit("(x^2 + y^2 + z^2 + 0.84)^2 - 4*(x^2 + y^2)", 1.5), 0.1);
     assert!(made.far.is_empty());
     assert_eq!(characteristic(&made), 0);
     let ring = 2.0 * std::f64::consts::PI.powi(2) * 0.16;
-    assert!((made.volume() - ring).abs() < 0.25, "{} of {ring}", made.volume());
+    assert!((made.volume() - ring).abs() < 0.5, "{} of {ring}", made.volume());
     let distance = |at: DVec3| ((at.x.hypot(at.y) - 1.0).hypot(at.z) - 0.4).abs();
-    assert!(samples(&made).into_iter().map(distance).all(|distance| distance <= 0.02));
+    assert!(samples(&made).into_iter().map(distance).all(|distance| distance <= 0.1));
 }
 
 #[test]
 fn what_a_box_cuts_is_closed_by_its_faces() {
     let gyroid = "sin(3*x)*cos(3*y) + sin(3*y)*cos(3*z) + sin(3*z)*cos(3*x)";
-    let made = meshed(&implicit(gyroid, 1.0), 0.1);
+    let made = meshed(&implicit(gyroid, 1.0), 0.2);
     assert!(made.far.is_empty() && made.tangled.is_none());
     // Half of the box is inside, nearly.
     assert!((3.0..5.0).contains(&made.volume()), "{}", made.volume());
     let model = model(&implicit("z", 1.0));
     let body = Body::of(&model, "a").expect("a closed object");
     assert!(body.is_capped);
-    let half = mesh(&body, 0.1).expect("a mesh");
-    assert!(half.far.is_empty() && (half.volume() - 4.0).abs() < 1.2, "{}", half.volume());
-    assert!(samples(&half).iter().all(|at| at.z < 0.1 && at.abs().max_element() < 1.1));
+    let half = mesh(&body, 0.2).expect("a mesh");
+    assert!(half.far.is_empty() && (half.volume() - 4.0).abs() < 3.0, "{}", half.volume());
+    assert!(samples(&half).iter().all(|at| at.z < 0.2 && at.abs().max_element() < 1.2));
 }
 
 #[test]
@@ -100,17 +100,17 @@ fn a_solid_with_edges_is_within_its_error() {
     let solid = "box cube { material m  center 0 0 0  size 2 2 2 }
                  sphere ball { material m  center 1 1 1  radius 1 }
                  difference a { objects cube ball }";
-    let made = meshed(solid, 0.08);
+    let made = meshed(solid, 0.15);
     assert!(made.far.is_empty(), "{:?}", made.far);
     assert_eq!(characteristic(&made), 2);
     let volume = 8.0 - std::f64::consts::PI / 6.0;
-    assert!((made.volume() - volume).abs() < 24.0 * 0.08, "{}", made.volume());
+    assert!((made.volume() - volume).abs() < 24.0 * 0.15, "{}", made.volume());
 }
 
 #[test]
 fn nodes_are_named_where_parts_meet() {
     // Two cones that meet in a point, within a ball.
-    let made = meshed(&implicit("max(x^2 + y^2 - z^2, x^2 + y^2 + z^2 - 1)", 1.5), 0.05);
+    let made = meshed(&implicit("max(x^2 + y^2 - z^2, x^2 + y^2 + z^2 - 1)", 1.5), 0.1);
     let tangled = made.tangled.expect("it was examined");
     assert!(
         tangled.iter().any(|[low, high]| low.max_element() <= 0.0 && high.min_element() >= 0.0),
@@ -125,7 +125,7 @@ fn threads_change_no_byte() {
     let body = Body::of(&model, "a").expect("a closed object");
     let bytes = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        let made = pool.install(|| mesh(&body, 0.02)).expect("a mesh");
+        let made = pool.install(|| mesh(&body, 0.05)).expect("a mesh");
         [Format::Stl, Format::Obj, Format::Ply].map(|format| {
             let mut bytes = Vec::new();
             format.write(&made, "a", &mut bytes).expect("memory");
