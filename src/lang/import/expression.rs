@@ -69,8 +69,11 @@ pub enum Dialect {
     Surf,
 }
 
-/// The functions of both: as they are called there and in scenes, and what they compute.
-const FUNCTIONS: [(&str, &str, fn(f64) -> f64); 17] = [
+/// A function: as it is called there and in scenes, and what it computes.
+type Function = (&'static str, &'static str, fn(f64) -> f64);
+
+/// The functions of both.
+const FUNCTIONS: [Function; 17] = [
     ("sin", "sin", libm::sin),
     ("cos", "cos", libm::cos),
     ("tan", "tan", libm::tan),
@@ -90,19 +93,17 @@ const FUNCTIONS: [(&str, &str, fn(f64) -> f64); 17] = [
     ("sign", "sign", |x| if x < 0.0 { -1.0 } else { 1.0 }),
 ];
 
+/// What is read, or what is wrong with it.
+pub type Read<T> = Result<T, Box<Fault>>;
+
 /// Reads the formula that a range of a text holds.
-pub fn read(
-    text: &str,
-    range: Range<usize>,
-    dialect: Dialect,
-    names: &mut dyn Names,
-) -> Result<Value, Fault> {
+pub fn read(text: &str, range: Range<usize>, dialect: Dialect, names: &mut dyn Names) -> Read<Value> {
     let mut reader = Reader { text, at: range.start, end: range.end, dialect, names, depth: 0 };
     let value = reader.sum()?;
     match reader.peek() {
         None => Ok(value),
-        Some(')') => Err(reader.fault_here("this parenthesis closes none")),
-        Some(_) => Err(reader.fault_here("the formula does not go on like this")),
+        Some(')') => Err(reader.fault_here("this parenthesis closes none").into()),
+        Some(_) => Err(reader.fault_here("the formula does not go on like this").into()),
     }
 }
 
@@ -153,7 +154,8 @@ impl Reader<'_, '_> {
         loop {
             let rest = &self.text[self.at..self.end];
             let next = rest.chars().next()?;
-            if !next.is_whitespace() && !(next == '\\' && rest[1..].starts_with(['\n', '\r'])) {
+            let is_continued = next == '\\' && rest[1..].starts_with(['\n', '\r']);
+            if !(next.is_whitespace() || is_continued) {
                 return Some(next);
             }
             self.at += next.len_utf8();
@@ -171,9 +173,9 @@ impl Reader<'_, '_> {
         Fault::error(Some(self.at..self.at + next), message)
     }
 
-    fn deeper<T>(&mut self, read: impl FnOnce(&mut Self) -> Result<T, Fault>) -> Result<T, Fault> {
+    fn deeper<T>(&mut self, read: impl FnOnce(&mut Self) -> Read<T>) -> Read<T> {
         if self.depth == DEEPEST {
-            return Err(self.fault_here(&format!("the formula nests more than {DEEPEST} deep here")));
+            return Err(self.fault_here(&format!("the formula nests more than {DEEPEST} deep here")).into());
         }
         self.depth += 1;
         let read = read(self);
@@ -193,7 +195,7 @@ impl Reader<'_, '_> {
         Value::of(format!("{name}({arguments})"), Level::Atom, None)
     }
 
-    fn joined(&mut self, one: Value, sign: &str, other: Value, level: Level) -> Result<Value, Fault> {
+    fn joined(&mut self, one: Value, sign: &str, other: Value, level: Level) -> Read<Value> {
         let (one, other) = (self.done(one), self.done(other));
         let (left, right) = match level {
             // On the right, the operation itself needs parentheses: a - (b - c).
@@ -203,7 +205,9 @@ impl Reader<'_, '_> {
         };
         let text = format!("{}{sign}{}", one.within(left), other.within(right));
         if text.len() > LONGEST {
-            return Err(self.fault_here(&format!("written out, the formula has more than {LONGEST} letters")));
+            return Err(self
+                .fault_here(&format!("written out, the formula has more than {LONGEST} letters"))
+                .into());
         }
         let number = one.number.zip(other.number).map(|(one, other)| match sign.trim() {
             "+" => one + other,
@@ -215,7 +219,7 @@ impl Reader<'_, '_> {
         Ok(Value::of(text, level, number))
     }
 
-    fn sum(&mut self) -> Result<Value, Fault> {
+    fn sum(&mut self) -> Read<Value> {
         let mut sum = self.product()?;
         while let Some(sign @ ('+' | '-')) = self.peek() {
             self.at += 1;
@@ -225,7 +229,7 @@ impl Reader<'_, '_> {
         Ok(sum)
     }
 
-    fn product(&mut self) -> Result<Value, Fault> {
+    fn product(&mut self) -> Read<Value> {
         let mut product = self.factor()?;
         while let Some(next) = self.peek() {
             let sign = match next {
@@ -242,7 +246,7 @@ impl Reader<'_, '_> {
         Ok(product)
     }
 
-    fn factor(&mut self) -> Result<Value, Fault> {
+    fn factor(&mut self) -> Read<Value> {
         match self.dialect {
             Dialect::Surfer => {
                 if self.takes('-') {
@@ -268,7 +272,7 @@ impl Reader<'_, '_> {
     }
 
     /// Reads an operand with its sign, which binds more tightly than a power.
-    fn signed(&mut self) -> Result<Value, Fault> {
+    fn signed(&mut self) -> Read<Value> {
         if !self.takes('-') {
             return self.atom();
         }
@@ -285,7 +289,7 @@ impl Reader<'_, '_> {
         )
     }
 
-    fn atom(&mut self) -> Result<Value, Fault> {
+    fn atom(&mut self) -> Read<Value> {
         match self.peek() {
             Some('(') => {
                 self.at += 1;
@@ -297,16 +301,21 @@ impl Reader<'_, '_> {
             Some(letter) if letter.is_ascii_alphabetic() || letter == '_' => self.name(),
             Some(_) => Err(self
                 .fault_here("this is no part of a formula")
-                .help("a formula consists of numbers, names, + - * / ^ and parentheses")),
-            None => Err(self.fault_here("a number or a name is missing here")),
+                .help("a formula consists of numbers, names, + - * / ^ and parentheses")
+                .into()),
+            None => Err(self.fault_here("a number or a name is missing here").into()),
         }
     }
 
-    fn close(&mut self) -> Result<(), Fault> {
-        if self.takes(')') { Ok(()) } else { Err(self.fault_here("a closing parenthesis is missing here")) }
+    fn close(&mut self) -> Read<()> {
+        if self.takes(')') {
+            Ok(())
+        } else {
+            Err(self.fault_here("a closing parenthesis is missing here").into())
+        }
     }
 
-    fn number(&mut self) -> Result<Value, Fault> {
+    fn number(&mut self) -> Read<Value> {
         let rest = &self.text[self.at..self.end];
         let digits = |from: usize| {
             rest[from..].find(|c: char| !c.is_ascii_digit()).map_or(rest.len(), |length| from + length)
@@ -332,7 +341,7 @@ impl Reader<'_, '_> {
         Ok(Value::of(if is_plain { word.to_owned() } else { shortest(number) }, Level::Atom, Some(number)))
     }
 
-    fn name(&mut self) -> Result<Value, Fault> {
+    fn name(&mut self) -> Read<Value> {
         let start = self.at;
         let rest = &self.text[start..self.end];
         let length = rest.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).unwrap_or(rest.len());
@@ -361,14 +370,14 @@ impl Reader<'_, '_> {
             }
             let fault =
                 Fault::error(Some(start..start + length), format!("the function `{name}` is not read"));
-            return Err(fault.help("write out what it stands for"));
+            return Err(fault.help("write out what it stands for").into());
         }
         let help = self.names.help(name);
-        Err(Fault::error(Some(start..start + length), format!("`{name}` has no value")).help(help))
+        Err(Fault::error(Some(start..start + length), format!("`{name}` has no value")).help(help).into())
     }
 
     /// Reads the arguments of `rotate`: a surface, an angle and an axis.
-    fn rotated(&mut self) -> Result<Value, Fault> {
+    fn rotated(&mut self) -> Read<Value> {
         self.at += 1;
         let value = self.deeper(Self::sum)?;
         self.comma()?;
@@ -379,14 +388,14 @@ impl Reader<'_, '_> {
             .iter()
             .position(|axis| self.text[self.at..self.end].starts_with(axis));
         let (Some(axis), Some(angle)) = (axis, angle.number.filter(|angle| angle.is_finite())) else {
-            return Err(self.fault_here("`rotate` needs a number, and `xAxis`, `yAxis` or `zAxis`"));
+            return Err(self.fault_here("`rotate` needs a number, and `xAxis`, `yAxis` or `zAxis`").into());
         };
         self.at += "xAxis".len();
         self.close()?;
         Ok(Value { turn: turn(axis, angle) * value.turn, ..value })
     }
 
-    fn comma(&mut self) -> Result<(), Fault> {
-        if self.takes(',') { Ok(()) } else { Err(self.fault_here("a comma is missing here")) }
+    fn comma(&mut self) -> Read<()> {
+        if self.takes(',') { Ok(()) } else { Err(self.fault_here("a comma is missing here").into()) }
     }
 }

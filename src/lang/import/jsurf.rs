@@ -1,7 +1,7 @@
 //! Files of SURFER, and of jsurf, which draws for it: properties of Java, one on a line.
 
 use super::Notes;
-use super::expression::{self, Dialect, Names, Value};
+use super::expression::{self, Dialect, Names, Read, Value};
 use super::picture::{Clip, Light, Look, Picture, Surface};
 use crate::reader::Fault;
 use glam::{DMat3, DVec3};
@@ -94,7 +94,7 @@ fn entries(text: &str) -> Vec<Entry> {
             at += line.len();
             let body = line.trim_end_matches(['\n', '\r']);
             let slashes = body.len() - body.trim_end_matches('\\').len();
-            if slashes % 2 == 0 || at == text.len() || body.trim_start().starts_with(['#', '!']) {
+            if slashes.is_multiple_of(2) || at == text.len() || body.trim_start().starts_with(['#', '!']) {
                 break;
             }
         }
@@ -177,12 +177,7 @@ impl File<'_> {
         Look { ambient: ambient * colour, diffuse: diffuse * colour }
     }
 
-    fn picture(
-        &self,
-        formula: Result<Value, Fault>,
-        parameters: Parameters,
-        notes: &mut Notes,
-    ) -> Option<Picture> {
+    fn picture(&self, formula: Read<Value>, parameters: Parameters, notes: &mut Notes) -> Option<Picture> {
         let [height] = self.numbers("camera_height", [2.0], notes);
         let (camera, moved) = self.matrix("camera_transform", notes);
         self.find("camera_fov_y");
@@ -224,7 +219,7 @@ impl File<'_> {
                 return None;
             }
         }
-        let formula = formula.map_err(|fault| notes.add(fault)).ok()?;
+        let formula = formula.map_err(|fault| notes.add(*fault)).ok()?;
         Some(Picture {
             numbers: parameters.0.into_iter().map(|(_, ours, value)| (ours, shortest(value))).collect(),
             functions: Vec::new(),

@@ -258,7 +258,7 @@ impl Script<'_, '_> {
         }
         match expression::read(self.text, range.clone(), Dialect::Surf, &mut self.scope) {
             Ok(value) => self.keep(name, place, range, value),
-            Err(fault) => self.notes.add(fault),
+            Err(fault) => self.notes.add(*fault),
         }
     }
 
