@@ -26,8 +26,8 @@ inventory::submit! {
         };
         Body::parametric(surface).ok_or(Refusal {
             attribute: None,
-            message: "has formulas that are not bounded where u and v are".to_owned(),
-            help: "a quotient by 0, a logarithm of 0 and a tangent are not: change the formulas, or the ends of `u` and `v`",
+            message: "has formulas that are not bounded where u and v are, or that turn there too often".to_owned(),
+            help: "a quotient by 0, a logarithm of 0 and a tangent have no bounds; change the formulas, or the ends of `u` and `v`",
         })
     })
 }

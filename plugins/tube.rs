@@ -57,8 +57,8 @@ inventory::submit! {
         }
         tube.avoided = avoided;
         Body::parametric(tube).ok_or(refusal(
-            "has formulas that are not bounded where t is",
-            "a quotient by 0, a logarithm of 0 and a tangent are not: change the formulas, or the ends of `t`",
+            "has formulas that are not bounded where t is, or that turn there too often",
+            "a quotient by 0, a logarithm of 0 and a tangent have no bounds; change the formulas, or the ends of `t`",
         ))
     })
 }

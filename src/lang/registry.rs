@@ -101,13 +101,17 @@ impl Registry {
     /// Shows how a scene writes an entity of this kind. Where a type has the kind's own name, that type is the example,
     /// whatever other types there are.
     pub(crate) fn example(&self, kind: Kind, name: &str, syntax: Syntax) -> String {
-        let entity = self.find(&kind.to_string()).or_else(|| self.simplest(|entity| entity.kind() == kind));
+        let is_one = |entity: &Entity| entity.kind() == kind && !entity.refers_to(kind);
+        let entity = self.find(&kind.to_string()).or_else(|| self.simplest(is_one));
         entity.map(|entity| syntax.entity_usage(entity, name)).unwrap_or_default()
     }
 
-    /// Returns the entity type with the fewest attributes of those that a condition holds for; of several, the first by name.
+    /// Returns the entity type with the fewest attributes, none of them a list, of those that a condition holds for; of several,
+    /// the first by name.
     pub fn simplest(&self, is_one: impl Fn(&Entity) -> bool) -> Option<&'static Entity> {
-        self.iter().filter(|entity| is_one(entity)).min_by_key(|entity| entity.attributes().count())
+        let has_no_list = |entity: &Entity| entity.attributes().all(|its| its.arity().examples().len() == 1);
+        let all = self.iter().filter(|entity| is_one(entity) && has_no_list(entity));
+        all.min_by_key(|entity| entity.attributes().count())
     }
 
     /// Shows what a scene looks like, for users who have none yet.

@@ -52,7 +52,7 @@ fn a_scene_in_the_place_of_a_command_is_told_from_a_misspelt_command() {
     let (_, _, err) = outcome(tabray(&folder).args(["--samples", "4", "a.ray"]));
     assert!(err.contains("`tabray render a.ray` renders it"), "{err}");
     let (_, _, err) = outcome(tabray(&folder).arg("redner"));
-    assert!(err.contains("a similar subcommand exists: 'render'"), "{err}");
+    assert!(err.contains("'render'"), "{err}");
 }
 
 #[test]

@@ -127,7 +127,8 @@ fn texts(path: &Path) -> Vec<(PathBuf, String)> {
 #[test]
 fn no_file_lists_the_plugins() {
     // Such a list would have to be edited for each new plugin.
-    let parts = ["README.md", "CONTRIBUTING.md", "Cargo.toml", ".ci", "docs", "scenes", "snapshots", "src", "tests"];
+    let parts =
+        ["README.md", "CONTRIBUTING.md", "Cargo.toml", ".ci", "docs", "scenes", "snapshots", "src", "tests"];
     for (path, text) in parts.iter().flat_map(|part| texts(&root().join(part))) {
         let words: BTreeSet<_> = text.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
         let lacks = common::registry().iter().any(|entity| !words.contains(entity.name));

@@ -4,6 +4,7 @@ use crate::common;
 use crate::common::{load, model, model_in, registry, root, scenes};
 use proptest::prelude::*;
 use std::path::Path;
+use tabray::exact::formula::variables::{CURVE, HEIGHT, PATCH};
 use tabray::scene::{
     self, Attribute, Counts, Datum, Entity, Fault, Kind, Model, Severity, Syntax, Type, dump,
 };
@@ -99,6 +100,9 @@ fn of_a_constructor(fault: &Fault) -> bool {
         "parallel",
         "collinear",
         "empty box",
+        "not bounded where",
+        "stands still",
+        "in nearly every direction",
         "has its `point` at its `location`",
         "have the name",
         "is defined",
@@ -164,9 +168,12 @@ fn any_entity(entity: &'static Entity) -> impl Strategy<Value = String> {
     })
 }
 
-/// Formulas of a surface of revolution's profile, and of space: of any operation, and some that plugins refuse.
-const FORMULAS: [&[&str]; 2] = [
+/// Formulas of a surface of revolution's profile, of a curve, of a surface in u and v, and of space: of any operation, and some
+/// that plugins refuse.
+const FORMULAS: [&[&str]; 4] = [
     &["2 + sin(y)", "1", "0.5 * -y", "sqrt(abs(4 - y^2))", "1/y", "ln(y)^y - tan(exp(pi))"],
+    &["cos(t)", "t^3 - 1", "1/t", "2"],
+    &["(2 + cos(v))*cos(u)", "sin(v)", "u - v", "ln(u)", "1"],
     &["x^2 + y^2 + z^2 - 4", "max(abs(x), min(y, -z)) - .5", "x + 2*y - z", "1e-3", "sqrt(x*z)", "floor(y)"],
 ];
 
@@ -201,7 +208,12 @@ fn any_values(attribute: &'static dyn Attribute) -> BoxedStrategy<String> {
         Type::File => return Just(format!("{} scenes/models/bowl.stl\n", attribute.name())).boxed(),
         Type::Word | Type::Name(_) => return Just(format!("{} m0\n", attribute.name())).boxed(),
         Type::Formula(variables) => {
-            let formulas = FORMULAS[usize::from(variables.len() > 1)];
+            let formulas = FORMULAS[match variables {
+                HEIGHT => 0,
+                CURVE => 1,
+                PATCH => 2,
+                _ => 3,
+            }];
             let line = |text| format!("{} \"{text}\"\n", attribute.name());
             return prop::sample::select(formulas).prop_map(line).boxed();
         }

@@ -212,6 +212,15 @@ impl Entity {
         self.rows().filter_map(|row| row.attribute())
     }
 
+    /// Tells whether an attribute takes the name of an entity of this kind.
+    pub fn refers_to(&self, kind: Kind) -> bool {
+        self.attributes().any(|attribute| match attribute.value_type() {
+            Type::Name(named) => named == kind,
+            Type::Choice(choices) => choices.kind == Some(kind),
+            _ => false,
+        })
+    }
+
     /// Returns the groups of attributes of which exactly one must be given.
     pub fn groups(&self) -> impl Iterator<Item = &'static OneOf> + use<> {
         self.rows().filter_map(|row| row.one_of())

@@ -3,7 +3,7 @@
 use crate::geometry::ray::Side;
 use crate::scene::kind::Kind;
 use crate::scene::store::Record;
-use crate::scene::value::Type;
+use crate::scene::value::{Datum, Type};
 use crate::world::any_shape::AnyShape;
 use crate::world::background::Background;
 use crate::world::body::{AnyShader, NamedBody, ShaderFactory};
@@ -121,7 +121,7 @@ impl Object {
         let (one, other) = (self.args.args(), other.args.args());
         one.values().zip(other.values()).all(|((attribute, one), (_, other))| match attribute.value_type() {
             Type::Name(Kind::Material | Kind::Shader) => true,
-            Type::Name(Kind::Object) => false,
+            Type::Name(Kind::Object) => *one == Datum::Absent && one == other,
             _ => one == other,
         })
     }

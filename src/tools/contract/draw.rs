@@ -12,7 +12,7 @@ use tabray_core::scene::choice::Choices;
 use tabray_core::scene::entity::Entity;
 use tabray_core::scene::kind::Kind;
 use tabray_core::scene::value::{Datum, Type};
-use tabray_exact::formula::variables::HEIGHT;
+use tabray_exact::formula::variables::{CURVE, HEIGHT, PATCH};
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
 use tempfile::TempDir;
@@ -35,6 +35,12 @@ const FORMULAS: [&str; 4] = ["2 + sin(y)", "1", "0.5 * y", "sqrt(abs(4 - y^2))"]
 /// Formulas in x, y and z.
 const FIELDS: [&str; 4] =
     ["x^2 + y^2 + z^2 - 4", "sin(x) + sin(y) + sin(z)", "x + 2*y - z", "max(abs(x), abs(y)) - 1 + z^2/4"];
+
+/// Formulas of curves, in t.
+const CURVES: [&str; 4] = ["cos(t)", "sin(t)", "0.2*t", "t - 1"];
+
+/// Formulas of surfaces, in u and v.
+const PATCHES: [&str; 4] = ["(2 + cos(v))*cos(u)", "sin(v) + u/4", "(2 + cos(v))*sin(u)", "u - v"];
 
 /// The folder to which the drawn scenes' file names are relative.
 pub struct SceneFolder(TempDir);
@@ -109,7 +115,7 @@ impl Draw {
         let mut text = String::new();
         for kind in [Kind::Camera, Kind::Material, Kind::Texture] {
             let its = |other: &&'static Entity| other.kind() == kind;
-            if kind != Kind::Camera && !its(&entity) && !refers_to(entity, kind) {
+            if kind != Kind::Camera && !its(&entity) && !entity.refers_to(kind) {
                 continue;
             }
             // Where a type has the kind's own name, that is the one that others refer to.
@@ -118,9 +124,9 @@ impl Draw {
                 text += &self.entity(other, name(kind));
             }
         }
-        let is_plain = |other: &Entity| other.kind() == Kind::Object && !refers_to(other, Kind::Object);
+        let is_plain = |other: &Entity| other.kind() == Kind::Object && !other.refers_to(Kind::Object);
         let mut objects = String::new();
-        if refers_to(entity, Kind::Object)
+        if entity.refers_to(Kind::Object)
             && let Some(other) = registry.simplest(is_plain)
         {
             let most = entity.attributes().filter(|its| is_name_of(*its, Kind::Object));
@@ -147,10 +153,10 @@ impl Draw {
     /// Draws a shader that others can refer to, with the texture that it may refer to.
     fn shader(&mut self, registry: &Registry, user: &Entity) -> String {
         let is_simple =
-            |other: &&'static Entity| other.kind() == Kind::Shader && !refers_to(other, Kind::Shader);
+            |other: &&'static Entity| other.kind() == Kind::Shader && !other.refers_to(Kind::Shader);
         let shaders: Vec<_> = registry.iter().filter(is_simple).collect();
         let shader = self.pick(&shaders);
-        let needs = |kind| refers_to(shader, kind) && !refers_to(user, kind);
+        let needs = |kind| shader.refers_to(kind) && !user.refers_to(kind);
         let mut text = String::new();
         for kind in [Kind::Material, Kind::Texture].into_iter().filter(|kind| needs(*kind)) {
             let usual = registry.find(&kind.to_string());
@@ -220,6 +226,8 @@ impl Draw {
                 word(name(kind))
             }
             Type::Formula(HEIGHT) => word(&format!("\"{}\"", self.pick(&FORMULAS))),
+            Type::Formula(CURVE) => word(&format!("\"{}\"", self.pick(&CURVES))),
+            Type::Formula(PATCH) => word(&format!("\"{}\"", self.pick(&PATCHES))),
             Type::Formula(_) => word(&format!("\"{}\"", self.pick(&FIELDS))),
             _ => {
                 let drawn = (0..TRIES).map(|_| datum(self)).find(|datum| attribute.allows(datum));
@@ -237,14 +245,6 @@ impl Draw {
 }
 
 /// Tells whether an attribute of the type refers to an entity of this kind.
-fn refers_to(entity: &Entity, kind: Kind) -> bool {
-    entity.attributes().any(|attribute| match attribute.value_type() {
-        Type::Name(named) => named == kind,
-        Type::Choice(choices) => choices.kind == Some(kind),
-        _ => false,
-    })
-}
-
 fn is_name_of(attribute: &dyn Attribute, kind: Kind) -> bool {
     matches!(attribute.value_type(), Type::Name(named) if named == kind)
 }

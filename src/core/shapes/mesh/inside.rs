@@ -30,10 +30,18 @@ impl Surface {
     }
 
     /// Tells whether a point lies inside of a closed mesh: whether the mesh winds around it. `None` where 237 bits do not
-    /// tell, as on the surface.
+    /// tell, as on the surface, or in the plane of a face and in the box around it.
     ///
     /// Faces must be turned alike, as those of [`turned_alike`](Self::turned_alike) are.
     pub fn winds_around(&self, at: DVec3) -> Option<bool> {
+        let mut may_be_on = false;
+        self.tree.within(
+            |bounds| bounds.low.cmple(at).all() && at.cmple(bounds.high).all(),
+            |face| may_be_on |= side_of_plane(self.corners(face), at) == Ordering::Equal,
+        );
+        if may_be_on {
+            return None;
+        }
         let number = self.number_at::<f64>(at).or_else(|| self.number_at::<f256>(at))?;
         Some(number != 0)
     }

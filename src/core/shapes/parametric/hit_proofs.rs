@@ -150,7 +150,7 @@ impl OverFootprint for ParametricShape {
 
 impl HitQueries for Shape<ParametricShape, ByDistance, ByPatches> {
     fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
-        self.shape.nearest(at, error).is_some_and(|place| place.off <= 2.0 * error)
+        self.shape.located().nearest(at, error).is_some_and(|place| place.off <= 2.0 * error)
     }
 
     fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {

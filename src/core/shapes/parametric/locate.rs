@@ -1,7 +1,7 @@
 //! The u and v of a point of a parametric surface.
 
-use super::ParametricShape;
-use super::patch::Rectangle;
+use super::patch::{Patches, Rectangle};
+use super::tree::Tree;
 use crate::world::coincidence::ROUNDING;
 use glam::{DVec2, DVec3};
 
@@ -16,16 +16,22 @@ pub(super) struct Place {
     pub off: f64,
 }
 
-impl ParametricShape {
-    /// Returns the place of a point that was computed as one of the surface.
-    pub(super) fn locate(&self, at: DVec3) -> Option<Place> {
-        let error = ROUNDING * (at.abs().max_element() + self.size());
+/// A surface: its formula, and the boxes around its parts.
+pub(super) struct Located<'s> {
+    pub patches: &'s dyn Patches,
+    pub tree: &'s Tree,
+}
+
+impl Located<'_> {
+    /// Returns the place of a point that was computed as one of the surface, whose coordinates are at most `size`.
+    pub fn locate(&self, at: DVec3, size: f64) -> Option<Place> {
+        let error = ROUNDING * (at.abs().max_element() + size);
         // The error along a ray is larger by the reciprocal of the cosine.
         [16.0, 1e4, 1e9].into_iter().find_map(|times| self.nearest(at, times * error))
     }
 
     /// Returns the place of the surface that is nearest to a point, of those whose boxes are within a distance.
-    pub(super) fn nearest(&self, at: DVec3, distance: f64) -> Option<Place> {
+    pub fn nearest(&self, at: DVec3, distance: f64) -> Option<Place> {
         let mut nearest: Option<Place> = None;
         let is_near =
             |low: DVec3, high: DVec3| (low - distance).cmple(at).all() && at.cmple(high + distance).all();

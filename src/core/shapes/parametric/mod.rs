@@ -22,6 +22,7 @@ use crate::world::body::Body;
 use crate::world::coincidence::{LEAST_COSINE, ROUNDING};
 use crate::world::hittable::{ByDistance, Facts, Hittable, Shape, TieBreaking};
 use glam::{DVec2, DVec3};
+use locate::Located;
 use patch::{Patches, Rectangle, normal};
 use search::Search;
 use tabray_exact::interval::Interval;
@@ -41,12 +42,13 @@ pub(crate) struct ByPatches;
 impl TieBreaking for ByPatches {}
 
 impl Body {
-    /// Makes an object of a parametric surface with the reflectivities of its material; `None` where no box contains it.
+    /// Makes an object of a parametric surface with the reflectivities of its material; `None` where no box contains it, or where
+    /// it turns so often that boxes around its parts tell nothing of where they are.
     pub fn parametric(formula: impl Parametric + 'static) -> Option<Self> {
         let ends = formula.ends();
         let patches: Box<dyn Patches> = Box::new(formula);
         let tree = Tree::new(&*patches, ends);
-        let bounds = tree.bounds()?.with_slack(0.0);
+        let bounds = tree.bounds().filter(|whole| tree.tells_apart(whole))?.with_slack(0.0);
         let shape = ParametricShape { patches, tree, bounds };
         Some(Self::plain(Shape::new(shape).by::<ByDistance, ByPatches>()))
     }
@@ -56,6 +58,11 @@ impl ParametricShape {
     /// Returns the greatest magnitude of a coordinate, in world units.
     fn size(&self) -> f64 {
         self.bounds.low.abs().max(self.bounds.high.abs()).max_element()
+    }
+
+    /// Returns what finds u and v of a point.
+    fn located(&self) -> Located<'_> {
+        Located { patches: &*self.patches, tree: &self.tree }
     }
 
     /// Returns the rectangle of u and v.
@@ -89,7 +96,9 @@ impl Hittable for ParametricShape {
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
-        self.locate(at).map_or(DVec3::Y, |place| normal(&*self.patches, place.uv.to_array()))
+        self.located()
+            .locate(at, self.size())
+            .map_or(DVec3::Y, |place| normal(&*self.patches, place.uv.to_array()))
     }
 
     fn facts(&self) -> Facts {
@@ -102,7 +111,7 @@ impl Hittable for ParametricShape {
 
     fn uv(&self, at: DVec3) -> Option<DVec2> {
         let [u, v] = self.ends().map(|side| DVec2::new(side.low, side.width()));
-        let uv = self.locate(at)?.uv;
+        let uv = self.located().locate(at, self.size())?.uv;
         Some(DVec2::new((uv.x - u.x) / u.y, (uv.y - v.x) / v.y).clamp(DVec2::ZERO, DVec2::ONE))
     }
 
