@@ -1,7 +1,7 @@
 //! Files of SURFER, and of jsurf, which draws for it: properties of Java, one on a line.
 
-use super::Notes;
 use super::expression::{self, Dialect, Names, Read, Value};
+use super::notes::Notes;
 use super::picture::{Clip, Light, Look, Picture, Surface};
 use crate::reader::Fault;
 use glam::{DMat3, DVec3};

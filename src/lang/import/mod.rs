@@ -4,13 +4,15 @@
 
 mod expression;
 mod jsurf;
+mod notes;
 mod picture;
 mod surf;
 #[cfg(test)]
 mod tests;
 
-use crate::reader::{Fault, Report, decode};
+use crate::reader::{Report, decode};
 use crate::syntax::Syntax;
+use notes::Notes;
 use std::path::Path;
 
 /// A program whose files are read.
@@ -106,21 +108,4 @@ fn read(program: Program, name: &str, text: &str) -> Result<Imported, Report> {
         head += &format!("# Left out: {}.\n", words.join(", "));
     }
     Ok(Imported { text: head + &picture.scene(), warnings: report, left: lines })
-}
-
-/// What is to be said of a file.
-struct Notes {
-    report: Report,
-    /// Words that have no part in what is seen, and where they stand.
-    left: Vec<(String, usize)>,
-}
-
-impl Notes {
-    fn add(&mut self, fault: Fault) {
-        self.report.add(fault);
-    }
-
-    fn leave(&mut self, word: &str, at: usize) {
-        self.left.push((word.to_owned(), at));
-    }
 }

@@ -4,8 +4,8 @@
 //! origin, turned around y, x and z, in this order, and then made smaller by its scale; a body of the picture's own
 //! coordinates cuts it.
 
-use super::Notes;
 use super::expression::{self, Dialect, Names, Value, turn};
+use super::notes::Notes;
 use super::picture::{Clip, Light, Look, Picture, Surface};
 use crate::reader::Fault;
 use glam::{DMat3, DVec3};

@@ -38,7 +38,7 @@ pub fn model(
             time += now() - start;
         }
         Source::Stream(stream) => {
-            let mut entities = stream.next();
+            let mut entities = stream();
             while !entities.is_empty() {
                 let work = || {
                     let start = now();
@@ -47,7 +47,7 @@ pub fn model(
                         .for_each(|some| check.entities(&some.iter().collect::<Vec<_>>()));
                     time += now() - start;
                 };
-                let ((), next) = parallel::join(true, work, || stream.next());
+                let ((), next) = parallel::join(true, work, &mut *stream);
                 entities = next;
             }
         }

@@ -4,7 +4,6 @@ use super::attributes::{AttributeChecker, whole};
 use super::fault::{Fault, Place, Places};
 use super::guesses::find_attribute;
 use super::levels;
-use super::listed::Stream;
 use super::missing::Missing;
 use super::names::{Names, placeholder};
 use super::notes;
@@ -39,9 +38,9 @@ use tabray_core::world::texture::Texture;
 pub enum Source<'s, 'a> {
     /// A text in the notes' syntax, and its parser.
     Text(&'a str, Box<Parser<'a, 's>>),
-    /// A long text in TOML. Of its entities, nothing is known later: if there is anything to say of them, the text is read
-    /// again as a list.
-    Stream(Box<Stream<'a, 's, 'a>>),
+    /// A long text in TOML, as what returns the next entities until there are none. Of these, nothing is known later: if there
+    /// is anything to say of them, the text is read again as a list.
+    Stream(Box<dyn FnMut() -> Vec<Parsed<'a>> + Send + 's>),
     /// Entities in their order.
     List(&'s [Parsed<'a>]),
 }

@@ -1,12 +1,13 @@
 //! What a scene in TOML says, in the order of its text: entities, and numbers, files and rounds, from which more entities
 //! follow.
 
-use super::fault::{Place, Severity};
+use super::fault::Severity;
 use super::guesses::Tables;
 use super::parsed::{Parsed, Word};
 use super::report::Report;
 use super::rounds::Rounds;
 use super::sources::Sources;
+use super::statement::Statement;
 use super::toml::{self, IndependentParts};
 use crate::registry::Registry;
 use std::collections::HashSet;
@@ -19,44 +20,6 @@ const WEIGHT: usize = 8;
 
 /// The number of parts that are parsed at one time.
 const TOGETHER: usize = 16;
-
-/// What a scene in TOML says.
-pub enum Statement<'a> {
-    Entity(Parsed<'a>),
-    Let { name: Word<'a>, value: Word<'a> },
-    Include { file: Word<'a> },
-    Repeat { start: usize, name: Word<'a>, count: Word<'a>, body: Vec<Statement<'a>> },
-}
-
-impl Statement<'_> {
-    /// Returns the position at which it begins, in bytes.
-    pub fn start(&self) -> Option<usize> {
-        let place = match self {
-            Self::Entity(entity) => &entity.name.place,
-            Self::Let { name, .. } => &name.place,
-            Self::Include { file } => &file.place,
-            Self::Repeat { start, .. } => return Some(*start),
-        };
-        place.as_ref().map(|place| place.start)
-    }
-
-    /// Returns the name of a number, and its place.
-    pub fn number(&self) -> Option<(String, Place)> {
-        match self {
-            Self::Let { name, .. } => Some((name.text.to_string(), name.place.clone())),
-            _ => None,
-        }
-    }
-
-    /// Returns the length of its text, in bytes, without empty space between its parts.
-    fn len(&self) -> usize {
-        match self {
-            Self::Entity(entity) => entity.place.as_ref().map_or(0, Range::len),
-            Self::Repeat { body, .. } => body.iter().map(Statement::len).sum(),
-            _ => 1,
-        }
-    }
-}
 
 /// Parses a part of a text.
 pub type Parse<'p, 'a, 't> = &'p (dyn Fn(Range<usize>, &mut Report<'t>) -> Vec<Statement<'a>> + Sync);

@@ -31,6 +31,7 @@ pub(crate) mod report;
 mod rounds;
 mod sets;
 mod sources;
+mod statement;
 pub(crate) mod statements;
 mod textures;
 pub(crate) mod tokens;
@@ -190,8 +191,8 @@ fn read_text(
         // A long and sound text is parsed and checked at one go.
         if let Some(parts) = toml::independent_parts(&sources.text[..sources.own.end]) {
             let mut errors = report.clone();
-            let stream = Stream::new(registry, &sources, &parse, &mut errors, parts);
-            let all = checked(&mut report, Source::Stream(Box::new(stream)));
+            let mut stream = Stream::new(registry, &sources, &parse, &mut errors, parts);
+            let all = checked(&mut report, Source::Stream(Box::new(move || stream.next())));
             if all.0.is_some() && errors.faults().is_empty() && report.faults().is_empty() {
                 return finish(all, registry, report, options);
             }

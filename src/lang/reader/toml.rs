@@ -1,8 +1,8 @@
 //! Parses scenes in TOML: long ones in parts at the same time, and those with syntax errors in pieces.
 
 use super::fault::{Fault, Place, Severity};
-use super::listed::Statement;
 use super::report::Report;
+use super::statement::Statement;
 use super::toml_document::Reader;
 use super::toml_faults::{LINE, is_duplicate, is_title, long_line, parts, pieces};
 use crate::registry::Registry;

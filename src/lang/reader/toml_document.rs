@@ -2,9 +2,9 @@
 
 use super::fault::Fault;
 use super::keyword::Keyword;
-use super::listed::Statement;
 use super::parsed::{Form, MAX_VALUES, Parsed, VALUES, Word};
 use super::report::Report;
+use super::statement::Statement;
 use super::toml_faults::{SyntaxError, before_titles, fault_of, next, places};
 use std::borrow::Cow;
 use std::mem::{swap, take};

@@ -36,11 +36,11 @@ const FORMULAS: [&str; 4] = ["2 + sin(y)", "1", "0.5 * y", "sqrt(abs(4 - y^2))"]
 const FIELDS: [&str; 4] =
     ["x^2 + y^2 + z^2 - 4", "sin(x) + sin(y) + sin(z)", "x + 2*y - z", "max(abs(x), abs(y)) - 1 + z^2/4"];
 
-/// Formulas of curves, in t.
-const CURVES: [&str; 4] = ["cos(t)", "sin(t)", "0.2*t", "t - 1"];
+/// Formulas of a curve's x, y and z in t: of others, drawn one by one, most have a place where the curve stands still.
+const CURVE_FORMULAS: [&str; 3] = ["cos(t)", "0.2*t", "sin(t)"];
 
-/// Formulas of surfaces, in u and v.
-const PATCHES: [&str; 4] = ["(2 + cos(v))*cos(u)", "sin(v) + u/4", "(2 + cos(v))*sin(u)", "u - v"];
+/// Formulas of a surface's x, y and z in u and v: most others have folds.
+const PATCH_FORMULAS: [&str; 3] = ["(2 + cos(v))*cos(u)", "sin(v)", "(2 + cos(v))*sin(u)"];
 
 /// The folder to which the drawn scenes' file names are relative.
 pub struct SceneFolder(TempDir);
@@ -142,7 +142,11 @@ impl Draw {
         if matches!(entity.kind(), Kind::Shader | Kind::Object | Kind::Light | Kind::Background) {
             let (tried, named) = (self.entity(entity, "tried"), format!("shader {}\n", name(Kind::Shader)));
             if objects.contains(&named) || tried.contains(&named) {
+                // Which shaders there are changes nothing else that is drawn.
+                let mut own = Pcg32::new(self.others.next_u32().into(), 2);
+                swap(&mut self.others, &mut own);
                 text += &self.aside(|draw| draw.shader(registry, entity));
+                self.others = own;
             }
             text += &objects;
             text += &tried;
@@ -226,8 +230,8 @@ impl Draw {
                 word(name(kind))
             }
             Type::Formula(HEIGHT) => word(&format!("\"{}\"", self.pick(&FORMULAS))),
-            Type::Formula(CURVE) => word(&format!("\"{}\"", self.pick(&CURVES))),
-            Type::Formula(PATCH) => word(&format!("\"{}\"", self.pick(&PATCHES))),
+            Type::Formula(CURVE) => word(&format!("\"{}\"", CURVE_FORMULAS[axis(attribute)])),
+            Type::Formula(PATCH) => word(&format!("\"{}\"", PATCH_FORMULAS[axis(attribute)])),
             Type::Formula(_) => word(&format!("\"{}\"", self.pick(&FIELDS))),
             _ => {
                 let drawn = (0..TRIES).map(|_| datum(self)).find(|datum| attribute.allows(datum));
@@ -245,6 +249,11 @@ impl Draw {
 }
 
 /// Tells whether an attribute of the type refers to an entity of this kind.
+/// Returns the axis whose coordinate an attribute is, or else the first one.
+fn axis(attribute: &dyn Attribute) -> usize {
+    "xyz".find(attribute.name()).unwrap_or(0)
+}
+
 fn is_name_of(attribute: &dyn Attribute, kind: Kind) -> bool {
     matches!(attribute.value_type(), Type::Name(named) if named == kind)
 }

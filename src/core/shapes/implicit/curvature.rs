@@ -55,7 +55,7 @@ mod tests {
     #[test]
     fn a_torus_bends_as_geometry_says() {
         let (radius, tube) = (3.0, 0.75);
-        for [along, around] in [[0.3, 0.0], [2.1, 1.3], [4.4, 2.6], [5.9, 3.14]] {
+        for [along, around] in [[0.3, 0.0], [2.1, 1.3], [4.4, 2.6], [5.9, 3.1]] {
             let (out, up) = (tube * libm::cos(around), tube * libm::sin(around));
             let ring = DVec2::new(libm::cos(along), libm::sin(along)) * (radius + out);
             let found = at(&Torus(radius, tube), DVec3::new(ring.x, up, ring.y));

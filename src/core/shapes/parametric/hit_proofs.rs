@@ -1,9 +1,10 @@
 //! Proofs of the hits of a parametric surface.
 
+use super::ByPatches;
 use super::patch::{Patches, PatchesIn, Rectangle};
 use super::search::{Found, Search, meet};
+use super::shape::ParametricShape;
 use super::tree::halves;
-use super::{ByPatches, ParametricShape};
 use crate::geometry::ray::Ray;
 use crate::geometry::sight::{Line, Sight};
 use crate::world::certify::{

@@ -11,30 +11,23 @@ mod hit_proofs;
 mod locate;
 mod patch;
 mod search;
+mod shape;
 mod tree;
 
 pub use patch::Parametric;
 
-use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{MISS, Ray, RayRange, Side};
 use crate::geometry::sight::Line;
 use crate::world::body::Body;
 use crate::world::coincidence::{LEAST_COSINE, ROUNDING};
 use crate::world::hittable::{ByDistance, Facts, Hittable, Shape, TieBreaking};
 use glam::{DVec2, DVec3};
-use locate::Located;
 use patch::{Patches, Rectangle, normal};
 use search::Search;
+use shape::ParametricShape;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::constants;
 use tree::Tree;
-
-/// A parametric surface.
-pub(crate) struct ParametricShape {
-    patches: Box<dyn Patches>,
-    tree: Tree,
-    bounds: Aabb,
-}
 
 /// Marks a shape whose hits are proven by Krawczyk's test.
 pub(crate) struct ByPatches;
@@ -51,23 +44,6 @@ impl Body {
         let bounds = tree.bounds().filter(|whole| tree.tells_apart(whole))?.with_slack(0.0);
         let shape = ParametricShape { patches, tree, bounds };
         Some(Self::plain(Shape::new(shape).by::<ByDistance, ByPatches>()))
-    }
-}
-
-impl ParametricShape {
-    /// Returns the greatest magnitude of a coordinate, in world units.
-    fn size(&self) -> f64 {
-        self.bounds.low.abs().max(self.bounds.high.abs()).max_element()
-    }
-
-    /// Returns what finds u and v of a point.
-    fn located(&self) -> Located<'_> {
-        Located { patches: &*self.patches, tree: &self.tree }
-    }
-
-    /// Returns the rectangle of u and v.
-    fn ends(&self) -> &Rectangle<f64> {
-        self.tree.ends()
     }
 }
 

@@ -1,7 +1,7 @@
 //! The first hit of a line and a parametric surface.
 
-use super::ParametricShape;
 use super::patch::{Patch, Patches, PatchesIn, Rectangle};
+use super::shape::ParametricShape;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::sight::Line;
 use std::cmp::Ordering;
@@ -11,7 +11,7 @@ use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::Scalar;
 
 /// The most parts of the rectangle that are judged for a line.
-const MOST: usize = 4096;
+const MOST: usize = 2048;
 
 /// By how much a part is larger where it is judged than it is, on each side, as a fraction of its width: so a solution at a
 /// side of a part is proven as others are.
@@ -104,7 +104,7 @@ where
             number += 1;
         });
         let mut found = Found { hit: None, undecided: None, narrow: None };
-        let mut left = (if F::IS_LONG { MOST / 4 } else { MOST }).max(2 * number);
+        let mut left = (if F::IS_LONG { MOST / 32 } else { MOST }).max(2 * number);
         while let Some(Part { from, leaf, part, .. }) = waiting.pop() {
             if found.hit.is_some_and(|hit: Hit<F>| F::of(from) > hit.t.high) {
                 break;

@@ -9,9 +9,9 @@ mod rows;
 mod unmapped;
 
 use super::fault::Fault;
-use super::listed::Statement;
 use super::notes::has_entities;
 use super::report::Report;
+use super::statement::Statement;
 use crate::registry::Registry;
 use codes::{Code, LIGHT, Line, MATERIAL, Numbers, PROJECTOR, REFRACTION, TRANSPARENCY, VIEWPOINT, WORLD};
 use entities::Entities;
