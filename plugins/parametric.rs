@@ -5,16 +5,21 @@ use tabray::prelude::*;
 static X: Pparm<PatchField> = Pparm::required("x", "the x of the point of u and v").unit("world units");
 static Y: Pparm<PatchField> = Pparm::required("y", "its y").unit("world units");
 static Z: Pparm<PatchField> = Pparm::required("z", "its z").unit("world units");
-static U: Pparm<[f64; 2]> = Pparm::required("u", "the least and the greatest u").must("rising", rises);
-static V: Pparm<[f64; 2]> = Pparm::required("v", "the least and the greatest v").must("rising", rises);
+static U: Pparm<[f64; 2]> =
+    Pparm::required("u", "the least and the greatest u").must("rising by at most a million", rises);
+static V: Pparm<[f64; 2]> =
+    Pparm::required("v", "the least and the greatest v").must("rising by at most a million", rises);
 static CENTER: Pparm<DVec3> = Pparm::or("center", "the origin of these coordinates", DVec3::ZERO)
     .alias(&["centre"])
     .unit("world coordinates");
 
 const TABLE: Table = &[&X, &Y, &Z, &U, &V, &CENTER];
 
+/// A wider rectangle has to be halved so often near a ray that a pixel takes seconds.
+const WIDEST: f64 = 1e6;
+
 fn rises([low, high]: &[f64; 2]) -> bool {
-    low < high
+    low < high && high - low <= WIDEST
 }
 
 inventory::submit! {

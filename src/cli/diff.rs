@@ -74,7 +74,7 @@ fn compare(registry: &Registry, args: &Args) -> Result<bool, Failure> {
     let model =
         args.scene.as_deref().map(|scene| input::load(registry, scene, &args.set, None)).transpose()?;
     let (old, new) = (Picture::read(&args.old)?, Picture::read(&args.new)?);
-    let names = [&args.old, &args.new].map(|path| text::shown(path));
+    let names = [&args.old, &args.new].map(text::shown);
     let sizes = [old.size(), new.size()];
     let other_size = || {
         let size =

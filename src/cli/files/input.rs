@@ -126,7 +126,7 @@ pub fn read(path: &Path) -> Result<(String, Vec<u8>), Failure> {
             let near = text::nearest_file(path).filter(|_| error.kind() == io::ErrorKind::NotFound);
             Err(Failure::Unread(
                 format!("cannot read `{name}`: {}", text::reason(&error)),
-                near.map(|near| format!("did you mean `{}`?", text::shown(&path.with_file_name(near)))),
+                near.map(|near| format!("did you mean `{}`?", text::shown(path.with_file_name(near)))),
             ))
         }
     }

@@ -107,7 +107,7 @@ fn decide(
         (StatusCode::INTERNAL_SERVER_ERROR, "failed: see the terminal for the reason".to_owned())
     };
     let found = pending::find(folder).map_err(failed)?;
-    let named = |new: &&PathBuf| text::shown(&new.with_extension("")) == name;
+    let named = |new: &&PathBuf| text::shown(new.with_extension("")) == name;
     let Some(new) = found.iter().find(named) else {
         return Err((StatusCode::NOT_FOUND, format!("{name} is no longer pending")));
     };

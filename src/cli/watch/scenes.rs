@@ -91,7 +91,7 @@ impl Scenes {
     /// Returns the name of the watched scenes, for messages.
     pub fn name(&self) -> String {
         let count = || text::count(self.known().list.len(), "scene");
-        self.only().map_or_else(count, |scene| text::shown(scene))
+        self.only().map_or_else(count, text::shown)
     }
 
     /// Finds the scenes that there are now, and tells all pages if they are others than before.

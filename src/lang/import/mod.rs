@@ -6,6 +6,7 @@ mod expression;
 mod jsurf;
 mod notes;
 mod picture;
+pub(crate) mod program;
 mod surf;
 #[cfg(test)]
 mod tests;
@@ -13,47 +14,8 @@ mod tests;
 use crate::reader::{Report, decode};
 use crate::syntax::Syntax;
 use notes::Notes;
+use program::Program;
 use std::path::Path;
-
-/// A program whose files are read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Program {
-    /// SURFER, with files of properties.
-    Surfer,
-    /// surf, with scripts.
-    Surf,
-}
-
-impl Program {
-    /// Recognises a file by the ending of its name.
-    fn of_name(name: &str) -> Option<Self> {
-        let ending = Path::new(name).extension()?.to_str()?;
-        let is = |known: &str| ending.eq_ignore_ascii_case(known);
-        if is("jsurf") { Some(Self::Surfer) } else { (is("surf") || is("pic")).then_some(Self::Surf) }
-    }
-
-    /// Recognises a file by its text, as scenes have neither word.
-    fn of_text(text: &str) -> Option<Self> {
-        let has = |word: &str| text.lines().any(|line| line.trim_start().starts_with(word));
-        if has("surface_equation") {
-            Some(Self::Surfer)
-        } else {
-            (has("draw_surface") && text.contains(';')).then_some(Self::Surf)
-        }
-    }
-
-    fn what(self) -> &'static str {
-        match self {
-            Self::Surfer => "a surface of SURFER",
-            Self::Surf => "a script of surf",
-        }
-    }
-}
-
-/// Says what a file is, if it is of one of these programs.
-pub(crate) fn what(name: &str, text: &str) -> Option<&'static str> {
-    Program::of_name(name).or_else(|| Program::of_text(text)).map(Program::what)
-}
 
 /// What a file of another program shows.
 pub struct Imported {

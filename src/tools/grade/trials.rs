@@ -1,8 +1,9 @@
 //! Mistakes about single pixels: the scene is changed, and a change explains a pixel where the changed scene shows what the
 //! picture has.
 
+use super::compared::{Compared, apart};
+use super::mistake::Mistake;
 use super::views::View;
-use super::{Compared, Mistake, apart};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::iter;

@@ -1,6 +1,6 @@
 //! Mistakes about a picture as a whole: it is flipped or shifted, or its levels are those of another curve.
 
-use super::{Compared, apart, levels};
+use super::compared::{Compared, apart, levels};
 use glam::DVec3;
 use glam::Vec3Swizzles;
 use rayon::prelude::*;

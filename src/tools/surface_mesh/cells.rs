@@ -1,6 +1,6 @@
 //! The cells that a surface may cross: those of a cube that is halved along each axis again and again.
 
-use super::Body;
+use super::body::Body;
 use glam::DVec3;
 use tabray_core::parallel;
 

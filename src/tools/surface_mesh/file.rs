@@ -1,6 +1,6 @@
 //! Files of meshes.
 
-use super::SurfaceMesh;
+use super::closed::SurfaceMesh;
 use glam::DVec3;
 use std::fmt::Write as _;
 use std::io::{self, Write};

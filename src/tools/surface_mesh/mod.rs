@@ -10,6 +10,7 @@
 
 mod body;
 mod cells;
+mod closed;
 mod file;
 mod proof;
 #[cfg(test)]
@@ -17,6 +18,7 @@ mod tests;
 mod triangles;
 
 pub use body::{Body, NoBody};
+pub use closed::SurfaceMesh;
 pub use file::Format;
 
 use cells::Cells;
@@ -32,21 +34,6 @@ const MOST: u32 = 16;
 
 /// The most cells that the surface may cross: each takes about 300 bytes, with its triangles.
 const MOST_CELLS: usize = 1 << 22;
-
-/// A closed mesh of an object.
-pub struct SurfaceMesh {
-    /// The vertices, in world units; each coordinate is a number of single precision, as files have them.
-    pub vertices: Vec<DVec3>,
-    /// The triangles, counterclockwise seen from outside.
-    pub faces: Vec<[u32; 3]>,
-    /// The side of the cells.
-    pub cell: f64,
-    /// The places where it is not proven that the surface and the mesh are near each other: low and high corners.
-    pub far: Vec<[DVec3; 2]>,
-    /// The places where the surface may have other parts, or may be joined otherwise, than the mesh; `None` where that was
-    /// not examined.
-    pub tangled: Option<Vec<[DVec3; 2]>>,
-}
 
 /// Why there is no mesh.
 #[derive(Debug, PartialEq)]

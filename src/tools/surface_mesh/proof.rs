@@ -1,6 +1,6 @@
 //! What is certain about a mesh: that it is near a body's surface, and the surface near it.
 
-use super::Body;
+use super::body::Body;
 use super::cells::Cells;
 use super::triangles::Triangles;
 use glam::DVec3;

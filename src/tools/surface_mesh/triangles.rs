@@ -1,6 +1,6 @@
 //! The triangles between corners inside and corners outside.
 
-use super::Body;
+use super::body::Body;
 use super::cells::{Cells, Index, key, of_eight, point};
 use glam::DVec3;
 use std::ops::Range;
