@@ -1,6 +1,7 @@
 //! `tabray farm`: what a job scheduler takes to render an image in parts, or the frames of a film.
 
 mod commands;
+mod job;
 mod kubernetes;
 mod slurm;
 
@@ -10,9 +11,10 @@ use crate::process::failure::{Failure, print};
 use crate::process::messages;
 use crate::render;
 use clap::FromArgMatches;
+use job::{Job, word};
 use std::env;
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use tabray_core::output::full_range::FullRange;
 use tabray_core::text;
 use tabray_lang::registry::Registry;
@@ -87,19 +89,6 @@ struct Order {
     options: Vec<String>,
 }
 
-/// An order that was checked, in words for a shell.
-struct Job {
-    scene: String,
-    image: String,
-    /// The image, or the name of the frames.
-    path: PathBuf,
-    parts: u32,
-    /// The options of each part, each after a space.
-    options: String,
-    /// The command that puts the parts together, without the program.
-    last: String,
-}
-
 pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
     match &args.engine {
         Engine::Slurm(order) => slurm::write(&order.checked(registry)?, &program()?),
@@ -130,20 +119,6 @@ pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
 /// Returns this program, as a word for a shell.
 fn program() -> Result<String, Failure> {
     word(&env::current_exe()?)
-}
-
-/// Quotes a path for a shell. What a script or a log could show as something else is refused.
-fn word(path: &Path) -> Result<String, Failure> {
-    let sound = path.to_str().filter(|path| !path.contains(char::is_control));
-    let Some(sound) = sound else {
-        return Err(Failure::Usage(
-            format!("a script cannot name `{}`", text::shown(path)),
-            Some("give it a name in UTF-8 without line ends and other control characters".to_owned()),
-        ));
-    };
-    // A path is no option.
-    let own = if sound.starts_with('-') { Path::new(".").join(path) } else { path.to_owned() };
-    Ok(text::quoted(own.as_os_str()))
 }
 
 impl Order {
@@ -180,25 +155,5 @@ impl Order {
         };
         let options = options.iter().map(|option| format!(" {}", text::quoted(option.as_ref()))).collect();
         Ok(Job { scene: scene_word, image, path: output.clone(), parts: *parts, options, last })
-    }
-}
-
-impl Job {
-    /// Returns the command that renders a part, without the program; the number of the part is a word for the shell.
-    fn part(&self, number: &str) -> String {
-        let Self { scene, image, parts, options, .. } = self;
-        format!("render {scene} -o {image} --part {number}/{parts} --resume{options}")
-    }
-
-    /// Refuses an absolute path where all paths are relative to a folder.
-    fn refuse_absolute(&self, folder: &str) -> Result<(), Failure> {
-        let is_outside = |word: &str| word.trim_start_matches(['\'', '$']).starts_with('/');
-        match [&self.scene, &self.image].into_iter().find(|word| is_outside(word)) {
-            Some(path) => Err(Failure::Usage(
-                format!("{path} is not relative to {folder}"),
-                Some(format!("in the container, {folder} is mounted as /scenes")),
-            )),
-            None => Ok(()),
-        }
     }
 }

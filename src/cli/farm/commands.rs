@@ -1,6 +1,6 @@
 //! Commands for schedulers that take one a line.
 
-use super::Job;
+use super::job::Job;
 use tabray_core::text;
 
 /// Returns the commands that render the parts, one a line.

@@ -1,6 +1,6 @@
 //! The manifests of two Kubernetes jobs.
 
-use super::Job;
+use super::job::Job;
 use std::path::Path;
 use tabray_core::text;
 

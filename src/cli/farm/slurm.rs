@@ -1,6 +1,6 @@
 //! The scripts of a Slurm job array.
 
-use super::{Job, word};
+use super::job::{Job, word};
 use crate::files::output;
 use crate::process::failure::{Failure, print};
 use std::path::Path;
