@@ -5,7 +5,7 @@
 //! object is halved along each axis until cells that the surface may cross are small. Their corners are inside or outside,
 //! and each cell is cut into six tetrahedra (H. Freudenthal's, which match from cell to cell); the triangles that separate
 //! corners inside from corners outside in each are closed and two-manifold, whatever the corners are. Their vertices are
-//! moved along the cells' edges onto the surface. What is [proven](proof) about the result is so whatever way it was made;
+//! moved along the cells' edges onto the surface. What is proven about the result is so whatever way it was made;
 //! where it is not, cells are halved again, until they are smaller than the error.
 
 mod body;
