@@ -44,16 +44,12 @@ impl<const OF_THE_NOTES: bool> Shader for RainbowTiles<OF_THE_NOTES> {
     }
 
     fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        let [x, y, z] = at.position;
+        let [x, y, _] = at.position;
         let from =
             [x - Interval::constant(self.anchor.origin.x), y - Interval::constant(self.anchor.origin.y)];
         let odd = LookBounds::from(material);
         let even = LookBounds { ambient: self.hues.enclose(from), ..odd };
-        Some(match self.grid.is_certainly_odd([x, z]) {
-            Some(true) => odd,
-            Some(false) => even,
-            None => odd.hull(&even),
-        })
+        Some(self.grid.look(at, [0, 2], even, odd))
     }
 
     #[inline]

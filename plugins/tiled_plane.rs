@@ -105,19 +105,24 @@ impl Shader for Tiles {
 
     fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
         let ([normal, xdir], n) = (self.given, Interval::<F>::constant);
-        let (position, offset) = match self.origin {
-            Some(origin) => (per_axis(|axis| at.position[axis] - n(origin[axis])), n(0.0)),
-            None => (at.position, n(OFFSET)),
+        let along = |vector| {
+            let [u, v] = along_sides(constants(normal), constants(xdir), vector);
+            [u / n(self.dimensions.x), v / n(self.dimensions.y)]
         };
-        let [u, v] = along_sides(constants(normal), constants(xdir), position);
-        let tile =
-            |along: Interval<F>, side: usize| ((along + offset) / n(self.dimensions[side])).certain_floor();
+        let tiles = |at: [Interval<F>; 3]| match self.origin {
+            Some(origin) => along(per_axis(|axis| at[axis] - n(origin[axis]))),
+            None => {
+                let [u, v] = along_sides(constants(normal), constants(xdir), at);
+                [(u + n(OFFSET)) / n(self.dimensions.x), (v + n(OFFSET)) / n(self.dimensions.y)]
+            }
+        };
         let specular = if self.mirrors { self.other.specular } else { material.specular };
         let other = Material { specular, ..(*self.other).clone() };
         let (own, other) = (LookBounds::from(material), LookBounds::from(&other));
-        Some(match (tile(u, 0), tile(v, 1)) {
-            (Some(i), Some(j)) if !is_odd(DVec2::new(i, j)) => other,
-            (Some(_), Some(_)) => own,
+        Some(match (tiles(at.position).map(Interval::certain_floor), &at.patch) {
+            ([Some(i), Some(j)], _) if !is_odd(DVec2::new(i, j)) => other,
+            ([Some(_), Some(_)], _) => own,
+            (_, Some(patch)) => other.mean(&own, odd_part_bounds(tiles(patch.middle), patch.widths(along))),
             _ => own.hull(&other),
         })
     }

@@ -82,11 +82,7 @@ impl<const ON_FLOOR: bool> Shader for Tiles<ON_FLOOR> {
             look
         };
         let (odd, even) = (without(0), without(2));
-        Some(match self.grid.is_certainly_odd(self.axes.map(|axis| at.position[axis])) {
-            Some(true) => odd,
-            Some(false) => even,
-            None => odd.hull(&even),
-        })
+        Some(self.grid.look(at, self.axes, even, odd))
     }
 
     #[inline]
@@ -134,13 +130,25 @@ impl Grid {
         DVec2::new(tile(along.x), tile(along.y))
     }
 
-    /// Tells whether a point lies on an odd tile, where that is certain.
-    pub fn is_certainly_odd<F: Precise>(&self, along: [Interval<F>; 2]) -> Option<bool> {
+    /// Encloses the look of points, given those of even and of odd tiles and the two axes along which tiles lie.
+    pub fn look<F: Precise>(
+        &self,
+        at: &PointBounds<F>,
+        axes: [usize; 2],
+        even: LookBounds<F>,
+        odd: LookBounds<F>,
+    ) -> LookBounds<F> {
         let n = Interval::<F>::constant;
         // Of a width that is a power of two, the reciprocal is exact.
         let is_exact = self.width.to_bits() << 12 == 0 && self.per_unit.is_normal();
         let tiles = |along| if is_exact { n(self.per_unit) * along } else { along / n(self.width) };
-        let [one, other] = along.map(|along| (tiles(along) + n(1000.0)).certain_floor());
-        Some(is_odd(DVec2::new(one?, other?)))
+        let along = |vector: [Interval<F>; 3]| axes.map(|axis| tiles(vector[axis]));
+        let counted = |vector| along(vector).map(|tile| tile + n(1000.0));
+        match (counted(at.position).map(Interval::certain_floor), &at.patch) {
+            ([Some(one), Some(other)], _) if is_odd(DVec2::new(one, other)) => odd,
+            ([Some(_), Some(_)], _) => even,
+            (_, Some(patch)) => even.mean(&odd, odd_part_bounds(counted(patch.middle), patch.widths(along))),
+            _ => odd.hull(&even),
+        }
     }
 }

@@ -26,7 +26,7 @@ pub use crate::world::interface::{AnyInterface, Crossing, Interface, Law, Medium
 pub use crate::world::light::Light;
 pub use crate::world::material::{Look, Material, Rgb};
 pub use crate::world::panel::Panel;
-pub use crate::world::patch::{Patch, between, is_odd, odd_part};
+pub use crate::world::patch::{Patch, PatchBounds, between, is_odd, odd_part, odd_part_bounds};
 pub use crate::world::pinhole::Pinhole;
 pub use crate::world::rules::Rules;
 pub use crate::world::sample::Sampler;

@@ -54,8 +54,11 @@ pub enum Law {
 /// A clear medium that absorbs light by the length of the way through it (Beer's law).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Medium {
+    /// The fractions of light that are left after the length `at`.
+    left: DVec3,
     /// The logarithms of the fractions of light that are left after the length `at`.
     logarithms: DVec3,
+    /// A length, in world units.
     at: f64,
 }
 
@@ -63,7 +66,17 @@ impl Medium {
     /// Makes a medium that leaves these fractions of light, more than 0 and at most 1, after the length `at`, in world units;
     /// `None` if it leaves all.
     pub fn new(left: DVec3, at: f64) -> Option<Self> {
-        (left != DVec3::ONE).then(|| Self { logarithms: left.map(libm::log), at })
+        (left != DVec3::ONE).then(|| Self { left, logarithms: left.map(libm::log), at })
+    }
+
+    /// Returns the fractions of light that are left after the length [`at`](Self::at).
+    pub(crate) fn left(&self) -> DVec3 {
+        self.left
+    }
+
+    /// Returns the length after which the fractions [`left`](Self::left) are left, in world units.
+    pub(crate) fn at(&self) -> f64 {
+        self.at
     }
 
     /// Returns the fraction of light that passes a way of this length, in world units.

@@ -7,6 +7,8 @@
 use crate::world::hittable::Hittable;
 use crate::world::material::Rgb;
 use glam::{DVec2, DVec3};
+use tabray_exact::interval::{Float, Interval};
+use tabray_exact::scalar::{Scalar, cross, dot, per_axis};
 
 /// The window through which a sample looks: its width in world units, at the start of its ray and for each unit of the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,6 +67,44 @@ impl Patch {
     }
 }
 
+/// Enclosures of a [`Patch`].
+#[derive(Clone, Copy, Debug)]
+pub struct PatchBounds<F> {
+    /// The point around which it lies.
+    pub middle: [Interval<F>; 3],
+    /// Its sides, in world units.
+    pub sides: [[Interval<F>; 3]; 2],
+}
+
+impl<F: Float> PatchBounds<F> {
+    /// Encloses the patch that [`Patch::seen`] returns, before any rounding; `None` where its sides are open, as where the
+    /// surface faces the ray.
+    pub(crate) fn seen(
+        middle: [Interval<F>; 3],
+        dir: [Interval<F>; 3],
+        normal: [Interval<F>; 3],
+        width: Interval<F>,
+    ) -> Option<Self> {
+        let cosine = dot(dir, normal);
+        let along = per_axis(|axis| dir[axis] - cosine * normal[axis]);
+        let length = dot(along, along).sqrt();
+        if length.low <= F::of(0.0) || !length.is_bounded() {
+            return None;
+        }
+        let along = along.map(|axis| axis / length);
+        let long = width / cosine.abs().max(Interval::constant(LEAST_COSINE));
+        let across = cross(normal, along).map(|axis| width * axis);
+        Some(Self { middle, sides: [along.map(|axis| long * axis), across] })
+    }
+
+    /// Returns how far the patch reaches along two directions, from one end to the other, given a function that returns the
+    /// parts of a vector along them.
+    pub fn widths(&self, along: impl Fn([Interval<F>; 3]) -> [Interval<F>; 2]) -> [Interval<F>; 2] {
+        let [one, other] = self.sides.map(|side| along(side).map(Scalar::abs));
+        [one[0] + other[0], one[1] + other[1]]
+    }
+}
+
 /// Tells whether a square or a tile is odd, given its two whole numbers: in a row, every other one is. One that is no
 /// number counts as odd.
 #[inline(always)]
@@ -78,6 +118,13 @@ pub fn is_odd(square: DVec2) -> bool {
 /// of side 1 and the one from 0 to 1 is even.
 pub fn odd_part(middle: DVec2, widths: DVec2) -> f64 {
     0.5 - 0.5 * balance(middle.x, widths.x) * balance(middle.y, widths.y)
+}
+
+/// Encloses what [`odd_part`] returns, before any rounding.
+pub fn odd_part_bounds<F: Float>(middle: [Interval<F>; 2], widths: [Interval<F>; 2]) -> Interval<F> {
+    let half = Interval::constant(0.5);
+    let balance = |axis: usize| balance_bounds(middle[axis], widths[axis]);
+    half - half * balance(0) * balance(1)
 }
 
 /// Returns a colour between two others, or one of them: whatever rounding does, no channel lies beyond both.
@@ -95,6 +142,35 @@ fn balance(middle: f64, width: f64) -> f64 {
     // The integral from 0 rises to 1 and falls back to 0.
     let integral = |at: f64| 1.0 - (at.rem_euclid(2.0) - 1.0).abs();
     ((integral(to) - integral(from)) / width).clamp(-1.0, 1.0)
+}
+
+/// Encloses the mean that [`balance`] returns.
+fn balance_bounds<F: Float>(middle: Interval<F>, width: Interval<F>) -> Interval<F> {
+    let n = Interval::<F>::constant;
+    let half = n(0.5) * width;
+    let (from, to) = (middle - half, middle + half);
+    let any = n(-1.0).hull(n(1.0));
+    if let (Some(first), Some(last)) = (from.certain_floor(), to.certain_floor())
+        && first == last
+    {
+        return if (0.5 * first).floor() == 0.5 * first { n(1.0) } else { n(-1.0) };
+    }
+    if width.low <= F::of(0.0) || !from.is_bounded() || !to.is_bounded() {
+        return any;
+    }
+    let mean = (triangle(to) - triangle(from)) / width;
+    mean.max(n(-1.0)).min(n(1.0))
+}
+
+/// Encloses the distance to the nearest even number, which is the integral of the wave of [`balance`].
+fn triangle<F: Float>(at: Interval<F>) -> Interval<F> {
+    let n = Interval::<F>::constant;
+    // A whole number of periods is left out, whichever: the rest is from 0 to 2, or a little beyond.
+    let periods = (0.5 * at.coarse().middle()).floor();
+    let rest = at - n(2.0 * periods);
+    let folded = (n(1.0) - (rest - n(1.0)).abs()).abs();
+    // Beyond two more periods it is not known as a sum of two bends.
+    if rest.low >= F::of(-1.0) && rest.high <= F::of(3.0) { folded } else { n(0.0).hull(n(1.0)) }
 }
 
 #[cfg(test)]
@@ -120,6 +196,24 @@ mod tests {
     }
 
     proptest! {
+        /// Of squares known exactly and of squares known up to a little.
+        #[test]
+        fn the_enclosure_of_the_odd_part_contains_it(
+            x in -9.0..9.0_f64, y in -9.0..9.0_f64, width in 1e-3..5.0_f64, height in 1e-3..5.0_f64, off in 0.0..0.01_f64,
+        ) {
+            let around = |at: f64, off: f64| Interval { low: at - off, high: at + off };
+            let found = odd_part(DVec2::new(x, y), DVec2::new(width, height));
+            let exactly = odd_part_bounds([x, y].map(Interval::point), [width, height].map(Interval::point));
+            let nearly = odd_part_bounds([x, y].map(|at| around(at, off)), [width, height].map(Interval::point));
+            prop_assert!(exactly.low - 1e-12 <= found && found <= exactly.high + 1e-12, "{found} {exactly:?}");
+            prop_assert!(exactly.high - exactly.low < 1e-9, "{exactly:?}");
+            prop_assert!(nearly.low <= exactly.high && exactly.low <= nearly.high, "{nearly:?} {exactly:?}");
+            for part in [-1.0, -0.3, 0.8] {
+                let moved = odd_part(DVec2::new(x + part * off, y - part * off), DVec2::new(width, height));
+                prop_assert!(nearly.low - 1e-12 <= moved && moved <= nearly.high + 1e-12, "{moved} {nearly:?}");
+            }
+        }
+
         #[test]
         fn the_part_of_odd_squares_is_that_of_many_samples(
             x in -9.0..9.0_f64, y in -9.0..9.0_f64, width in 0.0..5.0_f64, height in 0.0..5.0_f64,

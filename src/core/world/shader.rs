@@ -5,7 +5,7 @@ use crate::geometry::ray::Side;
 use crate::world::certify::{Precise, ProofMethods};
 use crate::world::hittable::{Curvature, Hittable};
 use crate::world::material::{Look, Material, Rgb};
-use crate::world::patch::Patch;
+use crate::world::patch::{Patch, PatchBounds};
 use f256::f256;
 use glam::{DVec2, DVec3};
 use tabray_exact::interval::{Fine, Float, Fraction, Interval};
@@ -150,6 +150,9 @@ pub struct PointBounds<F> {
     pub uv: Option<[Interval; 2]>,
     /// The index of the face; `None` where the shape has none, it is not known, or the shader does not see it.
     pub face: Option<u32>,
+    /// The patch of which the mean is shown, of all whose points are these; `None` where a point is shown, or the patch is not
+    /// known.
+    pub patch: Option<PatchBounds<F>>,
 }
 
 impl<F: Precise> PointBounds<F> {
@@ -164,7 +167,7 @@ impl<F: Precise> PointBounds<F> {
         let shape = F::proofs(shape);
         let uv = if sees.uv { shape.uv_bounds(position, part) } else { None };
         let face = if sees.face { shape.face(position, part) } else { None };
-        Self { position, normal, uv, face }
+        Self { position, normal, uv, face, patch: None }
     }
 }
 
@@ -308,6 +311,22 @@ impl<F: Float> From<&Material> for LookBounds<F> {
 }
 
 impl<F: Float> LookBounds<F> {
+    /// Returns the bounds of means of both, of which the other has this part.
+    pub fn mean(&self, other: &Self, part: Interval<F>) -> Self {
+        let either = self.hull(other);
+        let mean = |one: [Interval<F>; 3], other: [Interval<F>; 3], either: [Interval<F>; 3]| {
+            per_axis(|channel| {
+                let Interval { low, high } = one[channel] + part * (other[channel] - one[channel]);
+                Interval { low: low.max(either[channel].low), high: high.min(either[channel].high) }
+            })
+        };
+        Self {
+            ambient: mean(self.ambient, other.ambient, either.ambient),
+            diffuse: mean(self.diffuse, other.diffuse, either.diffuse),
+            specular: mean(self.specular, other.specular, either.specular),
+        }
+    }
+
     /// Returns the smallest bounds that contain both.
     pub fn hull(&self, other: &Self) -> Self {
         let hull = |one: [Interval<F>; 3], other: [Interval<F>; 3]| {
@@ -356,6 +375,10 @@ pub fn enclosed<F: Precise>(
         normal: at.normal.map(|normal| normal.map(F::widen)),
         uv: at.uv,
         face: at.face,
+        patch: at.patch.map(|PatchBounds { middle, sides }| PatchBounds {
+            middle: middle.map(F::widen),
+            sides: sides.map(|side| side.map(F::widen)),
+        }),
     };
     let look = EncloseLook::<Fraction>::look(shader, material, &own)?;
     let narrow = |colour: [Fine; 3]| colour.map(F::narrow);

@@ -47,10 +47,17 @@ pub(super) fn crossings<N: Number>(law: Law, surface: &HitPoints<N>, dir: [N; 3]
             let reflected = n(0.5) * (across.powi(2) + along.powi(2));
             let bend = ratio * cosine - root;
             let onward = per_axis(|axis| ratio * dir[axis] + bend * surface.normal[axis]);
-            // Bent normals may lead a ray back to the side from which it comes.
-            let is_through = |unbent| dot(onward, unbent).range().high < N::of(0.0);
-            let is_known = surface.unbent.is_none_or(is_through);
-            is_known.then_some(Crossings { reflected: [reflected; 3], onward: Some(onward) })
+            // Bent normals may lead a ray back to the side from which it comes: the surface's own take their place.
+            if let Some(unbent) = surface.unbent {
+                let through = dot(onward, unbent).range();
+                if through.low >= N::of(0.0) {
+                    return crossings(law, &HitPoints { normal: unbent, unbent: None, ..*surface }, dir);
+                }
+                if through.high >= N::of(0.0) {
+                    return None;
+                }
+            }
+            Some(Crossings { reflected: [reflected; 3], onward: Some(onward) })
         }
         Law::Unknown => None,
     }

@@ -153,6 +153,7 @@ impl<N: Number> Shining<'_, N> {
 
     fn passes(&self, toward: [N; 3], ends: Ends<N::End>) -> Passes<N> {
         let (origin, leaves) = (self.surface.at, Some(self.surface.place));
-        passed(self.scene, &Path { line: Line { origin, dir: toward }, leaves }, self.index, ends)
+        let path = Path { line: Line { origin, dir: toward }, leaves, is_inside: self.surface.is_inside };
+        passed(self.scene, &path, self.index, ends)
     }
 }

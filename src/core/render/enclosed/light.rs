@@ -8,6 +8,7 @@ use crate::geometry::sight::Line;
 use crate::world::packets::light::PacketLight;
 use crate::world::rules::{Falloff, Rules};
 use crate::world::sample::Sample;
+use glam::DVec2;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{cross, dot, per_axis};
 
@@ -67,7 +68,8 @@ pub(super) fn shine<N: Number>(
             scattered = per_axis(|channel| scattered[channel] + surface.specular[channel] * strength);
         }
     }
-    let path = Path { line: Line { origin: surface.at, dir: toward }, leaves: Some(surface.place) };
+    let line = Line { origin: surface.at, dir: toward };
+    let path = Path { line, leaves: Some(surface.place), is_inside: surface.is_inside };
     let full = per_axis(|channel| scattered[channel] * sent[channel]);
     let lit = passed(scene, &path, index, Ends::at(N::of(1.0))).lit(scene, &full, above)?;
     Some(lit.map(N::mean_over_light))
@@ -89,15 +91,21 @@ fn toward<N: Number>(
     let (place, [across, up]) = match seen {
         LightPoints::Middle => return Some(toward),
         LightPoints::Of(sample) => {
-            let draw = sample.on_light(index);
-            let (sin, cos) = (n(2.0) * N::enclosing(Interval::pi()) * n(draw.y)).sin_cos();
-            let radius = n(draw.x).sqrt();
-            ([radius * cos, radius * sin], orthonormal_pair(unit(toward))?)
+            (in_disc(sample.on_light(index)), orthonormal_pair(unit(toward))?)
         }
         LightPoints::All => return Some(on_disc(toward, n(size))),
     };
     let [x, y] = place.map(|coordinate| n(size) * coordinate);
     Some(per_axis(|axis| toward[axis] + (x * across[axis] + y * up[axis])))
+}
+
+/// Encloses the point of the unit disc that two numbers from 0 to 1 choose, as [`sample::on_disc`](crate::world::sample::on_disc)
+/// does.
+pub(super) fn in_disc<N: Number>(numbers: DVec2) -> [N; 2] {
+    let n = N::constant;
+    let (sin, cos) = (n(2.0) * N::enclosing(Interval::pi()) * n(numbers.y)).sin_cos();
+    let radius = n(numbers.x).sqrt();
+    [radius * cos, radius * sin]
 }
 
 /// Encloses the vectors to all points of a disc of this radius that faces the points from which `toward` leads to its middle.

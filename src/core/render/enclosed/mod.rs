@@ -13,7 +13,9 @@
 
 mod crossing;
 mod emitted;
+mod facets;
 mod light;
+mod media;
 mod number;
 mod panes;
 mod rays;

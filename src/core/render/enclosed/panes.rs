@@ -1,5 +1,6 @@
 //! How much light passes between a point and a lamp.
 
+use super::media;
 use super::number::{Endpoint, Hit, Number, coarse, ranges};
 use super::scene::{Colour, EnclosedScene, Path, Place};
 use super::surface::tint;
@@ -7,7 +8,7 @@ use crate::geometry::sight::Line;
 use crate::world::shader::PointBounds;
 use std::ptr;
 use tabray_exact::interval::{Float, Interval};
-use tabray_exact::scalar::per_axis;
+use tabray_exact::scalar::{dot, per_axis};
 
 /// The number of walls of one transparent object on a shadow ray after which what passes is open.
 const MAX_PANES: usize = 100;
@@ -73,14 +74,15 @@ pub(super) fn passed<N: Number>(
     let objects = &scene.model.objects;
     let coarse = coarse(&path.line);
     let is_glass = |object: &usize| objects[*object].material.transparency != 0.0;
-    let mut panes = Panes { at: Vec::new(), passed: None };
+    let mut panes = Panes { at: Vec::new(), ways: Vec::new(), passed: None };
     let (mut open, mut is_blocked) = (Vec::new(), false);
     for object in (0..objects.len()).filter(is_glass) {
         if let Err(low) = panes.add(scene, path, object, ends) {
-            panes.at.push(Interval { low, high: N::of(scene.leaves(&coarse, object)) });
+            panes.at.push((object, Interval { low, high: N::of(scene.leaves(&coarse, object)) }));
             open.push(object);
         }
     }
+    open.extend(panes.interrupted());
     // The object as which a light is seen is convex, and not in the way of its points.
     let source = &scene.model.lights[light].args;
     let is_source = |object: &usize| {
@@ -112,8 +114,10 @@ pub(super) fn passed<N: Number>(
 
 /// The panes of glass on lines.
 struct Panes<N: Number> {
-    /// Where they are or may be.
-    at: Vec<Interval<N::End>>,
+    /// The objects whose they are, and where they are or may be.
+    at: Vec<(usize, Interval<N::End>)>,
+    /// The objects whose media absorb light, and where it passes through these.
+    ways: Vec<(usize, Interval<N::End>)>,
     /// The fraction of light that passes, if there is any pane.
     passed: Option<Colour<N>>,
 }
@@ -121,7 +125,15 @@ struct Panes<N: Number> {
 impl<N: Number> Panes<N> {
     /// Tells whether any pane may be at a t.
     fn are_at(&self, t: Interval<N::End>) -> bool {
-        self.at.iter().any(|pane| pane.low <= t.high && t.low <= pane.high)
+        self.at.iter().any(|(_, pane)| meet(*pane, t))
+    }
+
+    /// Returns the objects in whose media there may be panes of others, between which light passes freely.
+    fn interrupted(&self) -> impl Iterator<Item = usize> {
+        let is_interrupted = |(object, way): &&(usize, Interval<N::End>)| {
+            self.at.iter().any(|(other, pane)| other != object && meet(*pane, *way))
+        };
+        self.ways.iter().filter(is_interrupted).map(|(object, _)| *object)
     }
 
     /// Adds each wall of a transparent object that the lines pass through before they end.
@@ -135,6 +147,8 @@ impl<N: Number> Panes<N> {
         object: usize,
         ends: Ends<N::End>,
     ) -> Result<(), N::End> {
+        let medium = scene.model.objects[object].material.medium();
+        let length = dot(path.line.dir, path.line.dir).sqrt();
         let (mut onward, mut start) = (*path, N::constant(0.0));
         for _ in 0..MAX_PANES {
             let mut all = Vec::new();
@@ -148,11 +162,9 @@ impl<N: Number> Panes<N> {
                 }
                 true
             });
-            // What a medium behind the walls absorbs is not enclosed.
-            let absorbs = scene.model.objects[object].material.medium().is_some();
-            let (at, place) = match all[..] {
-                [] => return Ok(()),
-                [(_, Hit::Certain(at), place)] if !absorbs => (start + at, place),
+            let wall = match all[..] {
+                [] => None,
+                [(_, Hit::Certain(at), place)] => Some((start + at, place)),
                 [(first, ..), ..] => {
                     return Err(all.iter().fold(
                         first,
@@ -162,21 +174,57 @@ impl<N: Number> Panes<N> {
                     ));
                 }
             };
+            // A medium absorbs what leaves the object on its inside, or hits it there.
+            let from_inside = onward.is_inside && onward.leaves.is_some_and(|place| place.object == object);
+            let to_inside = match (&medium, wall) {
+                (Some(_), Some((at, place))) => {
+                    Some(is_inside(scene, place, path.line.at(at), path.line.dir).ok_or(at.range().low)?)
+                }
+                _ => None,
+            };
+            if let Some(medium) = &medium
+                && (from_inside || to_inside == Some(true))
+            {
+                let to = wall.map_or(Interval { low: ends.first, high: ends.last }, |(at, _)| at.range());
+                let way = wall.map_or(N::enclosing(to), |(at, _)| at) - start;
+                self.ways.push((object, start.range().hull(to)));
+                let is_endless = wall.is_none() && ends.first == N::End::INFINITY;
+                self.pass(media::passed(medium, (!is_endless).then_some(way * length)));
+            }
+            let Some((at, place)) = wall else { return Ok(()) };
             let range = at.range();
             // Of panes in one place, one stands for all: that is not decided here.
             if range.high >= ends.first || self.are_at(range) {
                 return Err(range.low);
             }
             let point = path.line.at(at);
-            let tint = pane_tint(scene, place, point).ok_or(range.low)?;
-            let before = self.passed.unwrap_or([N::constant(1.0); 3]);
-            self.passed = Some(per_axis(|channel| before[channel] * tint[channel]));
-            self.at.push(range);
+            self.pass(pane_tint(scene, place, point).ok_or(range.low)?);
+            self.at.push((object, range));
             start = at;
-            onward = Path { line: Line { origin: point, dir: path.line.dir }, leaves: Some(place) };
+            let line = Line { origin: point, dir: path.line.dir };
+            onward = Path { line, leaves: Some(place), is_inside: to_inside == Some(false) };
         }
         Err(start.range().low)
     }
+
+    /// Lets only these fractions of the light pass.
+    fn pass(&mut self, fractions: Colour<N>) {
+        let before = self.passed.unwrap_or([N::constant(1.0); 3]);
+        self.passed = Some(per_axis(|channel| before[channel] * fractions[channel]));
+    }
+}
+
+/// Tells whether two stretches of lines have a place in common.
+fn meet<F: Float>(one: Interval<F>, other: Interval<F>) -> bool {
+    one.low <= other.high && other.low <= one.high
+}
+
+/// Tells whether lines along `dir` hit a place on the inside at points; `None` where it is open.
+fn is_inside<N: Number>(scene: &EnclosedScene, place: Place, at: [N; 3], dir: [N; 3]) -> Option<bool> {
+    let shape = scene.model.objects[place.object].shape.proven()?;
+    let along = dot(N::gradient(shape, at, place.part), dir).range();
+    let zero = N::of(0.0);
+    if along.low > zero { Some(true) } else { (along.high < zero).then_some(false) }
 }
 
 /// Encloses the fraction of light that passes through a place at points; `None` where it is open.

@@ -3,12 +3,13 @@
 use super::crossing::{Crossings, crossings};
 use super::emitted;
 use super::light::{self, LightPoints};
+use super::media;
 use super::number::{Hit, Number};
 use super::scene::{Colour, EnclosedScene, Path, Place};
 use super::surface::{HitPoints, is_black, tint};
 use crate::geometry::sight::Line;
 use crate::scene::model::Object;
-use crate::world::interface::Interface;
+use crate::world::interface::{Interface, Medium};
 use crate::world::rules::{self, Rules};
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{dot, per_axis};
@@ -40,6 +41,15 @@ struct Ray<N> {
     depth: usize,
     /// Whether samples show patches of surfaces along the rays.
     shows_patches: bool,
+}
+
+/// Rays that continue from a surface.
+struct Onward<N> {
+    dir: [N; 3],
+    /// Whether the surface keeps the rays apart as they were, so that they show patches as long as they did.
+    keeps: bool,
+    /// Whether they pass through the surface.
+    through: bool,
 }
 
 /// Traces rays that start as one.
@@ -75,7 +85,7 @@ impl<'s> EnclosingTracer<'s> {
     /// Encloses the colours that primary rays return; `None` where they are open.
     pub fn primary<N: Number>(&mut self, line: &Line<N>) -> Option<Colour<N>> {
         let length = dot(line.dir, line.dir).sqrt();
-        let path = Path { line: *line, leaves: None };
+        let path = Path { line: *line, leaves: None, is_inside: false };
         let travelled = N::constant(0.0);
         self.colour(&Ray { path, length, travelled, weight: 1.0, depth: 0, shows_patches: true })
     }
@@ -137,7 +147,8 @@ impl<'s> EnclosingTracer<'s> {
         let Some(background) = &self.scene.model.background else { return [N::constant(0.0); 3] };
         let toward = per_axis(|axis| (ray.path.line.dir[axis] / ray.length).coarse());
         let seen = background.value.enclose(toward);
-        per_axis(|channel| N::enclosing(Interval::from_f64(seen[channel])))
+        let seen = per_axis(|channel| N::enclosing(Interval::from_f64(seen[channel])));
+        absorbed(seen, media::between(self.scene, &ray.path, None), None)
     }
 
     /// Encloses the colours that rays return which hit a place at t; `None` where they are open.
@@ -145,12 +156,14 @@ impl<'s> EnclosingTracer<'s> {
         let interface = self.scene.model.objects[place.object].material.interface.as_deref();
         let mut any = None;
         let window = self.scene.window.filter(|_| ray.shows_patches);
-        let window = window.map(|window| (window, ray.travelled.coarse()));
+        let window = window.map(|window| (window, ray.travelled));
         for surface in HitPoints::facing(self.scene, (&ray.path.line, ray.length), t, place, window)? {
             let shaded = match interface {
                 None => self.shaded(ray, t, &surface)?,
                 Some(interface) => self.divided(ray, t, &surface, interface)?,
             };
+            let medium = media::between(self.scene, &ray.path, Some((place.object, surface.is_inside)));
+            let shaded = absorbed(shaded, medium, Some(t * ray.length));
             any = Some(any.map_or(shaded, |any| hull(any, shaded)));
         }
         any
@@ -164,19 +177,19 @@ impl<'s> EnclosingTracer<'s> {
         if transparency != 0.0 {
             let tint = tint(transparency, surface.diffuse)?;
             let kept = N::constant(1.0) - N::constant(transparency);
-            let behind = self.secondary(ray, surface, travelled, (dir, true), &tint)?;
+            let behind = self.secondary(ray, surface, travelled, Onward { dir, keeps: true, through: true }, &tint)?;
             colour = per_axis(|at| rules::transmitted(colour[at], kept, behind[at], tint[at]));
         }
         if !is_black(&surface.specular) {
-            let onward = (surface.mirrored(dir)?, is_flat);
+            let onward = Onward { dir: surface.mirrored(dir)?, keeps: is_flat, through: false };
             let seen = self.secondary(ray, surface, travelled, onward, &surface.specular)?;
             colour = per_axis(|at| rules::reflected(colour[at], seen[at], surface.specular[at]));
         }
         Some(colour)
     }
 
-    /// Encloses the colours that rays return which an interface divides. What media absorb and what highlights add to glass is
-    /// not enclosed, nor are the facets of rough surfaces.
+    /// Encloses the colours that rays return which an interface divides. Of a rough surface, the facet of a sample is enclosed,
+    /// not the mean over all.
     fn divided<N: Number>(
         &mut self,
         ray: &Ray<N>,
@@ -186,28 +199,41 @@ impl<'s> EnclosingTracer<'s> {
     ) -> Option<Colour<N>> {
         let object = &self.scene.model.objects[surface.place.object];
         let (Object { material, shape, .. }, is_flat) = (object, object.is_flat_mirror());
-        let is_smooth = interface.roughness() == 0.0 || matches!(self.lights, LightPoints::Middle);
-        if !is_smooth || !shape.is_two_sided() || material.glints() || self.scene.bounds.has_media {
+        if !shape.is_two_sided() {
             return None;
         }
         let (dir, travelled) = (ray.path.line.dir, ray.travelled + t * ray.length);
-        let Crossings { reflected, onward } =
-            crossings(interface.law(), surface, per_axis(|axis| dir[axis] / ray.length))?;
-        let (one, transparency) = (N::constant(1.0), material.transparency);
-        let mut colour = [N::constant(0.0); 3];
+        let (zero, one, transparency) = (N::constant(0.0), N::constant(1.0), material.transparency);
+        let mut colour = [zero; 3];
         if transparency != 1.0 {
             let own = self.own(ray, travelled, surface)?;
             colour = own.map(|own| (one - N::constant(transparency)) * own);
         }
+        if material.glints() && !surface.is_inside {
+            let mirror = HitPoints { ambient: [zero; 3], diffuse: [zero; 3], specular: [one; 3], ..*surface };
+            let glints = self.own(ray, travelled, &mirror)?;
+            colour = per_axis(|channel| colour[channel] + glints[channel]);
+        }
+        let unit = per_axis(|axis| dir[axis] / ray.length);
+        let facet = match (interface.roughness(), self.lights) {
+            (0.0, _) | (_, LightPoints::Middle) => None,
+            (roughness, LightPoints::Of(sample)) => {
+                Some(surface.with_facet(unit, roughness, sample.on_facet(ray.depth as u32))?)
+            }
+            (_, LightPoints::All) => return None,
+        };
+        let surface = facet.as_ref().unwrap_or(surface);
+        let Crossings { reflected, onward } = crossings(interface.law(), surface, unit)?;
         if let Some(onward) = onward {
             let tint = tint(transparency, surface.diffuse)?;
             let through = per_axis(|channel| tint[channel] * (one - reflected[channel]));
-            let onward = onward.map(|along| ray.length * along);
-            let behind = self.secondary(ray, surface, travelled, (onward, false), &through)?;
+            let dir = onward.map(|along| ray.length * along);
+            let onward = Onward { dir, keeps: false, through: true };
+            let behind = self.secondary(ray, surface, travelled, onward, &through)?;
             colour = per_axis(|at| rules::reflected(colour[at], behind[at], through[at]));
         }
         if !is_black(&reflected) {
-            let onward = (surface.mirrored(dir)?, is_flat);
+            let onward = Onward { dir: surface.mirrored(dir)?, keeps: is_flat, through: false };
             let seen = self.secondary(ray, surface, travelled, onward, &reflected)?;
             colour = per_axis(|at| rules::reflected(colour[at], seen[at], reflected[at]));
         }
@@ -230,17 +256,17 @@ impl<'s> EnclosingTracer<'s> {
         Some(per_axis(|channel| rules.after(travelled, colour[channel])))
     }
 
-    /// Encloses the colours that rays return which continue from a surface in these directions, and show patches as long as
-    /// the surface keeps the rays apart as they were. Their light is multiplied by `factor`.
+    /// Encloses the colours that rays return which continue from a surface. Their light is multiplied by `factor`.
     fn secondary<N: Number>(
         &mut self,
         ray: &Ray<N>,
         surface: &HitPoints<N>,
         travelled: N,
-        (dir, keeps): ([N; 3], bool),
+        Onward { dir, keeps, through }: Onward<N>,
         factor: &Colour<N>,
     ) -> Option<Colour<N>> {
-        let path = Path { line: Line { origin: surface.at, dir }, leaves: Some(surface.place) };
+        let (line, is_inside) = (Line { origin: surface.at, dir }, surface.is_inside != through);
+        let path = Path { line, leaves: Some(surface.place), is_inside };
         let most = factor.iter().fold(0.0_f64, |most, channel| most.max(channel.coarse().magnitude()));
         // Rays continue with directions as long as those from which they come.
         let (length, weight, depth) = (ray.length, ray.weight * most, ray.depth + 1);
@@ -287,6 +313,13 @@ impl<'s> EnclosingTracer<'s> {
         let background = self.scene.model.background.as_ref();
         background.map_or(0.0, |background| background.value.brightest().max_element())
     }
+}
+
+/// Encloses what a medium leaves of colours on a way of this length, in world units; `None` is endless.
+fn absorbed<N: Number>(colour: Colour<N>, medium: Option<Medium>, length: Option<N>) -> Colour<N> {
+    let Some(medium) = medium else { return colour };
+    let passed = media::passed(&medium, length);
+    per_axis(|channel| colour[channel] * passed[channel])
 }
 
 /// Encloses all colours up to a magnitude.

@@ -27,6 +27,8 @@ pub(super) struct Path<N> {
     pub line: Line<N>,
     /// The place on which the lines' true starts lie, if they lie on an object.
     pub leaves: Option<Place>,
+    /// Whether the lines leave that object on its inside.
+    pub is_inside: bool,
 }
 
 /// What is known of a model's colours before any ray is followed.
@@ -37,8 +39,6 @@ pub struct SceneBounds {
     pub(super) most: f64,
     /// Whether what glass lets pass of a channel is known to lie between none of it and all.
     pub(super) passes_fractions: bool,
-    /// Whether any object absorbs light by the length of the way through it.
-    pub(super) has_media: bool,
 }
 
 impl SceneBounds {
@@ -53,7 +53,6 @@ impl SceneBounds {
             boxes: model.objects.iter().map(around).collect(),
             most: depth::most(model),
             passes_fractions: model.tints_are_fractions(),
-            has_media: model.objects.iter().any(|object| object.material.medium().is_some()),
         }
     }
 }

@@ -4,7 +4,7 @@ use super::number::{Endpoint, Number, ranges};
 use super::scene::{Colour, EnclosedScene, Place};
 use crate::geometry::sight::Line;
 use crate::scene::model::Object;
-use crate::world::patch::{LEAST_COSINE, Window};
+use crate::world::patch::{LEAST_COSINE, PatchBounds, Window};
 use crate::world::rules;
 use crate::world::shader::PointBounds;
 use tabray_exact::interval::Interval;
@@ -12,6 +12,13 @@ use tabray_exact::scalar::{dot, per_axis};
 
 /// More than the rounding errors of a mean over a patch, as a part of what it is taken of.
 const MEAN_ROUNDING: f64 = 1e-7;
+
+/// A patch of a surface of which the mean is shown.
+struct SeenPatch<F> {
+    /// How far its points are from its middle at most, in world units along each axis.
+    reach: f64,
+    bounds: Option<PatchBounds<F>>,
+}
 
 /// The points that lines hit, and how they look there.
 pub(super) struct HitPoints<N> {
@@ -30,14 +37,13 @@ pub(super) struct HitPoints<N> {
 
 impl<N: Number> HitPoints<N> {
     /// Returns the points at t of lines, once for each way that the normals may face; `None` where these or the look are
-    /// open. Through a window, at these lengths of the path before the lines, a shader's look is a mean over the points
-    /// around: all of their looks enclose it.
+    /// open. Through a window, at these lengths of the path before the lines, a shader's look is a mean over a patch.
     pub fn facing(
         scene: &EnclosedScene,
         (line, length_of_dir): (&Line<N>, N),
         t: N,
         place: Place,
-        window: Option<(Window, Interval)>,
+        window: Option<(Window, N)>,
     ) -> Option<Vec<Self>> {
         let object = &scene.model.objects[place.object];
         let zero = N::of(0.0);
@@ -56,42 +62,48 @@ impl<N: Number> HitPoints<N> {
             Interval::point(N::of(-1.0))
         };
         let window = window.filter(|_| object.shader.sees().patch);
-        let reach = window.map(|(Window { start, spread, .. }, travelled)| {
-            let path = travelled + (t * length_of_dir).coarse();
-            let width = path * Interval::point(spread) + Interval::point(start);
-            let cosine = (dot(outward, line.dir) / length_of_dir).abs().coarse().low;
-            (1.0 + 1e-9) * width.high / cosine.max(LEAST_COSINE)
+        let patch = window.map(|(Window { start, spread, .. }, travelled)| {
+            let width = (travelled + t * length_of_dir) * N::constant(spread) + N::constant(start);
+            let dir = per_axis(|axis| line.dir[axis] / length_of_dir);
+            let cosine = dot(outward, dir).abs().coarse().low;
+            SeenPatch {
+                reach: (1.0 + 1e-9) * width.coarse().high / cosine.max(LEAST_COSINE),
+                bounds: PatchBounds::seen(ranges(at), ranges(dir), ranges(outward), width.range()),
+            }
         });
+        let patch = patch.as_ref();
         let mut all = Vec::with_capacity(2);
         if toward.low <= zero {
-            all.push(Self::shaded(object, at, place, outward, false, reach)?);
+            all.push(Self::shaded(object, at, place, outward, false, patch)?);
         }
         if toward.high >= zero {
-            all.push(Self::shaded(object, at, place, per_axis(|axis| -outward[axis]), true, reach)?);
+            all.push(Self::shaded(object, at, place, per_axis(|axis| -outward[axis]), true, patch)?);
         }
         Some(all)
     }
 
-    /// Returns points whose normals face the lines, turned inward or not. Of a patch, the look is that of all points within
-    /// `reach`.
+    /// Returns points whose normals face the lines, turned inward or not. Of a patch, the look is the mean over it.
     fn shaded(
         object: &Object,
         at: [N; 3],
         place: Place,
         own: [N; 3],
         is_turned: bool,
-        reach: Option<f64>,
+        patch: Option<&SeenPatch<N::End>>,
     ) -> Option<Self> {
         let shape = object.shape.proven()?;
         // What is mirrored is mirrored by the shading normal, too.
         let normal = N::shading_normal(shape, at, place.part, own)?;
         let outward = if is_turned { per_axis(|axis| -normal[axis]) } else { normal };
         let (mut at_ranges, outward) = (ranges(at), ranges(outward));
-        if let Some(reach) = reach {
-            let around = Interval { low: N::of(-reach), high: N::of(reach) };
+        if let Some(SeenPatch { reach, .. }) = patch {
+            let around = Interval { low: N::of(-reach), high: N::of(*reach) };
             at_ranges = at_ranges.map(|along| along + around);
         }
-        let point = PointBounds::seen(shape, object.shader.sees(), place.part, at_ranges, Some(outward));
+        let point = PointBounds {
+            patch: patch.and_then(|patch| patch.bounds),
+            ..PointBounds::seen(shape, object.shader.sees(), place.part, at_ranges, Some(outward))
+        };
         let look = N::End::look(object, &point)?;
         let normal = if object.shader.bends() {
             let bent = N::End::bent(&*object.shader, &point, outward)?.map(N::enclosing);
@@ -101,7 +113,7 @@ impl<N: Number> HitPoints<N> {
         };
         let unbent = (normal != own).then_some(own);
         let rounding = |of: Interval<N::End>| {
-            let error = if reach.is_some() { MEAN_ROUNDING * of.coarse().magnitude() } else { 0.0 };
+            let error = if patch.is_some() { MEAN_ROUNDING * of.coarse().magnitude() } else { 0.0 };
             of + Interval { low: N::of(-error), high: N::of(error) }
         };
         let enclosing = |of: [Interval<N::End>; 3]| per_axis(|channel| N::enclosing(rounding(of[channel])));

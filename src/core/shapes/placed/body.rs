@@ -112,7 +112,7 @@ impl Shader for PlacedShader {
 
     fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
         let position = self.placed.placement.point(at.position);
-        let own = PointBounds { position, normal: None, uv: at.uv, face: at.face };
+        let own = PointBounds { position, normal: None, uv: at.uv, face: at.face, patch: None };
         shader::enclosed(self.own(), material, &own)
     }
 
