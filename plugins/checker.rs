@@ -65,10 +65,20 @@ impl Shader for Checker {
             Some(square.min(count - 1.0))
         };
         let [own, other] = [LookBounds::from(material), LookBounds::from(&*self.other)];
-        Some(match (square(0), square(1)) {
-            (Some(column), Some(row)) if !is_odd(DVec2::new(column, row)) => own,
-            (Some(_), Some(_)) => other,
-            _ => own.hull(&other),
+        // As of a point, the last square has no end.
+        Some(match (square(0), square(1), at.patch.and_then(|patch| patch.uv)) {
+            (Some(column), Some(row), None) if !is_odd(DVec2::new(column, row)) => own,
+            (Some(_), Some(_), None) => other,
+            (.., None) => own.hull(&other),
+            (.., Some([low, high])) => {
+                let squares = |uv: [Interval; 2], axis: usize| {
+                    Interval::<F>::from_f64(uv[axis] * Interval::constant(self.squares[axis]))
+                };
+                let half = Interval::constant(0.5);
+                let middle = [0, 1].map(|axis| half * (squares(low, axis) + squares(high, axis)));
+                let widths = [0, 1].map(|axis| squares(high, axis) - squares(low, axis));
+                own.mean(&other, odd_part_bounds(middle, widths))
+            }
         })
     }
 

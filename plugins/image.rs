@@ -76,6 +76,20 @@ impl Image {
         self.texture.mean_repeated(low.clamp(DVec2::ZERO, whole), high.clamp(DVec2::ZERO, whole))
     }
 
+    /// Encloses the mean between such u and v; `None` where a blend may be shown.
+    fn enclosed_mean<F: Precise>(&self, uv: [[Interval; 2]; 2]) -> Option<[Interval<F>; 3]> {
+        let size = self.size();
+        let place = |along: Interval, axis: usize| {
+            (along * Interval::constant(size[axis]))
+                .max(Interval::constant(0.0))
+                .min(Interval::constant(size[axis]))
+        };
+        let [low, high] = uv.map(|[u, v]| [place(u, 0), place(v, 1)]);
+        // Near by, interpolated texels are shown as they are.
+        let is_far = !self.smooth || (0..2).any(|axis| (high[axis] - low[axis]).low > 1.0);
+        if is_far { self.texture.enclose_mean_repeated([low, high]) } else { None }
+    }
+
     /// Encloses the colours at points with such u and v.
     fn enclosed<F: Precise>(&self, uv: [Interval; 2]) -> [Interval<F>; 3] {
         let (size, n) = (self.size(), Interval::constant);
@@ -120,7 +134,9 @@ impl Shader for Image {
     fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
         // Where nothing is known of u and v, the colours are those of all texels.
         let unknown = [Interval::<f64>::whole(); 2];
-        let (look, texel) = (LookBounds::from(material), self.enclosed::<F>(at.uv.unwrap_or(unknown)));
+        let any = self.enclosed::<F>(at.uv.unwrap_or(unknown));
+        let mean = at.patch.and_then(|patch| self.enclosed_mean(patch.uv?));
+        let (look, texel) = (LookBounds::from(material), mean.unwrap_or(any));
         let times = |colour: [Interval<F>; 3]| per_axis(|channel| colour[channel] * texel[channel]);
         Some(LookBounds { ambient: times(look.ambient), diffuse: times(look.diffuse), ..look })
     }

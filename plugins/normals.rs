@@ -56,4 +56,21 @@ impl Bend for Normals {
         let bent = self.strength * (x * along_u + y * along_v) + z.max(0.0) * normal;
         bent.try_normalize().unwrap_or(normal)
     }
+
+    fn enclose<F: Precise>(&self, at: &PointBounds<F>, normal: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
+        let (n, [along_u, along_v], size) =
+            (Interval::<F>::constant, at.tangents?, self.texture.size().map(f64::from));
+        let place = |axis: usize| Some(at.uv?[axis] * Interval::constant(self.repeat[axis] * size[axis]));
+        let texel = |at: DVec2| {
+            let wrapped = |axis: usize| at[axis].rem_euclid(size[axis].max(1.0)) as u32;
+            self.texture.numbers(wrapped(0), wrapped(1))
+        };
+        let parts = self.texture.enclose_blended::<F>([place(0)?, place(1)?], texel)?;
+        let [x, y, z] = parts.map(|part| n(2.0) * part - n(1.0));
+        let slope = |axis: usize| n(self.strength) * (x * along_u[axis] + y * along_v[axis]);
+        let bent = per_axis(|axis| slope(axis) + z.max(n(0.0)) * normal[axis]);
+        let length = dot(bent, bent).sqrt();
+        let is_known = length.is_bounded() && length.low > n(0.0).low;
+        is_known.then(|| per_axis(|axis| bent[axis] / length))
+    }
 }

@@ -24,6 +24,9 @@ pub struct Window {
 /// The least cosine of the angle at which a patch is seen; at smaller ones, patches are as long as at this.
 pub(crate) const LEAST_COSINE: f64 = 1e-6;
 
+/// More than the rounding errors of a mean over a patch, as a part of what it is taken of.
+pub(crate) const MEAN_ROUNDING: f64 = 1e-7;
+
 /// A part of a surface around a point: a parallelogram that touches the surface there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch {
@@ -74,6 +77,8 @@ pub struct PatchBounds<F> {
     pub middle: [Interval<F>; 3],
     /// Its sides, in world units.
     pub sides: [[Interval<F>; 3]; 2],
+    /// The least and the greatest u and v; `None` where they are not known, or the shader does not see them.
+    pub uv: Option<[[Interval; 2]; 2]>,
 }
 
 impl<F: Float> PatchBounds<F> {
@@ -94,7 +99,39 @@ impl<F: Float> PatchBounds<F> {
         let along = along.map(|axis| axis / length);
         let long = width / cosine.abs().max(Interval::constant(LEAST_COSINE));
         let across = cross(normal, along).map(|axis| width * axis);
-        Some(Self { middle, sides: [along.map(|axis| long * axis), across] })
+        Some(Self { middle, sides: [along.map(|axis| long * axis), across], uv: None })
+    }
+
+    /// Encloses u and v at the corners of the patch, where they are these in the middle, as [`Patch::find_uv`] finds them, given a
+    /// function that encloses those of a point.
+    pub(crate) fn find_uv(
+        &mut self,
+        uv: [Interval; 2],
+        of: impl Fn([Interval<F>; 3]) -> Option<[Interval; 2]>,
+    ) {
+        let (half, middle, [one, other]) = (Interval::constant(0.5), self.middle, self.sides);
+        let corner = |along: f64, across: f64| {
+            let [along, across] = [along, across].map(|sign| half * Interval::constant(sign));
+            let at = of(per_axis(|axis| middle[axis] + along * one[axis] + across * other[axis]))?;
+            // What grows beyond 1 begins at 0 again.
+            let near = |axis: usize| {
+                let off = at[axis] - uv[axis];
+                let turns = (off + Interval::constant(0.5)).certain_floor()?;
+                Some(uv[axis] + (off - Interval::constant(turns)))
+            };
+            Some([near(0)?, near(1)?])
+        };
+        let corners =
+            [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)].map(|(along, across)| corner(along, across));
+        let mut ends = [uv; 2];
+        for at in corners {
+            let Some(at) = at else { return };
+            for axis in 0..2 {
+                ends[0][axis] = ends[0][axis].min(at[axis]);
+                ends[1][axis] = ends[1][axis].max(at[axis]);
+            }
+        }
+        self.uv = Some(ends);
     }
 
     /// Returns how far the patch reaches along two directions, from one end to the other, given a function that returns the

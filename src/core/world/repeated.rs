@@ -1,6 +1,7 @@
 //! Textures that repeat.
 
 use crate::world::material::Rgb;
+use crate::world::patch::MEAN_ROUNDING;
 use crate::world::texture::{MOST_TEXELS, Texture};
 use glam::{DVec2, DVec3};
 use tabray_exact::interval::{Float, Interval};
@@ -45,6 +46,29 @@ impl Texture {
         };
         let around = (are_few(columns) && are_few(rows)).then(|| all(rows))?;
         around.flat_map(|y| all(columns).map(move |x| [x, y])).map(|[x, y]| texel(x, y)).reduce(hull)
+    }
+
+    /// Encloses what [`mean_repeated`](Self::mean_repeated) returns for rectangles whose corners are enclosed; `None` where one may
+    /// be empty. Of corners that are known up to little, means are known up to the light on what is around.
+    pub fn enclose_mean_repeated<F: Float>(
+        &self,
+        [low, high]: [[Interval; 2]; 2],
+    ) -> Option<[Interval<F>; 3]> {
+        let mut around = Interval::constant(MEAN_ROUNDING);
+        for axis in 0..2 {
+            let width = high[axis] - low[axis];
+            if width.low <= 0.0 || !width.is_bounded() {
+                return None;
+            }
+            let doubt = Interval::point(low[axis].width()) + Interval::point(high[axis].width());
+            around = around + Interval::constant(2.0) * doubt / width;
+        }
+        let error = (around * Interval::point(self.brightest())).high;
+        let middle = |corner: [Interval; 2]| DVec2::from(corner.map(Interval::middle));
+        let mean = self.mean_repeated(middle(low), middle(high));
+        Some(per_axis(|channel| {
+            Interval::from_f64(Interval::point(mean[channel]) + Interval { low: -error, high: error })
+        }))
     }
 
     /// Returns the mean light of a rectangle, given by its lower left and its upper right corner in texels. The image goes on

@@ -69,11 +69,16 @@ impl SurfacePoint {
 }
 
 /// How far apart the places are where u and v are compared, as a part of the size of a shape.
-const NEAR: f64 = 1e-6;
+pub(crate) const NEAR: f64 = 1e-6;
+
+/// Returns the size of a shape, in world units; if it has no bounds, the distance of a point of it from the origin.
+pub(crate) fn size_of(shape: &dyn Hittable, distance: impl FnOnce() -> f64) -> f64 {
+    shape.facts().bounds.map_or_else(distance, |Aabb { low, high }| (high - low).length())
+}
 
 /// Returns the unit directions along a surface in which u and v grow; `None` where it has no u and v, or they do not change.
 fn tangents(shape: &dyn Hittable, position: DVec3, normal: DVec3) -> Option<[DVec3; 2]> {
-    let size = shape.facts().bounds.map_or(position.length(), |Aabb { low, high }| (high - low).length());
+    let size = size_of(shape, || position.length());
     let (across, up) = normal.any_orthonormal_pair();
     // What grows beyond 1 begins at 0 again.
     let wrapped = |difference: DVec2| difference - difference.round();
@@ -153,6 +158,9 @@ pub struct PointBounds<F> {
     /// The patch of which the mean is shown, of all whose points are these; `None` where a point is shown, or the patch is not
     /// known.
     pub patch: Option<PatchBounds<F>>,
+    /// The unit directions along the surface in which u and v grow; `None` where they are not known, or the shader does not see
+    /// them.
+    pub tangents: Option<[[Interval<F>; 3]; 2]>,
 }
 
 impl<F: Precise> PointBounds<F> {
@@ -167,7 +175,7 @@ impl<F: Precise> PointBounds<F> {
         let shape = F::proofs(shape);
         let uv = if sees.uv { shape.uv_bounds(position, part) } else { None };
         let face = if sees.face { shape.face(position, part) } else { None };
-        Self { position, normal, uv, face, patch: None }
+        Self { position, normal, uv, face, patch: None, tangents: None }
     }
 }
 
@@ -375,10 +383,12 @@ pub fn enclosed<F: Precise>(
         normal: at.normal.map(|normal| normal.map(F::widen)),
         uv: at.uv,
         face: at.face,
-        patch: at.patch.map(|PatchBounds { middle, sides }| PatchBounds {
+        patch: at.patch.map(|PatchBounds { middle, sides, uv }| PatchBounds {
             middle: middle.map(F::widen),
             sides: sides.map(|side| side.map(F::widen)),
+            uv,
         }),
+        tangents: at.tangents.map(|tangents| tangents.map(|along| along.map(F::widen))),
     };
     let look = EncloseLook::<Fraction>::look(shader, material, &own)?;
     let narrow = |colour: [Fine; 3]| colour.map(F::narrow);

@@ -90,9 +90,7 @@ fn toward<N: Number>(
     }
     let (place, [across, up]) = match seen {
         LightPoints::Middle => return Some(toward),
-        LightPoints::Of(sample) => {
-            (in_disc(sample.on_light(index)), orthonormal_pair(unit(toward))?)
-        }
+        LightPoints::Of(sample) => (in_disc(sample.on_light(index)), orthonormal_pair(unit(toward))?),
         LightPoints::All => return Some(on_disc(toward, n(size))),
     };
     let [x, y] = place.map(|coordinate| n(size) * coordinate);

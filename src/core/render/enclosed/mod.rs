@@ -22,6 +22,7 @@ mod rays;
 mod sampled;
 mod scene;
 mod surface;
+mod tangents;
 
 pub use light::LightPoints;
 pub use number::{Endpoint, Number};

@@ -177,7 +177,8 @@ impl<'s> EnclosingTracer<'s> {
         if transparency != 0.0 {
             let tint = tint(transparency, surface.diffuse)?;
             let kept = N::constant(1.0) - N::constant(transparency);
-            let behind = self.secondary(ray, surface, travelled, Onward { dir, keeps: true, through: true }, &tint)?;
+            let behind =
+                self.secondary(ray, surface, travelled, Onward { dir, keeps: true, through: true }, &tint)?;
             colour = per_axis(|at| rules::transmitted(colour[at], kept, behind[at], tint[at]));
         }
         if !is_black(&surface.specular) {

@@ -2,16 +2,15 @@
 
 use super::number::{Endpoint, Number, ranges};
 use super::scene::{Colour, EnclosedScene, Place};
+use super::tangents::tangents;
 use crate::geometry::sight::Line;
 use crate::scene::model::Object;
-use crate::world::patch::{LEAST_COSINE, PatchBounds, Window};
+use crate::world::certify::Precise;
+use crate::world::patch::{LEAST_COSINE, MEAN_ROUNDING, PatchBounds, Window};
 use crate::world::rules;
 use crate::world::shader::PointBounds;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{dot, per_axis};
-
-/// More than the rounding errors of a mean over a patch, as a part of what it is taken of.
-const MEAN_ROUNDING: f64 = 1e-7;
 
 /// A patch of a surface of which the mean is shown.
 struct SeenPatch<F> {
@@ -95,17 +94,28 @@ impl<N: Number> HitPoints<N> {
         // What is mirrored is mirrored by the shading normal, too.
         let normal = N::shading_normal(shape, at, place.part, own)?;
         let outward = if is_turned { per_axis(|axis| -normal[axis]) } else { normal };
-        let (mut at_ranges, outward) = (ranges(at), ranges(outward));
+        let (sees, outward) = (object.shader.sees(), ranges(outward));
+        let seen = |at| PointBounds::seen(shape, sees, place.part, at, Some(outward));
+        let mut at_ranges = ranges(at);
         if let Some(SeenPatch { reach, .. }) = patch {
             let around = Interval { low: N::of(-reach), high: N::of(*reach) };
             at_ranges = at_ranges.map(|along| along + around);
         }
-        let point = PointBounds {
-            patch: patch.and_then(|patch| patch.bounds),
-            ..PointBounds::seen(shape, object.shader.sees(), place.part, at_ranges, Some(outward))
-        };
+        let mut bounds = patch.and_then(|patch| patch.bounds);
+        if let Some(bounds) = &mut bounds
+            && let Some(uv) = seen(ranges(at)).uv
+        {
+            let proofs = N::End::proofs(shape);
+            bounds.find_uv(uv, |at| proofs.uv_bounds(at, place.part));
+        }
+        let point = PointBounds { patch: bounds, ..seen(at_ranges) };
         let look = N::End::look(object, &point)?;
         let normal = if object.shader.bends() {
+            // Those of the point, not the mean over a patch.
+            let mut point = seen(ranges(at));
+            if sees.tangents {
+                point.tangents = tangents(&object.shape, place.part, point.position, outward);
+            }
             let bent = N::End::bent(&*object.shader, &point, outward)?.map(N::enclosing);
             if is_turned { bent.map(|along| -along) } else { bent }
         } else {

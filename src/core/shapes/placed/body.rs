@@ -7,7 +7,7 @@ use crate::world::certify::Precise;
 use crate::world::hittable::{ByPackets, Shape};
 use crate::world::material::{Look, Material, Rgb};
 use crate::world::packets::shader::PacketShader;
-use crate::world::patch::Patch;
+use crate::world::patch::{Patch, PatchBounds};
 use crate::world::shader::{self, LookBounds, Plain, PointBounds, Shader, ShaderInputs, SurfacePoint};
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
@@ -112,7 +112,12 @@ impl Shader for PlacedShader {
 
     fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
         let position = self.placed.placement.point(at.position);
-        let own = PointBounds { position, normal: None, uv: at.uv, face: at.face, patch: None };
+        let patch = at.patch.map(|patch| PatchBounds {
+            middle: self.placed.placement.point(patch.middle),
+            sides: patch.sides.map(|side| self.placed.placement.vector(side)),
+            ..patch
+        });
+        let own = PointBounds { position, normal: None, patch, tangents: None, ..*at };
         shader::enclosed(self.own(), material, &own)
     }
 

@@ -102,7 +102,7 @@ fn left(object: &Object) -> Rgb {
 /// Encloses the look of an object, at all of its points.
 fn look(object: &Object) -> Option<LookBounds<f64>> {
     let position = around(object.shape.facts().bounds);
-    let points = PointBounds { position, normal: None, uv: None, face: None, patch: None };
+    let points = PointBounds { position, normal: None, uv: None, face: None, patch: None, tangents: None };
     EncloseLook::<f64>::look(&*object.shader, &object.material, &points)
 }
 
