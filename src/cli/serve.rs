@@ -1,7 +1,8 @@
-//! A server for a page on this machine. It listens on the loopback address only.
+//! A server for a page. Unless another address is given, it listens on the loopback address only.
 
 pub(super) mod access;
 pub(super) mod connections;
+pub(super) mod reach;
 mod response;
 mod work;
 
@@ -14,9 +15,10 @@ use access::Access;
 use connections::{Connections, Limits};
 use hyper::Request;
 use hyper::body::Bytes;
+use reach::Reach;
 use socket2::SockRef;
 use std::io;
-use std::net::{Ipv4Addr, TcpListener};
+use std::net::{SocketAddr, TcpListener};
 use std::ops::RangeInclusive;
 use tabray_core::text;
 use tokio::task::LocalSet;
@@ -35,10 +37,11 @@ pub struct Server {
 }
 
 impl Server {
-    /// Listens on this port, or on the first free one from 3000.
-    pub fn open(port: Option<u16>) -> Result<Self, Failure> {
-        let listen = |port| Self::listen(port).map_err(|error| (port, error));
-        let listener = match port {
+    /// Listens on the port that is given, or on the first free one from 3000.
+    pub fn open(reach: Reach) -> Result<Self, Failure> {
+        reach.check()?;
+        let listen = |port| Self::listen((reach.host, port).into()).map_err(|error| (port, error));
+        let listener = match reach.port {
             Some(port) => listen(port),
             None => PORTS
                 .map(listen)
@@ -49,15 +52,18 @@ impl Server {
             io::ErrorKind::AddrInUse => Failure::Failed(format!(
                 "port {port} is in use; give another with `--port`, or leave it out for the first free one"
             )),
-            _ => Failure::Failed(format!("cannot listen on port {port}: {}", text::reason(&error))),
+            _ => {
+                let (at, reason) = (SocketAddr::new(reach.host, port), text::reason(&error));
+                Failure::Failed(format!("cannot listen on {at}: {reason}"))
+            }
         })?;
-        let access = Access::new(port)
+        let access = Access::new(reach, port)
             .map_err(|error| Failure::Failed(format!("the system has no random numbers: {error}")))?;
         Ok(Self { listener, access })
     }
 
-    fn listen(port: u16) -> io::Result<(TcpListener, u16)> {
-        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
+    fn listen(at: SocketAddr) -> io::Result<(TcpListener, u16)> {
+        let listener = TcpListener::bind(at)?;
         SockRef::from(&listener).listen(QUEUE)?;
         listener.set_nonblocking(true)?;
         let port = listener.local_addr()?.port();

@@ -15,9 +15,9 @@ pub(super) mod session;
 pub(super) mod trial_values;
 mod watched;
 
+use super::serve::reach::Reach;
 use super::serve::{Server, Work};
 use crate::files::input;
-use crate::options::number::whole;
 use crate::options::{method, set};
 use crate::process::failure::{self, Failure};
 use crate::process::{interrupt, messages};
@@ -46,8 +46,8 @@ const PATIENCE: Duration = Duration::from_millis(300);
 
 /// Show the image in the browser, and render it again whenever the scene changes
 ///
-/// Only this machine can reach the page, and only at the address that is printed: it contains a token, new for each
-/// run, that keeps other users out. Click a pixel to see how it gets its colour. For several scenes, the page has a
+/// Only this machine can reach the page, unless `--host` says otherwise, and only at the address that is printed: it
+/// contains a token, new for each run, that keeps other users out. Click a pixel to see how it gets its colour. For several scenes, the page has a
 /// list, and only scenes that are open on a page are read and rendered. Ctrl-C quits, with status 0.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
@@ -57,9 +57,8 @@ pub struct Args {
     scenes: Vec<PathBuf>,
     #[command(flatten)]
     set: set::Args,
-    /// The port of the page on 127.0.0.1; by default the first free one from 3000; 0 is any free one
-    #[arg(long, value_name = "N", value_parser = whole::<u16>(0..=65535))]
-    port: Option<u16>,
+    #[command(flatten)]
+    reach: Reach,
     /// Open the page in the browser
     #[arg(long)]
     open: bool,
@@ -71,6 +70,7 @@ const EXAMPLES: &str = "\
 Examples:
   tabray watch ball.ray --open
   tabray watch ball.ray --port 3000
+  tabray watch ball.ray --port 3000 --allow-host desk.example.org
   tabray watch ball.ray cone.ray
   tabray watch scenes/light";
 
@@ -98,7 +98,7 @@ pub fn run(registry: &'static Registry, args: Args) -> Result<(), Failure> {
         Arc::new(notifier(&sender, || Event::Changed)),
         &mut files,
     )?;
-    let server = Server::open(args.port)?;
+    let server = Server::open(args.reach)?;
     let url = server.url();
     let interrupted = notifier(&sender, || Event::Interrupted);
     interrupt::catch_with(move || {

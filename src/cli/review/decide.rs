@@ -5,6 +5,7 @@ use super::pending::{self, Pending};
 use crate::process::failure::{self, Failure};
 use crate::process::messages;
 use crate::report;
+use crate::serve::reach::Reach;
 use crate::serve::{self, Answer, Server, Work};
 use hyper::body::Bytes;
 use hyper::{Request, Response, StatusCode};
@@ -21,7 +22,7 @@ pub fn serve(
     before: Option<PathBuf>,
     port: Option<u16>,
 ) -> Result<(), Failure> {
-    let server = Server::open(port)?;
+    let server = Server::open(Reach::local(port))?;
     messages::note(&format!("review at {} (Ctrl-C quits)", server.url()));
     let review = Review::new(registry, folder, before);
     let run = server.run(async move |request: Request<Bytes>| review.answer(&request).await);

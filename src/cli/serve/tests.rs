@@ -1,3 +1,4 @@
+use super::reach::Reach;
 use super::{Answer, Body, Limits, Server, Work, stream, text};
 use http_body_util::BodyExt;
 use http_body_util::channel::Channel;
@@ -39,7 +40,7 @@ struct Served {
 
 impl Served {
     fn new(limits: Limits) -> Self {
-        let Ok(server) = Server::open(Some(0)) else { panic!("a port") };
+        let Ok(server) = Server::open(Reach::local(Some(0))) else { panic!("a port") };
         let url = server.url();
         let (host, token) = url.trim_start_matches("http://").split_once('/').expect("a path");
         let (host, token) = (host.to_owned(), token.to_owned());

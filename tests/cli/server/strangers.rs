@@ -3,6 +3,7 @@
 
 use super::{REVIEW, Running, WATCH, folder};
 use crate::watch::program::ball;
+use assert_cmd::cargo::cargo_bin;
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::process::Command;
@@ -155,6 +156,41 @@ fn another_page_in_the_browser_gets_nothing_even_with_the_token() {
         }
         assert_eq!(server.files(), files);
     }
+}
+
+#[test]
+fn a_proxy_is_let_in_by_the_name_that_is_allowed_and_with_the_token_alone() {
+    let args = [WATCH, &["--host", "0.0.0.0", "--allow-host", "desk.example"]].concat();
+    let mut server = Running::start(&args, folder(&ball("9 0 0")));
+    assert!(server.host.starts_with("desk.example:"), "{}", server.host);
+    server.host = server.host.replace("desk.example", "127.0.0.1");
+    let page = |query: &str, headers: &str| server.ask(&format!("GET /{query} HTTP/1.1\n{headers}\n\n")).0;
+    for (query, headers, status) in [
+        ("?token=TOKEN", "Host: desk.example", 200),
+        ("?token=TOKEN", "Host: Desk.example:8443\nOrigin: https://desk.example:8443", 200),
+        ("?token=TOKEN", "Host: HOST", 200),
+        ("", "Host: desk.example", 403),
+        ("?token=TOKEN", "Host: evil.example", 403),
+        ("?token=TOKEN", "Host: desk.example\nOrigin: https://evil.example", 403),
+    ] {
+        assert_eq!(page(query, headers), status, "{query} {headers}");
+    }
+}
+
+#[test]
+fn all_addresses_of_the_machine_take_a_name_that_is_let_in() {
+    let folder = folder(&ball("9 0 0"));
+    let asked = Command::new(cargo_bin!("tabray"))
+        .args([WATCH, &["--host", "0.0.0.0"]].concat())
+        .current_dir(folder.path())
+        .output()
+        .expect("the program runs");
+    assert_eq!(asked.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&asked.stderr).into_owned();
+    assert!(
+        said.contains("stands for all addresses of this machine") && said.contains("--allow-host NAME"),
+        "{said}"
+    );
 }
 
 #[test]
