@@ -59,7 +59,7 @@ impl Differences {
         ] {
             let parts: Vec<_> = differences.iter().map(Difference::describe).collect();
             if !parts.is_empty() {
-                messages::note(&format!("{beginning} {}: see docs/differences.md", parts.join(", and at ")));
+                messages::note(&format!("{beginning} {}: see docs/course.md", parts.join(", and at ")));
             }
         }
     }

@@ -22,7 +22,7 @@ use tabray_lang::registry::Registry;
 
 /// Serve editors: the Language Server Protocol on standard input and output
 ///
-/// An editor starts it: docs/tools.md says how to set it up. It finds all errors of a scene, completes, explains,
+/// An editor starts it: docs/commands.md says how to set it up. It finds all errors of a scene, completes, explains,
 /// renames and formats, in both syntaxes.
 #[derive(clap::Args)]
 pub struct Args {

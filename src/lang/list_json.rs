@@ -1,4 +1,4 @@
-//! The tables for other programs, as JSON: the whole scene language. `docs/tools.md` describes the same fields.
+//! The tables for other programs, as JSON: the whole scene language. `docs/data/fields.csv` describes the same fields.
 //!
 //! Fields are declared in the order in which they are written.
 

@@ -55,15 +55,36 @@ fn the_json_has_every_entity_attribute_and_choice() {
 #[test]
 fn the_docs_tell_every_field_of_the_json() {
     let json = |text: &str| serde_json::from_str::<Value>(text).expect("JSON");
-    assert_tells_fields("tools.md", &json(&printed(&["list", "--json"])));
+    assert_tells_fields("list", &json(&printed(&["list", "--json"])));
     let ball = scene("sphere/in-front.ray").display().to_string();
-    assert_tells_fields("tools.md", &json(&printed(&["bench", "--json", "--seconds", "0", &ball])));
-    let (_, _, stats) = outcome(tabray(&folder()).args(["render", &ball, "-o", "-", "--stats", "json"]));
-    assert_tells_fields("plan.md", &json(&stats));
+    assert_tells_fields("bench", &json(&printed(&["bench", "--json", "--seconds", "0", &ball])));
+    assert_tells_fields("verify", &json(&printed(&["verify", "--json", &ball])));
+    assert_tells_fields("verify", &json(&printed(&["verify", "--colours", "--json", &ball])));
+    let folder_ = folder();
+    let (_, _, stats) = outcome(tabray(&folder_).args([
+        "render",
+        &ball,
+        "-o",
+        "it.ppm",
+        "--samples",
+        "2",
+        "--stats",
+        "json",
+    ]));
+    assert_tells_fields("stats", &json(stats.lines().last().expect("the statistics")));
+    // A picture with two samples in each pixel is not that of the scene with one.
+    let graded = ["grade", &ball, "it.ppm", "--set", "eye.samples=1", "--json"];
+    let (status, out, err) = outcome(tabray(&folder_).args(graded));
+    assert_eq!(status, 1, "{err}");
+    assert_tells_fields("grade", &json(&String::from_utf8(out).expect("text")));
+    fs::write(folder_.path().join("answers.csv"), "ox,oy,oz,dx,dy,dz,t\n4,3,9,0,0,-1,2\n").expect("a file");
+    let (status, out, err) = outcome(tabray(&folder_).args(["judge", &ball, "answers.csv", "--json"]));
+    assert_eq!(status, 1, "{err}");
+    assert_tells_fields("judge", &json(&String::from_utf8(out).expect("text")));
     let wrong = scene("wrong/duplicate-object.ray").display().to_string();
     let check = ["check", "--message-format", "json", &wrong];
     let (_, _, err) = outcome(tabray(&folder()).args(check));
-    assert_tells_fields("tools.md", &json(err.lines().next().expect("a message")));
+    assert_tells_fields("messages", &json(err.lines().next().expect("a message")));
 }
 
 #[test]

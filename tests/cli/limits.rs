@@ -132,7 +132,7 @@ fn memory_that_is_refused_is_told() {
                     command.starts_with("check") || written.len() == 2,
                     "{command} in {kib}: {written:?}"
                 ),
-                // The C library ends the program where it has no memory to start a thread; see docs/limits.md.
+                // The C library ends the program where it has no memory to start a thread; see docs/farms.md.
                 -1 => assert!(
                     said.starts_with("Fatal glibc error: failed to register TLS destructor"),
                     "{said}"

@@ -1,4 +1,5 @@
-//! Checks of `docs/differences.md`: each difference has a scene that loads, and what the page says about it is true.
+//! Checks of the differences that `docs/course.md` lists: each has a scene in `docs/data/differences` that loads, and what
+//! the page says about it is true.
 
 use crate::common::program::{folder, outcome, tabray};
 use crate::common::{registry, render, root};
@@ -21,7 +22,7 @@ struct Scene(String);
 
 impl Scene {
     fn read(&self, accuracy: Option<Accuracy>) -> Result<Loaded, Report> {
-        scene::read(registry(), "scene", &root().join("docs"), self.0.as_bytes(), accuracy)
+        scene::read(registry(), "scene", &root().join("docs/data/differences"), self.0.as_bytes(), accuracy)
     }
 
     fn model(&self, accuracy: Accuracy) -> Model {
@@ -75,14 +76,15 @@ fn is_lit(pixel: &Rgb<u8>) -> bool {
 
 /// Returns the heading, the text and the scene of each difference.
 fn differences() -> Vec<(String, String, Scene)> {
-    let page = fs::read_to_string(root().join("docs/differences.md")).expect("the page");
-    let sections = page.split("\n### ").skip(1);
-    sections
-        .map(|section| {
-            let (heading, rest) = section.split_once('\n').expect("a line");
-            let parts: Vec<_> = rest.split("```").collect();
-            let [reason, scene, _] = parts[..] else { panic!("{heading} has one scene") };
-            (heading.to_owned(), reason.trim().to_owned(), Scene(scene.trim_start().to_owned()))
+    let page = fs::read_to_string(root().join("docs/course.md")).expect("the page");
+    let items = page.split("\n- [").skip(1).filter(|item| item.contains("](data/differences/"));
+    items
+        .map(|item| {
+            let (heading, rest) = item.split_once("](").expect("a link");
+            let (file, reason) = rest.split_once("): ").expect("a reason after the link");
+            let reason = reason.split("\n\n").next().expect("a paragraph");
+            let scene = fs::read_to_string(root().join("docs").join(file)).expect("a scene");
+            (heading.to_owned(), reason.trim().to_owned(), Scene(scene))
         })
         .collect()
 }
@@ -99,7 +101,7 @@ fn hold(checks: &[Check]) {
             }
         }
     }
-    assert!(wrong.is_empty(), "what docs/differences.md says is not so: {wrong:?}");
+    assert!(wrong.is_empty(), "what docs/course.md says is not so: {wrong:?}");
 }
 
 #[test]
@@ -112,6 +114,8 @@ fn each_difference_has_a_reason_a_scene_and_a_check() {
         }
         assert!(headings.insert(heading.clone()), "{heading} stands twice");
     }
+    let scenes = fs::read_dir(root().join("docs/data/differences")).expect("the scenes");
+    assert_eq!(scenes.count(), headings.len(), "each scene is linked");
     let checked = CHECKS.iter().chain(RAYS_THAT_GO_ON).map(|(heading, _)| (*heading).to_owned());
     assert_eq!(headings, checked.collect());
 }

@@ -2,7 +2,7 @@
 //! crate two files import each other.
 //!
 //! `docs/architecture.md` lists the crates and the folders of the core, from the top layer down; it is compared with the
-//! tree here, as `docs/dependencies.md` is with the manifests. Imports of a module's tests are left out.
+//! tree here, as `docs/data/dependencies.csv` is with the manifests. Imports of a module's tests are left out.
 
 mod imports;
 
@@ -196,9 +196,39 @@ fn crates(manifest: &toml::Table, table: &str) -> BTreeSet<String> {
     names.filter(|name| !name.starts_with("tabray")).cloned().collect()
 }
 
+/// Returns the rows of a table in `docs/data`, but for the names of its columns.
+fn table(name: &str) -> Vec<Vec<String>> {
+    let text =
+        fs::read_to_string(root().join("docs/data").join(name).with_extension("csv")).expect("a table");
+    text.lines().skip(1).map(cells).collect()
+}
+
+/// Returns the cells of a row of comma-separated values.
+fn cells(row: &str) -> Vec<String> {
+    let (mut cells, mut is_quoted) = (vec![String::new()], false);
+    for letter in row.chars() {
+        match letter {
+            '"' => is_quoted = !is_quoted,
+            ',' if !is_quoted => cells.push(String::new()),
+            _ => cells.last_mut().expect("a first cell").push(letter),
+        }
+    }
+    cells
+}
+
+#[test]
+fn crates_that_read_hostile_bytes_are_those_that_are_linked() {
+    let lock = fs::read_to_string(root().join("Cargo.lock")).expect("the locked versions");
+    for row in table("hostile") {
+        assert!(row.len() == 5 && row.iter().all(|cell| !cell.is_empty()), "{row:?}");
+        for name in row[0].split(", ") {
+            assert!(lock.contains(&format!("\nname = \"{name}\"\n")), "no crate is named {name}");
+        }
+    }
+}
+
 #[test]
 fn every_dependency_has_its_reason() {
-    let page = fs::read_to_string(root().join("docs/dependencies.md")).expect("the page");
     let all = |table: &str| -> BTreeSet<String> {
         manifests().iter().flat_map(|manifest| crates(manifest, table)).collect()
     };
@@ -206,16 +236,14 @@ fn every_dependency_has_its_reason() {
     // A crate that the program has, tests have too.
     let tests = all("dev-dependencies").into_iter().filter(|name| name == "nix" || !program.contains(name));
     let tests = tests.collect();
-    for (title, there) in [("In the program", &program), ("In the tests", &tests)] {
-        let section = page.split("\n## ").find(|section| section.starts_with(title)).expect(title);
-        let rows = section.lines().filter_map(|line| line.strip_prefix("| `"));
+    for (where_, there) in [("program", &program), ("tests", &tests)] {
         let mut told = BTreeSet::new();
-        for row in rows {
-            let cells: Vec<_> = row.trim_end_matches(" |").split(" | ").collect();
-            assert!(cells.len() == 3 && cells.iter().all(|cell| !cell.is_empty()), "| `{row}");
-            assert!(told.insert(cells[0].trim_end_matches('`').to_owned()), "{row} is there twice");
+        for row in table("dependencies") {
+            let [name, used_in, what, why] = &row[..] else { panic!("{row:?}") };
+            assert!(!what.is_empty() && !why.is_empty(), "{row:?}");
+            assert!(used_in != where_ || told.insert(name.clone()), "{name} is there twice");
         }
-        assert_eq!(told, *there, "docs/dependencies.md against the manifests");
+        assert_eq!(told, *there, "docs/data/dependencies.csv against the manifests");
     }
 }
 

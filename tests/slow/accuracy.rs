@@ -1,4 +1,4 @@
-//! Measures the errors and the cost of each method, and writes `docs/accuracy.md`.
+//! Measures the errors and the cost of each method, and writes `docs/data/accuracy.txt`.
 //!
 //! `cargo test --profile dist --test slow -- --ignored --nocapture accuracy`
 #![allow(clippy::approx_constant, reason = "the notes' vase is 6.28 high")]
@@ -284,7 +284,7 @@ const SECOND_PART: &str = "## Shapes with a formula\n";
 
 /// Replaces one of the two parts of the document.
 fn write_part(change: impl FnOnce(&str, &str) -> String) {
-    let path = common::root().join("docs/accuracy.md");
+    let path = common::root().join("docs/data/accuracy.txt");
     let text = std::fs::read_to_string(&path).expect("the document is there");
     let (first, second) = text.split_once(SECOND_PART).unwrap_or((&text, ""));
     std::fs::write(&path, change(first, second)).expect("the folder of the documents is there");
@@ -298,14 +298,8 @@ fn hard_rays_are_measured() {
     let rays = HARD_SHAPES * HARD_RAYS;
     let mut table = format!(
         "
-{rays} rays of each set for each kind of shape, {HARD_RAYS} for each of {HARD_SHAPES} random ones: spheres; ellipsoids
-with ratios of half axes up to 1e9 : 1; quadrics whose middle is up to 1e4 from their `center`, that touch their box, that
-are two adjacent planes or that are multiplied by up to 1e150; triangles as thin as 1e-12 of their length; tilted planes
-and rectangles. *Camera* rays are aimed at them from nearby, *far* rays from up to 1e9 away; *grazing* rays pass a
-silhouette or an edge at 1e-2 to 1e-15, or are parallel to a plane up to that angle, from up to 1e9 away. The ground truth
-has 300 bits; it starts from the numbers of the scene's text and takes a ray's numbers as they are. *Ties* are rays that
-touch a shape or an edge as far as 300 bits can tell. *Wrong* hits are missed, invented or at an intersection after the
-first; *ulp* is the maximum error of the others in units in the last place of the distance.
+{rays} rays of each set for each kind of shape, {HARD_RAYS} for each of {HARD_SHAPES} random ones, against 300 bits. Far
+rays come from up to 1e9 away; grazing rays pass an outline or an edge at 1e-2 to 1e-15. Ties touch a shape or an edge.
 
 "
     );
@@ -318,35 +312,17 @@ first; *ulp* is the maximum error of the others in units in the last place of th
 fn the_accuracy_of_each_method_is_measured() {
     let _alone = PART.lock();
     let mut text = format!(
-        "# How exact the methods are
+        "{COMMAND}
 
-The `accuracy` of a camera chooses how hits are computed. This page counts the errors of each choice: first the wrong
-hits, which are missed, invented or later than the first, and then the errors of the distances of all others.
-
-The ground truth is every intersection of a ray and a surface, isolated by interval arithmetic, with its distance to 30
-digits. The numbers come from
-
-```sh
-{COMMAND}
-```
-
-To measure the second part alone, replace the last word by `hard_rays`.
-
-*Missed* are hits that were not found, *invented* are hits that do not exist, *later* are hits at an intersection after
-the first. The errors are those of the distances of all other hits, in world units; *off the surface* is the greatest
-distance of their points from the surface. *Time* is per ray, relative to the notes' `steps` in the same run, measured in
-alternating rounds over all rays, including those that miss the surface's heights. Rays are traced one by one here; in
-packets, as in a render, the default takes less time: see the [charts](charts.md).
-
-`steps` is the method of the notes' page on procedural surfaces, which no scene can choose: steps of 0.1, then bisection
-to 1e-6. `classic` is the method of the notes' program: one bracket, from the viewer to the ray's point closest to the
-axis.
+missed, invented, later, wrong: hits that are not the first. Errors are those of the distances of all other hits, in world
+units; ulp: the greatest of them, in units in the last place; off the surface: the greatest distance of hits from it; time:
+of a ray, relative to `steps`.
 
 ## Surfaces of revolution
 
 ### Camera rays
 
-{RAYS} rays of the notes' camera for each profile. The base of each surface is at `4 0 -4`, and the viewer at `4 3 7`.
+{RAYS} rays for each profile.
 
 "
     );
@@ -356,9 +332,7 @@ axis.
         "
 ### Grazing rays
 
-{RAYS} rays for each profile that are tangent to it, up to an offset of 10^-2 to 10^-12 outward or inward. An error in the last digit
-changes their distances by its square root, so the distance of a hit from the surface says more. `classic` loses most of
-them, which takes no time.
+{RAYS} tangents for each profile, up to an offset of 10^-2 to 10^-12.
 
 "
     )
@@ -369,8 +343,7 @@ them, which takes no time.
         "
 ## Spheres and planes from afar
 
-{FAR_RAYS} rays from each distance to a sphere of radius 3 around the shape. *Wrong* are hits that are missed, invented
-or at another intersection; *ulp* is the maximum error of the others in units in the last place of the distance.
+{FAR_RAYS} rays from each distance.
 
 ### A sphere of radius 2
 

@@ -233,7 +233,7 @@ fn a_chart_has_all_its_files_and_its_errors_are_the_same_twice() {
     assert!(words.starts_with(b"What to do:\n  "), "{}", String::from_utf8_lossy(&words));
     let numbers: Value = serde_json::from_slice(&json).expect("JSON");
     assert_eq!(String::from_utf8_lossy(&csv).lines().count(), 1 + errors(&numbers).len());
-    assert_tells_fields("tools.md", &numbers);
+    assert_tells_fields("chart", &numbers);
     let again = serde_json::from_str(&chart::json(&OF_EDGE)).expect("JSON");
     assert_eq!(errors(&numbers), errors(&again));
 }

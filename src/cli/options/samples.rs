@@ -21,8 +21,8 @@ pub struct Args {
     #[arg(long, value_name = "N|MIN..MAX", value_parser = samples)]
     samples: Option<Samples>,
     /// Take as many samples in each pixel as it needs for this error of its colour, such as `2` (levels of 255) or
-    /// `0.5%` (of white): an estimate, which held for 98 to 100 of 100 pixels in the scenes of docs/adaptive.md; 4 to
-    /// 4096 samples unless --samples gives other limits
+    /// `0.5%` (of white): an estimate, not a proof, which held for 98 to 100 of 100 pixels in the scenes of
+    /// docs/errors.md. Takes 4 to 4096 samples unless --samples gives other limits
     #[arg(long, value_name = "LEVELS|PERCENT%", allow_negative_numbers = true)]
     max_error: Option<MaxError>,
     /// Prove the error of --max-error where that is possible: the colour of a pixel is enclosed for all rays through it

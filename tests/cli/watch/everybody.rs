@@ -66,11 +66,11 @@ fn in_all_states(mut look: impl FnMut(&Browser, &str)) {
     }
 }
 
-/// docs/tools.md has the commands that install axe-core and run this test.
+/// CONTRIBUTING.md has the commands that install axe-core and run this test.
 #[test]
 fn axe_finds_nothing_serious_on_the_page() {
     let Some(path) = env::var_os("TABRAY_AXE") else {
-        eprintln!("SKIPPED: TABRAY_AXE does not name the file axe.min.js of axe-core (see docs/tools.md)");
+        eprintln!("SKIPPED: TABRAY_AXE does not name the file axe.min.js of axe-core (see CONTRIBUTING.md)");
         return;
     };
     let axe = fs::read_to_string(path).expect("the library");

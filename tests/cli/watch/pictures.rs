@@ -2,12 +2,9 @@
 
 use crate::common::root;
 use crate::watch::browser::Browser;
-use crate::watch::camera::middle;
 use crate::watch::page::{click, shown};
 use crate::watch::program::Watching;
 use std::fs;
-use std::thread;
-use std::time::Duration;
 use tempfile::TempDir;
 
 /// `cargo test --release --test cli -- --ignored the_screenshots_of_the_docs`
@@ -29,16 +26,4 @@ fn the_screenshots_of_the_docs() {
     browser.emulate([390, 844], true, "dark");
     browser.wait("document.querySelector('canvas').getBoundingClientRect().right < 390");
     write("watch-phone.png");
-
-    browser.emulate([1360, 850], false, "light");
-    browser.press('\u{e00c}');
-    browser.press('c');
-    browser.wait("document.querySelector('#field-viewpoint-0')");
-    let [from, to] = [[0, 0], [-50, -30]].map(|by| middle(&browser, by));
-    browser.drag(0, None, &[from, to]);
-    browser.run_until_done("queue.then(done)");
-    // The image of the last movement is under way.
-    thread::sleep(Duration::from_millis(500));
-    browser.wait("document.documentElement.dataset.version === document.documentElement.dataset.shown");
-    write("watch-light.png");
 }

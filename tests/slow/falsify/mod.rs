@@ -1,5 +1,5 @@
 //! Tries to prove the program wrong: random scenes of several classes, rays aimed where the arithmetic is hard, and an
-//! oracle that starts from the scenes' text and shares no code with the program. See docs/falsify.md.
+//! oracle that starts from the scenes' text and shares no code with the program. See CONTRIBUTING.md.
 //!
 //! `cargo test --release --test slow -- --ignored --nocapture many_scenes`
 

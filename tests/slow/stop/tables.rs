@@ -1,4 +1,4 @@
-//! The tables of docs/limits.md.
+//! The tables of docs/farms.md.
 
 use crate::common::program::{folder, names_in, scene};
 use crate::stop::held::MIRRORS;
@@ -59,7 +59,7 @@ fn measured(folder: &TempDir, args: &[&str], interrupt: Option<Duration>) -> (Du
 }
 
 #[test]
-#[ignore = "takes minutes, and prints a table of docs/limits.md"]
+#[ignore = "takes minutes, and prints a table of docs/farms.md"]
 fn limits_table() {
     let folder = folder();
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).expect("a file");
@@ -113,7 +113,7 @@ fn left(folder: &TempDir, whole: &[u8]) -> String {
 }
 
 #[test]
-#[ignore = "takes a minute, and prints a table of docs/limits.md"]
+#[ignore = "takes a minute, and prints a table of docs/farms.md"]
 fn faults_table() {
     const ARGS: &str = "render hall.ray --size 600 --samples 256 -o a.png";
     let whole = workplace();
