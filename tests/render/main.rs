@@ -9,6 +9,7 @@ mod backgrounds;
 mod colours;
 mod cuts;
 mod differences;
+mod docs;
 mod emitted;
 mod footprints;
 mod glass;

@@ -34,44 +34,6 @@ fn the_readme_is_short() {
     assert!(lines <= 160, "{lines} lines");
 }
 
-/// Returns the pages of the docs and the number of words of each.
-fn pages() -> Vec<(PathBuf, usize)> {
-    let entries = fs::read_dir(root().join("docs")).expect("a folder").map(|entry| entry.expect("an entry"));
-    let pages =
-        entries.map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|end| end == "md"));
-    let words = |page: &Path| fs::read_to_string(page).expect("a page").split_whitespace().count();
-    pages.map(|page| (page.clone(), words(&page))).collect()
-}
-
-/// A reader finds a page, and reads it.
-#[test]
-fn the_docs_are_few_and_short() {
-    let pages = pages();
-    let words: usize = pages.iter().map(|(_, words)| words).sum();
-    assert!(pages.len() <= 16 && words <= 20_000, "{} pages of {words} words", pages.len());
-    for (page, words) in pages {
-        let is_for_people = ["teachers.md", "mathematicians.md"].iter().any(|name| page.ends_with(name));
-        assert!(!is_for_people || words <= 400, "{} has {words} words", page.display());
-    }
-}
-
-#[test]
-fn the_mathematicians_pictures_are_those_of_their_scene() {
-    let page = fs::read_to_string(root().join("docs/mathematicians.md")).expect("the page");
-    let folder = folder();
-    let scene = folder.path().join("cubic.ray");
-    let text = block_with(&page, "implicit cubic");
-    for (name, a) in [("cubic", "1"), ("cubic-1.5", "1.5")] {
-        fs::write(&scene, text.replace("let a 1\n", &format!("let a {a}\n"))).expect("room for a file");
-        let shown = image::open(root().join(format!("docs/{name}.png"))).expect("the picture").into_rgb8();
-        let strip = imageops::crop_imm(&shown, 0, 60, 320, 8).to_image();
-        assert!(
-            part_of(&scene, "0,172,320,8") == strip,
-            "docs/{name}.png: CONTRIBUTING.md says how to make it"
-        );
-    }
-}
-
 #[test]
 fn the_readmes_mistake_is_told_as_it_says() {
     let folder = folder();
@@ -99,7 +61,7 @@ fn the_pictures_of_the_docs_are_fresh() {
 }
 
 /// Renders some columns and rows of a scene's image, as `--crop` counts them.
-fn part_of(scene: &Path, crop: &str) -> RgbImage {
+pub fn part_of(scene: &Path, crop: &str) -> RgbImage {
     let folder = folder();
     let (status, _, err) =
         outcome(tabray(&folder).arg("render").arg(scene).args(["--crop", crop, "-o", "it.png"]));
