@@ -88,6 +88,55 @@ fn areas([width, height]: [usize; 2], block: usize, is_final: bool) -> Vec<Area>
     corners.map(area).collect()
 }
 
+/// A pass over an image.
+#[derive(Clone, Debug)]
+struct Pass {
+    /// The number of samples of a pixel.
+    samples: u32,
+    areas: Vec<Area>,
+}
+
+/// Lists the passes over an image of pixels with so many samples.
+fn passes(pixels: [usize; 2], samples: u32) -> impl Iterator<Item = Pass> {
+    let all = [(BLOCK, 1), (1, 1), (1, samples)].into_iter().take(if samples > 1 { 3 } else { 2 });
+    all.map(move |(block, rays)| Pass {
+        samples: rays,
+        areas: areas(pixels, block, block == 1 && rays == samples),
+    })
+}
+
+/// What is left of an image that is rendered step by step on one thread, as [`render`] does it at one go: between two areas,
+/// whoever waits may ask for something else.
+#[derive(Clone, Debug)]
+pub struct Steps {
+    /// The areas and the samples of their pixels, the last one first.
+    left: Vec<(Area, u32)>,
+}
+
+impl Steps {
+    /// Begins an image of this many pixels, with this many samples in each.
+    pub fn new(pixels: [usize; 2], samples: u32) -> Self {
+        let mut left: Vec<_> = passes(pixels, samples)
+            .flat_map(|Pass { samples, areas }| areas.into_iter().map(move |area| (area, samples)))
+            .collect();
+        left.reverse();
+        Self { left }
+    }
+
+    /// Tells whether the image is complete.
+    pub fn is_done(&self) -> bool {
+        self.left.is_empty()
+    }
+
+    /// Renders the next area by a plan of the image; `None` where the image is complete.
+    pub fn next(&mut self, plan: &mut Plan) -> Option<(Area, Vec<Rgb>)> {
+        let (area, samples) = self.left.pop()?;
+        plan.camera.samples = samples;
+        let colours = area.colours(plan, &|| ControlFlow::Continue(()))?;
+        Some((area, colours))
+    }
+}
+
 /// Renders an image and passes each area to `part` as it is finished, with the unclamped colours of its blocks in rows
 /// from the top, each from the left. The first pass is coarse, with one ray for a block; where pixels have several
 /// samples, the next one has one ray for each pixel; the last one has all samples.
@@ -99,11 +148,9 @@ pub fn render(
     part: impl Fn(Area, Vec<Rgb>) + Sync,
     check: impl Fn() -> ControlFlow<()> + Sync,
 ) -> ControlFlow<()> {
-    let (pixels, samples) = (plan.camera.pixels, plan.camera.samples);
-    let passes = [(BLOCK, 1), (1, 1), (1, samples)];
-    for (block, rays) in &passes[..if samples > 1 { 3 } else { 2 }] {
-        plan.camera.samples = *rays;
-        let (plan, areas) = (&*plan, areas(pixels, *block, *block == 1 && *rays == samples));
+    for Pass { samples, areas } in passes(plan.camera.pixels, plan.camera.samples) {
+        plan.camera.samples = samples;
+        let plan = &*plan;
         // Each thread takes the next area, so that areas are finished roughly in their order.
         let work = |(): &mut (), index: usize| {
             let area: Area = areas[index];

@@ -123,6 +123,22 @@ pub fn name_at_cursor(view: &View, at: usize) -> Option<NameAtCursor> {
     Some(NameAtCursor { kind: describe(name.namespace), text: name.text.clone(), place: name.place.clone() })
 }
 
+/// Returns the names in the formula at a range of a text that mean nothing: no word of formulas, and no number that the text
+/// names. Those of functions are left out.
+pub fn unknown_numbers(view: &View, formula: &Range<usize>) -> Vec<String> {
+    let (names, text) = (view.names(), view.slice(formula.clone()));
+    let mut unknown: Vec<String> = Vec::new();
+    for place in formulas::names(text) {
+        let is_called = text[place.end..].trim_start().starts_with('(');
+        let name = &text[place];
+        let is_known = !names.named(Namespace::Number, name).is_empty();
+        if !is_known && !is_called && !unknown.iter().any(|other| other == name) {
+            unknown.push(name.to_owned());
+        }
+    }
+    unknown
+}
+
 /// Returns the word for what is named.
 pub fn describe(namespace: Namespace) -> String {
     match namespace {
