@@ -7,12 +7,10 @@ mod camera;
 mod chart;
 mod events;
 pub(super) mod feed;
-mod fields;
 mod files;
 pub(super) mod frame;
 mod scenes;
 pub(super) mod session;
-pub(super) mod trial_values;
 mod watched;
 
 use super::serve::reach::Reach;

@@ -12,6 +12,7 @@ pub mod diagnosis;
 pub mod grade;
 pub mod hits;
 pub mod navigation;
+pub mod page;
 pub mod part;
 pub mod probe;
 pub mod sampling;

@@ -1,6 +1,5 @@
 //! The image of a scene with a setting other than its own, to compare the two.
 
-use super::events;
 use super::frame::Frame;
 use std::io;
 use std::ops::ControlFlow;
@@ -12,6 +11,7 @@ use tabray_core::world::accuracy::Accuracy;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::Sampler;
 use tabray_lang::registry::Registry;
+use tabray_tools::page::display;
 use tabray_tools::threads::renderer_with;
 
 /// A setting that replaces that of the scene.
@@ -73,5 +73,5 @@ pub fn image(
     if rendered.is_break() {
         return Err(io::ErrorKind::Interrupted.into());
     }
-    Ok(events::singles(&all.into_inner().unwrap_or_else(PoisonError::into_inner)))
+    Ok(display::singles(&all.into_inner().unwrap_or_else(PoisonError::into_inner)))
 }

@@ -4,7 +4,6 @@ use super::alternative::{self, Override};
 use super::camera;
 use super::chart;
 use super::feed::EventFeed;
-use super::fields;
 use super::frame::Frame;
 use super::session::Session;
 use crate::plan;
@@ -25,6 +24,7 @@ use tabray_core::render::plan::Plan;
 use tabray_core::text;
 use tabray_core::text::Named;
 use tabray_lang::registry::Registry;
+use tabray_tools::page::{self, fields};
 use tabray_tools::probe;
 use tabray_tools::threads::renderer_with;
 use tokio::time::timeout;
@@ -39,16 +39,20 @@ const PAGE: &str = concat!(
     "<script>\n",
     include_str!("page/state.js"),
     include_str!("page/scenes.js"),
-    include_str!("page/events.js"),
+    include_str!("page/server.js"),
+    include_str!("page/scene.js"),
     include_str!("page/display.js"),
     include_str!("page/image.js"),
     include_str!("page/zoom.js"),
     include_str!("page/camera.js"),
     include_str!("page/compare.js"),
     include_str!("page/tabs.js"),
+    include_str!("page/chart.js"),
     include_str!("page/explain.js"),
     include_str!("page/fields.js"),
+    include_str!("page/trial.js"),
     include_str!("page/text.js"),
+    include_str!("page/edit.js"),
     include_str!("page/pointer.js"),
     include_str!("page/keys.js"),
     "</script>\n",
@@ -103,7 +107,7 @@ pub async fn answer(request: &Request<Bytes>, session: &Session, work: &Work) ->
         ["entities", version] => {
             let all = |frame: Arc<Frame>| -> Option<Job> {
                 Some(Box::new(move |_| {
-                    Ok(("application/json", text::json(&fields::all(&frame)).into_bytes()))
+                    Ok(("application/json", text::json(&fields::all(&frame.model)).into_bytes()))
                 }))
             };
             about(feed, work, version, all).await
@@ -195,7 +199,7 @@ fn check(frame: &Frame, client: &Client) -> ControlFlow<()> {
 fn object(registry: &'static Registry, frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
     let at = place(&frame, x, y)?;
     Some(Box::new(move |_| {
-        let fields = fields::of_pixel(registry, &frame, at);
+        let fields = fields::of_pixel(registry, frame.shown(), at);
         Ok(("application/json", text::json(&fields).into_bytes()))
     }))
 }
@@ -203,7 +207,9 @@ fn object(registry: &'static Registry, frame: Arc<Frame>, x: &str, y: &str) -> O
 /// Finds the point that a pixel shows.
 fn point(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
     let at = place(&frame, x, y)?;
-    Some(Box::new(move |_| Ok(("application/json", text::json(&camera::point(&frame, at)).into_bytes()))))
+    Some(Box::new(move |_| {
+        Ok(("application/json", text::json(&page::camera::point(&frame.model, at)).into_bytes()))
+    }))
 }
 
 /// Reads the column and the row of a pixel of an image.
@@ -216,7 +222,7 @@ fn place(frame: &Frame, x: &str, y: &str) -> Option<[usize; 2]> {
 fn entity(registry: &'static Registry, frame: Arc<Frame>, order: &str) -> Option<Job> {
     let order = order.parse().ok()?;
     Some(Box::new(move |_| {
-        let fields = fields::of_entity(registry, &frame, order);
+        let fields = fields::of_entity(registry, frame.shown(), order);
         Ok(("application/json", text::json(&fields).into_bytes()))
     }))
 }
@@ -235,8 +241,10 @@ fn pixel(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
                 written => written?,
             }
             let told = String::from_utf8_lossy(&told.text);
-            let explained =
-                PixelExplanation { lines: frame.lines_of([x, y]), text: &text::visible_lines(&told) };
+            let explained = PixelExplanation {
+                lines: frame.shown().lines_of([x, y], &frame.places),
+                text: &text::visible_lines(&told),
+            };
             Ok(("application/json", text::json(&explained).into_bytes()))
         })
     }))

@@ -1,19 +1,17 @@
 //! The events that the program sends to a page: server-sent events, each a name and data on one line.
 
 use super::frame::Frame;
-use super::trial_values::Difference;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use hyper::body::Bytes;
 use serde::Serialize;
 use std::time::Duration;
-use tabray_core::render::bytes::to_byte;
 use tabray_core::render::progressive::Area;
-use tabray_core::scene::choice::Choice;
 use tabray_core::text::json;
 use tabray_core::world::material::Rgb;
-use tabray_core::world::sensor::Sensor;
 use tabray_tools::diagnosis::Remark;
+use tabray_tools::page::display::{Display, singles};
+use tabray_tools::page::trial_values::Difference;
 
 /// Announces a valid scene, whose image follows in parts.
 pub fn scene(frame: &Frame) -> Bytes {
@@ -45,27 +43,6 @@ struct Scene<'s> {
     warnings: &'s str,
 }
 
-/// How light is shown, by the names that scenes have for it.
-#[derive(Serialize)]
-struct Display {
-    rules: &'static str,
-    /// In stops.
-    exposure: f64,
-    tone: &'static str,
-    transfer: &'static str,
-}
-
-impl Display {
-    fn of(camera: &Sensor) -> Self {
-        Self {
-            rules: camera.rules.option().name,
-            exposure: camera.exposure,
-            tone: camera.tone.option().name,
-            transfer: camera.transfer.option().name,
-        }
-    }
-}
-
 /// Sends a part of a scene's image: the area, 1 if it is final and 0 if not, and its colours, red, green and blue of each block.
 pub fn part(frame: &Frame, area: &Area, colours: &[Rgb]) -> Bytes {
     let Area { corner: [left, top], size: [width, height], block, is_final } = area;
@@ -73,12 +50,6 @@ pub fn part(frame: &Frame, area: &Area, colours: &[Rgb]) -> Bytes {
     let base64 = STANDARD.encode(singles(colours));
     format!("event: part\ndata: {} {left} {top} {width} {height} {block} {pass} {base64}\n\n", frame.version)
         .into()
-}
-
-/// Returns the channels of colours in single precision.
-pub fn singles(colours: &[Rgb]) -> Vec<u8> {
-    let channels = colours.iter().flat_map(|colour| colour.to_array());
-    channels.flat_map(|channel| single(channel).to_le_bytes()).collect()
 }
 
 /// Announces that all parts of a scene's image have been sent.
@@ -154,33 +125,4 @@ pub struct SceneEntry {
 
 fn event(name: &str, data: &impl Serialize) -> Bytes {
     format!("event: {name}\ndata: {}\n\n", json(data)).into()
-}
-
-/// Converts a channel to single precision, rounded such that its byte in the image stays the same.
-fn single(channel: f64) -> f32 {
-    let nearest = channel as f32;
-    if to_byte(nearest.into()) == to_byte(channel) {
-        nearest
-    } else if f64::from(nearest) < channel {
-        nearest.next_up()
-    } else {
-        nearest.next_down()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_channel_keeps_its_byte_in_half_the_bits() {
-        for byte in 1..=255 {
-            let edge = f64::from(byte) / 255.0;
-            for channel in [edge.next_down().next_down(), edge.next_down(), edge, edge.next_up()] {
-                assert_eq!(to_byte(single(channel).into()), to_byte(channel), "{channel}");
-            }
-        }
-        assert!(single(f64::NAN).is_nan());
-        assert_eq!(single(f64::MAX), f32::INFINITY);
-    }
 }

@@ -1,15 +1,14 @@
 //! A valid scene, as it was when it was read.
 
 use std::io;
-use std::ops::{ControlFlow, Range};
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use tabray_core::render::plan::Plan;
-use tabray_core::render::trace;
 use tabray_core::scene::model::Model;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::reader::{self, Places, ReadOptions, Report};
 use tabray_lang::registry::Registry;
+use tabray_tools::page::Shown;
 
 /// A valid scene, its text and the state of its image.
 pub struct Frame {
@@ -59,11 +58,9 @@ impl Frame {
         if self.stale.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
-    /// Returns the first and the last line of the object that the centre of a pixel shows, from 1.
-    pub fn lines_of(&self, [x, y]: [usize; 2]) -> Option<[usize; 2]> {
-        let hit =
-            trace::first_hit(&Plan::new(&self.model), &self.model.camera.value.sight(x as f64, y as f64))?;
-        lines(&self.text, self.places.get(hit.object.args.order()).as_ref()?)
+    /// Returns what a page asks about.
+    pub fn shown(&self) -> Shown<'_> {
+        Shown { model: &self.model, name: &self.name, text: &self.text }
     }
 }
 
@@ -81,10 +78,4 @@ impl ChartState {
     pub fn units(&self) -> [usize; 2] {
         self.units.each_ref().map(|units| units.load(Ordering::Relaxed))
     }
-}
-
-/// Returns the first and the last line of a place in a text, from 1.
-pub fn lines(text: &str, place: &Range<usize>) -> Option<[usize; 2]> {
-    let line = |at: usize| Some(1 + text.get(..at)?.matches('\n').count());
-    Some([line(place.start)?, line(place.end)?])
 }

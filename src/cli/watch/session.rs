@@ -2,7 +2,6 @@
 
 use super::events;
 use super::feed::{EventFeed, News};
-use super::trial_values::{TrialValues, Which};
 use crate::files::output;
 use crate::process::crash;
 use crate::process::failure::Failure;
@@ -17,6 +16,7 @@ use tabray_core::text;
 use tabray_lang::editor::{self, Text};
 use tabray_lang::reader::{self, ReadOptions};
 use tabray_lang::registry::Registry;
+use tabray_tools::page::trial_values::{TrialValues, Which};
 
 /// The state of a watched scene that the program and its pages share.
 pub struct Session {

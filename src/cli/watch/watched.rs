@@ -3,7 +3,7 @@
 use super::events::{self, Fault};
 use super::feed::{EventFeed, News};
 use super::files::{Files, Stamp, stamp};
-use super::frame::{ChartState, Frame, lines};
+use super::frame::{ChartState, Frame};
 use super::session::Session;
 use crate::files::input;
 use crate::process::crash;
@@ -23,6 +23,7 @@ use tabray_core::text;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::reader::{self, Loaded, ReadOptions};
 use tabray_tools::diagnosis;
+use tabray_tools::page::lines;
 use tabray_tools::threads::renderer_with;
 
 /// The maximum number of pixels of an image on a page: all of it is in memory, here and in the browser.

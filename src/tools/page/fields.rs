@@ -1,13 +1,14 @@
 //! The numbers of a scene's entities, as a page offers them to be changed.
 
-use super::frame::Frame;
+use super::Shown;
 use serde::Serialize;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::trace;
 use tabray_core::scene::attribute::Attribute;
+use tabray_core::scene::model::Model;
 use tabray_core::scene::store::Record;
 use tabray_core::scene::value::{Datum, Type};
-use tabray_lang::editor::{self, Text, View};
+use tabray_lang::editor::View;
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
 
@@ -54,8 +55,7 @@ struct Field {
 const MOST: usize = 1000;
 
 /// Returns the entities of a scene: the camera, the lights, the background, the materials and the objects.
-fn records(frame: &Frame) -> impl Iterator<Item = &Record> {
-    let model = &frame.model;
+fn records(model: &Model) -> impl Iterator<Item = &Record> {
     let lights = model.lights.iter().map(|light| &light.args);
     let background = model.background.iter().map(|background| &background.args);
     let materials = model.materials.iter().map(|material| &material.args);
@@ -68,22 +68,22 @@ fn named(record: &Record) -> Named {
 }
 
 /// Lists the entities of a scene that have numbers, or the first of them.
-pub fn all(frame: &Frame) -> Vec<Named> {
+pub fn all(model: &Model) -> Vec<Named> {
     let has_numbers = |record: &&Record| record.entity().attributes().any(is_number);
-    records(frame).filter(has_numbers).take(MOST).map(named).collect()
+    records(model).filter(has_numbers).take(MOST).map(named).collect()
 }
 
 /// Returns the attributes of the object that the centre of a pixel shows; `None` where it shows none.
-pub fn of_pixel(registry: &Registry, frame: &Frame, [x, y]: [usize; 2]) -> Option<Fields> {
-    let sight = frame.model.camera.value.sight(x as f64, y as f64);
-    let hit = trace::first_hit(&Plan::new(&frame.model), &sight)?;
-    Some(of(registry, frame, &hit.object.args))
+pub fn of_pixel(registry: &Registry, shown: Shown, [x, y]: [usize; 2]) -> Option<Fields> {
+    let sight = shown.model.camera.value.sight(x as f64, y as f64);
+    let hit = trace::first_hit(&Plan::new(shown.model), &sight)?;
+    Some(of(registry, shown, &hit.object.args))
 }
 
 /// Returns the attributes of an entity by its index; `None` if the scene has none.
-pub fn of_entity(registry: &Registry, frame: &Frame, order: usize) -> Option<Fields> {
-    let record = records(frame).find(|record| record.order() == order)?;
-    Some(of(registry, frame, record))
+pub fn of_entity(registry: &Registry, shown: Shown, order: usize) -> Option<Fields> {
+    let record = records(shown.model).find(|record| record.order() == order)?;
+    Some(of(registry, shown, record))
 }
 
 fn is_number(attribute: &'static dyn Attribute) -> bool {
@@ -99,9 +99,9 @@ pub fn fixed(view: &View, name: &str, attribute: &dyn Attribute) -> Option<&'sta
     }
 }
 
-fn of(registry: &Registry, frame: &Frame, record: &Record) -> Fields {
+fn of(registry: &Registry, shown: Shown, record: &Record) -> Fields {
     let args = record.args();
-    let view = editor::read(registry, &frame.name, Text::new(frame.text.clone()));
+    let view = shown.view(registry);
     let field = |attribute: &'static dyn Attribute, values: Vec<String>| {
         let parts = [attribute.meaning(), attribute.unit(), &attribute.rule()];
         let about: Vec<_> = parts.into_iter().filter(|part| !part.is_empty()).collect();

@@ -140,8 +140,9 @@ fn given<'v>(view: &'v View, name: &str, attribute: &str) -> Option<&'v editor::
     view.entity(name)?.attributes.iter().find(is_meant)
 }
 
-/// Writes the values of one attribute.
-fn write(view: &View, name: &str, attribute: &str, values: &[String]) -> Option<Text> {
+/// Writes the values of one attribute into a text, and changes nothing else in it; `None` where the text does not define its
+/// entity in one place.
+pub fn write(view: &View, name: &str, attribute: &str, values: &[String]) -> Option<Text> {
     let entity = view.entity(name)?;
     let Some(given) = given(view, name, attribute) else {
         let (at, between) = view.room(entity);

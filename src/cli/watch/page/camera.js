@@ -28,7 +28,7 @@ const hint = () => {
 /// The point that a pixel shows, or will show when the image that comes has come.
 const pointAt = async (at) => {
   for (let tries = 0; tries < 10; tries++) {
-    const answer = await fetch(`point/${version}/${at[0]}/${height - 1 - at[1]}${token}`).catch(() => null)
+    const answer = await request(`point/${version}/${at[0]}/${height - 1 - at[1]}`).catch(() => null)
     if (answer?.ok) return answer.json()
     await new Promise((soon) => setTimeout(soon, 50))
   }
@@ -56,7 +56,7 @@ const send = async (gesture) => {
     return complain(null)
   }
   if (!gesture.from) {
-    const answer = await fetch(`camera${token}`).catch(() => null)
+    const answer = await request('camera').catch(() => null)
     gesture.isRefused = !answer?.ok
     if (gesture.isRefused) return complain(answer)
     gesture.from = await answer.json()
@@ -110,7 +110,7 @@ const nudge = ({ key, shiftKey }) => {
 
 /// Learns what the camera is, and offers one that orbits truly in place of one whose image plane stays.
 const learnCamera = async () => {
-  const answer = await fetch(`camera${token}`).catch(() => null)
+  const answer = await request('camera').catch(() => null)
   const camera = answer?.ok ? await answer.json() : null
   cameraName = camera?.name ?? ''
   isWindow = camera?.is_window ?? false
@@ -144,3 +144,6 @@ const toggleSteering = () => {
   refresh()
   stage.focus()
 }
+
+bindings.c = toggleSteering
+bindings.l = turnCamera

@@ -87,7 +87,7 @@ const fetchOther = async () => {
   otherAsked?.abort()
   otherAsked = new AbortController()
   tellDifference('rendering the other image')
-  const answer = await fetch(`other/${of}/${how}${token}`, { signal: otherAsked.signal }).catch(() => null)
+  const answer = await request(`other/${of}/${how}`, { signal: otherAsked.signal }).catch(() => null)
   const isWanted = () => of === version && how === means() && compares()
   if (!answer || !isWanted()) return
   if (!answer.ok) return tellDifference((await answer.text()).trim())
@@ -119,7 +119,6 @@ const toggleComparing = () => {
   showBefore()
 }
 
-$('#compare').addEventListener('click', toggleComparing)
 $('#comparing button').addEventListener('click', pin)
 $('#comparing input').addEventListener('input', (event) => moveLine(+event.target.value))
 $('#comparing select').addEventListener('change', () => {
@@ -142,3 +141,9 @@ divider.addEventListener('pointermove', (event) => {
   event.stopPropagation()
   lineTo(event)
 })
+
+on.scene.push(compareNext)
+on.done.push(compare)
+on.drawn.push(showBefore)
+Object.assign(bindings, { d: toggleComparing, ',': () => moveLine(line - 2), '.': () => moveLine(line + 2) })
+$('#compare').addEventListener('click', toggleComparing)

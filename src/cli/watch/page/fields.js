@@ -1,32 +1,8 @@
 // The values of an entity, and what is tried out.
 
-/// What is tried out and not yet written, by object and attribute, as the program tells it to all pages.
+/// What is tried out and not yet written, by object and attribute.
 const tried = new Set()
 
-/// Shows which values differ from the file.
-const differ = (all) => {
-  tried.clear()
-  for (const { name, attribute } of all) tried.add(`${name} ${attribute}`)
-  for (const box of document.querySelectorAll('#fields input[type=number]')) {
-    box.classList.toggle('tried', tried.has(box.dataset.of))
-  }
-  $('#differs').hidden = !all.length
-  $('#differs span').textContent = all.length === 1 ? '1 value differs from the file' : `${all.length} values differ from the file`
-  if (!all.length) $('#differs pre').hidden = true
-  $('#differs ul').replaceChildren(...all.map(({ name, attribute, values, text }) => {
-    const row = document.createElement('li'), words = document.createElement('span')
-    words.textContent = `${name} ${attribute} ${text.join(' ') || '(not given)'} → ${values.join(' ')}`
-    const buttons = ['write', 'discard'].map((verb) => {
-      const button = document.createElement('button')
-      button.textContent = verb
-      button.setAttribute('aria-label', `${verb} ${attribute} of ${name}`)
-      button.addEventListener('click', () => settle(verb, { name, attribute }))
-      return button
-    })
-    row.append(words, ...buttons)
-    return row
-  }))
-}
 /// The entity whose values are shown: its name and its index in the scene.
 let shown = null
 
@@ -43,14 +19,14 @@ const fetchFields = async ([x, fromTop]) => {
 }
 
 /// The entities that have values.
-const list = (of) => fetch(`entities/${of}${token}`).then((answer) => answer.ok ? answer.json() : []).catch(() => [])
+const list = (of) => request(`entities/${of}`).then((answer) => answer.ok ? answer.json() : []).catch(() => [])
 
 /// Shows the values of an entity again, as they are in the scene that came last, or those of the camera.
 const refresh = async () => {
   const of = version, all = await list(of)
   const wanted = all.find((one) => shown && key(one) === key(shown)) ?? shown ?? all[0]
   if (of !== version || !wanted) return
-  const entity = await fetch(`entity/${of}/${wanted.order}${token}`).then((answer) => answer.json()).catch(() => null)
+  const entity = await request(`entity/${of}/${wanted.order}`).then((answer) => answer.json()).catch(() => null)
   if (of === version && entity) open(entity, all)
 }
 
@@ -138,8 +114,6 @@ const colourPicker = (of, about, values, fixed, pick) => {
   return { row: [label, box], show }
 }
 
-const post = (path, body) => fetch(path + token, { method: 'POST', body }).catch(() => null)
-
 // Of the values that come while the program takes in the ones before, only the last are sent.
 let sending = false, wanted = null
 const tryOut = async (name, attribute, values) => {
@@ -155,21 +129,6 @@ const tryOut = async (name, attribute, values) => {
   sending = false
 }
 
-/// Writes or discards what is tried out: of one attribute if it is given.
-const settle = async (verb, one) => {
-  await queue
-  const answer = await post(verb, one ? JSON.stringify(one) : '')
-  const said = answer ? (await answer.text()).trim() : 'tabray is not running'
-  $('#fields p span').textContent = said.split('\n')[0]
-  $('#differs pre').textContent = said
-  $('#differs pre').hidden = !!answer?.ok
-  if (answer?.ok) document.activeElement?.blur()
-}
-const [writeAll, discardAll] = document.querySelectorAll('#differs > button')
-writeAll.addEventListener('click', () => settle('write'))
-discardAll.addEventListener('click', () => settle('discard'))
-$('#write').addEventListener('click', () => settle('write'))
-$('#discard').addEventListener('click', () => settle('discard'))
 $('#values').addEventListener('click', refresh)
 $('#fields select').addEventListener('change', (event) => {
   const [kind, ...name] = event.target.value.split(' ')
@@ -187,3 +146,5 @@ const close = () => {
   $('aside').classList.remove('explains')
   markLines(null)
 }
+
+bindings.v = refresh

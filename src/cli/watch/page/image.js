@@ -1,16 +1,21 @@
 // The image, and the layers of it.
 
+// The bytes of the picture's pixels, where the program sends them beside the colours.
+let levels = null
+
 const resize = ([wide, high]) => {
   if (wide === width && high === height) return
   ;[width, height] = [canvas.width, canvas.height] = [wide, high]
   colours = new Float32Array(3 * width * height)
+  levels = null
   close()
   fit()
 }
 
-/// Takes in an area of the picture, each block of it in one colour.
-const part = (left, top, wide, high, block, isFinal, given) => {
+/// Takes in an area of the picture, each block of it in one colour, and as bytes if they are there.
+const part = (left, top, wide, high, block, isFinal, given, bytes) => {
   const across = Math.ceil(wide / block)
+  if (bytes) levels ??= new Uint8Array(colours.length)
   for (let y = 0; y < high; y++) {
     for (let x = 0; x < wide; x++) {
       const from = 3 * (Math.floor(y / block) * across + Math.floor(x / block))
@@ -18,6 +23,7 @@ const part = (left, top, wide, high, block, isFinal, given) => {
       colours[to] = given[from]
       colours[to + 1] = given[from + 1]
       colours[to + 2] = given[from + 2]
+      for (let channel = 0; bytes && channel < 3; channel++) levels[to + channel] = bytes[from + channel]
     }
   }
   if (root.dataset.begun !== `${version}`) root.dataset.begun = version
@@ -39,10 +45,10 @@ const timeLeft = () => {
 /// Puts an area on the canvas, with the exposure.
 const expose = (left, top, wide, high, from = colours, onto = paper) => {
   if (!wide || !high) return
-  const image = new ImageData(wide, high)
+  const image = new ImageData(wide, high), areThere = levels && from === colours && !stops
   for (let y = 0, to = 0; y < high; y++) {
     for (let at = 3 * ((top + y) * width + left), end = at + 3 * wide; at < end; at += 3) {
-      for (const byte of bytesOf(from, at, stops)) image.data[to++] = byte
+      for (const byte of areThere ? levels.subarray(at, at + 3) : bytesOf(from, at, stops)) image.data[to++] = byte
       image.data[to++] = 255
     }
   }
@@ -74,7 +80,7 @@ const choose = (name) => {
   delete root.dataset.layer
   waits = false
   tell()
-  showBefore()
+  happens('drawn')
   if (name === 'picture') expose(0, 0, width, height)
   else if (version) fetchLayer()
 }
@@ -84,6 +90,6 @@ const setExposure = (value) => {
   slider.value = value
   stops = +slider.value
   $('#exposure output').textContent = stops > 0 ? `+${stops}` : stops
-  showBefore()
+  happens('drawn')
   if (layer === 'picture') expose(0, 0, width, height)
 }

@@ -20,30 +20,19 @@ const larger = (way) => {
 
 const layers = [...document.querySelectorAll('#layers input')].map((input) => input.value)
 const steps = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }
+Object.assign(bindings, {
+  0: fit, '+': () => larger(1), '-': () => larger(-1),
+  '[': () => setExposure(stops - 0.5), ']': () => setExposure(stops + 0.5), '=': () => setExposure(0),
+})
 document.addEventListener('keydown', (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey) return
   if (event.target.matches?.('textarea')) return
-  // A slider takes no letters and digits.
-  if (event.target.matches?.('#fields input:not([type=range]), #chart input, select') && event.key !== 'Escape') return
+  // Sliders and choices take no letters and digits.
+  if (event.target.matches?.('input:not([type=range], [type=radio]), select') && event.key !== 'Escape') return
   const { key } = event
   if (layers[key - 1]) choose(layers[key - 1])
-  else if (key === '0') fit()
-  else if (key === 'v') refresh()
-  else if (key === 'd') toggleComparing()
-  else if (key === 'e') edit()
-  else if (key === ',') moveLine(line - 2)
-  else if (key === '.') moveLine(line + 2)
-  else if (key === 't') nextTab(1)
-  else if (key === 'n') goOn(1)
-  else if (key === 'p') goOn(-1)
-  else if (key === 'c') toggleSteering()
-  else if (key === 'l') turnCamera()
+  else if (bindings[key]) bindings[key]()
   else if (steers && nudge(event)) { /* the camera moves */ }
-  else if (key === '+') larger(1)
-  else if (key === '-') larger(-1)
-  else if (key === '[') setExposure(stops - 0.5)
-  else if (key === ']') setExposure(stops + 0.5)
-  else if (key === '=') setExposure(0)
   else if (key === 'Escape') steers ? toggleSteering() : close()
   else if (steps[key] && document.activeElement === stage && width) {
     const far = event.shiftKey ? 10 : 1, [x, y] = mark ?? [width >> 1, height >> 1]

@@ -11,7 +11,7 @@ const spread = () => {
 }
 
 /// Begins to drag, and begins again when a finger comes or goes.
-const begin = (event) => {
+const grasp = (event) => {
   const pans = event.shiftKey || event.button === 2 || fingers.size > 1
   drag = fingers.size
     ? { from: middle(), spread: spread(), offset, zoom, moved: drag?.moved ?? false, gesture: steers && grip(pans ? 'pan' : 'orbit') }
@@ -23,7 +23,7 @@ stage.addEventListener('pointerdown', (event) => {
   if (event.button === 1 || event.button === 2 && !steers) return
   stage.setPointerCapture(event.pointerId)
   fingers.set(event.pointerId, [event.clientX, event.clientY])
-  begin(event)
+  grasp(event)
 })
 stage.addEventListener('pointermove', (event) => {
   if (!drag || !fingers.has(event.pointerId)) return tellPixel(under(event))
@@ -41,7 +41,7 @@ stage.addEventListener('pointermove', (event) => {
 const release = (event) => {
   if (!fingers.delete(event.pointerId)) return
   const at = event.type === 'pointerup' && !drag.moved && under(event)
-  begin(event)
+  grasp(event)
   if (at) look(at)
   else if (!drag && steers && mark) explain(mark)
 }

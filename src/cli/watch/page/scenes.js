@@ -24,3 +24,6 @@ const listScenes = (all) => {
 }
 
 $('#scenes').addEventListener('change', (event) => goTo(+event.target.value, '#scenes'))
+
+bindings.n = () => goOn(1)
+bindings.p = () => goOn(-1)

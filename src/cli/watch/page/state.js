@@ -29,3 +29,10 @@ const state = (name, said) => {
 
 /// Tells readers of the screen.
 const announce = (said) => { $('#said').textContent = said }
+
+// What else is done when a scene comes, when its picture is complete, and when the picture is drawn anew.
+const on = { scene: [], done: [], drawn: [] }
+const happens = (what) => { for (const act of on[what]) act() }
+
+// What keys do.
+const bindings = {}

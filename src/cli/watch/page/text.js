@@ -2,8 +2,8 @@
 
 const lineAt = (line) => $('#text').children[line - 1]
 
-// The text that came last, and the one that is being changed, as it was.
-let current = '', original = ''
+// The text that came last.
+let current = ''
 
 const write = (text) => {
   current = text
@@ -36,44 +36,8 @@ const reveal = (lines) => {
   }
 }
 
-const showEditor = (isOpen) => {
-  for (const part of ['#editor', '#save', '#leave']) $(part).hidden = !isOpen
-  for (const part of ['#text', '#edit']) $(part).hidden = isOpen
-  $('#unsaved').hidden = true
+/// Marks the lines that have errors.
+const markWrong = (lines) => {
+  for (const line of lines) lineAt(line)?.classList.add('wrong')
+  reveal(lines.slice(0, 1))
 }
-
-const edit = () => {
-  if (!$('#editor').hidden) return
-  selectTab($('#tab-text'))
-  original = $('#editor').value = current
-  sayEdited('')
-  showEditor(true)
-  $('#editor').setSelectionRange(0, 0)
-  $('#editor').focus()
-}
-
-const sayEdited = (said) => { $('#editing span').textContent = said }
-
-/// Saves the text, if the file still has the text that was there when the changes began.
-const save = async () => {
-  const hash = new Uint8Array(await crypto.subtle.digest('SHA-256', new TextEncoder().encode(original)))
-  const digits = Array.from(hash, (byte) => byte.toString(16).padStart(2, '0')).join('')
-  const text = $('#editor').value, answer = await post(`save/${digits}`, text)
-  const said = answer ? (await answer.text()).trim() : 'tabray is not running'
-  const [first, ...rest] = said.split('\n')
-  sayEdited(answer?.status === 413 ? 'the text is too long to be saved here' : first)
-  $('#unsaved').textContent = rest.join('\n')
-  $('#unsaved').hidden = answer?.ok || !rest.length
-  if (!answer?.ok) return
-  showEditor(false)
-  $('#text').focus()
-}
-
-$('#edit').addEventListener('click', edit)
-$('#save').addEventListener('click', save)
-$('#leave').addEventListener('click', () => { showEditor(false); sayEdited(''); $('#text').focus() })
-$('#editor').addEventListener('keydown', (event) => {
-  if (event.key === 's' && (event.ctrlKey || event.metaKey)) { event.preventDefault(); save() }
-  // A text that was changed is left by its button alone.
-  if (event.key === 'Escape' && $('#editor').value === original) $('#leave').click()
-})
