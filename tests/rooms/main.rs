@@ -35,7 +35,7 @@ fn sources(folder: &str) -> Vec<PathBuf> {
 }
 
 /// The crates, from the bottom up, but for the program and the plugins, whose files are few or import nothing.
-const CRATES: [&str; 6] = ["exact", "core", "lang", "tools", "cli", "python"];
+const CRATES: [&str; 7] = ["exact", "core", "lang", "tools", "cli", "python", "web"];
 
 /// Returns the modules of a crate, without its examples and the templates of `tabray new`.
 fn tree(crate_: &str) -> Tree {

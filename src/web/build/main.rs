@@ -1,0 +1,203 @@
+//! Makes the page for browsers in `target/web`: `cargo run -p tabray-web-build`.
+//!
+//! A folder to be served, which keeps itself for use without a network, and `tabray.html`, one file that works from
+//! anywhere. The module is compiled by the cargo and the rustc that compiled this program, for wasm32-unknown-unknown; nothing
+//! is downloaded but crates.
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use sha2::{Digest, Sha256};
+use std::env;
+use std::error::Error;
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode, Stdio};
+
+/// The target of the module.
+const TARGET: &str = "wasm32-unknown-unknown";
+
+/// The scripts of the page, in the order in which they run: those of `watch`'s page, and its own.
+const SCRIPTS: [&str; 17] = [
+    "cli/watch/page/state.js",
+    "web/page/link.js",
+    "cli/watch/page/scene.js",
+    "cli/watch/page/display.js",
+    "cli/watch/page/image.js",
+    "cli/watch/page/zoom.js",
+    "cli/watch/page/camera.js",
+    "cli/watch/page/tabs.js",
+    "cli/watch/page/explain.js",
+    "cli/watch/page/fields.js",
+    "web/page/editor.js",
+    "web/page/proof.js",
+    "web/page/formula.js",
+    "web/page/save.js",
+    "web/page/share.js",
+    "cli/watch/page/pointer.js",
+    "cli/watch/page/keys.js",
+];
+
+fn main() -> ExitCode {
+    match made() {
+        Ok(said) => {
+            print!("{said}");
+            ExitCode::SUCCESS
+        }
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Makes the page, and says what there is.
+fn made() -> Result<String, Box<dyn Error>> {
+    let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| sources.join("../target"), PathBuf::from);
+    let target = std::path::absolute(target)?;
+    let module = optimized(module(&sources, &target.join("web-build"))?);
+    let folder = target.join("web");
+    fs::create_dir_all(&folder)?;
+
+    let read =
+        |path: &str| fs::read_to_string(sources.join(path)).map_err(|error| format!("{path}: {error}"));
+    let scripts = SCRIPTS.iter().map(|path| read(path)).collect::<Result<String, _>>()?;
+    let page = |more_head: &str, more_body: &str| -> Result<String, Box<dyn Error>> {
+        let style = read("cli/watch/page/style.css")? + &read("web/page/web.css")?;
+        let (head, body, worker) =
+            (read("web/page/head.html")?, read("web/page/body.html")?, read("web/page/worker.js")?);
+        Ok(format!(
+            "{head}{more_head}<style>\n{style}</style>\n{body}{more_body}\
+             <script type=\"text/plain\" id=\"worker\">\n{worker}</script>\n<script>\n{scripts}</script>\n"
+        ))
+    };
+    let served = page(
+        "<link rel=\"icon\" href=\"icon.svg\">\n<link rel=\"manifest\" href=\"tabray.webmanifest\">\n",
+        "",
+    )?;
+    let packed = gzipped(&module)?;
+    let inline =
+        format!("<script type=\"application/gzip\" id=\"module\">{}</script>\n", STANDARD.encode(&packed));
+    let alone = page("<link rel=\"icon\" href=\"data:,\">\n", &inline)?;
+
+    let mut hash = Sha256::new();
+    hash.update(&served);
+    hash.update(&module);
+    let version: String = hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect();
+    let files: [(&str, &[u8]); 6] = [
+        ("index.html", served.as_bytes()),
+        ("tabray.wasm", &module),
+        ("offline.js", &read("web/page/offline.js")?.replace("VERSION", &version).into_bytes()),
+        ("tabray.webmanifest", &read("web/page/tabray.webmanifest")?.into_bytes()),
+        ("icon.svg", &read("web/page/icon.svg")?.into_bytes()),
+        ("tabray.html", alone.as_bytes()),
+    ];
+    let mut said = String::new();
+    let mut downloaded = [0; 2];
+    for (name, bytes) in files {
+        // Beside, and then renamed: a page that is being served is never half.
+        let (path, beside) = (folder.join(name), folder.join(format!(".{name}.new")));
+        fs::write(&beside, bytes)?;
+        fs::rename(&beside, &path)?;
+        let sizes = [gzipped(bytes)?.len(), brotli(bytes).unwrap_or(0)];
+        if name != "tabray.html" {
+            (0..2).for_each(|index| downloaded[index] += sizes[index]);
+        }
+        said += &format!("{}: {}{}\n", path.display(), bytes_of(bytes.len()), compressed(sizes));
+    }
+    said += &format!("the page as it is served:{}\n", compressed(downloaded).replacen(',', "", 1));
+    Ok(said)
+}
+
+fn bytes_of(count: usize) -> String {
+    format!("{:.2} MB", count as f64 / 1e6)
+}
+
+/// Tells compressed sizes; that by Brotli where there is one.
+fn compressed([gzip, brotli]: [usize; 2]) -> String {
+    let more = if brotli > 0 { format!(", {} by Brotli", bytes_of(brotli)) } else { String::new() };
+    format!(", {} by gzip{more}", bytes_of(gzip))
+}
+
+fn gzipped(bytes: &[u8]) -> io::Result<Vec<u8>> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+    encoder.write_all(bytes)?;
+    encoder.finish()
+}
+
+/// Returns the size by Brotli, if the program of that name is there.
+fn brotli(bytes: &[u8]) -> Option<usize> {
+    let mut program = Command::new("brotli")
+        .args(["-c", "-q", "11"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .ok()?;
+    let mut stdin = program.stdin.take()?;
+    let bytes = bytes.to_vec();
+    let writer = std::thread::spawn(move || stdin.write_all(&bytes));
+    let output = program.wait_with_output().ok()?;
+    writer.join().ok()?.ok()?;
+    output.status.success().then_some(output.stdout.len())
+}
+
+/// Compiles the module, and returns it.
+fn module(sources: &Path, build: &Path) -> Result<Vec<u8>, Box<dyn Error>> {
+    let rustc = env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let sysroot = Command::new(&rustc).args(["--print", "sysroot"]).current_dir(sources).output()?;
+    let sysroot = PathBuf::from(String::from_utf8(sysroot.stdout)?.trim());
+    let mut command = Command::new(cargo);
+    command.args(["build", "--package", "tabray-web", "--lib", "--profile", "web", "--target", TARGET]);
+    command.arg("--target-dir").arg(build);
+    command.current_dir(sources);
+    if sysroot.join("lib/rustlib").join(TARGET).join("lib").is_dir() {
+        // It is here.
+    } else if sysroot.join("lib/rustlib/src/rust/library").is_dir() {
+        command.env("RUSTC_BOOTSTRAP", "1").arg("-Zbuild-std=std,panic_abort");
+    } else {
+        return Err(format!(
+            "the standard library for {TARGET} is not here\nhelp: rustup target add {TARGET}, or rustup component add rust-src"
+        )
+        .into());
+    }
+    // Two numbers at a time, which all browsers since 2023 have, and a stack for deep reflections.
+    command.env("RUSTFLAGS", "-C target-feature=+simd128 -C link-arg=-zstack-size=16777216");
+    command.env_remove("CARGO_ENCODED_RUSTFLAGS");
+    if !command.status()?.success() {
+        return Err("the module cannot be compiled: see above".into());
+    }
+    let path = build.join(TARGET).join("web/tabray_web.wasm");
+    fs::read(&path).map_err(|error| format!("{}: {error}", path.display()).into())
+}
+
+/// Makes the module smaller, if `wasm-opt` of Binaryen is there.
+fn optimized(module: Vec<u8>) -> Vec<u8> {
+    let smaller = || -> io::Result<Vec<u8>> {
+        let folder = env::temp_dir().join(format!("tabray-web-{}", std::process::id()));
+        fs::create_dir_all(&folder)?;
+        let [from, to] = ["from.wasm", "to.wasm"].map(|name| folder.join(name));
+        fs::write(&from, &module)?;
+        let ran = Command::new("wasm-opt")
+            .args([
+                "-O3",
+                "--enable-simd",
+                "--enable-bulk-memory",
+                "--enable-nontrapping-float-to-int",
+                "--enable-sign-ext",
+            ])
+            .args(["--enable-mutable-globals", "--enable-multivalue", "--enable-reference-types", "-o"])
+            .args([&to, &from])
+            .status();
+        let read =
+            ran.and_then(
+                |status| if status.success() { fs::read(&to) } else { Err(io::ErrorKind::Other.into()) },
+            );
+        fs::remove_dir_all(&folder)?;
+        read
+    };
+    smaller().unwrap_or(module)
+}

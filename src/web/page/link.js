@@ -1,0 +1,128 @@
+// The program, in two web workers: one paints and proves, the other one answers.
+
+/// The module: part of this file, or beside it.
+const compiled = async () => {
+  const inline = $('#module')
+  if (!inline) return WebAssembly.compileStreaming(fetch('tabray.wasm'))
+  const packed = await fetch(`data:application/gzip;base64,${inline.textContent}`)
+  return WebAssembly.compile(await new Response(packed.body.pipeThrough(new DecompressionStream('gzip'))).arrayBuffer())
+}
+
+const decoder = new TextDecoder()
+
+/// An answer, in the form in which a server's comes.
+const answerOf = (status, bytes) => ({
+  ok: status === 200,
+  status,
+  text: async () => decoder.decode(bytes),
+  json: async () => JSON.parse(decoder.decode(bytes)),
+  arrayBuffer: async () => bytes,
+})
+
+/// Starts a worker; `hears` takes what it says by itself.
+const start = (module, hears) => new Promise((ready) => {
+  const source = new Blob([$('#worker').textContent], { type: 'text/javascript' })
+  const worker = new Worker(URL.createObjectURL(source)), waiting = new Map()
+  let last = 0
+  const ask = (path, body = '', paints = false) => new Promise((done) => {
+    waiting.set(++last, done)
+    worker.postMessage({ id: last, path, body, paints })
+  })
+  worker.onmessage = ({ data }) => {
+    if (data.ready) return ready(ask)
+    if (!data.id) return hears(data)
+    waiting.get(data.id)(answerOf(data.status, data.bytes))
+    waiting.delete(data.id)
+  }
+  worker.postMessage({ module })
+})
+
+let painter = null, helper = null
+// The scene of the picture, and the version of the one that the helper has.
+let painted = { version: 0, text: '' }, helped = 0
+
+/// Reads a text as a scene; its picture follows, if it is one.
+let reads = 0
+const read = async (text) => {
+  const of = ++reads, answer = await painter(`scene/${of}`, text, true)
+  if (!answer.ok) {
+    if (of !== reads) return
+    const { lines, report: words } = await answer.json()
+    return refuse({ lines, report: words, name: nameOf(text), text: null })
+  }
+  painted = { version: of, text }
+  begin({ ...await answer.json(), version: of, text, name: nameOf(text) })
+}
+
+/// What a scene calls itself: the first words of a comment at its beginning.
+const nameOf = (text) => text.match(/^#\s*([^:\n]{1,60})/)?.[1].trim() || 'scene'
+
+/// Takes in what the painter sends.
+const hear = (data) => {
+  if (data.restarted) {
+    root.dataset.restarts = 1 + +(root.dataset.restarts ?? 0)
+    return
+  }
+  if (data.version !== `${version}`) return
+  if (data.paint) {
+    areas(data.paint)
+    root.dataset.first ??= Math.round(performance.now())
+  }
+  else if (data.prove) prove(new Uint8Array(data.prove))
+  else if (data.painted !== undefined) {
+    finish({ version, seconds: data.painted })
+    if (data.words) remark({ version, words: data.words })
+  } else if (data.proven) proofsEnd()
+  else if (data.ended) report(data.ended, false)
+}
+
+/// Takes in areas of the picture.
+const areas = (buffer) => {
+  for (let at = 0; at < buffer.byteLength;) {
+    const [left, top, wide, high, block, isFinal, blocks] = new Uint32Array(buffer, at, 7)
+    const given = new Float32Array(buffer, at + 28, 3 * blocks), bytes = new Uint8Array(buffer, at + 28 + 12 * blocks, 3 * blocks)
+    part(left, top, wide, high, block, isFinal, given, bytes)
+    at += 28 + 12 * blocks + 4 * Math.ceil(3 * blocks / 4)
+  }
+}
+
+/// Asks the program for something, in the form of a request to a server.
+const request = async (path, { body = '' } = {}) => {
+  const [what, of, name] = path.split('/')
+  if (what === 'layer' && name === 'proof') return answerOf(200, proofLayer().buffer)
+  const whole = of === undefined && ['camera', 'move', 'turn', 'try'].includes(what) ? `${what}/${version}` : path
+  if (whole.split('/')[1] === `${painted.version}` && helped !== painted.version) {
+    helped = painted.version
+    await helper(`scene/${helped}`, painted.text)
+  }
+  return helper(whole, body)
+}
+
+/// What the program answers, in one form or another, or nothing.
+const ask = (path, form) => request(path).then((answer) => answer.ok ? answer[form]() : null).catch(() => null)
+
+/// Changes the scene: what is changed is written into its text.
+const post = async (path, body) => {
+  const answer = await request(path, { body })
+  if (!answer.ok) return answer
+  const { text } = await answer.json()
+  await setText(text)
+  return answerOf(200, new TextEncoder().encode(path === 'turn' ? 'turned into a look_at' : ''))
+}
+
+const follow = async () => {
+  state('loading', 'loading')
+  try {
+    const module = await compiled()
+    ;[painter, helper] = await Promise.all([start(module, hear), start(module, (data) => { helped = 0; hear(data) })])
+  } catch (error) {
+    state('broken', 'not loaded')
+    return report(`error: the program cannot be loaded: ${error.message}\nhelp: it needs a browser of 2023 or later`, false)
+  }
+  root.dataset.loaded = Math.round(performance.now())
+  await listSurfaces()
+  await setText(await textOfAddress() ?? await (await helper('surface/barth-6')).text())
+  refresh()
+  root.dataset.ready = 1
+  if ('serviceWorker' in navigator && location.protocol.startsWith('http') && !$('#module')) navigator.serviceWorker.register('offline.js').catch(() => {})
+}

@@ -1,0 +1,57 @@
+// The address has the scene: what is behind its # is the text, compressed.
+
+const through = async (bytes, stream) => new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer())
+
+const addressOf = async (text) => {
+  const bytes = await through(new TextEncoder().encode(text), new CompressionStream('deflate-raw'))
+  const letters = Array.from(bytes, (byte) => String.fromCharCode(byte)).join('')
+  return `#scene=${btoa(letters).replaceAll('+', '-').replaceAll('/', '_').replace(/=+$/, '')}`
+}
+
+/// The text that the address has; `#surface=NAME` and `#formula=FORMULA` are short for some.
+const textOfAddress = async () => {
+  const [, kind, value] = location.hash.match(/^#(scene|surface|formula)=(.*)$/) ?? []
+  try {
+    if (kind === 'surface') {
+      const answer = await helper(`surface/${decodeURIComponent(value)}`)
+      return answer.ok ? answer.text() : null
+    }
+    if (kind === 'formula') {
+      const answer = await helper('formula/change', JSON.stringify({ text: '', formula: decodeURIComponent(value) }))
+      return answer.ok ? (await answer.json()).text : null
+    }
+    if (kind !== 'scene') return null
+    const letters = atob(value.replaceAll('-', '+').replaceAll('_', '/'))
+    const bytes = Uint8Array.from(letters, (letter) => letter.charCodeAt(0))
+    return new TextDecoder().decode(await through(bytes, new DecompressionStream('deflate-raw')))
+  } catch {
+    return null
+  }
+}
+
+// The part of the address that this page has written itself.
+let own = ''
+let waitsToShare = 0
+const shareSoon = () => {
+  clearTimeout(waitsToShare)
+  waitsToShare = setTimeout(async () => {
+    own = await addressOf(editor.value)
+    if (location.hash !== own) history.replaceState(null, '', own)
+  }, 400)
+}
+
+on.scene.push(shareSoon)
+window.addEventListener('hashchange', async () => {
+  if (location.hash === own) return
+  const text = await textOfAddress()
+  if (text !== null) await setText(text)
+})
+$('#share').addEventListener('click', async () => {
+  own = await addressOf(editor.value)
+  history.replaceState(null, '', own)
+  const isCopied = await navigator.clipboard?.writeText(location.href).then(() => true, () => false)
+  const words = isCopied ? 'the address is copied' : 'the address of this page has the scene'
+  $('#share').textContent = isCopied ? 'copied' : 'see the address'
+  announce(words)
+  setTimeout(() => { $('#share').textContent = 'share' }, 2000)
+})

@@ -1,0 +1,93 @@
+// One of two web workers: the program, which answers requests, paints a picture step by step, and then proves its pixels.
+'use strict'
+
+// The least time in milliseconds for which the program works before the worker hears what is wanted next.
+const TURN = 30
+
+let module = null, program = null
+// The picture that is worked on: its version, what is done ('paint' or 'prove'), and how much of it in one turn.
+let job = null
+
+const coder = new TextEncoder(), decoder = new TextDecoder()
+
+const begin = () => {
+  program = new WebAssembly.Instance(module, {}).exports
+  program.start()
+}
+
+/// Asks the program, and returns its status and its bytes.
+const ask = (path, body = '') => {
+  const [head, tail] = [path, body].map((part) => coder.encode(part))
+  const length = head.length + tail.length, at = program.room(length)
+  const request = new Uint8Array(program.memory.buffer, at, length)
+  request.set(head)
+  request.set(tail, head.length)
+  const found = program.answer(at, head.length, length)
+  const [status, size] = new Uint32Array(program.memory.buffer.slice(found, found + 8))
+  const bytes = program.memory.buffer.slice(found + 8, found + 8 + size)
+  program.free(found, size + 8)
+  return { status, bytes }
+}
+
+/// Asks the program; where it ends on that, begins anew.
+const askSafely = (path, body) => {
+  try {
+    return ask(path, body)
+  } catch (error) {
+    job = null
+    begin()
+    postMessage({ restarted: true })
+    const report = `error: the program ended on this scene, and was started again\nhelp: ${error instanceof RangeError
+      ? 'its reflections are deeper than a browser allows: use the program itself'
+      : 'it may need more memory than a browser gives; if not, please report it'}`
+    return path.startsWith('scene/')
+      ? { status: 422, bytes: coder.encode(JSON.stringify({ lines: [], report })).buffer }
+      : { status: 500, bytes: coder.encode(report).buffer }
+  }
+}
+
+const { port1, port2 } = new MessageChannel()
+const goOn = () => port2.postMessage(null)
+
+port1.onmessage = () => {
+  if (!job) return
+  const { version, what, count } = job, before = performance.now()
+  const { status, bytes } = askSafely(`${what}/${version}/${count}`)
+  const took = performance.now() - before
+  if (status !== 200) {
+    job = null
+    return postMessage({ version, ended: decoder.decode(bytes) })
+  }
+  // The plan is made anew in each turn: much of a turn must be spent on more than that.
+  if (!count) return Object.assign(job, { turn: Math.max(TURN, 4 * took), count: 4 }), goOn()
+  if (took < job.turn / 2) job.count = 2 * count
+  else if (took > 2 * job.turn) job.count = Math.max(1, count >> 1)
+  if (bytes.byteLength) {
+    postMessage({ version, [what]: bytes }, [bytes])
+    return goOn()
+  }
+  if (what === 'prove') {
+    job = null
+    return postMessage({ version, proven: true })
+  }
+  const { words } = JSON.parse(decoder.decode(askSafely(`painted/${version}`).bytes))
+  postMessage({ version, painted: (performance.now() - job.began) / 1000, words })
+  job = { ...job, what: 'prove', count: 64 }
+  goOn()
+}
+
+onmessage = ({ data }) => {
+  if (data.module) {
+    module = data.module
+    begin()
+    return postMessage({ ready: true })
+  }
+  const { id, path, body, paints } = data
+  if (path === 'memory') return postMessage({ id, status: 200, bytes: coder.encode(`${program.memory.buffer.byteLength}`).buffer })
+  const { status, bytes } = askSafely(path, body)
+  postMessage({ id, status, bytes }, [bytes])
+  if (!paints || status !== 200) return
+  const goes = job
+  job = { version: path.split('/')[1], what: 'paint', count: 0, turn: TURN, began: performance.now() }
+  if (!goes) goOn()
+}

@@ -1,0 +1,185 @@
+//! A scene as a page has it: a text alone, without files around it.
+
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use tabray_core::render::plan::Plan;
+use tabray_core::scene::model::Model;
+use tabray_core::scene::value::Datum;
+use tabray_lang::editor::{self, Text};
+use tabray_lang::reader::{self, Places, ReadOptions, Report};
+use tabray_lang::registry::Registry;
+use tabray_lang::syntax::Syntax;
+use tabray_tools::page::camera::MoveRequest;
+use tabray_tools::page::display::Display;
+use tabray_tools::page::{Shown, lines, trial_values};
+
+/// What messages call the scene.
+pub const NAME: &str = "scene";
+
+/// The maximum number of pixels of a picture.
+const MAX_PIXELS: usize = 1 << 22;
+
+/// The limit on the memory of a scene, in bytes: a page that runs out of memory is gone.
+const MEMORY: u64 = 1 << 29;
+
+/// A valid scene.
+pub struct Scene {
+    /// What the page calls it: the next one has another version.
+    pub version: String,
+    pub text: String,
+    pub model: Model,
+    pub places: Places,
+    warnings: String,
+}
+
+/// A scene, as the page hears of it.
+#[derive(Serialize)]
+pub struct Told {
+    display: Display,
+    size: [usize; 2],
+    warnings: String,
+}
+
+/// Why there is no scene.
+#[derive(Serialize)]
+pub struct Unread {
+    /// The marked lines, from 1.
+    lines: Vec<usize>,
+    /// The errors, as people read them.
+    report: String,
+}
+
+/// Values to be written into the text.
+#[derive(Deserialize)]
+struct Try {
+    name: String,
+    attribute: String,
+    values: Vec<String>,
+}
+
+impl Scene {
+    /// Reads a scene.
+    ///
+    /// # Errors
+    /// Its faults.
+    pub fn read(registry: &Registry, version: &str, text: &str) -> Result<Self, Unread> {
+        let options = ReadOptions { memory: Some(MEMORY), ..ReadOptions::default() };
+        let loaded = reader::read_by(registry, NAME, Path::new(""), text.as_bytes(), options)
+            .map_err(|report| Unread::of(&report, text))?;
+        let [width, height] = loaded.model.camera.value.pixels;
+        if width.saturating_mul(height) > MAX_PIXELS {
+            let report = format!(
+                "error: an image of {width} x {height} pixels is too large for a page\n\
+                 help: the maximum is {MAX_PIXELS} pixels, such as 2048 x 2048"
+            );
+            return Err(Unread { lines: Vec::new(), report });
+        }
+        let warnings = loaded.warnings.to_string();
+        Ok(Self {
+            version: version.to_owned(),
+            text: text.to_owned(),
+            model: loaded.model,
+            places: loaded.places,
+            warnings,
+        })
+    }
+
+    /// Returns what the page hears of the scene.
+    pub fn told(&self) -> Told {
+        let camera = &self.model.camera.value;
+        Told { display: Display::of(camera), size: camera.pixels, warnings: self.warnings.clone() }
+    }
+
+    /// Returns what a page asks about.
+    pub fn shown(&self) -> Shown<'_> {
+        Shown { model: &self.model, name: NAME, text: &self.text }
+    }
+
+    /// Returns the text with the camera moved.
+    ///
+    /// # Errors
+    /// Why it cannot be.
+    pub fn moved(&self, registry: &Registry, body: &str) -> Result<String, String> {
+        let wanted: MoveRequest =
+            serde_json::from_str(body).map_err(|_| "this is not a movement of the camera".to_owned())?;
+        let after = wanted.moved(&self.model).ok_or("the camera cannot go there")?;
+        let name = self.model.camera.args.name();
+        let mut text = self.text.clone();
+        for (attribute, numbers) in &after {
+            if self.says(registry, name, attribute, numbers) {
+                continue;
+            }
+            let values = Syntax::Notes.values(&Datum::Numbers(numbers.clone()));
+            text = written(registry, &text, name, attribute, &values)?;
+        }
+        Ok(text)
+    }
+
+    /// Tells whether the text gives an attribute these numbers already.
+    fn says(&self, registry: &Registry, name: &str, attribute: &str, numbers: &[f64]) -> bool {
+        let view = self.shown().view(registry);
+        let is_meant =
+            |given: &&editor::Attribute| given.known.is_some_and(|known| known.name() == attribute);
+        let given = view.entity(name).and_then(|entity| entity.attributes.iter().find(is_meant));
+        given.is_some_and(|given| {
+            let there = given.values.iter().map(|word| view.word(*word).parse::<f64>().ok());
+            there.eq(numbers.iter().copied().map(Some))
+        })
+    }
+
+    /// Returns the text with a `look_at` in place of its `camera`.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn turned(&self, registry: &Registry) -> Result<String, String> {
+        let (name, view) = (self.model.camera.args.name(), self.shown().view(registry));
+        let camera =
+            view.entity(name).ok_or_else(|| format!("`{name}` is repeated or included: change the text"))?;
+        let turned = editor::look_at(&view, &camera.place).ok_or("only a `camera` can become a `look_at`")?;
+        let turned = turned.map_err(|reason| format!("the camera cannot become a `look_at`: {reason}"))?;
+        Ok(turned.applied(&view.text).as_str().to_owned())
+    }
+
+    /// Returns the text with other values of an attribute, or with another number of a `let`.
+    ///
+    /// # Errors
+    /// Why it stays as it is.
+    pub fn tried(&self, registry: &Registry, body: &str) -> Result<String, String> {
+        let wanted: Option<Try> = serde_json::from_str(body).ok();
+        let are_numbers = |values: &[String]| values.iter().all(|value| value.parse::<f64>().is_ok());
+        let Try { name, attribute, values } =
+            wanted.filter(|wanted| are_numbers(&wanted.values)).ok_or("these are not numbers")?;
+        if name == crate::formula::NUMBERS {
+            return crate::formula::with_number(registry, &self.text, &attribute, &values.concat());
+        }
+        written(registry, &self.text, &name, &attribute, &values)
+    }
+
+    /// Makes the plan of the picture.
+    pub fn plan(model: &Model) -> Plan<'_> {
+        Plan::for_picture(model)
+    }
+}
+
+impl Unread {
+    fn of(report: &Report, text: &str) -> Self {
+        let places = report.faults().iter().filter_map(|fault| fault.place.as_ref());
+        let lines = places.filter_map(|place| lines(text, place)).map(|[first, _]| first).collect();
+        Self { lines, report: report.to_string() }
+    }
+}
+
+/// Writes values of an attribute into a text.
+fn written(
+    registry: &Registry,
+    text: &str,
+    name: &str,
+    attribute: &str,
+    values: &[String],
+) -> Result<String, String> {
+    let view = editor::read(registry, NAME, Text::new(text));
+    let written = trial_values::write(&view, name, attribute, values);
+    let written =
+        written.ok_or_else(|| format!("`{name}` has no place of its own in the text: change the text"))?;
+    Ok(written.as_str().to_owned())
+}

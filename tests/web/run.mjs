@@ -1,0 +1,306 @@
+// The page for browsers, in Chromium: node tests/web/run.mjs WEB PROGRAM [AXE]
+//
+// WEB is what `cargo run -p tabray-web-build` made, PROGRAM is tabray itself, and AXE the script of axe-core. Screenshots are
+// written to WEB/shots. TABRAY_EDITS is the number of random edits, by default 10,000.
+
+import assert from 'node:assert/strict'
+import { execFileSync, spawn } from 'node:child_process'
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs'
+import { createServer } from 'node:http'
+import { tmpdir } from 'node:os'
+import { dirname, extname, join, resolve } from 'node:path'
+import { fileURLToPath, pathToFileURL } from 'node:url'
+
+const [web, program, axe] = process.argv.slice(2).map((path) => resolve(path))
+const sources = join(dirname(fileURLToPath(import.meta.url)), '../..')
+const edits = +(process.env.TABRAY_EDITS ?? 10000)
+const shots = join(web, 'shots'), work = mkdtempSync(join(tmpdir(), 'tabray-web-'))
+mkdirSync(shots, { recursive: true })
+
+// A server of files, and nothing else.
+const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm', '.svg': 'image/svg+xml', '.webmanifest': 'application/manifest+json' }
+const server = createServer((request, answer) => {
+  const path = new URL(request.url, 'http://x').pathname, file = join(web, path === '/' ? 'index.html' : path)
+  if (!existsSync(file)) return answer.writeHead(404).end()
+  answer.writeHead(200, { 'content-type': TYPES[extname(file)] ?? 'application/octet-stream' }).end(readFileSync(file))
+})
+await new Promise((done) => server.listen(0, '127.0.0.1', done))
+const served = `http://127.0.0.1:${server.address().port}/`
+
+// A browser, driven over WebDriver (W3C).
+const driver = spawn('chromedriver', ['--port=0'], { stdio: ['ignore', 'pipe', 'ignore'] })
+const port = await new Promise((done) => {
+  let said = ''
+  driver.stdout.on('data', (bytes) => {
+    said += bytes
+    const found = said.match(/started successfully on port (\d+)/)
+    if (found) done(found[1])
+  })
+})
+let session = `http://127.0.0.1:${port}/session`
+const send = async (path, body, method = 'POST') => {
+  const answer = await fetch(session + path, { method, body: body && JSON.stringify(body) })
+  const { value } = await answer.json()
+  assert(answer.ok, JSON.stringify(value))
+  return value
+}
+const args = ['--headless=new', '--no-sandbox', '--disable-dev-shm-usage', '--window-size=1360,850', '--allow-file-access-from-files=false']
+const capabilities = { alwaysMatch: { browserName: 'chrome', timeouts: { script: 3600000 }, 'goog:chromeOptions': { args, binary: process.env.CHROMIUM ?? '/usr/bin/chromium' }, 'goog:loggingPrefs': { browser: 'ALL' } } }
+session += `/${(await send('', { capabilities })).sessionId}`
+
+const go = (url) => send('/url', { url })
+const run = (script, ...args) => send('/execute/sync', { script, args })
+const until = (script, ...args) => send('/execute/async', { script: `const done = arguments[arguments.length - 1]; ${script}`, args })
+const command = (cmd, params) => send('/goog/cdp/execute', { cmd, params })
+const pause = (time) => new Promise((done) => setTimeout(done, time))
+const wait = async (condition, most = 120) => {
+  const start = Date.now()
+  while (!await run(`return !!(${condition})`)) {
+    assert(Date.now() - start < 1000 * most, `waited for ${condition}: ${await run('return document.body.innerText')}`)
+    await pause(20)
+  }
+}
+const shot = async (name) => writeFileSync(join(shots, `${name}.png`), Buffer.from(await send('/screenshot', null, 'GET'), 'base64'))
+const screen = (width, height, mobile, scheme) => Promise.all([
+  command('Emulation.setDeviceMetricsOverride', { width, height, deviceScaleFactor: 1, mobile }),
+  command('Emulation.setTouchEmulationEnabled', { enabled: mobile }),
+  command('Emulation.setEmulatedMedia', { features: [{ name: 'prefers-color-scheme', value: scheme }] }),
+])
+const data = (name) => run(`return document.documentElement.dataset[${JSON.stringify(name)}]`)
+const isShown = "document.documentElement.dataset.shown === String(version) && editor.value === painted.text"
+
+/// Shows a scene, and waits for the whole picture.
+const show = async (text) => {
+  const before = await run('return version')
+  await until('setText(arguments[0]).then(done)', text)
+  await wait(`version > ${before} && ${isShown}`)
+}
+
+/// The bytes of the picture on the canvas.
+const canvas = async () => Buffer.from(await run(`
+  const c = document.querySelector('canvas'), d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data
+  let s = ''
+  for (let at = 0; at < d.length; at += 4) s += String.fromCharCode(d[at], d[at + 1], d[at + 2])
+  return btoa(s)`), 'base64')
+
+/// The bytes that the program renders.
+const native = (text) => {
+  const [scene, image] = ['scene.ray', 'image.ppm'].map((name) => join(work, name))
+  writeFileSync(scene, text)
+  execFileSync(program, ['render', scene, '-o', image], { stdio: ['ignore', 'ignore', 'pipe'] })
+  const bytes = readFileSync(image)
+  return bytes.subarray(bytes.indexOf('\n') + 1)
+}
+
+const step = async (title, work) => {
+  const start = Date.now(), said = await work()
+  console.log(`${title}: ${said ?? 'ok'} (${((Date.now() - start) / 1000).toFixed(1)} s)`)
+}
+
+const accessible = async (what) => {
+  await run(readFileSync(axe, 'utf8'))
+  const found = await until("axe.run(document, { resultTypes: ['violations'] }).then(({ violations }) => done(violations.map(({ id, impact, nodes }) => [id, impact, nodes.map((node) => node.target.join(' ') + ': ' + node.failureSummary)])))")
+  const serious = found.filter(([, impact]) => ['serious', 'critical'].includes(impact))
+  assert.deepEqual(serious, [], what)
+  return found.map(([id]) => id)
+}
+
+try {
+  await screen(1360, 850, false, 'light')
+  await step('the first image of Barth’s sextic, 400 x 300', async () => {
+    await go(`${served}#surface=barth-6`)
+    await wait(isShown)
+    const [loaded, first, shown] = await run(`
+      const { loaded, first, shownAt } = document.documentElement.dataset
+      return [+loaded, +first, shownAt - performance.timeOrigin]`)
+    assert(first - loaded < 1000, `${first - loaded} ms`)
+    return `loaded ${Math.round(loaded)} ms after the address, coarse ${Math.round(first - loaded)} ms after that, all ${Math.round(shown - loaded)} ms`
+  })
+  await shot('start')
+
+  await step('ten scenes have the bytes of the program', async () => {
+    const names = ['barth-6', 'clebsch', 'heart', 'goursat', 'gyroid', 'torus', 'kummer', 'superquadric']
+    const texts = await Promise.all(names.map(async (name) => until('helper(`surface/${arguments[0]}`).then((answer) => answer.text()).then(done)', name)))
+    for (const file of ['scenes/entities/revsurf.ray', 'scenes/entities/glass.ray', 'scenes/gallery/marbles.ray', 'scenes/light/shadow.ray']) {
+      texts.push(readFileSync(join(sources, file), 'utf8').replace(/pixeldim +\d+ +\d+/, 'pixeldim 96 72'))
+    }
+    for (const [index, text] of texts.entries()) {
+      await show(text)
+      assert((await canvas()).equals(native(text)), `scene ${index}`)
+    }
+    return `${texts.length} scenes`
+  })
+
+  await step('proofs', async () => {
+    await show((await until("helper('surface/goursat').then((answer) => answer.text()).then(done)")).replace('400 300', '160 120'))
+    await wait("document.documentElement.dataset.proven === String(version)", 300)
+    assert.equal(await run("return document.querySelector('#badge').textContent"), '✓ proven: 19,200 pixels')
+    await go(`${served}#surface=barth-6`)
+    await send('/refresh', {})
+    await wait("document.documentElement.dataset.proven === String(version)", 600)
+    const words = await run("return document.querySelector('#badge').textContent")
+    await run("if (document.querySelector('#fields').hidden) refresh()")
+    await pause(300)
+    await shot('surface')
+    await run("document.querySelector('#badge').click()")
+    await pause(500)
+    await shot('proof')
+    await run("choose('picture')")
+    return words
+  })
+
+  await step('a pixel is explained, the plan is there, and a slider changes the text', async () => {
+    await run('look([200, 150])')
+    await wait("document.querySelector('#told pre').textContent.includes('surface')")
+    await run("selectTab(document.querySelector('#tab-plan'))")
+    await wait("document.querySelector('#plan').textContent.includes('mirrors')")
+    await shot('explained')
+    await run("selectTab(document.querySelector('#tab-text')); close(); refresh()")
+    await wait("document.querySelector('#fields input[type=range]')")
+    await run("const box = document.querySelector('#fields input[type=range]'); box.value = 1.2; box.dispatchEvent(new Event('input'))")
+    await wait(`editor.value.includes('let w 1.2') && ${isShown}`)
+  })
+
+  await step('the camera orbits by dragging, and by keys', async () => {
+    const before = await run('return editor.value')
+    await run("toggleSteering()")
+    await wait('steers')
+    const box = await run("const b = stage.getBoundingClientRect(); return [b.left + b.width / 2, b.top + b.height / 2].map(Math.round)")
+    const move = (x, y) => ({ type: 'pointerMove', x, y, duration: 20 })
+    await send('/actions', { actions: [{ type: 'pointer', id: 'mouse', actions: [move(...box), { type: 'pointerDown', button: 0 }, move(box[0] + 60, box[1]), move(box[0] + 120, box[1] + 20), { type: 'pointerUp', button: 0 }] }] })
+    await wait(`editor.value !== ${JSON.stringify(before)} && ${isShown}`)
+    const dragged = await run('return editor.value')
+    await run('stage.focus()')
+    await send('/actions', { actions: [{ type: 'key', id: 'keys', actions: [{ type: 'keyDown', value: '\ue012' }, { type: 'keyUp', value: '\ue012' }] }] })
+    await wait(`editor.value !== ${JSON.stringify(dragged)} && ${isShown}`)
+    await run('toggleSteering()')
+  })
+
+  await step('the formula bar draws what is typed', async () => {
+    await run("const bar = document.querySelector('#formula'); bar.value = 'x^2 + y^2 + bend*z^2 = 1'; bar.dispatchEvent(new Event('input'))")
+    await wait(`editor.value.includes('let bend 1') && ${isShown}`)
+    await run("const bar = document.querySelector('#formula'); bar.focus(); bar.value = 'x^2 + '; bar.dispatchEvent(new Event('input'))")
+    await wait("document.querySelector('#refused').textContent.length > 0")
+    const said = await run("return document.querySelector('#refused').textContent")
+    await run('document.activeElement.blur()')
+    return said
+  })
+
+  await step('errors are marked while they are typed, and words are completed', async () => {
+    const text = await until("helper('surface/torus').then((answer) => answer.text()).then(done)")
+    await show(text)
+    await run("const at = editor.value.indexOf('direction'); editor.focus(); editor.setSelectionRange(at, at + 9); document.execCommand('insertText', false, 'dircetion')")
+    await wait("document.querySelector('#problems li')")
+    const said = await run("return document.querySelector('#problems li').textContent")
+    assert(said.includes('did you mean `direction`'), said)
+    await run("const at = editor.value.indexOf('material front  shader'); editor.setSelectionRange(at, at); document.execCommand('insertText', false, 'ca')")
+    await wait("!document.querySelector('#proposals').hidden")
+    assert((await run("return document.querySelector('#proposals').textContent")).includes('capped'))
+    await shot('error')
+    await run("editor.dispatchEvent(new KeyboardEvent('keydown', { key: 'Enter' }))")
+    await wait("editor.value.includes('capped')")
+    return said
+  })
+
+  await step('the address has the scene', async () => {
+    await show(await until("helper('surface/cayley').then((answer) => answer.text()).then(done)"))
+    await wait("location.hash.startsWith('#scene=') && location.hash === own")
+    await pause(600)
+    const [text, address] = await run('return [editor.value, location.href]')
+    await go('about:blank')
+    await go(address)
+    await wait("document.documentElement.dataset.ready")
+    assert.equal(await run('return editor.value'), text)
+    return `${address.length} characters`
+  })
+
+  await step('files', async () => {
+    await wait(isShown)
+    const said = []
+    for (const kind of ['png', 'exr', 'stl', 'ray']) {
+      await run("document.querySelector('#files').open = true")
+      if (kind === 'stl') await wait("document.querySelector('#files select').value")
+      await run(`document.querySelector('[data-file=${kind}]').click()`)
+      await wait(`(document.documentElement.dataset.saved ?? '').startsWith('${kind} ')`)
+      said.push(await data('saved'))
+    }
+    await run("document.querySelector('#files').open = false")
+    return said.join(', ')
+  })
+
+  if (axe) await step('axe-core finds nothing serious', async () => {
+    const minor = new Set()
+    for (const [width, height, mobile, scheme] of [[1360, 850, false, 'light'], [1360, 850, false, 'dark'], [390, 844, true, 'light'], [390, 844, true, 'dark']]) {
+      await screen(width, height, mobile, scheme)
+      await run("refresh(); look([200, 150])")
+      await pause(500)
+      for (const id of await accessible(`${width} x ${height}, ${scheme}`)) minor.add(id)
+    }
+    return minor.size ? `minor: ${[...minor].join(', ')}` : 'nothing at all'
+  })
+  else console.log('SKIPPED: axe-core is not here')
+
+  await step('a phone and the dark', async () => {
+    await screen(390, 844, true, 'light')
+    await run('close(); fit(); scrollTo(0, 0)')
+    await pause(300)
+    await shot('phone')
+    await screen(1360, 850, false, 'dark')
+    await run('fit(); refresh()')
+    await pause(300)
+    await shot('dark')
+    await screen(1360, 850, false, 'light')
+  })
+
+  await step(`${edits} random edits`, async () => {
+    await show((await until("helper('surface/barth-6').then((answer) => answer.text()).then(done)")).replace('400 300', '24 18'))
+    const [before, after, restarts] = await until(`
+      const memory = async () => Promise.all([painter, helper].map(async (ask) => +await (await ask('memory')).text()))
+      const pieces = ['{', '}', '"', ' 1e300 ', '-', ' sphere ', 'let k 0\\n', '😀', 'formula', '^', '(', '\\n', '#', 'repeat i 3 {', '0', ' 7 ', 'x', '*y']
+      let seed = 7
+      const below = (most) => { seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0; return Math.floor(seed / 4294967296 * most) }
+      const original = editor.value
+      const edit = (text) => {
+        for (let times = 1 + below(3); times > 0; times--) {
+          const at = below(text.length + 1), end = at + below(6)
+          text = below(2) ? text.slice(0, at) + pieces[below(pieces.length)] + text.slice(at) : text.slice(0, at) + text.slice(end)
+        }
+        return text
+      }
+      const go = async (count) => {
+        for (let done = 0; done < count; done++) {
+          const text = edit(original), at = below(text.length + 1)
+          await Promise.all([read(text), helper('diagnose', text), helper('complete/' + at, text), helper('hover/' + at, text), helper('format', text)])
+        }
+      }
+      go(${Math.min(edits, 300)}).then(async () => {
+        const before = await memory()
+        await go(${Math.max(edits - 300, 0)})
+        done([before, await memory(), +(document.documentElement.dataset.restarts ?? 0)])
+      })`)
+    assert.equal(restarts, 0, 'the program ended')
+    after.forEach((bytes, index) => assert(bytes <= before[index] + (64 << 20), `${before} bytes became ${after}`))
+    return `memory of the two workers ${before.map((bytes) => bytes >> 20)} MiB after 300, ${after.map((bytes) => bytes >> 20)} MiB at the end`
+  })
+
+  await step('the page is there without a network', async () => {
+    await go(served)
+    await until("navigator.serviceWorker.ready.then(() => done(true))")
+    await pause(500)
+    await new Promise((done) => { server.close(done); server.closeAllConnections() })
+    await send('/refresh', {})
+    await wait(`document.documentElement.dataset.ready && ${isShown}`)
+  })
+
+  await step('one file works without a server', async () => {
+    await go(`${pathToFileURL(join(web, 'tabray.html'))}#surface=heart`)
+    await wait(`document.documentElement.dataset.ready && ${isShown}`)
+    const text = await run('return editor.value')
+    assert((await canvas()).equals(native(text)))
+  })
+} finally {
+  await send('', null, 'DELETE').catch(() => {})
+  driver.kill()
+  server.close()
+  rmSync(work, { recursive: true })
+}
