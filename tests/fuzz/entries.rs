@@ -8,6 +8,7 @@ use super::review::decide::Review;
 use super::serve::Work;
 use super::serve::access::Access;
 use super::serve::connections::{Answer, Connections, Limits};
+use super::serve::reach::Reach;
 use super::watch::answer::{self, JOBS};
 use super::watch::frame::Frame;
 use super::watch::session::Session;
@@ -148,7 +149,7 @@ impl Server {
     }
 
     fn new<A: AsyncFn(Request<Bytes>) -> Answer + 'static>(answer: A) -> io::Result<Self> {
-        let access = Access::new(PORT).map_err(io::Error::other)?;
+        let access = Access::new(Reach::local(Some(PORT)), PORT).map_err(io::Error::other)?;
         let url = access.url();
         let is_let_in = Rc::new(Cell::new(false));
         let answered = is_let_in.clone();
