@@ -47,7 +47,9 @@ impl Registry {
     pub fn of(entities: impl IntoIterator<Item = &'static Entity>) -> Result<Registry, String> {
         // `inventory` returns the entity types in the linker's order.
         let mut sorted: Vec<_> = entities.into_iter().collect();
-        sorted.sort_unstable_by_key(|entity| (entity.name, entity.place()));
+        sorted.sort_unstable_by(|one, other| {
+            one.name.cmp(other.name).then_with(|| one.place().cmp(&other.place()))
+        });
 
         let mut faults = Vec::new();
         let mut by_name: BTreeMap<&str, &Entity> = BTreeMap::new();

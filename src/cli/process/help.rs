@@ -24,7 +24,10 @@ pub fn grouped(command: Command) -> Command {
         let _ = write!(template, "\n{header}{purpose}:{header:#}\n");
         for name in names {
             let about = match command.find_subcommand(name) {
-                Some(command) => command.get_about().map(ToString::to_string).unwrap_or_default(),
+                // As it is: each start of the program makes this, and taking styles out takes longer than a small image.
+                Some(command) => {
+                    command.get_about().map(|about| about.ansi().to_string()).unwrap_or_default()
+                }
                 None => "Explain a command and its options".to_owned(),
             };
             let _ = writeln!(template, "  {literal}{name:<11}{literal:#}  {about}");
