@@ -145,6 +145,22 @@ fn a_new_scene_shows_a_model_as_its_file_says() {
 }
 
 #[test]
+fn a_mesh_in_the_place_of_a_scene_is_told_what_shows_it() {
+    let folder = folder();
+    fs::write(folder.path().join("part.obj"), block(-1.0, [2.0, 40.0, 0.1], false)).expect("a file");
+    fs::write(folder.path().join("part.GLB"), b"glTF\x02\x00\x00\x00\xff").expect("a file");
+    for name in ["part.obj", "part.GLB"] {
+        let (status, _, err) = outcome(tabray(&folder).args(["render", name]));
+        assert_eq!(status, 2, "{err}");
+        assert!(err.contains("this is a mesh, not a scene"), "{err}");
+        assert!(
+            err.contains(&format!("`tabray new scene NAME --mesh {name}` writes a scene that shows it")),
+            "{err}"
+        );
+    }
+}
+
+#[test]
 fn a_mesh_is_described() {
     let (folder, text) = (folder(), |out: Vec<u8>| String::from_utf8(out).expect("a text"));
     for (name, is_open) in [("closed.obj", false), ("open.obj", true)] {

@@ -88,6 +88,7 @@ pub fn recognised(
         Syntax::Notes => {
             let surface = || of_surfaces(name, text);
             surface()
+                .or_else(|| of_meshes(name, text))
                 .or_else(|| of_pov(text, name))
                 .or_else(|| of_others(text))
                 .or_else(|| of_numbers(registry, text))
@@ -152,6 +153,28 @@ fn of_surfaces(name: &str, text: &str) -> Option<Fault> {
     let first = text.lines().next().map_or(0, str::len);
     let fault = Fault::error(Some(0..first), format!("this is {what}, not a scene"));
     Some(fault.help("`tabray convert` writes it as one: give it this file, and a name that ends in .ray"))
+}
+
+/// The endings of the names of files of meshes.
+const MESHES: [&str; 5] = [".glb", ".gltf", ".obj", ".ply", ".stl"];
+
+/// Returns the report on a file that is no text: the one given, or that it is a mesh by its name.
+pub fn of_bytes(report: Report<'static>, name: &str) -> Report<'static> {
+    let Some(fault) = of_meshes(name, "") else { return report };
+    let mut report = Report::new(name, String::new(), Syntax::default());
+    report.add(fault);
+    report
+}
+
+/// Recognises by its name a mesh, which is no scene by its text.
+fn of_meshes(name: &str, text: &str) -> Option<Fault> {
+    let ending = &name[name.rfind('.')?..];
+    let is_one = MESHES.iter().any(|known| ending.eq_ignore_ascii_case(known));
+    let first = text.lines().next().map(|line| 0..line.trim_end().len()).filter(|first| !first.is_empty());
+    is_one.then(|| {
+        Fault::error(first, "this is a mesh, not a scene")
+            .help(format!("`tabray new scene NAME --mesh {name}` writes a scene that shows it"))
+    })
 }
 
 /// Recognises a scene of numbers, which stand for what other scenes say in words.

@@ -111,7 +111,7 @@ pub fn read_by(
     options: ReadOptions<'_>,
 ) -> Result<Loaded, Report> {
     has_types(registry, name)?;
-    let text = decode(name, bytes)?;
+    let text = decode(name, bytes).map_err(|report| languages::of_bytes(report, name))?;
     let syntax = match Syntax::of_name(name) {
         Some(Syntax::Toml) => Syntax::Toml,
         _ => Syntax::of_text(text),
