@@ -190,20 +190,20 @@ fn depth(model: &Model, depth: &Depth) -> String {
     if model.camera.value.rules == Rules::Free {
         return free_depth(model, depth);
     }
-    let ends =
-        format!("after a path of {MAX_DIST} units, and at a ray budget of {MAX_RAYS} for one primary ray");
+    let ends = format!(
+        "when its path is {MAX_DIST} units long, or when a ray budget of {MAX_RAYS} for each primary ray is used up"
+    );
     let bound = || {
-        let rest = if model.background.is_some() { ", but for the background" } else { "" };
-        let most = short(depth.most);
-        format!("nothing is brighter than {most} divided by the path length of its light{rest}")
+        let rest = if model.background.is_some() { ", except that of the background" } else { "" };
+        format!("no light is brighter than {} divided by the length of its path{rest}", short(depth.most))
     };
     match (model.camera.value.accuracy, depth.most.is_finite()) {
-        (Accuracy::Classic, true) => format!("as in the notes, branches end {ends}; {}", bound()),
+        (Accuracy::Classic, true) => format!("as in the notes, a branch ends {ends}; {}", bound()),
         (_, true) => {
-            format!("a branch ends where it can add less than 1/1024 of a level, as {}; {ends}", bound())
+            format!("a branch ends when it can add less than 1/1024 of a level, {ends}; {}", bound())
         }
         (_, false) => {
-            format!("branches end {ends}: {}, and nothing bounds what they add", no_bound(model, depth))
+            format!("a branch ends {ends}: nothing bounds what it adds, as {}", no_bound(model, depth))
         }
     }
 }
@@ -211,15 +211,15 @@ fn depth(model: &Model, depth: &Depth) -> String {
 /// Describes how rays end by the free rules.
 fn free_depth(model: &Model, depth: &Depth) -> String {
     let order = format!(
-        "the heaviest rays are followed first, at a budget for one pixel of {MAX_TREE} rays and the work of {MAX_RAYS} simple ones"
+        "the heaviest rays are followed first, in each pixel at most {MAX_TREE} rays, or the work of {MAX_RAYS} simple ones"
     );
     if !depth.most.is_finite() {
-        return format!("{order}: {}, and nothing bounds what they add", no_bound(model, depth));
+        return format!("{order}: nothing bounds what they add, as {}", no_bound(model, depth));
     }
     let most = short(depth.most);
     format!(
-        "rays end where all that are left can change a pixel by less than 1/16 of a level, as nothing is brighter than {most}; \
-         {order}"
+        "{order}; a pixel is finished when the rays that are left change it by less than 1/16 of a level; no light is \
+         brighter than {most}"
     )
 }
 
