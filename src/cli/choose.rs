@@ -27,11 +27,11 @@ use tabray_tools::chart::{self, Cost, Estimate, Estimates, Goal};
 
 /// Choose accuracy and samples for a maximum error or time
 ///
-/// Measures the choices, shows them with a bound on their errors that holds with a confidence of 99 %, and prints the
-/// command line to use. First takes about 1 million rays to compare the choices (2 million with `--worst`), beside those
-/// that are timed, and up to 4 million for lamps, wires and glints that are smaller than what is between samples. Then
-/// measures the likely choice on as many pixels as the bound needs, with 8 to 64 samples beside its own: on all pixels, if
-/// the error is small or the image is. Gives up after 30 seconds or after --time-limit, and may take a tenth longer.
+/// Measures the choices on a part of the image, shows them with bounds on their errors, and prints the command line to
+/// use. The bounds hold with a confidence of 99 %. Comparing the choices takes about 1 million rays (2 million with
+/// `--worst`), and looking for lamps, wires and glints that samples may miss up to 4 million. Then the likely choice is
+/// measured on as many pixels as its bound needs. Gives up after 30 seconds or after --time-limit, and may take a tenth
+/// longer.
 #[derive(clap::Args)]
 #[command(group = ArgGroup::new("limit").args(["max_error", "max_time"]).required(true))]
 #[command(after_long_help = EXAMPLES)]

@@ -19,9 +19,9 @@ use tabray_lang::syntax::Syntax;
 ///
 /// Everything but comments is kept, and what the scene computes is written out: the copy loads to the identical model.
 ///
-/// A SCENE whose name ends in .jsurf is a surface of SURFER, and one in .surf or .pic a script of surf; of other names and
-/// of standard input, the text tells. The scene has the formula and its parameters, the view, what cuts the surface, the
-/// colours and the lamps. What it leaves out is said.
+/// A SCENE whose name ends in .jsurf is a surface of SURFER, and one in .surf or .pic a script of surf. Other names and
+/// standard input are recognized by their text. The copy has the formula and its parameters, the view, what cuts the
+/// surface, the colours and the lamps. Warnings say what it leaves out.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {

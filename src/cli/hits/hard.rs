@@ -19,9 +19,9 @@ use tabray_tools::hits::hard;
 
 /// Write rays that are hard to decide
 ///
-/// The rays are aimed at the outlines of objects, where smooth surfaces are touched, at the edges between faces, at seams
-/// between objects and at corners, and pass them at distances of 1e-2 to 1e-15 of the size of what they are aimed at, or at
-/// none, up to rounding. `hits` answers them, and `judge` judges what another tracer answers.
+/// The rays are aimed at outlines, at edges between faces, at seams between objects, and at corners. They pass these at
+/// distances of 1e-2 to 1e-15 of the object's size, or at none, up to rounding. `hits` answers such rays, and `judge` judges
+/// the answers of another tracer.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {

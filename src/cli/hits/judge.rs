@@ -24,14 +24,13 @@ use tabray_tools::hits::theirs::TheirReader;
 
 /// Judge the answers of another tracer
 ///
-/// Reads rays, each with what the other tracer says of it, as CSV with the columns ox, oy, oz, dx, dy, dz and t, and perhaps
-/// hit, object, face and t_max, or as JSON lines with origin, direction and the same names. No t, or one that is negative or
-/// not finite, says that nothing is hit. An object is a name or the index of an object of the scene, a face an index; what is
-/// left out is not judged.
+/// Reads rays with the answers of the other tracer: as CSV with the columns ox, oy, oz, dx, dy, dz and t, and perhaps hit,
+/// object, face and t_max, or as JSON lines with origin, direction and the same names. No t, or one that is negative or not
+/// finite, says that nothing is hit. An object is a name or an index, a face an index. What is left out is not judged.
 ///
-/// What is right is proven, as `hits` does it. An answer missed a surface, invented one, hit a later one than the first, has a
-/// t that is that of no surface, or names another object or face; what the proof does not decide is not judged. The exit
-/// status is 1 if any answer is wrong.
+/// The right answers are proven, as by `hits`. An answer is wrong if it misses a surface, invents one, hits a later one than
+/// the first, has a t at which there is no surface, or names another object or face. What the proof does not decide is not
+/// judged. The exit status is 1 if any answer is wrong.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {

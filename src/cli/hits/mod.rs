@@ -23,18 +23,18 @@ use tabray_tools::hits::{self, Asked, Ended, Tally};
 
 /// Answer what rays hit first, each with a proof
 ///
-/// Reads rays, and writes an answer for each, in the same order: whether and which object it hits, the t of the hit in lengths
-/// of the ray's direction, with bounds that contain the real t, the distance in world units, the point, the normal and, where
-/// there are some, u, v and the number of the face. The scene needs no camera, and may be the file of a mesh.
+/// Reads rays, and writes an answer for each, in the same order: the object that is hit, t in lengths of the ray's direction
+/// with bounds that contain the real t, the distance in world units, the point, the normal, and u, v and the face where the
+/// shape has some. The scene needs no camera, and may be the file of a mesh.
 ///
-/// The proof is about the real ray through the numbers that are given and the scene's numbers as they are read, as `verify`
-/// has it. The verdicts are `hit`; `miss`; `edge`, where the ray passes through the edge of a surface, as far as 237 bits tell; `tie`, where several objects are hit at once, as far as they tell; and `undecided`, where they do not
-/// tell, or a shape has no equation. Of several objects the first in the scene is named; where it is undecided, the one that
-/// the tracer finds.
+/// The proof is about the real ray and the scene's numbers as they are read; `tabray help verify` has more. `hit` and
+/// `miss` are proven. `edge` is a ray through the edge of a surface, as far as 237 bits tell. `tie` is a ray that hits
+/// several objects at once, and the first in the scene is named. `undecided` is a ray of which 237 bits do not tell what
+/// it hits, or whose shape has no equation; the object that the tracer finds is named.
 ///
-/// Rays are lines of six numbers, the origin and the direction, which need not be a unit vector, and perhaps a seventh, the t
-/// at which the ray ends; or CSV with the columns ox, oy, oz, dx, dy, dz and t_max; or JSON lines; or a NumPy array of shape
-/// (n, 6) or (n, 7).
+/// Rays are lines of six numbers: the origin and the direction, which need not be a unit vector. A seventh number is the t at
+/// which the ray ends. Rays may also be CSV with the columns ox, oy, oz, dx, dy, dz and t_max, JSON lines, or a NumPy array of
+/// shape (n, 6) or (n, 7).
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {

@@ -20,14 +20,14 @@ pub struct Args {
     /// edges, in soft shadows and where objects are small
     #[arg(long, value_name = "N|MIN..MAX", value_parser = samples)]
     samples: Option<Samples>,
-    /// Take as many samples in each pixel as it needs for this error of its colour, such as `2` (levels of 255) or
-    /// `0.5%` (of white): an estimate, not a proof, which held for 98 to 100 of 100 pixels in the scenes of
-    /// docs/errors.md. Takes 4 to 4096 samples unless --samples gives other limits
+    /// Take as many samples in each pixel as it needs for this error, such as `2` (levels of 255) or `0.5%` (of white).
+    /// The error is estimated, not proven: it held for 98 to 100 of 100 pixels in the scenes of docs/errors.md. Takes 4
+    /// to 4096 samples unless --samples gives other limits
     #[arg(long, value_name = "LEVELS|PERCENT%", allow_negative_numbers = true)]
     max_error: Option<MaxError>,
-    /// Prove the error of --max-error where that is possible: the colour of a pixel is enclosed for all rays through it
-    /// at once, and if the enclosure is narrow enough, the pixel takes no samples. Other pixels take samples as without
-    /// this option. The share of proven pixels is printed, with a bound on the error of the others
+    /// Prove the error of --max-error where that is possible. A pixel whose colour is enclosed narrowly enough, for all
+    /// rays through it at once, takes no samples. The others take samples as without this option. The share of proven
+    /// pixels is printed, with a bound on the error of the others
     #[arg(long, requires = "max_error")]
     certain: bool,
     /// The distribution of the samples within a pixel
