@@ -11,6 +11,9 @@ use tempfile::TempDir;
 /// The scenes whose charts the docs show.
 const SCENES: [&str; 1] = ["hard/flange-from-above"];
 
+/// The place of the first panel in a chart: left, top, width and height.
+const PANEL: [u32; 4] = [0, 74, 712, 500];
+
 /// Runs the program, which must succeed, and returns its standard output.
 fn tabray(arguments: &[&str], folder: &Path) -> String {
     let output = cargo_bin_cmd!("tabray").current_dir(folder).args(arguments).output().expect("it runs");
@@ -43,14 +46,14 @@ fn the_gallery_of_charts_is_drawn() {
         let verdict =
             tabray(&["chart", path.to_str().expect("UTF-8"), "-o", ".", "--time-limit", "1h"], folder.path());
         let name = path.file_stem().expect("a name").to_str().expect("UTF-8");
-        for extension in ["png", "csv"] {
-            let file = folder.path().join(format!("{name}-chart.{extension}"));
-            fs::copy(file, pictures.join(format!("{name}.{extension}"))).expect("a copy");
-        }
-        let read = |extension: &str| {
-            let file = folder.path().join(format!("{name}-chart.{extension}"));
-            fs::read_to_string(file).expect("it is written")
-        };
+        let file = |extension: &str| folder.path().join(format!("{name}-chart.{extension}"));
+        fs::copy(file("csv"), pictures.join(format!("{name}.csv"))).expect("a copy");
+        // The first panel alone can be read on a phone.
+        let chart = image::open(file("png")).expect("a picture");
+        let [left, top, width, height] = PANEL;
+        let panel = chart.crop_imm(left, top, width, height);
+        panel.save(pictures.join(format!("{name}.png"))).expect("room for a picture");
+        let read = |extension: &str| fs::read_to_string(file(extension)).expect("it is written");
         every_choice_has_its_name(&read("csv"), &read("svg"));
         println!("{scene}\n{verdict}");
     }
