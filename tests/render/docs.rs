@@ -96,3 +96,29 @@ fn the_scenes_that_the_docs_show_are_read() {
         }
     }
 }
+
+/// Returns the names by which links lead to the headings of a page.
+fn headings(page: &str) -> Vec<String> {
+    let outside = page.split("```").step_by(2).flat_map(str::lines);
+    let titles = outside.filter(|line| line.starts_with('#')).map(|line| line.trim_start_matches('#').trim());
+    let letters =
+        |title: &str| title.to_lowercase().replace(|c: char| !c.is_alphanumeric() && !" -_".contains(c), "");
+    titles.map(|title| letters(title).replace(' ', "-")).collect()
+}
+
+#[test]
+fn links_lead_to_headings_that_are_there() {
+    let read = |path: &Path| fs::read_to_string(path).unwrap_or_default();
+    let pages = pages().into_iter().map(|(page, _)| page);
+    for page in pages.chain(["README.md", "CONTRIBUTING.md", "SECURITY.md"].map(|name| root().join(name))) {
+        let text = read(&page);
+        for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+            let Some((file, heading)) = link.split_once('#').filter(|(file, _)| !file.contains("://")) else {
+                continue;
+            };
+            let there = if file.is_empty() { page.clone() } else { page.with_file_name(file) };
+            let is_there = headings(&read(&there)).iter().any(|title| title == heading);
+            assert!(is_there, "{} links to {link}, which is not there", page.display());
+        }
+    }
+}
