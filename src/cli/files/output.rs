@@ -13,6 +13,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, IsTerminal, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use tabray_core::files::refuse_outside;
 use tabray_core::output::deflate::Compression;
 use tabray_core::output::picture::Format;
@@ -29,6 +30,14 @@ pub enum Output {
     Special(File),
     /// A temporary file beside the target, and the target's path.
     File(Temporary, PathBuf),
+}
+
+/// The number of bytes that were sent to readers: to standard output, to devices and to pipes.
+static SENT: AtomicU64 = AtomicU64::new(0);
+
+/// Returns how many bytes were sent to readers.
+pub fn sent() -> u64 {
+    SENT.load(Ordering::Relaxed)
 }
 
 /// Writes a new file as a whole; an existing file is not replaced.
@@ -233,11 +242,13 @@ impl Output {
 
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match self {
-            Self::Standard => io::stdout().write(bytes),
-            Self::Special(file) => file.write(bytes),
-            Self::File(file, _) => file.file().write(bytes),
-        }
+        let sent = match self {
+            Self::File(file, _) => return file.file().write(bytes),
+            Self::Standard => io::stdout().write(bytes)?,
+            Self::Special(file) => file.write(bytes)?,
+        };
+        SENT.fetch_add(sent as u64, Ordering::Relaxed);
+        Ok(sent)
     }
 
     fn flush(&mut self) -> io::Result<()> {

@@ -1,5 +1,6 @@
 //! Stops a render before its image is finished: at an interruption, or at a limit of time or memory.
 
+use crate::files::output;
 use crate::process::failure::Failure;
 use crate::process::interrupt::{self, InterruptAction};
 use crate::process::{memory, messages};
@@ -104,6 +105,13 @@ impl Stop {
         interrupt::set_action(InterruptAction::SetFlag);
         memory::stops_at_limit();
         let _ = self.begun.set(());
+    }
+
+    /// Does what [`begin`](Self::begin) does where the image goes to a reader, who may have stopped reading: then the program
+    /// ends.
+    pub fn begin_sending(&self) {
+        self.begin();
+        interrupt::set_action(InterruptAction::SetFlagUntilStuck(output::sent, NOT_FINISHED));
     }
 
     /// Lets interruptions and limits end the program with this message from now on, because no part of the image can be

@@ -31,6 +31,9 @@ pub enum InterruptAction {
     /// A flag is set, which [`check`] reports. If this is still the action after [`PATIENCE`], the program
     /// exits with this message.
     SetFlagThenExit(&'static str),
+    /// A flag is set, which [`check`] reports. If nothing is sent to whoever reads the output for [`PATIENCE`], the
+    /// program exits with this message; the function tells how many bytes were sent.
+    SetFlagUntilStuck(fn() -> u64, &'static str),
 }
 
 fn action() -> MutexGuard<'static, InterruptAction> {
@@ -57,6 +60,19 @@ pub fn catch(first: InterruptAction) -> Result<(), Failure> {
                 thread::sleep(PATIENCE);
                 if let InterruptAction::SetFlagThenExit(said) = *action() {
                     failure::end(&Failure::Interrupted(said));
+                }
+            })),
+            InterruptAction::SetFlagUntilStuck(sent, said) => drop(thread::spawn(move || {
+                loop {
+                    let before = sent();
+                    thread::sleep(PATIENCE);
+                    if !matches!(*action(), InterruptAction::SetFlagUntilStuck(..)) {
+                        return;
+                    }
+                    if sent() == before {
+                        failure::end_even_if_blocked(&Failure::Stopped);
+                        failure::end(&Failure::Interrupted(said));
+                    }
                 }
             })),
         }

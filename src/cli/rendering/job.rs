@@ -71,7 +71,10 @@ impl Job<'_> {
         let overseer = RenderCallbacks { stops: &|| self.stop.is_due(), row: &|| progress.step() };
         let (plan, renders) = (self.plan, (self.renderer, self.plan));
         let (plain, counted): (&(dyn Fn(Flaws) + Sync), &(dyn Fn(RayStats) + Sync)) = (&flawed, &add);
-        self.stop.begin();
+        match output {
+            Output::File(..) => self.stop.begin(),
+            Output::Standard | Output::Special(_) => self.stop.begin_sending(),
+        }
         thread::scope(|scope| {
             let fill = |band: &mut Band| match self.stats {
                 None if plan.camera.certain => unfinished::fill(scope, renders, band, overseer, counted),
