@@ -88,7 +88,7 @@ fn graded(registry: &Registry, args: &Args) -> Result<bool, Failure> {
         return Err(Failure::Usage(
             format!(
                 "`{}` has {} x {} pixels, and the image of the scene {width} x {height}",
-                args.picture.display(),
+                text::shown(&args.picture),
                 size.0,
                 size.1
             ),

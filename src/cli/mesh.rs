@@ -8,7 +8,7 @@ use crate::process::messages;
 use glam::DVec3;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
-use tabray_core::text::{count, list, short, shortest};
+use tabray_core::text::{count, list, short, shortest, shown};
 use tabray_lang::registry::Registry;
 use tabray_tools::surface_mesh::{Body, Format, NoBody, NoMesh, mesh};
 
@@ -70,22 +70,25 @@ impl Value for Format {
 pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
     let Args { output, name, .. } = args;
     let format = args.format.or_else(|| Format::of_name(output)).ok_or_else(|| {
-        let message = format!("the name `{}` does not determine the format of the mesh", output.display());
+        let message = format!("the name `{}` does not determine the format of the mesh", shown(output));
         Failure::Usage(message, Some("end it in .stl, .obj or .ply, or give `--format`".to_owned()))
     })?;
     let model = args.scene.load(registry, None)?;
     output::refuse_source_by(output, "the mesh", &args.scene.path, &model)?;
-    let body = Body::of(&model, name).map_err(|fault| no_body(&args.scene.path, name, fault))?;
+    let body = Body::of(&model, name).map_err(|fault| no_body(&args.scene.path, &shown(name), fault))?;
     let size = 2.0 * body.bounds.half_size().max_element();
     let error = args.error.unwrap_or_else(|| short(FRACTION * size).parse().unwrap_or(size));
-    let made =
-        args.threads.renderer()?.run(|| mesh(&body, error)).map_err(|fault| no_mesh(name, error, &fault))?;
+    let made = args
+        .threads
+        .renderer()?
+        .run(|| mesh(&body, error))
+        .map_err(|fault| no_mesh(&shown(name), error, &fault))?;
     let mut out = BufWriter::new(Output::open(output)?);
     let written = format.write(&made, name, &mut out);
     output::finished(output, written, out)?;
     messages::note(&format!(
         "wrote {}: {}, closed, with a volume of {}",
-        output.display(),
+        shown(output),
         count(made.faces.len(), "triangle"),
         short(made.volume())
     ));
@@ -131,10 +134,13 @@ fn listed(places: &[[DVec3; 2]]) -> String {
 
 fn no_body(scene: &Path, name: &str, fault: NoBody) -> Failure {
     let (message, help) = match fault {
-        NoBody::Unknown(names) => (
-            format!("`{}` has no object `{name}`", scene.display()),
-            format!("its objects are {}", list(names.iter().map(String::as_str))),
-        ),
+        NoBody::Unknown(names) => {
+            let names: Vec<_> = names.iter().map(shown).collect();
+            (
+                format!("`{}` has no object `{name}`", shown(scene)),
+                format!("its objects are {}", list(names.iter().map(String::as_str))),
+            )
+        }
         NoBody::Open(why) => (
             format!("`{name}` encloses nothing: {why}"),
             "a mesh is made of closed objects: a sphere, a solid, an `implicit` within its box".to_owned(),

@@ -167,13 +167,15 @@ impl Image {
             (Some(format), _) => self.encoded(format)?,
             (None, Some(format)) => self.full_range(py, format)?,
             (None, None) => {
-                let told =
-                    format!("`{}` has no known format: end it in .png, .ppm, .exr or .pfm", path.display());
+                let told = format!(
+                    "`{}` has no known format: end it in .png, .ppm, .exr or .pfm",
+                    text::shown(&path)
+                );
                 return Err(PyValueError::new_err(told));
             }
         };
         let cannot = |error: io::Error| {
-            let told = format!("cannot write `{}`: {}", path.display(), text::reason(&error));
+            let told = format!("cannot write `{}`: {}", text::shown(&path), text::reason(&error));
             io::Error::new(error.kind(), told).into()
         };
         py.detach(|| write(&path, &bytes)).map_err(cannot)

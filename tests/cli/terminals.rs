@@ -14,8 +14,10 @@ use tempfile::TempDir;
 /// A word that is a name in a scene.
 const WORD: &str = "b\u{202e}al\u{200b}l\u{2066}";
 
-/// The beginning of a file's name: it sets a terminal's title, and clears the screen by a control of one character.
-const FILE: &[u8] = b"e\x1b]0;a\x07v\xc2\x9b2J\xff\xe2\x80\xae";
+/// The beginning of a file's name: it sets a terminal's title, clears the screen by a control of one character, and has a
+/// line of its own.
+const FILE: &[u8] = b"e\x1b]0;a\x07v\xc2\x9b2J\xff\xe2\x80\xae\nFORGED: ";
+const FORGED: &str = "FORGED";
 
 fn name(ending: &str) -> OsString {
     let mut name = OsStr::from_bytes(FILE).to_owned();
@@ -39,6 +41,7 @@ fn hostile() -> TempDir {
     write(name(".ray"), scene().as_bytes());
     write(format!("{WORD}.ppm").into(), b"P6 1 1 255\n\xff\x80\x00");
     write(name(".ppm"), b"P6 1 1 255\n\xff\x80\x00");
+    write(name("right.ppm"), &[b"P6 8 6 255\n", &[99; 8 * 6 * 3][..]].concat());
     write(name("2.ppm"), b"P6 1 1 255\n\x00\x80\x00");
     write(name(".rays"), b"4 3 6 0 0 -1\n0 0 6 0 0 1\n");
     write(name("bad.rays"), b"4 3 6 \x1b[2J \xc2\x9b\n");
@@ -54,6 +57,7 @@ fn hostile() -> TempDir {
     let mtl =
         "mtllib \u{202e}\u{9b}\x1b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl \u{202e}\u{9b}\x1b\nf 1 2 3\n";
     write(name(".obj"), mtl.as_bytes());
+    fs::create_dir(folder.path().join(name("charts"))).expect("a folder");
     write(name("bad.obj"), "v 0 \x1b[2J\u{9b} 0\n\u{202e} 3\n".as_bytes());
     folder
 }
@@ -62,6 +66,7 @@ fn hostile() -> TempDir {
 fn assert_seen(what: &str, bytes: &[u8]) {
     let shown = std::str::from_utf8(bytes);
     let shown = shown.unwrap_or_else(|error| panic!("{what}: {error}: {:?}", String::from_utf8_lossy(bytes)));
+    assert!(!shown.lines().any(|line| line.starts_with(FORGED)), "{what}: {shown}");
     let hidden = |letter: char| letter != '\n' && letter != '\t' && text::is_unseen(letter);
     if let Some(at) = shown.find(hidden) {
         let before = text::boundary(shown, at.saturating_sub(60));
@@ -70,7 +75,7 @@ fn assert_seen(what: &str, bytes: &[u8]) {
 }
 
 /// Each command, with the endings of the names of the files that it reads or writes; `@` stands for such a name.
-const COMMANDS: [&[&str]; 38] = [
+const COMMANDS: [&[&str]; 51] = [
     &["check", "@.ray"],
     &["check", "@bad.ray"],
     &["check", "@bad.toml"],
@@ -95,6 +100,19 @@ const COMMANDS: [&[&str]; 38] = [
     &["render", "@.ray", "-o", "@.none/a.png"],
     &["render", "@.ray", "-o", "@.png", "--part", "1/2"],
     &["render", "@bad.ray", "@.ray", "-o", "@folder"],
+    &["chart", "@.ray", "-o", "@charts", "--time-limit", "1s"],
+    &["chart", "@bad.ray"],
+    &["chart", "@.ray", "-o", "@.none/a.svg"],
+    &["choose", "@.ray", "--max-error", "20", "--time-limit", "1s"],
+    &["choose", "@bad.ray", "--max-error", "2"],
+    &["bench", "@.ray", "--seconds", "0.001"],
+    &["bench", "@.ray", "--seconds", "0.001", "--json"],
+    &["mesh", "@.ray", WORD, "-o", "@.stl"],
+    &["mesh", "@.ray", "\u{202e}\x1b", "-o", "@.obj"],
+    &["mesh", "@.ray", WORD, "-o", "@.none"],
+    &["grade", "@.ray", "@.ppm"],
+    &["grade", "@.ray", "@right.ppm", "--json"],
+    &["new", "scene", "@mesh.ray", "--mesh", "@.obj"],
     &["merge", "@missing.png"],
     &["film", "@.png", "--sheet", "@sheet.png"],
     &["diff", "@.ppm", "@2.ppm"],

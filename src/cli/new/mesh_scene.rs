@@ -6,7 +6,7 @@ use glam::DVec3;
 use std::path::{Path, PathBuf};
 use tabray_core::scene::value::Datum;
 use tabray_core::shapes::mesh::read::Wanted;
-use tabray_core::text::shortest;
+use tabray_core::text::{shortest, shown};
 use tabray_core::world::sensor::Sensor;
 use tabray_lang::dump;
 use tabray_lang::reader;
@@ -34,7 +34,7 @@ const FILLED: f64 = 0.8;
 pub fn text(registry: &Registry, file: &Path, scene: &Path, syntax: Syntax) -> Result<String, Failure> {
     let text = in_notes(file, scene)?;
     let folder = scene.parent().unwrap_or(scene);
-    let name = scene.with_extension("ray").display().to_string();
+    let name = shown(scene.with_extension("ray"));
     let loaded = reader::read(registry, &name, folder, text.as_bytes(), None).map_err(Failure::Scene)?;
     Ok(match syntax {
         Syntax::Notes => text,

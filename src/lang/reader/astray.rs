@@ -1,7 +1,7 @@
 //! Guesses which file was meant by a name that leads nowhere: one with another extension, or one folder off.
 
 use std::path::{Component, Path, PathBuf};
-use tabray_core::text::nearest_file;
+use tabray_core::text::{nearest_file, shown};
 
 /// The extensions of images that textures can be.
 const IMAGES: [&str; 13] =
@@ -25,7 +25,7 @@ pub fn image(folder: &Path, written: &str) -> Option<String> {
     let exact = || places.iter().map(|place| place.join(name)).find(|path| folder.join(path).is_file());
     let found = same(own).or_else(exact).or_else(|| places.iter().find_map(|place| same(place)));
     let found = found.or_else(|| nearest_file(&folder.join(written)).map(|near| own.join(near)));
-    found.map(|path| path.display().to_string())
+    found.map(shown)
 }
 
 /// Returns the folders around one that a scene names, relative to the scene's folder.
