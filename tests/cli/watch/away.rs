@@ -84,6 +84,60 @@ fn a_folder_of_scenes_that_is_made_anew_is_followed() {
     while !events.until("scenes").to_string().contains("b.ray") {}
 }
 
+/// Runs a command in the namespace of a process, as root there; tells whether it succeeds.
+#[cfg(target_os = "linux")]
+fn within(process: u32, args: &[&str]) -> bool {
+    let mut enter = Command::new("nsenter");
+    enter
+        .args(["--user", "--preserve-credentials", "--mount", "--wd", "--target", &process.to_string()])
+        .args(args);
+    enter.status().is_ok_and(|status| status.success())
+}
+
+/// The system tells nothing of a mount: what is seen of it is seen by looking.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_mount_that_comes_and_goes_is_followed() {
+    // A namespace of its own, in which anybody may mount.
+    let apart = ["--user", "--map-root-user", "--mount", "--propagation", "private"];
+    let tried = Command::new("unshare")
+        .args(apart)
+        .args(["sh", "-c", "mount -t tmpfs tmpfs /mnt && command -v nsenter"])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status();
+    if !tried.is_ok_and(|status| status.success()) {
+        println!("SKIPPED: nothing may be mounted here, or there is no `unshare`, `nsenter` or `mount`");
+        return;
+    }
+    let folder = TempDir::new().expect("a folder");
+    fs::create_dir(folder.path().join("drive")).expect("a folder");
+    fs::write(folder.path().join("drive/scene.ray"), ball("9 0 0")).expect("a file");
+    let mut program = Command::new("unshare");
+    program.args(apart).arg(cargo_bin!("tabray"));
+    let (watching, ..) = Watching::start_by(program, folder, &["drive/scene.ray"], &["--port", "0"]);
+    let mut events = watching.events();
+    let text = |event: &serde_json::Value| event["text"].as_str().expect("text").to_owned();
+    assert_eq!(text(&events.until("scene")), ball("9 0 0"));
+    let run = |args: &[&str]| assert!(within(watching.child.id(), args), "{args:?}");
+    let save =
+        |ambient: &str| run(&["sh", "-c", r#"printf %s "$1" > drive/scene.ray"#, "sh", &ball(ambient)]);
+    for ambient in ["0 9 0", "0 0 9"] {
+        // The scene is not on the drive.
+        run(&["mount", "-t", "tmpfs", "tmpfs", "drive"]);
+        events.until("fault");
+        save(ambient);
+        assert_eq!(text(&events.until("scene")), ball(ambient));
+        save("9 9 0");
+        assert_eq!(text(&events.until("scene")), ball("9 9 0"));
+        run(&["umount", "drive"]);
+        assert_eq!(text(&events.until("scene")), ball("9 0 0"));
+    }
+    // As before, the system tells of changes where the drive was.
+    fs::write(watching.folder.path().join("drive/scene.ray"), ball("0 9 9")).expect("a file");
+    assert_eq!(text(&events.until("scene")), ball("0 9 9"));
+}
+
 /// Returns a command that starts the program such that calls of the system fail, as `strace` injects it; `None`, with a
 /// word, where there is no `strace`.
 #[cfg(target_os = "linux")]
