@@ -2,9 +2,10 @@
 //! the comments, and what stands on one line stay.
 
 use super::format_toml;
+use super::toml;
 use super::view::{Attribute, Entity, Item, Repeat, View, Word};
 use crate::reader::tokens::{Token, TokenForm};
-use crate::reader::{Fault, Report, toml_error};
+use crate::reader::{Fault, Report};
 use crate::syntax::Syntax;
 use std::fmt::Write;
 use std::mem::replace;
@@ -21,21 +22,24 @@ const SHORT_ROW: usize = 4;
 pub fn problem(view: &View) -> Option<Fault> {
     view.breaks.first().cloned().or_else(|| match view.syntax {
         Syntax::Notes => None,
-        // The events of a text in TOML do not show what is wrong within a key or a value.
-        Syntax::Toml => {
-            toml_error(view.text.as_str()).map(|(place, message)| Fault::error(Some(place), message))
-        }
+        Syntax::Toml => toml::wrong_word(view.text.as_str(), &toml::events(view.text.as_str()).0),
     })
 }
 
 /// Returns the text of a scene as it should be written, or `None` where its form has faults.
 pub fn formatted(view: &View) -> Option<String> {
-    if problem(view).is_some() {
+    if !view.breaks.is_empty() {
         return None;
     }
     let text = match view.syntax {
         Syntax::Notes => in_notes(view),
-        Syntax::Toml => format_toml::formatted(view.text.as_str()),
+        Syntax::Toml => {
+            let (text, events) = (view.text.as_str(), toml::events(view.text.as_str()).0);
+            match toml::wrong_word(text, &events) {
+                None => format_toml::formatted(text, &events),
+                Some(_) => return None,
+            }
+        }
     };
     let is_dos = view.text.as_str().contains("\r\n");
     Some(if is_dos { text.replace("\r\n", "\n").replace('\n', "\r\n") } else { text })

@@ -1,29 +1,33 @@
 //! Formats a scene in TOML: spaces around `=` and after commas, and keys in columns. The order, the comments, and what
 //! stands on one line stay.
 
-use super::toml::events;
 use std::iter::repeat_n;
-use std::mem::take;
-use toml_parser::parser::EventKind;
+use std::ops::Range;
+use toml_parser::parser::{Event, EventKind};
 
 /// The width of the widest key to which others are aligned.
 const WIDEST: usize = 24;
 
-/// A line: a key with its value, a title, or nothing.
+/// A line: a key with its value, a title, or nothing. The ranges are those of the writer's text.
 #[derive(Default)]
-struct Line {
+struct Line<'t> {
     /// The key, if it is aligned with others.
-    key: Option<String>,
+    key: Option<Range<usize>>,
     /// The rest, without the `=` after the key.
-    text: String,
-    comment: String,
+    rest: Range<usize>,
+    comment: &'t str,
 }
 
-/// A writer, with the text so far.
+/// A writer, with the lines so far.
 #[derive(Default)]
-struct Writer {
-    lines: Vec<Line>,
-    line: Line,
+struct Writer<'t> {
+    /// The words of all lines, one line after another.
+    text: String,
+    lines: Vec<Line<'t>>,
+    /// The key of the line that is written, the beginning of its rest, and its comment.
+    key: Option<Range<usize>>,
+    start: usize,
+    comment: &'t str,
     /// The text between the last word and the next one.
     between: &'static str,
     /// Whether a line of an array begins, which is indented already.
@@ -33,43 +37,51 @@ struct Writer {
     tables: usize,
 }
 
-/// Returns the text of a scene as it should be written. Its form has no faults.
-pub fn formatted(text: &str) -> String {
-    let mut writer = Writer::default();
-    for event in events(text).0 {
+/// Returns the text of a scene as it should be written, given its events. Its form has no faults.
+pub fn formatted(text: &str, events: &[Event]) -> String {
+    let mut writer = Writer { text: String::with_capacity(text.len()), ..Writer::default() };
+    for event in events {
         writer.event(event.kind(), &text[event.span().start()..event.span().end()]);
     }
-    writer.lines.push(writer.line);
-    written(writer.lines, text.len())
+    writer.end_line();
+    written(&writer.text, writer.lines)
 }
 
-impl Writer {
+impl<'t> Writer<'t> {
     fn add(&mut self, raw: &str, after: &'static str) {
-        self.line.text += if self.begins { "" } else { self.between };
-        self.line.text += raw;
+        self.text += if self.begins { "" } else { self.between };
+        self.text += raw;
         (self.between, self.begins) = (after, false);
+    }
+
+    fn end_line(&mut self) {
+        let rest = self.start..self.text.len();
+        self.lines.push(Line { key: self.key.take(), rest, comment: self.comment });
+        (self.start, self.comment) = (self.text.len(), "");
     }
 
     /// Begins a line of an array.
     fn indent(&mut self) {
-        let end = self.line.text.trim_end().len();
-        self.line.text.truncate(end);
-        self.line.text += &format!("\n{}", "    ".repeat(self.arrays));
+        let end = self.start + self.text[self.start..].trim_end().len();
+        self.text.truncate(end);
+        self.text.push('\n');
+        self.text.extend(repeat_n("    ", self.arrays));
         self.begins = true;
     }
 
-    fn event(&mut self, kind: EventKind, raw: &str) {
+    fn event(&mut self, kind: EventKind, raw: &'t str) {
         match kind {
             EventKind::KeyValSep if self.arrays == 0 && self.tables == 0 => {
-                self.line.key = Some(take(&mut self.line.text));
+                self.key = Some(self.start..self.text.len());
+                self.start = self.text.len();
                 self.between = "";
             }
             EventKind::KeyValSep => {
-                self.line.text += " =";
+                self.text += " =";
                 self.between = " ";
             }
             EventKind::ValueSep => {
-                self.line.text.push(',');
+                self.text.push(',');
                 (self.between, self.begins) = (" ", false);
             }
             EventKind::InlineTableOpen => {
@@ -78,7 +90,7 @@ impl Writer {
             }
             EventKind::InlineTableClose => {
                 self.tables = self.tables.saturating_sub(1);
-                self.between = if self.line.text.ends_with('{') { "" } else { " " };
+                self.between = if self.text[self.start..].ends_with('{') { "" } else { " " };
                 self.add("}", "");
             }
             EventKind::ArrayOpen => {
@@ -94,18 +106,17 @@ impl Writer {
                 self.add("]", "");
             }
             EventKind::Comment if self.arrays > 0 => {
-                self.line.text += if self.begins { "" } else { " " };
-                self.line.text += raw.trim_end();
+                self.text += if self.begins { "" } else { " " };
+                self.text += raw.trim_end();
                 self.begins = false;
             }
-            EventKind::Comment => raw.trim_end().clone_into(&mut self.line.comment),
+            EventKind::Comment => self.comment = raw.trim_end(),
             EventKind::Newline if self.arrays > 0 => {
                 self.indent();
                 self.between = "";
             }
             EventKind::Newline => {
-                let line = take(&mut self.line);
-                self.lines.push(line);
+                self.end_line();
                 (self.between, self.begins) = ("", false);
             }
             EventKind::Whitespace => {}
@@ -114,11 +125,11 @@ impl Writer {
     }
 }
 
-/// Writes lines with their keys in columns, in a text of about this length in bytes.
-fn written(lines: Vec<Line>, length: usize) -> String {
-    let is_blank = |line: &Line| line.key.is_none() && line.text.is_empty() && line.comment.is_empty();
-    let is_aligned = |line: &Line| line.key.is_some() && !line.text.starts_with('{');
-    let mut kept: Vec<Line> = Vec::new();
+/// Writes lines, whose words are in a text, with their keys in columns.
+fn written(words: &str, lines: Vec<Line>) -> String {
+    let is_blank = |line: &Line| line.key.is_none() && line.rest.is_empty() && line.comment.is_empty();
+    let is_aligned = |line: &Line| line.key.is_some() && !words[line.rest.clone()].starts_with('{');
+    let mut kept: Vec<Line> = Vec::with_capacity(lines.len());
     for line in lines {
         if !is_blank(&line) || kept.last().is_some_and(|last| !is_blank(last)) {
             kept.push(line);
@@ -127,25 +138,26 @@ fn written(lines: Vec<Line>, length: usize) -> String {
     while kept.last().is_some_and(is_blank) {
         kept.pop();
     }
-    let mut text = String::with_capacity(length);
+    let mut text = String::with_capacity(2 * words.len());
     let mut at = 0;
     while at < kept.len() {
         let count = kept[at..].iter().take_while(|line| is_aligned(line)).count();
         let run = &kept[at..at + count.max(1)];
-        let widths = run.iter().filter(|line| is_aligned(line)).filter_map(|line| line.key.as_deref());
-        let width = widths.map(|key| key.chars().count()).filter(|width| *width <= WIDEST).max().unwrap_or(0);
+        let keys = run.iter().filter(|line| is_aligned(line)).filter_map(|line| line.key.clone());
+        let width =
+            keys.map(|key| words[key].chars().count()).filter(|width| *width <= WIDEST).max().unwrap_or(0);
         for line in run {
             let start = text.len();
-            if let Some(key) = &line.key {
+            if let Some(key) = line.key.clone().map(|key| &words[key]) {
                 text += key;
                 text.extend(repeat_n(' ', width.saturating_sub(key.chars().count())));
                 text += " = ";
             }
-            text += &line.text;
+            text += &words[line.rest.clone()];
             if text.len() > start {
                 text.push(' ');
             }
-            text += &line.comment;
+            text += line.comment;
             text.truncate(start + text[start..].trim_end().len());
             text.push('\n');
         }

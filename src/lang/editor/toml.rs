@@ -2,7 +2,7 @@
 
 use super::view::{Attribute, Entity, Form, Include, Item, Let, Repeat, Word};
 use crate::reader::keyword::Keyword;
-use crate::reader::{Fault, find_attribute};
+use crate::reader::{Fault, LINE, find_attribute, long_line};
 use crate::registry::Registry;
 use std::mem::take;
 use std::ops::Range;
@@ -28,9 +28,34 @@ pub fn events(text: &str) -> (Vec<Event>, Vec<Fault>) {
         let mut guard = RecursionGuard::new(&mut receiver, DEEPEST);
         parse_document(&tokens, &mut guard, &mut errors);
     }
-    let place = |error: &ParseError| error.unexpected().or(error.context()).map_or(0..0, range);
-    let fault = |error: &ParseError| Fault::error(Some(place(error)), error.description());
     (events, errors.iter().map(fault).collect())
+}
+
+/// Returns what is wrong within a key, a value, a comment or a line end, which the events do not show.
+pub fn wrong_word(text: &str, events: &[Event]) -> Option<Fault> {
+    if let Some(line) = long_line(text) {
+        return Some(Fault::error(Some(line), format!("this line is longer than {LINE} bytes")));
+    }
+    let source = Source::new(text);
+    events.iter().find_map(|event| {
+        let (word, mut first) = (source.get(event)?, None);
+        let mut note = |error: ParseError| {
+            let _ = first.get_or_insert(error);
+        };
+        match event.kind() {
+            EventKind::SimpleKey => word.decode_key(&mut (), &mut note),
+            EventKind::Scalar => drop(word.decode_scalar(&mut (), &mut note)),
+            EventKind::Comment => word.decode_comment(&mut note),
+            EventKind::Newline => word.decode_newline(&mut note),
+            _ => {}
+        }
+        first.map(|error| fault(&error))
+    })
+}
+
+fn fault(error: &ParseError) -> Fault {
+    let place = error.unexpected().or(error.context()).map_or(0..0, range);
+    Fault::error(Some(place), error.description())
 }
 
 fn range(span: Span) -> Range<usize> {

@@ -49,7 +49,7 @@ pub(crate) use older::is_older;
 pub use only_rays::{UNUSED_CAMERA, mesh_for_rays};
 pub use options::ReadOptions;
 pub use parsed::Parsed;
-pub use toml_faults::toml_error;
+pub(crate) use toml_faults::{LINE, long_line};
 
 use crate::registry::Registry;
 use crate::syntax::Syntax;

@@ -3,8 +3,7 @@
 use super::fault::Fault;
 use std::iter;
 use std::ops::Range;
-use tabray_core::parallel;
-use toml::de::{DeTable, Error};
+use toml::de::Error;
 
 /// The maximum length of a line, and of the part of a text that is parsed at once before the whole text is known to be
 /// free of syntax errors, in bytes. For each token and each error, the parser keeps many times as much memory as it
@@ -97,23 +96,6 @@ pub fn long_line(text: &str) -> Option<Range<usize>> {
         at - 1 - line.len()..at - 1
     });
     lines.find(|line| line.len() > LINE)
-}
-
-/// Returns a place at which a text is not TOML, with the reason. A key that is there twice is a fault of a scene, not of
-/// its form.
-pub fn toml_error(text: &str) -> Option<SyntaxError> {
-    if let Some(line) = long_line(text) {
-        return Some((line, format!("this line is longer than {LINE} bytes")));
-    }
-    let parts = parts(text);
-    let error = |part: usize| {
-        let part = parts[part].clone();
-        let (_, errors) = DeTable::parse_recoverable(&text[part.clone()]);
-        let error = errors.iter().find(|error| !is_duplicate(error))?;
-        let place = error.span().unwrap_or(0..0);
-        Some((part.start + place.start..part.start + place.end, error.message().to_owned()))
-    };
-    parallel::find_first(parts.len(), |part| error(part).is_some()).and_then(error)
 }
 
 /// Tells whether a line is the title of an entity.
