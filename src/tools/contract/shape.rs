@@ -3,6 +3,7 @@
 use super::looks::same_bits;
 use super::promise::{Fault, Promise};
 use glam::DVec3;
+use std::f64::consts::TAU;
 use tabray_core::geometry::ray::{MISS, Ray, RayBall, RayError, RayRange, Side};
 use tabray_core::geometry::ray_packet::{Nearest, RayPacket, SurfaceInteraction};
 use tabray_core::geometry::sight::Sight;
@@ -238,11 +239,16 @@ pub fn describe_ray(Ray { origin, dir }: &Ray) -> String {
     format!("from {origin} along {dir}")
 }
 
-/// Tells whether a point lies on an edge between two faces with different normals: whether the second one is found a
-/// little beside the point.
+/// Tells whether a point lies on an edge or a corner of two faces with different normals: whether the second one is found a
+/// little beside the point, in its plane. At a corner, the directions to both sides of one edge may lead along others, so
+/// many are tried.
 fn is_beside(shape: &AnyShape, at: DVec3, [one, other]: [DVec3; 2]) -> bool {
+    const DIRECTIONS: u32 = 32;
     let Some(along) = one.cross(other).try_normalize() else { return false };
-    let step = 1e-6 * (1.0 + at.abs().max_element()) * along.cross(other);
-    (one - other).length() > 1e-6
-        && [at + step, at - step].iter().any(|beside| (shape.normal(*beside) - other).length() < 1e-6)
+    let (step, across) = (1e-6 * (1.0 + at.abs().max_element()), along.cross(other));
+    let mut beside = (0..DIRECTIONS).map(|part| {
+        let (sin, cos) = libm::sincos(f64::from(part) / f64::from(DIRECTIONS) * TAU);
+        at + step * (cos * across + sin * along)
+    });
+    (one - other).length() > 1e-6 && beside.any(|beside| (shape.normal(beside) - other).length() < 1e-6)
 }
