@@ -18,6 +18,7 @@ pub trait Float:
     + Mul<Output = Self>
     + Div<Output = Self>
     + Neg<Output = Self>
+    + 'static
 {
     /// Whether an operation takes hundreds of instructions rather than a few.
     const IS_LONG: bool;
@@ -32,6 +33,10 @@ pub trait Float:
     fn of(value: f64) -> Self;
     /// Converts to one of the two neighbouring `f64`; infinite where the number is too large.
     fn to_f64(self) -> f64;
+    /// Tells whether [`to_f64`](Self::to_f64) certainly returns the number itself.
+    fn is_double(self) -> bool {
+        Self::of(self.to_f64()) == self
+    }
     /// Widens rounded endpoints by at least one ulp, so that they enclose the exact ones. A NaN stays a NaN.
     fn outward(low: Self, high: Self) -> (Self, Self);
     /// Widens the rounded endpoints of a sum or difference like [`outward`](Self::outward), except that 0 stays 0, as a

@@ -223,6 +223,10 @@ impl Float for Fraction {
         self.value().to_f64()
     }
 
+    fn is_double(self) -> bool {
+        self.is_whole() && self.error.eq_zero() && f256::from(self.to_f64()) == self.numerator
+    }
+
     fn outward(low: Self, high: Self) -> (Self, Self) {
         let below = |of: Self| match of.error.eq_zero() {
             true => of,

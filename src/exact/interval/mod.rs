@@ -91,9 +91,13 @@ impl<F: Float> Interval<F> {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
-    /// Converts to `f64`, rounded outward.
+    /// Converts to `f64`, rounded outward. What needs no rounding stays: a line parallel to an axis is parallel to it.
     pub fn coarse(self) -> Interval {
-        Interval { low: self.low.to_f64().next_down(), high: self.high.to_f64().next_up() }
+        let (low, high) = (self.low.to_f64(), self.high.to_f64());
+        Interval {
+            low: if self.low.is_double() { low } else { low.next_down() },
+            high: if self.high.is_double() { high } else { high.next_up() },
+        }
     }
 
     /// Converts from `f64`, exactly.
