@@ -71,6 +71,14 @@ impl Answer {
         Self { verdict, proof: Some(precision), object, t, bounds, distance }
     }
 
+    /// Returns what is proven about a hit in these bounds of the ray's t by 53 bits, at the distance where it was traced.
+    pub(super) fn traced(ray: &ExactRay, object: usize, bounds: Interval, distance: f64) -> Self {
+        let proof = Some(Precision::Double);
+        let known =
+            Self { verdict: Verdict::Hit, proof, object: Some(object), t: f64::NAN, bounds, distance };
+        known.near(ray.t_at(distance), distance)
+    }
+
     /// Returns the answer with a hit at a t, as near as its bounds allow.
     pub(super) fn near(self, t: f64, distance: f64) -> Self {
         Self { t: t.max(self.bounds.low).min(self.bounds.high), distance, ..self }

@@ -110,10 +110,12 @@ impl Query<'_> {
                 {
                     return answer(Verdict::Hit, Some(object), at, Precision::Octuple);
                 }
-                let known = answer(Verdict::Hit, Some(object), at, precision);
                 let same = found.filter(|hit| hit.index == object && precision == Precision::Double);
                 // The tracer's distance is more accurate than the middle of bounds by 53 bits.
-                return same.map_or(known, |hit| known.near(ray.t_at(hit.distance), hit.distance));
+                return match same {
+                    Some(Hit { distance, .. }) => Answer::traced(ray, object, ray.t(at), *distance),
+                    None => answer(Verdict::Hit, Some(object), at, precision),
+                };
             }
             FirstHits::OneOf { any, end } => (any, end),
         };

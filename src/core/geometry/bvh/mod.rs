@@ -10,6 +10,7 @@
 mod beam;
 mod bins;
 mod build;
+mod line;
 mod nearby;
 mod node;
 mod packet;

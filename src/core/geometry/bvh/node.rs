@@ -201,6 +201,13 @@ impl Node {
         Aabb { low: at(LOW), high: at(HIGH) }
     }
 
+    /// Returns the coordinates of the low or of the high planes of all children along an axis.
+    #[inline(always)]
+    pub fn planes_of(&self, axis: usize, side: usize) -> [f64; WIDTH] {
+        let (corner, step) = (self.corner[axis], exp2(self.exponents[axis]));
+        self.planes[axis][side].map(|number| corner + f64::from(number) * step)
+    }
+
     /// Returns the largest size of the node along any axis, in world units, to a factor of 2.
     #[inline(always)]
     pub fn size(&self) -> f64 {

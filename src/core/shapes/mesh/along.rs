@@ -2,11 +2,12 @@
 
 use super::face::Face;
 use super::hits::BESIDE;
+use super::proven;
 use super::surface::Surface;
 use crate::geometry::sight::Line;
 use crate::world::accuracy::Bounded;
 use crate::world::certify::{self, FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precise};
-use std::cell::Cell;
+use std::any::Any;
 use tabray_exact::affine::Affine;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, dot, per_axis};
@@ -18,6 +19,24 @@ impl Surface {
     /// Returns what is certain about a line's first hit with t > 0, and the face that is hit. `leaves` is the face on which
     /// the line's true start lies.
     pub(super) fn first_along<A: Bounded, F: Precise>(
+        &self,
+        line: &Line<Interval<F>>,
+        leaves: Option<usize>,
+    ) -> (HitEnclosure<F>, usize) {
+        let find = || self.found_along::<A, F>(line, leaves);
+        let known = leaves.is_none().then(|| (line as &dyn Any).downcast_ref::<Line<Interval>>()).flatten();
+        let Some(known) = known else { return find() };
+        // Who has a hit proven asks for its face next.
+        let found = proven::found(self.id, known, || {
+            let found = find();
+            (&found as &dyn Any).downcast_ref::<(HitEnclosure<f64>, usize)>().copied()
+        });
+        let found =
+            found.as_ref().and_then(|found| (found as &dyn Any).downcast_ref::<(HitEnclosure<F>, usize)>());
+        found.copied().unwrap_or_else(find)
+    }
+
+    fn found_along<A: Bounded, F: Precise>(
         &self,
         line: &Line<Interval<F>>,
         leaves: Option<usize>,
@@ -58,22 +77,20 @@ impl Surface {
         only_first: bool,
     ) -> Vec<Met<F>> {
         let coarse = Line { origin: line.origin.map(Interval::coarse), dir: line.dir.map(Interval::coarse) };
-        let (mut met, end) = (Vec::new(), Cell::new(f64::INFINITY));
-        self.tree.within(
-            |bounds| coarse.clip(bounds.low, bounds.high).is_some_and(|(from, _)| from <= end.get()),
-            |face| {
-                let leaves = is_left(face).then_some(0);
-                let found = match Face(self.triangle::<A>(face)).first_hit(line, leaves).0 {
-                    HitEnclosure::Misses => return,
-                    found @ (HitEnclosure::Hits(at) | HitEnclosure::Edge(at)) => (at.low, found),
-                    found @ HitEnclosure::Doubtful(low) => (low, found),
-                };
-                if let (true, HitEnclosure::Hits(at)) = (only_first, found.1) {
-                    end.set(end.get().min(at.coarse().high));
-                }
-                met.push((found, face));
-            },
-        );
+        let (mut met, mut end) = (Vec::new(), f64::INFINITY);
+        self.tree.along(&coarse, &mut |face| {
+            let leaves = is_left(face).then_some(0);
+            let found = match Face(self.triangle::<A>(face)).first_hit(line, leaves).0 {
+                HitEnclosure::Misses => return end,
+                found @ (HitEnclosure::Hits(at) | HitEnclosure::Edge(at)) => (at.low, found),
+                found @ HitEnclosure::Doubtful(low) => (low, found),
+            };
+            if let (true, HitEnclosure::Hits(at)) = (only_first, found.1) {
+                end = end.min(at.coarse().high);
+            }
+            met.push((found, face));
+            end
+        });
         met
     }
 
@@ -112,13 +129,11 @@ impl Surface {
         met: &mut dyn FnMut(FootprintHit, usize),
     ) {
         let coarse = certify::coarse(line);
-        self.tree.within(
-            |bounds| coarse.clip(bounds.low, bounds.high).is_some(),
-            |face| {
-                let leaves = (leaves == Some(face)).then_some(0);
-                Face(self.triangle::<A>(face)).hits(line, leaves, &mut |one, _| met(one, face));
-            },
-        );
+        self.tree.along(&coarse, &mut |face| {
+            let leaves = (leaves == Some(face)).then_some(0);
+            Face(self.triangle::<A>(face)).hits(line, leaves, &mut |one, _| met(one, face));
+            f64::INFINITY
+        });
     }
 
     /// Tells whether a line hits the outside of a face, or whether that makes no difference; `None` where it is open.

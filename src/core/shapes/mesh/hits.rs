@@ -228,6 +228,13 @@ impl Surface {
                 return Enclosure::Doubtful(entry);
             }
         }
+        if precision == Precision::Double && fine.is_none() {
+            match self.first_along::<A, f64>(&line, None).0 {
+                HitEnclosure::Hits(at) => return Enclosure::Hits(at.into()),
+                HitEnclosure::Misses => return Enclosure::Misses,
+                _ => {}
+            }
+        }
         let entry = |Aabb { low, high }: &Aabb| match &fine {
             Some(fine) => fine.clip(*low, *high).map(|(entry, _)| entry),
             None => line.clip(*low, *high).map(|(entry, _)| f256::from(entry)),

@@ -27,6 +27,7 @@ mod packets;
 mod painted;
 mod passages;
 mod points;
+mod proven;
 pub mod read;
 mod search;
 mod shape;
