@@ -101,7 +101,7 @@ fn parts_of_a_node_that_dies_are_rendered_by_another() {
 #[test]
 #[ignore = "starts a cluster, as root, and takes a minute"]
 fn a_film_comes_out_though_a_node_dies() {
-    const FRAMES: &str = "--size 320 --samples 64 --frames 1..24 --sweep coral.radius=0.6..1.1";
+    const FRAMES: &str = "--size 320 --samples 64 --frames 1..24 --sweep pearl1.radius=.3..0.6";
     let Some(mut cluster) = Cluster::start("true") else { return };
     let farm = Farm::of(FRAMES);
     let (array, merge) = farm.submit(&cluster);
