@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 use tabray_core::scene::choice::Choice;
 use tabray_core::scene::model::Model;
-use tabray_core::text::count;
+use tabray_core::text::{count, shown};
 use tabray_core::world::accuracy::Accuracy;
 use tabray_core::world::sample::Sampler;
 use tabray_lang::Registry;
@@ -85,7 +85,9 @@ pub struct Scene {
     has_camera: bool,
 }
 
-/// Reads the text of a scene. Its file names are relative to `folder`; `sets` are set beside it, as `--set` has them.
+/// Reads the text of a scene. Its file names are relative to `folder`; `sets` are set beside it, as `--set` has them. A text
+/// that was made of dicts is not `is_written`: messages about it are told by the caller, who knows what was made of what, and
+/// those about its images have no places.
 #[pyfunction]
 pub fn read(
     py: Python<'_>,
@@ -93,14 +95,16 @@ pub fn read(
     folder: PathBuf,
     bytes: Vec<u8>,
     sets: Vec<String>,
+    is_written: bool,
 ) -> PyResult<Scene> {
     let set_by = vec!["set".to_owned(); sets.len()];
-    let source = Source { name, folder, bytes, sets, set_by, is_written: true };
+    let mut source = Source { name, folder, bytes, sets, set_by, is_written: true };
     let (loaded, has_camera) = match source.load(py, None, false)? {
         Ok(loaded) => (loaded, true),
         Err(report) if report.lacks_camera() => (loaded_for_rays(py, &source)?, false),
         Err(report) => return Err(errors::exception(py, &report)),
     };
+    source.is_written = is_written;
     scene(py, source, loaded, has_camera)
 }
 
@@ -108,7 +112,7 @@ pub fn read(
 #[pyfunction]
 pub fn read_mesh(py: Python<'_>, path: PathBuf) -> PyResult<Scene> {
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    let source = Source::made(path.display().to_string(), folder, &reader::mesh_for_rays(&path));
+    let source = Source::made(shown(&path), folder, &reader::mesh_for_rays(&path));
     let loaded = loaded_for_rays(py, &source)?;
     scene(py, source, loaded, false)
 }

@@ -20,6 +20,7 @@ from ._errors import Fault, SceneError, SceneWarning
 from ._native import Hits, Image, Mesh, Proof, Scene, mesh
 from ._native import read as _read
 from ._native import read_mesh as _read_mesh
+from ._places import NAME, Path as _Path, told_by
 from ._text import Entities, Value, as_sets, as_toml
 
 __all__ = [
@@ -71,7 +72,7 @@ def load(path: str | PathLike[str], *, set: Mapping[str, Value] | None = None) -
         if set:
             raise ValueError("the file of a mesh has no values to set")
         return _read_mesh(path)
-    return _read(str(path), path.parent, path.read_bytes(), as_sets(set))
+    return _read(str(path), path.parent, path.read_bytes(), as_sets(set), True)
 
 
 def parse(
@@ -88,16 +89,22 @@ def parse(
     if syntax not in (None, "ray", "toml"):
         raise ValueError(f'there is no syntax "{syntax}": give "ray" or "toml"')
     name = "<text>" if syntax is None else f"<text>.{syntax}"
-    return _read(name, Path(folder), text.encode(), as_sets(set))
+    return _read(name, Path(folder), text.encode(), as_sets(set), True)
 
 
 def scene(entities: Entities, *, folder: str | PathLike[str] = "", set: Mapping[str, Value] | None = None) -> Scene:
     """Make a scene of dicts, as TOML has them: `{"sphere": {"ball": {"radius": 2, ...}}}`; or of a list of such dicts.
 
     `tabray.entities.sphere("ball", radius=2, ...)` makes a dict of one entity. Entities are checked by the same tables as
-    those of a text, into which the dicts are turned: messages show its lines.
+    those of a text, and messages name the part of the dicts, as `scene["sphere"]["ball"]["radius"]`.
     """
-    return _read("<scene>.toml", Path(folder), as_toml(entities).encode(), as_sets(set))
+    return _of_dicts(entities, {}, Path(folder), set)
+
+
+def _of_dicts(entities: Entities, names: Mapping[_Path, str], folder: Path, set: Mapping[str, Value] | None) -> Scene:
+    places = as_toml(entities, names)
+    with told_by(places):
+        return _read(NAME, folder, bytes(places.text), as_sets(set), False)
 
 
 def surface(
@@ -126,7 +133,16 @@ def surface(
     lesser = math.atan(math.tan(angle / 2) * min(1, height / width))
     toward = (0.5, 0.41, 0.76)
     position = [centre + along * radius / math.sin(lesser) for centre, along in zip(middle, toward)]
-    return scene(
+    names: dict[_Path, str] = {
+        **{(0, "let", name): name for name in parameters},
+        (1, "look_at", "eye", "pixeldim"): "width and height",
+        (1, "look_at", "eye", "pixeldim", 0): "width",
+        (1, "look_at", "eye", "pixeldim", 1): "height",
+        (3, "material", "paint"): "colour",
+        (4, "implicit", "surface", "formula"): "formula",
+        (4, "implicit", "surface", "box"): "box",
+    }
+    return _of_dicts(
         [
             {"let": dict(parameters)} if parameters else {},
             entities.look_at(
@@ -143,5 +159,8 @@ def surface(
             entities.implicit("surface", material="paint", formula=formula, box=low_high),
             entities.sun("key", direction=[0.2, 1.0, 0.6], emissivity=[0.85, 0.83, 0.8]),
             entities.sun("fill", direction=[1.0, 0.1, 0.7], emissivity=[0.25, 0.27, 0.3]),
-        ]
+        ],
+        names,
+        Path(),
+        None,
     )

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import warnings
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+from ._places import NAME, Places, current
 
 
 class Fault(NamedTuple):
@@ -13,7 +15,7 @@ class Fault(NamedTuple):
     message: str
     """What is wrong."""
     path: str | None
-    """The scene as messages name it, or the file that it includes."""
+    """The scene as messages name it, the file that it includes, or the part of a scene of dicts."""
     line: int | None
     """The line of the place, from 1."""
     column: int | None
@@ -32,8 +34,10 @@ class SceneError(ValueError):
     """A scene that cannot be made. Its text is the message of the command line, and `faults` are what is wrong."""
 
     def __init__(self, message: str, report: str) -> None:
-        super().__init__(message)
-        self.faults: list[Fault] = [fault for fault, _ in _faults(report)]
+        faults = _faults(report)
+        # The text of a scene of dicts is none that anybody wrote.
+        super().__init__("\n\n".join(text for _, text in faults) if faults and current() else message)
+        self.faults: list[Fault] = [fault for fault, _ in faults]
 
     def __reduce__(self) -> tuple[object, ...]:
         return (_again, (str(self), self.faults))
@@ -54,6 +58,10 @@ def _faults(report: str) -> list[tuple[Fault, str]]:
     faults = []
     for line in report.splitlines():
         message = json.loads(line)
+        places = current()
+        if places and all(place["file_name"] == NAME for place in message["spans"]):
+            faults.append(_of_dicts(message, places))
+            continue
         place = next((place for place in message["spans"] if place["is_primary"]), None)
         fault = Fault(
             message=message["message"],
@@ -69,14 +77,35 @@ def _faults(report: str) -> list[tuple[Fault, str]]:
     return faults
 
 
+def _of_dicts(message: dict[str, Any], places: Places) -> tuple[Fault, str]:
+    """Read a message about a scene of dicts, which names their parts."""
+    lines: list[str] = [f"{message['level']}: {message['message']}"]
+    path: str | None = None
+    label: str | None = None
+    for place in message["spans"]:
+        name, where = places.called(place["byte_start"], place["byte_end"])
+        arrow, words = ("-->" if place["is_primary"] else ":::"), (f": {place['label']}" if place["label"] else "")
+        lines.append(f" {arrow} {name}{where}{words}")
+        if place["is_primary"]:
+            path, label = name, place["label"]
+    if message["help"]:
+        lines.append(f"  = help: {message['help']}")
+    is_error = message["level"] == "error"
+    fault = Fault(message["message"], path, None, None, None, label, message["help"], is_error)
+    return fault, "\n".join(lines)
+
+
 # How far the caller's own code is from here: `warn`, the scene's reader in `__init__.py`, and what called that.
 _CALLER = 3
+
+# A scene of dicts has one more reader.
+_CALLER_OF_DICTS = 4
 
 
 def warn(report: str) -> None:
     """Warn of each fault of a report."""
     for _, text in _faults(report):
-        warnings.warn(SceneWarning(text), stacklevel=_CALLER)
+        warnings.warn(SceneWarning(text), stacklevel=_CALLER_OF_DICTS if current() else _CALLER)
 
 
 def warn_of_image(message: str) -> None:

@@ -5,32 +5,62 @@ from __future__ import annotations
 import json
 from typing import Any, Iterable, Mapping, Sequence, Union
 
+from ._places import Path, Places
+
 Value = Union[bool, int, float, str, Sequence[Any], Any]
 """The value of an attribute: a number, a word, or several of them, also as a NumPy array."""
 
 Entities = Union[Mapping[str, Any], Iterable[Mapping[str, Any]]]
 
 
-def as_toml(entities: Entities) -> str:
-    """Write entities in TOML."""
+def as_toml(entities: Entities, names: Mapping[Path, str] | None = None) -> Places:
+    """Write entities in TOML. `names` are what messages call some parts of them."""
+    is_one = isinstance(entities, Mapping)
     parts = [entities] if isinstance(entities, Mapping) else list(entities)
-    lets: dict[str, Value] = {}
-    lines: list[str] = []
-    for part in parts:
+    lets: dict[str, tuple[Path, Value]] = {}
+    named_by_kind: list[tuple[Path, Any]] = []
+    for index, part in enumerate(parts):
         for kind, named in part.items():
+            path: Path = (kind,) if is_one else (index, kind)
             if not isinstance(named, Mapping):
                 raise TypeError(f"`{kind}` is {_called(named)}: give a dict of names and their entities")
             if kind == "let":
-                lets.update(named)
+                lets.update((name, ((*path, name), value)) for name, value in named.items())
                 continue
             for name, attributes in named.items():
                 if not isinstance(attributes, Mapping):
                     raise TypeError(f"{kind} `{name}` is {_called(attributes)}: give a dict of its attributes")
-                lines.append(f"[{_key(kind)}.{_key(name)}]")
-                lines += [f"{_key(key)} = {_value(value)}" for key, value in attributes.items() if value is not None]
+                named_by_kind.append(((*path, name), attributes))
+    places = Places("scene", names or {})
     if lets:
-        lines[:0] = ["[let]"] + [f"{_key(key)} = {_value(value)}" for key, value in lets.items()]
-    return "\n".join(lines) + "\n"
+        places.add("[let]\n")
+        for name, (path, value) in lets.items():
+            _write(places, path, name, value)
+    for path, attributes in named_by_kind:
+        with places.part(path):
+            places.add(f"[{_key(path[-2])}.{_key(path[-1])}]\n")
+            for key, value in attributes.items():
+                if value is not None:
+                    _write(places, (*path, key), key, value)
+    return places
+
+
+def _write(places: Places, path: Path, key: object, value: Value) -> None:
+    """Write a key with its value."""
+    parts = _parts(value, ("false", "true"))
+    with places.part(path):
+        places.add(f"{_key(key)} = ")
+        if isinstance(parts, str):
+            with places.part(path, is_word=parts.startswith('"')):
+                places.add(parts)
+        else:
+            places.add("[")
+            for index, word in enumerate(parts):
+                places.add(", " if index else "")
+                with places.part((*path, index), is_word=word.startswith('"')):
+                    places.add(word)
+            places.add("]")
+    places.add("\n")
 
 
 def as_sets(values: Mapping[str, Value] | None) -> list[str]:
@@ -51,12 +81,6 @@ def _key(name: object) -> str:
 
 def _quoted(text: str) -> str:
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
-
-
-def _value(value: Value) -> str:
-    """Write a value in TOML."""
-    parts = _parts(value, ("false", "true"))
-    return parts if isinstance(parts, str) else "[" + ", ".join(parts) + "]"
 
 
 def _words(value: Value) -> str:

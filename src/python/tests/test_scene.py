@@ -74,6 +74,14 @@ def test_an_error_in_dicts_names_the_entity_and_the_attribute():
     assert len(caught.value.faults) == 2
     assert all("`ball`" in fault.message for fault in caught.value.faults)
     assert "`center`" in caught.value.faults[0].message
+    paths = [fault.path for fault in caught.value.faults]
+    assert paths == ['scene["sphere"]["ball"]["center"]', 'scene["sphere"]["ball"]["radius"]'], paths
+    told = str(caught.value)
+    assert f" --> {paths[1]}" in told and "radius = -1" not in told and "[sphere" not in told, told
+    with pytest.raises(tabray.SceneError) as caught:
+        tabray.scene([{"let": {"n": 1}}, tabray.entities.sphere("ball", raduis=1)])
+    assert ' --> scene[1]["sphere"]["ball"]["raduis"]: did you mean `radius`?' in str(caught.value)
+    assert all(fault.line is None and fault.span is None for fault in caught.value.faults)
     for wrong in [{"sphere": 5}, {"sphere": {"ball": 5}}, {"sphere": {"ball": {"radius": object()}}}]:
         with pytest.raises(TypeError):
             tabray.scene(wrong)
@@ -93,6 +101,10 @@ def test_names_of_files_are_relative_to_the_scene(scenes):
 def test_a_warning_is_a_warning_of_python():
     with pytest.warns(tabray.SceneWarning):
         tabray.parse(BALL.replace("ambient 0.2 0 0", "ambient 200 0 0"))
+    bright = {**AS_DICTS, "material": {"red": {"ambient": [200, 0, 0]}}}
+    with pytest.warns(tabray.SceneWarning, match="scene.*material.*red") as warned:
+        tabray.scene(bright)
+    assert warned[0].filename == __file__
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         tabray.parse(BALL)
@@ -122,8 +134,15 @@ def test_a_surface_has_parameters():
     assert hits.t_low[0] <= 3.5 <= hits.t_high[0]
     assert scene.render(samples=1, objects=True).objects[12, 16] == 0
     assert tabray.surface("z", box=[0, 0, -1, 1, 1, 1], width=8, height=6).objects == ["surface"]
-    with pytest.raises(tabray.SceneError):
+    with pytest.raises(tabray.SceneError) as caught:
         tabray.surface("x^2 + y^2 + z^2 - q")
+    assert " --> formula, at `q`" in str(caught.value), caught.value
+    with pytest.raises(tabray.SceneError) as caught:
+        tabray.surface("x + a", a="2 +")
+    assert " --> a" in str(caught.value) and "[let]" not in str(caught.value), caught.value
+    with pytest.raises(tabray.SceneError) as caught:
+        tabray.surface("x", width=-3)
+    assert " --> width" in str(caught.value), caught.value
     with pytest.raises(ValueError, match="six numbers"):
         tabray.surface("z", box=[1, 2])
 
