@@ -1,7 +1,9 @@
 //! Pixels whose first hit 237 bits do not decide.
 
 use crate::common::program::{folder, outcome, scene, tabray};
+use image::RgbImage;
 use serde_json::Value;
+use std::fs;
 
 /// Renders the stair, through whose rims some rays pass. Returns the messages, what `--stats` counts and the number of white
 /// pixels of `--aov undecided`.
@@ -38,4 +40,32 @@ fn rays_along_the_horizon_are_decided() {
     command.args(["render", "--size", "96", "-o", "a.png"]).arg(scene("hard/rug.ray"));
     let (status, _, err) = outcome(&mut command);
     assert!(status == 0 && !err.contains("decided"), "{err}");
+}
+
+/// Writes a scene of a sphere by u and v, in the middle of whose picture is its pole, and renders it with these options.
+fn pole(options: &[&str]) -> (String, RgbImage) {
+    let folder = folder();
+    let sphere = "camera eye { pixeldim 9 9  worlddim 3 3  viewpoint 1.5 1.5 5 }
+        material white { ambient 1 1 1 }
+        parametric ball
+        {
+            material white
+            x \"cos(v)*cos(u)\"  y \"cos(v)*sin(u)\"  z \"sin(v)\"
+            u 0 6.283185307179586  v -1.58 1.58
+            center 1.5 1.5 0
+        }";
+    fs::write(folder.path().join("pole.ray"), sphere).expect("room for a file");
+    let (status, _, err) = outcome(tabray(&folder).args(["render", "pole.ray", "-o", "a.png"]).args(options));
+    assert_eq!(status, 0, "{err}");
+    (err, image::open(folder.path().join("a.png")).expect("an image").into_rgb8())
+}
+
+#[test]
+fn a_ray_into_a_pole_is_counted() {
+    let (err, image) = pole(&[]);
+    let warning =
+        "warning: 1 pixel could not be decided: `ball` has a pole or a fold there, or meets itself\n";
+    assert!(err.contains(warning), "{err}");
+    // It is shown as what is around it is.
+    assert_eq!(image.get_pixel(4, 4), image.get_pixel(5, 4));
 }

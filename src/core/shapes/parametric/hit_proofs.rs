@@ -10,7 +10,7 @@ use crate::geometry::sight::{Line, Sight};
 use crate::world::certify::{
     Enclosure, FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precision, Premise, ProofMethods, coarse,
 };
-use crate::world::hittable::{ByDistance, Shape};
+use crate::world::hittable::{ByBracket, Shape};
 use crate::world::packets::shape::HitQueries;
 use f256::f256;
 use glam::DVec3;
@@ -99,6 +99,10 @@ macro_rules! proofs {
                 self.proven_hit(line, leaves.is_some())
             }
 
+            fn has_equation(&self, _part: usize) -> bool {
+                false
+            }
+
             /// There is no equation: the value is not known, and the slopes are parts of a normal.
             fn slope(&self, at: [Dual<Interval<$F>>; 3], part: usize) -> Dual<Interval<$F>> {
                 let normal = self.normals(&at.map(|axis| axis.value), part);
@@ -149,9 +153,9 @@ impl OverFootprint for ParametricShape {
     }
 }
 
-impl HitQueries for Shape<ParametricShape, ByDistance, ByPatches> {
+impl HitQueries for Shape<ParametricShape, ByBracket, ByPatches> {
     fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
-        self.shape.located().nearest(at, error).is_some_and(|place| place.off <= 2.0 * error)
+        self.shape.is_near(at, error)
     }
 
     fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {

@@ -16,23 +16,22 @@ mod tree;
 
 pub use patch::Parametric;
 
-use crate::geometry::ray::{MISS, Ray, RayRange, Side};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
 use crate::geometry::sight::Line;
 use crate::world::body::Body;
 use crate::world::coincidence::{LEAST_COSINE, ROUNDING};
-use crate::world::hittable::{ByDistance, Facts, Hittable, Shape, TieBreaking};
+use crate::world::hittable::{Bracketed, ByBracket, Facts, Hittable, Shape};
+use crate::world::packets::shape::by_distance;
 use glam::{DVec2, DVec3};
 use patch::{Patches, Rectangle, normal};
-use search::Search;
+use search::{Found, Search};
 use shape::ParametricShape;
 use tabray_exact::interval::Interval;
-use tabray_exact::scalar::constants;
+use tabray_exact::scalar::{constants, per_axis};
 use tree::Tree;
 
 /// Marks a shape whose hits are proven by Krawczyk's test.
 pub(crate) struct ByPatches;
-
-impl TieBreaking for ByPatches {}
 
 impl Body {
     /// Makes an object of a parametric surface with the reflectivities of its material; `None` where no box contains it, or where
@@ -43,14 +42,20 @@ impl Body {
         let tree = Tree::new(&*patches, ends);
         let bounds = tree.bounds().filter(|whole| tree.tells_apart(whole))?.with_slack(0.0);
         let shape = ParametricShape { patches, tree, bounds };
-        Some(Self::plain(Shape::new(shape).by::<ByDistance, ByPatches>()))
+        Some(Self::plain(Shape::new(shape).by::<ByBracket, ByPatches>()))
     }
 }
 
-impl Hittable for ParametricShape {
-    /// Returns the distance of the first hit. Where Krawczyk's test does not decide whether there is a hit, as at a pole, there
-    /// is one.
-    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+/// The hit that a search finds for a single ray.
+struct FirstHit {
+    /// Its distance, or [`MISS`].
+    distance: f64,
+    /// Whether Krawczyk's test proves that this is the first hit, or that there is none.
+    is_certain: bool,
+}
+
+impl ParametricShape {
+    fn first_hit(&self, ray: &Ray, range: &RayRange) -> FirstHit {
         let line = Line { origin: constants(ray.origin), dir: constants(ray.dir) };
         let size = ray.origin.abs().max_element() + self.size();
         // A ray that starts on the surface leaves it there.
@@ -66,9 +71,20 @@ impl Hittable for ParametricShape {
             range.origin_side.is_some() && leaves()
         };
         let search = Search { shape: self, line: &line, is_left_out: &is_left_out };
-        let found = search.first();
-        let narrow = found.narrow.map_or(MISS, |t| t.middle());
-        range.keep(found.hit.map_or(narrow, |hit| hit.t.middle().min(narrow)))
+        let Found { hit, undecided, narrow } = search.first();
+        let narrow = narrow.map_or(MISS, |t| t.middle());
+        let distance = range.keep(hit.map_or(narrow, |hit| hit.t.middle().min(narrow)));
+        let until = hit.map_or(range.far, |hit| hit.t.high.min(range.far));
+        let is_certain = undecided.is_none_or(|from| from > until) && !hit.is_some_and(|hit| hit.is_edge);
+        FirstHit { distance, is_certain }
+    }
+}
+
+impl Hittable for ParametricShape {
+    /// Returns the distance of the first hit. Where Krawczyk's test does not decide whether there is a hit, as at a pole, there
+    /// is one.
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        self.first_hit(ray, range).distance
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
@@ -87,12 +103,42 @@ impl Hittable for ParametricShape {
 
     fn uv(&self, at: DVec3) -> Option<DVec2> {
         let [u, v] = self.ends().map(|side| DVec2::new(side.low, side.width()));
-        let uv = self.located().locate(at, self.size())?.uv;
+        // A point beside the surface has some, too: it is asked before any ray whether there are such coordinates.
+        let uv = self.located().locate(at, self.size()).map_or(self.corner(), |place| place.uv);
         Some(DVec2::new((uv.x - u.x) / u.y, (uv.y - v.x) / v.y).clamp(DVec2::ZERO, DVec2::ONE))
     }
 
     fn search_cost(&self, _ray: &Ray, _origin_side: Option<Side>) -> u32 {
         RAYS_PER_SEARCH
+    }
+}
+
+impl Bracketed for ParametricShape {
+    fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
+        if ray.is_single() {
+            let is_on_surface = || self.is_near(ray.origin, range.origin_error);
+            return by_distance(ray, range, is_on_surface, |range| {
+                let FirstHit { distance, is_certain } = self.first_hit(ray, range);
+                is_certain.then_some(distance)
+            });
+        }
+        let about = |at: DVec3, error: f64| {
+            per_axis(|axis| Interval::point(at[axis]) + Interval { low: -error, high: error })
+        };
+        let line = Line { origin: about(ray.origin, ray.drift.origin), dir: about(ray.dir, ray.drift.dir) };
+        match (Search { shape: self, line: &line, is_left_out: &|_, _, _| false }).first() {
+            Found { hit: None, undecided: None, .. } => Bracket::MISS,
+            Found { hit: Some(hit), undecided, .. }
+                if !hit.is_edge && undecided.is_none_or(|from| from > hit.t.high) =>
+            {
+                Bracket { near: hit.t.low, far: hit.t.high }
+            }
+            _ => Bracket::UNKNOWN,
+        }
+    }
+
+    fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
+        self.distance(ray, &RayRange { origin_side, ..RayRange::ALL })
     }
 }
 

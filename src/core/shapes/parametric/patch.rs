@@ -28,6 +28,9 @@ pub(super) struct Patch<F> {
 pub(super) trait PatchesIn<F: Float> {
     /// Encloses a part of the surface.
     fn patch(&self, part: &Rectangle<F>) -> Patch<F>;
+
+    /// Encloses the points of a part, without derivatives.
+    fn points(&self, part: &Rectangle<F>) -> [Interval<F>; 3];
 }
 
 impl<T: Parametric, F: Float> PatchesIn<F> for T {
@@ -39,6 +42,10 @@ impl<T: Parametric, F: Float> PatchesIn<F> for T {
             at: along_u.map(|along| along.value),
             along: [along_u, along_v].map(|along| along.map(|axis| axis.slope)),
         }
+    }
+
+    fn points(&self, part: &Rectangle<F>) -> [Interval<F>; 3] {
+        self.point(*part)
     }
 }
 

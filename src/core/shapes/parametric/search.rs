@@ -2,6 +2,7 @@
 
 use super::patch::{Patch, Patches, PatchesIn, Rectangle};
 use super::shape::ParametricShape;
+use super::tree::Flat;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::sight::Line;
 use std::cmp::Ordering;
@@ -19,6 +20,9 @@ const MARGIN: f64 = 0.125;
 
 /// The most steps that make the enclosure of a solution narrower.
 const STEPS: usize = 40;
+
+/// The width of the t of a place, as a fraction of the coordinates, up to which it is shown as a hit where its hits are not decided.
+const NARROW: f64 = 1e-6;
 
 pub(super) type LeavesOut<'s, F> = dyn Fn(Interval<F>, &Rectangle<F>, bool) -> bool + 's;
 
@@ -48,7 +52,7 @@ pub(super) struct Found<F> {
     pub hit: Option<Hit<F>>,
     /// The t from which on there may be hits that are not.
     pub undecided: Option<F>,
-    /// The t of the first place that is too narrow to be cut, and may have a hit.
+    /// The t of the first place that may have a hit and is cut no further.
     pub narrow: Option<Interval<F>>,
 }
 
@@ -97,11 +101,18 @@ where
 {
     pub fn first(&self) -> Found<F> {
         let (mut waiting, mut number) = (BinaryHeap::new(), 0);
-        let clip = |around: &Aabb| self.line.clip(around.low, around.high);
+        // What doubles tell is quicker told by them.
+        let line = Line { origin: self.line.origin.map(nearly), dir: self.line.dir.map(nearly) };
+        let quick = Search { shape: self.shape, line: &line, is_left_out: &|_, _, _| false };
+        let clip = |around: &Aabb| line.clip(around.low, around.high);
         self.shape.tree.visit(&|around| clip(around).is_some(), &mut |leaf, part, around| {
-            let from = clip(around).map_or(0.0, |(from, _)| from.to_f64().next_down());
-            waiting.push(Part { from, number, leaf, part: part.map(Interval::from_f64) });
-            number += 1;
+            let is_free = !quick.may_meet(self.shape.tree.flat(leaf))
+                || F::IS_LONG && matches!(quick.judged(part), Judged::Free);
+            if !is_free {
+                let from = clip(around).map_or(0.0, |(from, _)| from.next_down());
+                waiting.push(Part { from, number, leaf, part: part.map(Interval::from_f64) });
+                number += 1;
+            }
         });
         let mut found = Found { hit: None, undecided: None, narrow: None };
         let mut left = (if F::IS_LONG { MOST / 32 } else { MOST }).max(2 * number);
@@ -111,6 +122,7 @@ where
             }
             if left == 0 {
                 found.doubt(F::of(from));
+                self.note_narrow(&mut found, self.t(&self.shape.patches.points(&part)), &part);
                 break;
             }
             left -= 1;
@@ -118,15 +130,15 @@ where
                 Judged::Free => {}
                 Judged::One(place) => self.add(&mut found, leaf, place),
                 Judged::In(place) => {
-                    let t = self.t(&self.shape.patches.patch(&place).at);
+                    let t = self.t(&self.shape.patches.points(&place));
                     if t.high <= F::of(0.0) || self.is_off(&place) {
                         continue;
                     }
                     if !self.is_wide(&place) {
                         if !(self.is_left_out)(t, &place, false) {
                             found.doubt(t.low);
-                            found.narrow = Some(found.narrow.filter(|known| known.low <= t.low).unwrap_or(t));
                         }
+                        self.note_narrow(&mut found, t, &place);
                         continue;
                     }
                     let axis = self.longer(&place);
@@ -141,6 +153,15 @@ where
             }
         }
         found
+    }
+
+    /// Notes where a place may have a hit that is not decided, if its points are nearly as far from the line's start as each other:
+    /// a pole is a single point, however wide its u is.
+    fn note_narrow(&self, found: &mut Found<F>, t: Interval<F>, place: &Rectangle<F>) {
+        let is_narrow = t.width().to_f64() <= NARROW * (t.high.to_f64().abs() + self.shape.size());
+        if is_narrow && t.high > F::of(0.0) && !(self.is_left_out)(t, place, false) {
+            found.narrow = Some(found.narrow.filter(|known| known.low <= t.low).unwrap_or(t));
+        }
     }
 
     /// Adds the one solution of a place, if it is a hit.
@@ -179,7 +200,7 @@ where
     fn near(&self, place: &Rectangle<F>) -> Patch<F> {
         let mut patch = self.shape.patches.patch(place);
         let middle = place.map(|side| Interval::point(side.middle()));
-        let centre = self.shape.patches.patch(&middle).at;
+        let centre = self.shape.patches.points(&middle);
         for axis in 0..3 {
             let off = [0, 1].map(|side| patch.along[side][axis] * (place[side] - middle[side]));
             let by_slopes = centre[axis] + off[0] + off[1];
@@ -274,7 +295,7 @@ where
     fn image(&self, place: &Rectangle<F>, patch: &Patch<F>) -> Option<Rectangle<F>> {
         let n = Interval::<F>::constant;
         let middle = place.map(|side| Interval::point(side.middle()));
-        let value = self.off(&self.shape.patches.patch(&middle).at);
+        let value = self.off(&self.shape.patches.points(&middle));
         // The columns are the derivatives with respect to u and to v.
         let [by_u, by_v] = [0, 1].map(|side| self.across(&patch.along[side]));
         let [[a, c], [b, d]] = [by_u, by_v].map(|of| of.map(|value| value.middle().to_f64()));
@@ -306,6 +327,32 @@ where
         let part = |axis: usize| place[axis].width().to_f64() / self.shape.ends()[axis].width();
         usize::from(part(1) > part(0))
     }
+}
+
+impl Search<'_, f64> {
+    /// Tells whether the line may pass through what is around a leaf.
+    fn may_meet(&self, flat: &Flat) -> bool {
+        let n = Interval::<f64>::constant;
+        let around = |of: [f64; 3]| self.across(&of.map(|value| Interval { low: -value, high: value }));
+        let (middle, error) = (self.off(&flat.middle.map(n)), around(flat.error));
+        let sides = flat.sides.map(|side| self.across(&side.map(n)));
+        (0..2).all(|plane| {
+            let reach = sides[0][plane].magnitude() + sides[1][plane].magnitude() + error[plane].magnitude();
+            // Written so that what is not bounded may be met.
+            let apart = middle[plane].low.max(-middle[plane].high);
+            !(apart > reach * (1.0 + ROUNDED))
+        })
+    }
+}
+
+/// More than the error of a sum of three numbers, as a fraction of it.
+const ROUNDED: f64 = 4.0 * f64::EPSILON;
+
+/// Encloses numbers in doubles, which are the numbers themselves where these are doubles.
+fn nearly<F: Float>(of: Interval<F>) -> Interval {
+    let nearest = Interval { low: of.low.to_f64(), high: of.high.to_f64() };
+    let is_same = F::of(nearest.low) == of.low && F::of(nearest.high) == of.high;
+    if is_same { nearest } else { of.coarse() }
 }
 
 /// Tells whether two places may have a point in common.

@@ -15,6 +15,17 @@ pub(super) struct Tree {
     boxes: Vec<Aabb>,
     /// The parts of the last halving, in their order.
     leaves: Vec<Rectangle<f64>>,
+    /// What is around each of them.
+    flats: Vec<Flat>,
+}
+
+/// What is around a leaf: a parallelogram, and what is beside its points by an error along each axis. Of a leaf that is nearly flat,
+/// a box holds much more.
+pub(super) struct Flat {
+    pub middle: [f64; 3],
+    /// Half of each side.
+    pub sides: [[f64; 3]; 2],
+    pub error: [f64; 3],
 }
 
 impl Tree {
@@ -25,11 +36,12 @@ impl Tree {
             leaves = leaves.into_iter().flat_map(|part| halves(patches, part)).collect();
         }
         let mut boxes = vec![Aabb::EMPTY; inner];
-        boxes.extend(leaves.iter().map(|part| around(patches, part)));
+        let (around, flats): (Vec<_>, Vec<_>) = leaves.iter().map(|part| around(patches, part)).unzip();
+        boxes.extend(around);
         for index in (0..inner).rev() {
             boxes[index] = boxes[2 * index + 1].and(&boxes[2 * index + 2]);
         }
-        Self { ends, boxes, leaves }
+        Self { ends, boxes, leaves, flats }
     }
 
     pub fn ends(&self) -> &Rectangle<f64> {
@@ -71,14 +83,21 @@ impl Tree {
     pub fn leaf(&self, index: usize) -> &Rectangle<f64> {
         &self.leaves[index]
     }
+
+    /// Returns what is around the leaf of an index.
+    pub fn flat(&self, index: usize) -> &Flat {
+        &self.flats[index]
+    }
 }
 
-/// Returns a box around a part: the values of the formula, and what its slopes allow around the middle.
-fn around(patches: &dyn Patches, part: &Rectangle<f64>) -> Aabb {
+/// Returns a box around a part: the values of the formula, and what its slopes allow around the middle; and what these slopes
+/// tell of it.
+fn around(patches: &dyn Patches, part: &Rectangle<f64>) -> (Aabb, Flat) {
     let whole = PatchesIn::<f64>::patch(patches, part);
     let middle = part.map(|side| Interval::point(side.middle()));
-    let centre = PatchesIn::<f64>::patch(patches, &middle).at;
+    let centre = PatchesIn::<f64>::points(patches, &middle);
     let (mut low, mut high) = (DVec3::ZERO, DVec3::ZERO);
+    let mut flat = Flat { middle: [0.0; 3], sides: [[0.0; 3]; 2], error: [0.0; 3] };
     for axis in 0..3 {
         let by_slopes = centre[axis]
             + whole.along[0][axis] * (part[0] - middle[0])
@@ -86,8 +105,21 @@ fn around(patches: &dyn Patches, part: &Rectangle<f64>) -> Aabb {
         // Written so that a slope that is not known leaves the values.
         low[axis] = whole.at[axis].low.max(by_slopes.low);
         high[axis] = whole.at[axis].high.min(by_slopes.high);
+        flat.middle[axis] = centre[axis].middle();
+        let mut off = centre[axis] - Interval::point(flat.middle[axis]);
+        for side in 0..2 {
+            let (half, slope) = (part[side] - middle[side], whole.along[side][axis]);
+            let mean = slope.middle();
+            flat.sides[side][axis] = mean * half.magnitude();
+            let lost = Interval::point(mean) * Interval::point(half.magnitude())
+                - Interval::point(flat.sides[side][axis]);
+            off = off
+                + (slope - Interval::point(mean)) * half
+                + Interval { low: -lost.magnitude(), high: lost.magnitude() };
+        }
+        flat.error[axis] = off.magnitude();
     }
-    Aabb { low, high }
+    (Aabb { low, high }, flat)
 }
 
 /// Returns the halves of a part, cut across the side along which the surface is longer.

@@ -29,6 +29,10 @@ impl<F: Precise> HitProofs<F> for Placed {
         }
     }
 
+    fn has_equation(&self, part: usize) -> bool {
+        self.body.shape.proven().is_none_or(|proven| F::proofs(proven).has_equation(part))
+    }
+
     fn shading_normal(
         &self,
         at: [Interval<F>; 3],

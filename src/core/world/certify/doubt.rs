@@ -17,6 +17,9 @@ pub enum Doubt {
     Jumps,
     /// The surface is neither touched nor jumps: the search takes more digits or more steps.
     Long,
+    /// The surface has no equation, but u and v, and Krawczyk's test decides nothing where derivatives by them are parallel or
+    /// 0, and where two sheets are equally far, as far as 237 bits tell.
+    Singular,
 }
 
 /// Displays the reason, phrased to follow the name of an object.
@@ -25,6 +28,7 @@ impl fmt::Display for Doubt {
         f.pad(match self {
             Self::Touched => "is 0 without a change of sign",
             Self::Jumps => "jumps",
+            Self::Singular => "has a pole or a fold there, or meets itself",
             Self::Long => "takes more than 237 bits, or more steps than are tried",
         })
     }
@@ -38,6 +42,9 @@ const JUMP: f64 = 4.0 * f64::EPSILON;
 impl Doubt {
     /// Returns why the first hit of a shape is open from a distance on, in lengths of the sight's direction.
     pub fn of(shape: &dyn ProofMethods, sight: &Sight, from: f256) -> Self {
+        if !HitProofs::<f256>::has_equation(shape, 0) {
+            return Self::Singular;
+        }
         let line = sight.line::<Wide>();
         let within = |width: f64| {
             let place = Wide { low: from, high: from * (f256::ONE + f256::from(width)) };

@@ -23,6 +23,11 @@ pub trait HitProofs<F: Float> {
     /// Encloses the value of the equation of a part at a point in world coordinates, and its derivative.
     fn slope(&self, at: [Dual<Interval<F>>; 3], part: usize) -> Dual<Interval<F>>;
 
+    /// Tells whether a part has an equation. Of one that has none, [`slope`](Self::slope) knows no value.
+    fn has_equation(&self, _part: usize) -> bool {
+        true
+    }
+
     /// Encloses the unit normal with which a point of a part is shaded, where it is not that of the surface, which is
     /// `normal`, turned to the ray where both sides are lit; `None` where it is open.
     fn shading_normal(
