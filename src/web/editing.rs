@@ -1,6 +1,6 @@
 //! What an editor asks about a text. Positions are numbers of UTF-16 units from its beginning, as a text area counts them.
 
-use crate::scene::NAME;
+use crate::text::{NAME, view};
 use serde_json::{Value, json};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -30,7 +30,7 @@ fn place(text: &str, range: &Range<usize>) -> [usize; 2] {
 
 /// Reads a text, with no other file.
 fn read(registry: &Registry, text: &str) -> Group {
-    let view = Arc::new(editor::read(registry, NAME, Text::new(text)));
+    let view = Arc::new(view(registry, text));
     vec![(PathBuf::from(NAME), view)]
 }
 
@@ -99,7 +99,7 @@ pub fn signature(registry: &Registry, text: &str, at: usize) -> Option<Value> {
 /// # Errors
 /// Why it has none.
 pub fn formatted(registry: &Registry, text: &str) -> Result<String, String> {
-    let view = editor::read(registry, NAME, Text::new(text));
+    let view = view(registry, text);
     editor::formatted(&view).ok_or_else(|| {
         let what = editor::problem(&view).map_or_else(String::new, |fault| fault.message);
         format!("a scene with syntax errors cannot be formatted: {what}")

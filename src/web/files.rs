@@ -9,8 +9,9 @@ use tabray_core::scene::model::Model;
 use tabray_core::text::{list, short};
 use tabray_tools::surface_mesh::{self, Body, NoBody, NoMesh, mesh};
 
-/// The part of an object's size that is the error of its mesh.
-const FRACTION: f64 = 1.0 / 200.0;
+/// The part of an object's size that is the error of its mesh: near nodes, cells are halved until they are that small, and a
+/// page has little memory.
+const FRACTION: f64 = 1.0 / 50.0;
 
 /// Returns the picture as a PNG.
 ///

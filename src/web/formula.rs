@@ -1,11 +1,12 @@
 //! The formula of a scene's surface, and the numbers that it names.
 
-use crate::scene::{NAME, Scene};
 use crate::surfaces;
+use crate::text::view as read;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::ops::Range;
-use tabray_lang::editor::{self, Text, View};
+use tabray_core::scene::model::Model;
+use tabray_lang::editor::{self, View};
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
 use tabray_tools::page::fields;
@@ -18,10 +19,6 @@ pub const NUMBERS: &str = "numbers";
 struct FormulaRequest {
     text: String,
     formula: String,
-}
-
-fn read(registry: &Registry, text: &str) -> View {
-    editor::read(registry, NAME, Text::new(text))
 }
 
 /// Returns the place of the formula of the first `implicit`, without its quotes.
@@ -115,10 +112,10 @@ pub fn numbers(registry: &Registry, text: &str) -> Value {
 }
 
 /// Lists the entities of a scene that have numbers; first, if there are any, the numbers themselves.
-pub fn entities(registry: &Registry, scene: &Scene) -> Vec<Value> {
+pub fn entities(registry: &Registry, model: &Model, text: &str) -> Vec<Value> {
     let numbers = json!({ "order": NUMBERS, "kind": "let", "name": NUMBERS });
-    let has_numbers = !lets(&read(registry, &scene.text)).is_empty();
-    let all = fields::all(&scene.model).into_iter().filter_map(|named| serde_json::to_value(named).ok());
+    let has_numbers = !lets(&read(registry, text)).is_empty();
+    let all = fields::all(model).into_iter().filter_map(|named| serde_json::to_value(named).ok());
     has_numbers.then_some(numbers).into_iter().chain(all).collect()
 }
 

@@ -25,5 +25,6 @@ mod session;
 mod surfaces;
 #[cfg(test)]
 mod tests;
+mod text;
 
 pub use session::{Answer, Session};

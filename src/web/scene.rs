@@ -1,20 +1,19 @@
 //! A scene as a page has it: a text alone, without files around it.
 
+use crate::formula;
+use crate::text::{NAME, view};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use tabray_core::render::plan::Plan;
 use tabray_core::scene::model::Model;
 use tabray_core::scene::value::Datum;
-use tabray_lang::editor::{self, Text};
+use tabray_lang::editor;
 use tabray_lang::reader::{self, Places, ReadOptions, Report};
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
 use tabray_tools::page::camera::MoveRequest;
 use tabray_tools::page::display::Display;
 use tabray_tools::page::{Shown, lines, trial_values};
-
-/// What messages call the scene.
-pub const NAME: &str = "scene";
 
 /// The maximum number of pixels of a picture.
 const MAX_PIXELS: usize = 1 << 22;
@@ -149,8 +148,8 @@ impl Scene {
         let are_numbers = |values: &[String]| values.iter().all(|value| value.parse::<f64>().is_ok());
         let Try { name, attribute, values } =
             wanted.filter(|wanted| are_numbers(&wanted.values)).ok_or("these are not numbers")?;
-        if name == crate::formula::NUMBERS {
-            return crate::formula::with_number(registry, &self.text, &attribute, &values.concat());
+        if name == formula::NUMBERS {
+            return formula::with_number(registry, &self.text, &attribute, &values.concat());
         }
         written(registry, &self.text, &name, &attribute, &values)
     }
@@ -177,7 +176,7 @@ fn written(
     attribute: &str,
     values: &[String],
 ) -> Result<String, String> {
-    let view = editor::read(registry, NAME, Text::new(text));
+    let view = view(registry, text);
     let written = trial_values::write(&view, name, attribute, values);
     let written =
         written.ok_or_else(|| format!("`{name}` has no place of its own in the text: change the text"))?;

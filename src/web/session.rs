@@ -160,7 +160,7 @@ impl Session {
             ("object", _) => at_pixel(&|at| Answer::json(&fields::of_pixel(registry, scene.shown(), at))),
             ("point", _) => at_pixel(&|at| Answer::json(&camera::point(model, at))),
             ("layer", [name]) => layer(&Plan::new(model), name),
-            ("entities", []) => Answer::json(&formula::entities(registry, scene)),
+            ("entities", []) => Answer::json(&formula::entities(registry, model, &scene.text)),
             ("entity", ["numbers"]) => Answer::json(&formula::numbers(registry, &scene.text)),
             ("entity", [order]) => order.parse().map_or_else(
                 |_| Answer::missing(),

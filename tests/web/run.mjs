@@ -221,7 +221,7 @@ try {
       await run("document.querySelector('#files').open = true")
       if (kind === 'stl') await wait("document.querySelector('#files select').value")
       await run(`document.querySelector('[data-file=${kind}]').click()`)
-      await wait(`(document.documentElement.dataset.saved ?? '').startsWith('${kind} ')`)
+      await wait(`(document.documentElement.dataset.saved ?? '').startsWith('${kind} ')`, 300)
       said.push(await data('saved'))
     }
     await run("document.querySelector('#files').open = false")

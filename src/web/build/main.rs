@@ -164,6 +164,13 @@ fn module(sources: &Path, build: &Path) -> Result<Vec<u8>, Box<dyn Error>> {
         )
         .into());
     }
+    // A compiler of rustup has a linker of its own; one of a distribution may name another.
+    let is_there = |program: &str| {
+        Command::new(program).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok()
+    };
+    if !has_linker(&sysroot) && !is_there("rust-lld") && is_there("wasm-ld") {
+        command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", "wasm-ld");
+    }
     // Two numbers at a time, which all browsers since 2023 have, and a stack for deep reflections.
     command.env("RUSTFLAGS", "-C target-feature=+simd128 -C link-arg=-zstack-size=16777216");
     command.env_remove("CARGO_ENCODED_RUSTFLAGS");
@@ -172,6 +179,14 @@ fn module(sources: &Path, build: &Path) -> Result<Vec<u8>, Box<dyn Error>> {
     }
     let path = build.join(TARGET).join("web/tabray_web.wasm");
     fs::read(&path).map_err(|error| format!("{}: {error}", path.display()).into())
+}
+
+/// Tells whether the compiler has a linker for the module.
+fn has_linker(sysroot: &Path) -> bool {
+    let hosts = fs::read_dir(sysroot.join("lib/rustlib")).into_iter().flatten().flatten();
+    hosts
+        .map(|host| host.path().join("bin/rust-lld"))
+        .any(|linker| linker.with_extension(env::consts::EXE_EXTENSION).exists())
 }
 
 /// Makes the module smaller, if `wasm-opt` of Binaryen is there.

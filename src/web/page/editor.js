@@ -2,6 +2,9 @@
 
 const editor = $('#editor'), ground = $('#ground'), proposals = $('#proposals'), tip = $('#hint')
 
+/// A text of several lines, with characters that are not seen as `visible` shows them.
+const plain = (text) => text.split('\n').map(visible).join('\n')
+
 // The errors and warnings of the text, each with the places in it.
 let problems = []
 // The lines of the object that is explained.
@@ -74,13 +77,27 @@ const setText = async (text) => {
   await changed()
 }
 
-/// Has the text read as it is now: its picture, its faults and its formula.
+/// Has the text read as it is now, and examined.
 const changed = async () => {
-  const text = editor.value
-  const faults = helper('diagnose', text).then((answer) => answer.json())
+  const text = editor.value, examined = examine(text)
   await read(text)
+  await examined
+}
+
+/// Changes numbers of the text: its picture is in a hurry, and the rest follows when they rest.
+let rests = 0
+const setNumbers = async (text) => {
+  showText(text)
+  clearTimeout(rests)
+  rests = setTimeout(() => examine(editor.value), 300)
+  await read(text)
+}
+
+/// Finds the faults of a text, and its formula.
+const examine = async (text) => {
+  const answer = await helper('diagnose', text)
   if (editor.value !== text) return
-  problems = await faults
+  problems = answer.ok ? await answer.json() : []
   if (editor.value !== text) return
   drawGround()
   listProblems()
@@ -92,7 +109,7 @@ const listProblems = () => {
   $('#problems').replaceChildren(...problems.slice(0, 50).map(({ message, line, severity, place, meant, marked: word }) => {
     const item = document.createElement('li'), button = document.createElement('button')
     item.className = severity
-    button.textContent = `line ${line}: ${visible(message)}`
+    button.textContent = `line ${line}: ${plain(message)}`
     button.addEventListener('click', () => {
       editor.focus()
       editor.setSelectionRange(...place)
@@ -134,7 +151,6 @@ let offered = [], chosen = 0, completes = 0
 const closeProposals = () => {
   completes++
   proposals.hidden = true
-  editor.setAttribute('aria-expanded', false)
   editor.removeAttribute('aria-activedescendant')
 }
 
@@ -173,7 +189,7 @@ const complete = async (isAsked) => {
   if (!offered.length || isOver || (!isAsked && !typed(offered[0]))) return closeProposals()
   proposals.replaceChildren(...offered.map(({ label, detail, about }, index) => {
     const row = document.createElement('li'), more = document.createElement('span')
-    Object.assign(row, { id: `proposal-${index}`, role: 'option', title: about })
+    Object.assign(row, { id: `proposal-${index}`, role: 'option', title: plain(about) })
     row.append(visible(label))
     more.textContent = detail
     row.append(more)
@@ -185,7 +201,7 @@ const complete = async (isAsked) => {
     return row
   }))
   put(proposals, placeOf(offered[0].place[0]))
-  editor.setAttribute('aria-expanded', true)
+  announce(offered.length === 1 ? '1 proposal' : `${offered.length} proposals`)
   pick(0)
 }
 
@@ -222,7 +238,7 @@ const showHint = (words, place) => {
   tip.replaceChildren(...words.split(/(```[^]*?```|\*\*[^*]+\*\*|`[^`]+`)/).map((part) => {
     const fence = part.match(/^```\w*\n([^]*?)\n?```$/), bold = part.match(/^\*\*(.+)\*\*$/), code = part.match(/^`(.+)`$/)
     const element = document.createElement(bold ? 'b' : fence || code ? 'code' : 'span')
-    element.textContent = visible((fence ?? bold ?? code)?.[1] ?? part)
+    element.textContent = plain((fence ?? bold ?? code)?.[1] ?? part)
     return element
   }))
   put(tip, place)

@@ -4,8 +4,8 @@
 const compiled = async () => {
   const inline = $('#module')
   if (!inline) return WebAssembly.compileStreaming(fetch('tabray.wasm'))
-  const packed = await fetch(`data:application/gzip;base64,${inline.textContent}`)
-  return WebAssembly.compile(await new Response(packed.body.pipeThrough(new DecompressionStream('gzip'))).arrayBuffer())
+  const packed = Uint8Array.from(atob(inline.textContent), (letter) => letter.charCodeAt(0))
+  return WebAssembly.compile(await through(packed, new DecompressionStream('gzip')))
 }
 
 const decoder = new TextDecoder()
@@ -48,10 +48,13 @@ const read = async (text) => {
   if (!answer.ok) {
     if (of !== reads) return
     const { lines, report: words } = await answer.json()
-    return refuse({ lines, report: words, name: nameOf(text), text: null })
+    refuse({ lines, report: words, name: nameOf(text), text: null })
+    // The editor tells what has a place in the text.
+    if (lines.length) report('', false)
+    return
   }
   painted = { version: of, text }
-  begin({ ...await answer.json(), version: of, text, name: nameOf(text) })
+  begin({ ...await answer.json(), warnings: '', version: of, text, name: nameOf(text) })
 }
 
 /// What a scene calls itself: the first words of a comment at its beginning.
@@ -106,7 +109,7 @@ const post = async (path, body) => {
   const answer = await request(path, { body })
   if (!answer.ok) return answer
   const { text } = await answer.json()
-  await setText(text)
+  await (path === 'turn' ? setText : setNumbers)(text)
   return answerOf(200, new TextEncoder().encode(path === 'turn' ? 'turned into a look_at' : ''))
 }
 

@@ -31,12 +31,15 @@ const textOfAddress = async () => {
 
 // The part of the address that this page has written itself.
 let own = ''
+const writeAddress = async () => {
+  own = await addressOf(editor.value)
+  if (location.hash !== own) history.replaceState(null, '', own)
+}
 let waitsToShare = 0
 const shareSoon = () => {
   clearTimeout(waitsToShare)
   waitsToShare = setTimeout(async () => {
-    own = await addressOf(editor.value)
-    if (location.hash !== own) history.replaceState(null, '', own)
+    await writeAddress()
   }, 400)
 }
 
@@ -47,8 +50,7 @@ window.addEventListener('hashchange', async () => {
   if (text !== null) await setText(text)
 })
 $('#share').addEventListener('click', async () => {
-  own = await addressOf(editor.value)
-  history.replaceState(null, '', own)
+  await writeAddress()
   const isCopied = await navigator.clipboard?.writeText(location.href).then(() => true, () => false)
   const words = isCopied ? 'the address is copied' : 'the address of this page has the scene'
   $('#share').textContent = isCopied ? 'copied' : 'see the address'

@@ -4,6 +4,7 @@ let mark = null
 let zoom = 1, offset = [0, 0], isFit = true
 
 const place = () => {
+  canvas.style.imageRendering = zoom > 4 ? 'pixelated' : ''
   sheet.style.transform = `translate(${offset[0]}px, ${offset[1]}px) scale(${zoom})`
   sheet.style.setProperty('--screen', `${1 / zoom}px`)
   if (!mark) return
@@ -16,8 +17,8 @@ const fit = () => {
   const { clientWidth, clientHeight } = stage
   if (!width || !clientWidth) return
   const whole = Math.min((clientWidth - 32) / width, (clientHeight - 32) / height)
-  // Pixels of one size, where there is room for them.
-  zoom = whole > 1 ? Math.floor(whole) : whole
+  // Pixels of one size, where there is room for them, unless they are smoothed.
+  zoom = whole > 1 && getComputedStyle(canvas).imageRendering === 'pixelated' ? Math.floor(whole) : whole
   offset = [(clientWidth - zoom * width) / 2, (clientHeight - zoom * height) / 2].map(Math.round)
   isFit = true
   place()
