@@ -87,6 +87,7 @@ fn refuse_other(kind: &Metadata) -> io::Result<()> {
 /// Returns options of opening and reading that never wait: some files of the system's, as `/proc/kmsg`, have more to read
 /// only later.
 fn without_waiting() -> OpenOptions {
+    #[cfg_attr(not(unix), allow(unused_mut, reason = "only there is something to be set"))]
     let mut options = OpenOptions::new();
     #[cfg(unix)]
     std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, libc::O_NONBLOCK | libc::O_NOCTTY);

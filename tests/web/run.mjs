@@ -163,7 +163,6 @@ try {
 
   await step('the camera orbits by dragging, and by keys', async () => {
     const before = await run('return editor.value')
-    await run("toggleSteering()")
     await wait('steers')
     const box = await run("const b = stage.getBoundingClientRect(); return [b.left + b.width / 2, b.top + b.height / 2].map(Math.round)")
     const move = (x, y) => ({ type: 'pointerMove', x, y, duration: 20 })
@@ -173,7 +172,6 @@ try {
     await run('stage.focus()')
     await send('/actions', { actions: [{ type: 'key', id: 'keys', actions: [{ type: 'keyDown', value: '\ue012' }, { type: 'keyUp', value: '\ue012' }] }] })
     await wait(`editor.value !== ${JSON.stringify(dragged)} && ${isShown}`)
-    await run('toggleSteering()')
   })
 
   await step('the formula bar draws what is typed', async () => {

@@ -125,7 +125,9 @@ const follow = async () => {
   root.dataset.loaded = Math.round(performance.now())
   await listSurfaces()
   await setText(await textOfAddress() ?? await (await helper('surface/barth-6')).text())
-  refresh()
+  // Here, dragging is for the camera from the beginning.
+  toggleSteering()
+  stage.blur()
   root.dataset.ready = 1
   if ('serviceWorker' in navigator && location.protocol.startsWith('http') && !$('#module')) navigator.serviceWorker.register('offline.js').catch(() => {})
 }

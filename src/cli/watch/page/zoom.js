@@ -16,6 +16,7 @@ const place = () => {
 const fit = () => {
   const { clientWidth, clientHeight } = stage
   if (!width || !clientWidth) return
+  canvas.style.imageRendering = ''
   const whole = Math.min((clientWidth - 32) / width, (clientHeight - 32) / height)
   // Pixels of one size, where there is room for them, unless they are smoothed.
   zoom = whole > 1 && getComputedStyle(canvas).imageRendering === 'pixelated' ? Math.floor(whole) : whole
