@@ -1,6 +1,6 @@
 //! What an editor asks about a text. Positions are numbers of UTF-16 units from its beginning, as a text area counts them.
 
-use crate::text::{NAME, view};
+use crate::text::{NAME, view, without_files};
 use serde_json::{Value, json};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -42,7 +42,7 @@ pub fn diagnose(registry: &Registry, text: &str) -> Vec<Value> {
         let severity = if fault.severity == Severity::Error { "error" } else { "warning" };
         json!({
             "severity": severity,
-            "message": fault.message,
+            "message": without_files(&fault.message),
             "line": fault.range[0].line + 1,
             "place": [start, end],
             "marked": fault.marked,

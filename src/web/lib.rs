@@ -2,7 +2,7 @@
 //!
 //! A [`Session`] holds one scene and answers requests by path and body, as the server of `tabray watch` does: the picture in
 //! steps, proofs of pixels, the plan, explained pixels, files, and what an editor asks about a text that is being written.
-//! As WebAssembly, [`exports`] has it as plain functions over memory; a web worker calls them.
+//! As WebAssembly, `exports` has it as plain functions over memory; a web worker calls them.
 //!
 //! ```
 //! use tabray_web::Session;

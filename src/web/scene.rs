@@ -1,7 +1,7 @@
 //! A scene as a page has it: a text alone, without files around it.
 
 use crate::formula;
-use crate::text::{NAME, view};
+use crate::text::{NAME, view, without_files};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use tabray_core::render::plan::Plan;
@@ -164,7 +164,7 @@ impl Unread {
     fn of(report: &Report, text: &str) -> Self {
         let places = report.faults().iter().filter_map(|fault| fault.place.as_ref());
         let lines = places.filter_map(|place| lines(text, place)).map(|[first, _]| first).collect();
-        Self { lines, report: report.to_string() }
+        Self { lines, report: without_files(&report.to_string()) }
     }
 }
 

@@ -6,6 +6,11 @@ use tabray_lang::registry::Registry;
 /// What messages call the scene.
 pub const NAME: &str = "scene";
 
+/// Says of files what holds here, in place of what the system says: a page has none.
+pub fn without_files(message: &str) -> String {
+    message.replace("operation not supported on this platform", "a page in a browser has no files")
+}
+
 /// Reads a text as an editor does.
 pub fn view(registry: &Registry, text: &str) -> View {
     editor::read(registry, NAME, Text::new(text))
