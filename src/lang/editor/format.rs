@@ -2,7 +2,7 @@
 //! the comments, and what stands on one line stay.
 
 use super::format_toml;
-use super::toml;
+use super::toml_events;
 use super::view::{Attribute, Entity, Item, Repeat, View, Word};
 use crate::reader::tokens::{Token, TokenForm};
 use crate::reader::{Fault, Report};
@@ -22,7 +22,9 @@ const SHORT_ROW: usize = 4;
 pub fn problem(view: &View) -> Option<Fault> {
     view.breaks.first().cloned().or_else(|| match view.syntax {
         Syntax::Notes => None,
-        Syntax::Toml => toml::wrong_word(view.text.as_str(), &toml::events(view.text.as_str()).0),
+        Syntax::Toml => {
+            toml_events::wrong_word(view.text.as_str(), &toml_events::events(view.text.as_str()).0)
+        }
     })
 }
 
@@ -34,8 +36,8 @@ pub fn formatted(view: &View) -> Option<String> {
     let text = match view.syntax {
         Syntax::Notes => in_notes(view),
         Syntax::Toml => {
-            let (text, events) = (view.text.as_str(), toml::events(view.text.as_str()).0);
-            match toml::wrong_word(text, &events) {
+            let (text, events) = (view.text.as_str(), toml_events::events(view.text.as_str()).0);
+            match toml_events::wrong_word(text, &events) {
                 None => format_toml::formatted(text, &events),
                 Some(_) => return None,
             }

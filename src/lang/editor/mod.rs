@@ -23,6 +23,7 @@ mod snippet;
 mod tests;
 mod text;
 mod toml;
+mod toml_events;
 mod types;
 mod view;
 mod word;

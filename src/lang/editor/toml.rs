@@ -1,66 +1,21 @@
 //! Reads a text in TOML as far as possible.
 
+use super::toml_events::events;
 use super::view::{Attribute, Entity, Form, Include, Item, Let, Repeat, Word};
 use crate::reader::keyword::Keyword;
-use crate::reader::{Fault, LINE, find_attribute, long_line};
+use crate::reader::{Fault, find_attribute};
 use crate::registry::Registry;
 use std::mem::take;
 use std::ops::Range;
+use toml_parser::Span;
 use toml_parser::decoder::Encoding;
-use toml_parser::parser::{Event, EventKind, RecursionGuard, parse_document};
-use toml_parser::{ParseError, Source, Span};
-
-/// The maximum depth of nested arrays and tables.
-const DEEPEST: u32 = 64;
+use toml_parser::parser::{Event, EventKind};
 
 /// The most parts of a key. Longer ones are skipped.
 const MOST_PARTS: usize = 128;
 
 /// The number of last items that are searched for one that continues.
 const NEAR: usize = 64;
-
-/// Returns the events of a text, and its syntax errors.
-pub fn events(text: &str) -> (Vec<Event>, Vec<Fault>) {
-    let tokens = Source::new(text).lex().into_vec();
-    let (mut events, mut errors) = (Vec::new(), Vec::<ParseError>::new());
-    {
-        let mut receiver = |event: Event| events.push(event);
-        let mut guard = RecursionGuard::new(&mut receiver, DEEPEST);
-        parse_document(&tokens, &mut guard, &mut errors);
-    }
-    (events, errors.iter().map(fault).collect())
-}
-
-/// Returns what is wrong within a key, a value, a comment or a line end, which the events do not show.
-pub fn wrong_word(text: &str, events: &[Event]) -> Option<Fault> {
-    if let Some(line) = long_line(text) {
-        return Some(Fault::error(Some(line), format!("this line is longer than {LINE} bytes")));
-    }
-    let source = Source::new(text);
-    events.iter().find_map(|event| {
-        let (word, mut first) = (source.get(event)?, None);
-        let mut note = |error: ParseError| {
-            let _ = first.get_or_insert(error);
-        };
-        match event.kind() {
-            EventKind::SimpleKey => word.decode_key(&mut (), &mut note),
-            EventKind::Scalar => drop(word.decode_scalar(&mut (), &mut note)),
-            EventKind::Comment => word.decode_comment(&mut note),
-            EventKind::Newline => word.decode_newline(&mut note),
-            _ => {}
-        }
-        first.map(|error| fault(&error))
-    })
-}
-
-fn fault(error: &ParseError) -> Fault {
-    let place = error.unexpected().or(error.context()).map_or(0..0, range);
-    Fault::error(Some(place), error.description())
-}
-
-fn range(span: Span) -> Range<usize> {
-    span.start()..span.end().max(span.start())
-}
 
 /// Parses a text into items, and returns where it is not in the form of a scene.
 pub fn read(registry: &Registry, text: &str) -> (Vec<Item>, Vec<Fault>) {

@@ -128,13 +128,23 @@ pub(super) struct Record {
 }
 
 impl Record {
+    /// The number of bytes of a record: two, two whole numbers, and twelve others.
+    const SIZE: usize = 2 + 2 * 4 + 12 * 8;
+
     /// Appends the bytes of the record.
     pub fn write(&self, out: &mut Vec<u8>) {
-        out.extend([self.verdict, self.proof]);
-        out.extend(self.object.to_le_bytes());
-        out.extend(self.face.to_le_bytes());
-        let numbers = self.along.iter().chain(&self.point).chain(&self.normal).chain(&self.uv);
-        numbers.for_each(|number| out.extend(number.to_le_bytes()));
+        let Self {
+            along: [t, low, high, distance], point: [x, y, z], normal: [nx, ny, nz], uv: [u, v], ..
+        } = *self;
+        let mut bytes = [0; Self::SIZE];
+        bytes[..2].copy_from_slice(&[self.verdict, self.proof]);
+        bytes[2..6].copy_from_slice(&self.object.to_le_bytes());
+        bytes[6..10].copy_from_slice(&self.face.to_le_bytes());
+        let numbers = [t, low, high, distance, x, y, z, nx, ny, nz, u, v];
+        for (place, number) in bytes[10..].chunks_exact_mut(8).zip(numbers) {
+            place.copy_from_slice(&number.to_le_bytes());
+        }
+        out.extend_from_slice(&bytes);
     }
 }
 
