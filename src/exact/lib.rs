@@ -31,6 +31,7 @@ mod noise;
 pub mod polynomial;
 pub mod roots;
 pub mod scalar;
+mod sines;
 pub mod spline;
 pub mod text;
 

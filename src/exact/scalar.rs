@@ -5,6 +5,7 @@
 //! those of the `libm` crate, whose results do not depend on the machine.
 
 use crate::noise::{self, Curve};
+use crate::sines::sines;
 use crate::spline::{Coefficient, Spline};
 use glam::DVec3;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -229,7 +230,8 @@ impl Scalar for f64 {
     }
 
     fn sin_cos(self) -> (Self, Self) {
-        libm::sincos(self)
+        let ([sin], [cos]) = sines([self]);
+        (sin, cos)
     }
 
     fn tan(self) -> Self {

@@ -1,5 +1,6 @@
 //! The endpoints of an interval: floating-point numbers, and how far outward to round them.
 
+use crate::sines::sines;
 use f256::f256;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -51,8 +52,8 @@ pub trait Float:
     fn enclosing(low: f256, high: f256) -> (Self, Self);
     /// Returns the square root of a number that is not negative.
     fn sqrt(self) -> Self;
-    /// Returns the sine and the cosine of an angle in radians.
-    fn sin_cos(self) -> (Self, Self);
+    /// Returns the sines and the cosines of two angles in radians.
+    fn sines(angles: [Self; 2]) -> ([Self; 2], [Self; 2]);
     /// Returns the tangent of an angle in radians.
     fn tan(self) -> Self;
     /// Returns e raised to this power.
@@ -138,6 +139,7 @@ impl Float for f64 {
 
     /// Widens by two ulps: the `libm` functions are trusted to within one. `intervals_hold_the_true_results` tests
     /// this.
+    #[inline]
     fn around(low: Self, high: Self) -> (Self, Self) {
         let (low, high) = Self::outward(low, high);
         Self::outward(low, high)
@@ -152,8 +154,9 @@ impl Float for f64 {
         f64::sqrt(self)
     }
 
-    fn sin_cos(self) -> (Self, Self) {
-        libm::sincos(self)
+    #[inline]
+    fn sines(angles: [Self; 2]) -> ([Self; 2], [Self; 2]) {
+        sines(angles)
     }
 
     fn tan(self) -> Self {
@@ -172,9 +175,19 @@ impl Float for f64 {
         libm::atan2(self, x)
     }
 
+    /// Without the instruction for it, which processors have that this is not compiled for, the standard library's function
+    /// is a call.
     #[inline(always)]
     fn floor(self) -> Self {
-        f64::floor(self)
+        /// Adding this rounds to an integer. From there on, numbers are integers.
+        const TO_WHOLE: f64 = 1.5 / f64::EPSILON;
+        const WHOLE: f64 = 0.25 / f64::EPSILON;
+        if f64::abs(self) < WHOLE {
+            let near = (self + TO_WHOLE) - TO_WHOLE;
+            (if near > self { near - 1.0 } else { near }).copysign(self)
+        } else {
+            self
+        }
     }
 
     #[inline(always)]
@@ -258,9 +271,13 @@ impl Float for f256 {
         self.sqrt()
     }
 
-    fn sin_cos(self) -> (Self, Self) {
+    fn sines([one, other]: [Self; 2]) -> ([Self; 2], [Self; 2]) {
         // The crate's combined function takes longer than the two separate ones.
-        (self.sin(), self.cos())
+        let (sin, cos) = (one.sin(), one.cos());
+        if one == other {
+            return ([sin; 2], [cos; 2]);
+        }
+        ([sin, other.sin()], [cos, other.cos()])
     }
 
     fn tan(self) -> Self {

@@ -268,9 +268,10 @@ impl Float for Fraction {
         Self::rounded(root, root)
     }
 
-    fn sin_cos(self) -> (Self, Self) {
-        let (sin, cos) = Float::sin_cos(self.value());
-        (Self::about(sin, self), Self::about(cos, self))
+    fn sines(angles: [Self; 2]) -> ([Self; 2], [Self; 2]) {
+        let (sin, cos) = f256::sines(angles.map(Self::value));
+        let about = |[one, other]: [f256; 2]| [Self::about(one, angles[0]), Self::about(other, angles[1])];
+        (about(sin), about(cos))
     }
 
     fn tan(self) -> Self {

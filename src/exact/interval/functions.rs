@@ -35,11 +35,25 @@ impl<F: Float> Interval<F> {
         self.width() < than && self.magnitude() < F::of(1e15)
     }
 
-    /// Returns the sine or cosine over the interval, from its values at the endpoints; it is 1 at `top` and -1 at `top
-    /// - π` radians.
-    fn sine_or_cosine(self, at_low: F, at_high: F, top: F) -> Self {
+    /// Tells whether a sine or cosine certainly has no turning point in the interval, by its derivative at the endpoints: of
+    /// two turning points that follow each other, the derivative has one sign between, and another one beyond.
+    #[inline]
+    fn is_monotone(self, slopes: [F; 2]) -> bool {
+        // The derivative is smaller than the distance from a turning point, and far above rounding.
+        let least = F::of(1e-6);
+        let same = slopes[0] > least && slopes[1] > least || slopes[0] < -least && slopes[1] < -least;
+        same && self.width() < F::of(3.0) && self.magnitude() < F::of(1e5)
+    }
+
+    /// Returns the sine or cosine over the interval, from its values at the endpoints, and whether it has no turning point
+    /// there; it is 1 at `top` and -1 at `top - π` radians.
+    #[inline]
+    fn sine_or_cosine(self, at_low: F, at_high: F, is_monotone: bool, top: F) -> Self {
         let one = F::of(1.0);
         let Self { low, high } = Self::around(at_low.min(at_high), at_low.max(at_high));
+        if is_monotone {
+            return Self { low: low.max(-one), high: high.min(one) };
+        }
         Self {
             low: if self.holds_angle(top - F::PI) { -one } else { low.max(-one) },
             high: if self.holds_angle(top) { one } else { high.min(one) },
@@ -128,13 +142,16 @@ impl<F: Float> Scalar for Interval<F> {
             let any = Self { low: F::of(-1.0), high: F::of(1.0) };
             return (any, any);
         }
-        let (sin_low, cos_low) = self.low.sin_cos();
-        let is_point = self.low == self.high;
-        let (sin_high, cos_high) = if is_point { (sin_low, cos_low) } else { self.high.sin_cos() };
+        let ([sin_low, sin_high], [cos_low, cos_high]) = F::sines([self.low, self.high]);
         let zero = F::of(0.0);
         (
-            self.sine_or_cosine(sin_low, sin_high, F::of(0.5) * half_turn),
-            self.sine_or_cosine(cos_low, cos_high, zero),
+            self.sine_or_cosine(
+                sin_low,
+                sin_high,
+                self.is_monotone([cos_low, cos_high]),
+                F::of(0.5) * half_turn,
+            ),
+            self.sine_or_cosine(cos_low, cos_high, self.is_monotone([sin_low, sin_high]), zero),
         )
     }
 

@@ -16,6 +16,10 @@ use tabray_exact::scalar::per_axis;
 /// How far bounds of a root may be apart, in ulps of its distance: it is nearly always in their middle.
 const HIDDEN: f64 = 64.0;
 
+/// A step of Newton's method after which another one would not change the digits of a root, as a fraction of its distance: its
+/// square has twenty bits to spare.
+const SMALL: f64 = 1.0 / 137_438_953_472.0;
+
 /// By how much more a piece is searched exactly, as a fraction of the places on it: a root at its end belongs to it.
 const BEYOND: f64 = 4.0 * f64::EPSILON;
 
@@ -80,7 +84,12 @@ impl<T: Implicit> ExactRay<'_, T> {
         let mut fine = DoubleDouble::from(root);
         for _ in 0..2 {
             let Dual { value, slope } = self.formula.value(exact.along(Dual::variable(fine)));
-            fine = fine - value / slope;
+            let step = value / slope;
+            fine = fine - step;
+            // Each step leaves about the square of the error before it.
+            if step.high.abs() <= SMALL * (self.closest + root).abs() {
+                break;
+            }
         }
         // Written so that a NaN is none.
         if (fine.high - root).abs() * slope <= hidden { fine.high } else { root }
