@@ -4,7 +4,7 @@ use crate::files::output::{self, Output};
 use crate::options::named::{Value, by_name};
 use crate::options::{scene, threads};
 use crate::process::failure::Failure;
-use crate::process::messages;
+use crate::process::{memory, messages};
 use glam::DVec3;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
@@ -78,11 +78,9 @@ pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
     let body = Body::of(&model, name).map_err(|fault| no_body(&args.scene.path, &shown(name), fault))?;
     let size = 2.0 * body.bounds.half_size().max_element();
     let error = args.error.unwrap_or_else(|| short(FRACTION * size).parse().unwrap_or(size));
-    let made = args
-        .threads
-        .renderer()?
-        .run(|| mesh(&body, error))
-        .map_err(|fault| no_mesh(&shown(name), error, &fault))?;
+    let memory = memory::left();
+    let made = args.threads.renderer()?.run(|| mesh(&body, error, memory));
+    let made = made.map_err(|fault| no_mesh(&shown(name), error, &fault))?;
     let mut out = BufWriter::new(Output::open(output)?);
     let written = format.write(&made, name, &mut out);
     output::finished(output, written, out)?;
@@ -164,7 +162,7 @@ fn no_mesh(name: &str, error: f64, fault: &NoMesh) -> Failure {
             "give a smaller `--error`".to_owned(),
         ),
         NoMesh::TooMany(least) => (
-            format!("a mesh of `{name}` within {error} has too many triangles"),
+            format!("a mesh of `{name}` within {error} has too many triangles{}", memory::beyond_chosen()),
             format!("give an `--error` of about {} or more", short(*least)),
         ),
         NoMesh::TooFine => (

@@ -26,9 +26,6 @@ const PIXEL: u64 = 4;
 /// The memory for each pixel of the row that is being written, in bytes.
 const ROW: u64 = 64;
 
-/// The minimum memory of a render beside the image, in bytes.
-const ASIDE: u64 = 2 << 20;
-
 /// The message if no image was written.
 const NOT_BEGUN: &str = "nothing has been rendered yet, and nothing is written";
 
@@ -181,8 +178,7 @@ impl Args {
 
     /// Returns the memory that the textures and the objects of a scene may take, in bytes, if there is a limit.
     pub fn memory_left(&self) -> Option<u64> {
-        let now = memory::now().unwrap_or(0) + ASIDE;
-        memory::chosen().map(|limit| limit.as_u64().saturating_sub(now))
+        memory::left()
     }
 
     /// Refuses an image that takes more memory at one time, in bytes, than the limit leaves.
@@ -205,7 +201,7 @@ impl Args {
         };
         let row = ROW * width as u64;
         let strip = PIXEL * (TILE * width) as u64;
-        let least = now + ASIDE + row + strip;
+        let least = now + memory::ASIDE + row + strip;
         if limit.as_u64() < least {
             return Err(Failure::Usage(
                 format!("{limit} of memory is not enough for this image"),

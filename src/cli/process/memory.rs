@@ -41,6 +41,20 @@ pub fn chosen() -> Option<ByteSize> {
     LIMIT.get().and_then(|(chosen, _)| *chosen)
 }
 
+/// The minimum memory of a render beside the image, in bytes.
+pub const ASIDE: u64 = 2 << 20;
+
+/// Returns what the limit that was chosen leaves, in bytes, if there is one.
+pub fn left() -> Option<u64> {
+    let taken = now().unwrap_or(0) + ASIDE;
+    chosen().map(|limit| limit.as_u64().saturating_sub(taken))
+}
+
+/// Says what limit was chosen, in a message about what takes too much.
+pub fn beyond_chosen() -> String {
+    chosen().map_or(String::new(), |limit| format!(" for `--max-memory {limit}`"))
+}
+
 /// Lets a render take more than the limit that was chosen for a moment: it stops soon, and keeps what is done.
 pub fn stops_at_limit() {
     if chosen().is_some() {

@@ -32,8 +32,9 @@ const FEWEST: u32 = 4;
 /// The largest number of times: numbers of the files have 24 bits.
 const MOST: u32 = 16;
 
-/// The most cells that the surface may cross: each takes about 300 bytes, with its triangles.
+/// The most cells that the surface may cross, and the bytes that each takes with its triangles, about.
 const MOST_CELLS: usize = 1 << 22;
+const CELL: u64 = 400;
 
 /// Why there is no mesh.
 #[derive(Debug, PartialEq)]
@@ -49,18 +50,20 @@ pub enum NoMesh {
 }
 
 /// Makes a mesh of a body. Each point of the mesh is at most `error` world units from the surface, and each point of the
-/// surface from the mesh, but for the places that the result lists.
+/// surface from the mesh, but for the places that the result lists. `memory` is about the most memory that it may take, in bytes,
+/// if that is limited.
 ///
 /// # Errors
 /// Why there is no mesh.
-pub fn mesh(body: &Body<'_>, error: f64) -> Result<SurfaceMesh, NoMesh> {
+pub fn mesh(body: &Body<'_>, error: f64, memory: Option<u64>) -> Result<SurfaceMesh, NoMesh> {
+    let most = memory.map_or(MOST_CELLS, |bytes| MOST_CELLS.min((bytes / CELL) as usize));
     let mut cells = Cells::around(body);
     let last = cells.halvings_to(error);
     if last > MOST {
         return Err(NoMesh::TooFine);
     }
     loop {
-        cells.halve(body, MOST_CELLS).map_err(|()| NoMesh::TooMany(2.0 * cells.diagonal()))?;
+        cells.halve(body, most).map_err(|()| NoMesh::TooMany(2.0 * cells.diagonal()))?;
         let is_last = cells.halvings() >= last.max(FEWEST);
         if cells.halvings() < FEWEST {
             continue;

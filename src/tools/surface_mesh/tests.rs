@@ -26,7 +26,7 @@ fn implicit(formula: &str, half: f64) -> String {
 fn meshed(objects: &str, error: f64) -> SurfaceMesh {
     let model = model(objects);
     let body = Body::of(&model, "a").expect("a closed object");
-    let made = mesh(&body, error).expect("a mesh");
+    let made = mesh(&body, error, None).expect("a mesh");
     let mut edges = std::collections::BTreeMap::new();
     for [a, b, c] in &made.faces {
         for (from, to) in [(a, b), (b, c), (c, a)] {
@@ -90,7 +90,7 @@ fn what_a_box_cuts_is_closed_by_its_faces() {
     let model = model(&implicit("z", 1.0));
     let body = Body::of(&model, "a").expect("a closed object");
     assert!(body.is_capped);
-    let half = mesh(&body, 0.2).expect("a mesh");
+    let half = mesh(&body, 0.2, None).expect("a mesh");
     assert!(half.far.is_empty() && (half.volume() - 4.0).abs() < 3.0, "{}", half.volume());
     assert!(samples(&half).iter().all(|at| at.z < 0.2 && at.abs().max_element() < 1.2));
 }
@@ -125,7 +125,7 @@ fn threads_change_no_byte() {
     let body = Body::of(&model, "a").expect("a closed object");
     let bytes = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        let made = pool.install(|| mesh(&body, 0.05)).expect("a mesh");
+        let made = pool.install(|| mesh(&body, 0.05, None)).expect("a mesh");
         [Format::Stl, Format::Obj, Format::Ply].map(|format| {
             let mut bytes = Vec::new();
             format.write(&made, "a", &mut bytes).expect("memory");
@@ -149,5 +149,28 @@ fn what_encloses_nothing_is_refused() {
     assert!(matches!(refused(&implicit("1/x + y + z", 1.0)), NoBody::Open(_)));
     let tiny = model("sphere a { material m  center 0 0 0  radius 1 }");
     let body = Body::of(&tiny, "a").expect("a sphere");
-    assert!(matches!(mesh(&body, 1e-9), Err(NoMesh::TooFine)));
+    assert!(matches!(mesh(&body, 1e-9, None), Err(NoMesh::TooFine)));
+}
+
+#[test]
+fn turned_copies_and_turned_pieces_are_closed() {
+    let ring = "torus r { material m  center 0 0 0  direction 0 1 0  radius 0.6  tube 0.2 }";
+    let copy = "place a { object r  rotation 30 20 10  translation 3 1 0 }";
+    let made = meshed(&format!("{ring} {copy}"), 0.03);
+    assert!(made.far.is_empty() && made.tangled.as_ref().is_some_and(Vec::is_empty));
+    assert_eq!(characteristic(&made), 0);
+    for piece in [
+        "lathe a { material m  base 1 1 1  points 0 0  0.2 0.5  1 0.3  1.5 0  direction 1 2 3 }",
+        "revsurf a { material m  profile \"0.5*sqrt(max(y*(2 - y), 0))\"  base 0 0 0  direction 1 1 0  height 2 }",
+    ] {
+        assert_eq!(characteristic(&meshed(piece, 0.05)), 2, "{piece}");
+    }
+}
+
+#[test]
+fn a_mesh_keeps_to_its_memory() {
+    let model = model("sphere a { material m  center 0 0 0  radius 1 }");
+    let body = Body::of(&model, "a").expect("a closed object");
+    let Err(NoMesh::TooMany(least)) = mesh(&body, 0.001, Some(10_000_000)) else { panic!("it takes more") };
+    assert!(mesh(&body, least, Some(10_000_000)).is_ok(), "{least}");
 }

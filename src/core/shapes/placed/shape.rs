@@ -290,6 +290,8 @@ impl HitQueries for Shape<Placed, ByPackets, ByPlacement> {
     }
 
     fn contains(&self, at: DVec3, error: f64) -> Option<bool> {
+        // A cube that is turned reaches as far along an axis as from its middle to its corners.
+        let error = 1.001 * 3_f64.sqrt() * error;
         self.shape.body.shape.contains(self.shape.object_point(at), self.shape.object_error(at, error))
     }
 

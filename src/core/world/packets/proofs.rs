@@ -18,7 +18,8 @@ pub trait HitQueries: Send + Sync {
     /// numbers. Rays that start at such a point leave the shape.
     fn is_on_surface(&self, at: DVec3, error: f64) -> bool;
 
-    /// Tells whether a point lies in a closed shape; `None` where the surface may be within an error in world units.
+    /// Tells whether a point lies in a closed shape; `None` where the surface may be within an error, in world units, along each
+    /// axis: in a cube around the point.
     fn contains(&self, _at: DVec3, _error: f64) -> Option<bool> {
         None
     }
