@@ -14,7 +14,8 @@ const listSurfaces = async () => {
 /// Shows the formula of a text, unless it is being written.
 const showFormula = async (text) => {
   const formula = await (await helper('formula', text)).json()
-  if (document.activeElement !== bar) bar.value = formula ?? ''
+  if (document.activeElement === bar) return
+  bar.value = formula ?? ''
   $('#refused').textContent = ''
 }
 
