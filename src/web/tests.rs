@@ -162,6 +162,17 @@ fn files_and_proofs_are_of_the_picture() {
     assert!(verdicts.iter().all(|verdict| *verdict == 1));
 }
 
+#[test]
+fn where_two_objects_coincide_pixels_are_undecided() {
+    let mut session = Session::new();
+    let twin = "sphere twin { material red  center 4 3 -2  radius 2 }\n";
+    asked(&mut session, "scene/1", &(BALL.to_owned() + twin));
+    let verdicts = session.answer("prove/1/5000", b"").bytes;
+    let count = |wanted: u8| verdicts.iter().filter(|verdict| **verdict == wanted).count();
+    assert!(count(1) > 300 && count(2) > 300, "{} proven, {} ties", count(1), count(2));
+    assert_eq!(count(1) + count(2), 60 * 45);
+}
+
 fn image_of(png: &[u8]) -> Vec<u8> {
     let mut reader = png::Decoder::new(std::io::Cursor::new(png)).read_info().expect("a PNG");
     let mut bytes = vec![0; reader.output_buffer_size().expect("it fits")];
