@@ -340,7 +340,7 @@ impl Search<'_, f64> {
             let reach = sides[0][plane].magnitude() + sides[1][plane].magnitude() + error[plane].magnitude();
             // Written so that what is not bounded may be met.
             let apart = middle[plane].low.max(-middle[plane].high);
-            !(apart > reach * (1.0 + ROUNDED))
+            apart.partial_cmp(&(reach * (1.0 + ROUNDED))).is_none_or(Ordering::is_le)
         })
     }
 }
