@@ -42,8 +42,8 @@ fn rays_along_the_horizon_are_decided() {
     assert!(status == 0 && !err.contains("decided"), "{err}");
 }
 
-/// Writes a scene of a sphere by u and v, in the middle of whose picture is its pole, and renders it with these options.
-fn pole(options: &[&str]) -> (String, RgbImage) {
+/// Renders a sphere by u and v, in the middle of whose picture is its pole. Returns the messages and the picture.
+fn pole() -> (String, RgbImage) {
     let folder = folder();
     let sphere = "camera eye { pixeldim 9 9  worlddim 3 3  viewpoint 1.5 1.5 5 }
         material white { ambient 1 1 1 }
@@ -55,17 +55,18 @@ fn pole(options: &[&str]) -> (String, RgbImage) {
             center 1.5 1.5 0
         }";
     fs::write(folder.path().join("pole.ray"), sphere).expect("room for a file");
-    let (status, _, err) = outcome(tabray(&folder).args(["render", "pole.ray", "-o", "a.png"]).args(options));
+    let (status, _, err) = outcome(tabray(&folder).args(["render", "pole.ray", "-o", "a.png"]));
     assert_eq!(status, 0, "{err}");
     (err, image::open(folder.path().join("a.png")).expect("an image").into_rgb8())
 }
 
 #[test]
 fn a_ray_into_a_pole_is_counted() {
-    let (err, image) = pole(&[]);
+    let (err, image) = pole();
     let warning =
         "warning: 1 pixel could not be decided: `ball` has a pole or a fold there, or meets itself\n";
     assert!(err.contains(warning), "{err}");
     // It is shown as what is around it is.
-    assert_eq!(image.get_pixel(4, 4), image.get_pixel(5, 4));
+    let [at, beside] = [4, 5].map(|x| image.get_pixel(x, 4)[0]);
+    assert!(at > 0 && at.abs_diff(beside) < 3, "{at} {beside}");
 }
