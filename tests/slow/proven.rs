@@ -16,10 +16,14 @@ const SIZE: [usize; 2] = [20, 15];
 
 /// The size of those whose pixels take a hundred times as long as most, and these scenes.
 const FEW: [usize; 2] = [8, 6];
-const COSTLY: [&str; 10] = [
+const COSTLY: [&str; 14] = [
+    "gallery/curvature.ray",
+    "gallery/cut-open.ray",
     "gallery/facing-mirrors.ray",
     "gallery/gold.ray",
     "gallery/hall-of-mirrors.ray",
+    "gallery/heights.ray",
+    "gallery/one-sided.ray",
     "gallery/rings.ray",
     "glass/bubbles.ray",
     "hard/copies.ray",
