@@ -173,10 +173,3 @@ fn a_tube_around_a_circle_is_a_torus() {
         assert!(found == expected || (found - expected).abs() < 1e-9, "{ray:?}: {found} {expected}");
     }
 }
-
-/// Otherwise, a scene with a shader that uses them is told that there are none.
-#[test]
-fn a_point_beside_the_surface_has_u_and_v_too() {
-    let model = parametric(TORUS, [0.0, TAU]);
-    assert!(model.objects[0].shape.uv(DVec3::splat(100.0)).is_some());
-}

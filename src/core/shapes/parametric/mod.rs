@@ -103,8 +103,7 @@ impl Hittable for ParametricShape {
 
     fn uv(&self, at: DVec3) -> Option<DVec2> {
         let [u, v] = self.ends().map(|side| DVec2::new(side.low, side.width()));
-        // A point beside the surface has some, too: it is asked before any ray whether there are such coordinates.
-        let uv = self.located().locate(at, self.size()).map_or(self.corner(), |place| place.uv);
+        let uv = self.located().locate(at, self.size())?.uv;
         Some(DVec2::new((uv.x - u.x) / u.y, (uv.y - v.x) / v.y).clamp(DVec2::ZERO, DVec2::ONE))
     }
 

@@ -338,9 +338,10 @@ impl Search<'_, f64> {
         let sides = flat.sides.map(|side| self.across(&side.map(n)));
         (0..2).all(|plane| {
             let reach = sides[0][plane].magnitude() + sides[1][plane].magnitude() + error[plane].magnitude();
-            // Written so that what is not bounded may be met.
             let apart = middle[plane].low.max(-middle[plane].high);
-            apart.partial_cmp(&(reach * (1.0 + ROUNDED))).is_none_or(Ordering::is_le)
+            // What is not bounded is not missed.
+            let is_missed = apart > reach * (1.0 + ROUNDED);
+            !is_missed
         })
     }
 }

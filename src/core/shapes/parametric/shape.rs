@@ -4,7 +4,7 @@ use super::locate::Located;
 use super::patch::{Patches, Rectangle};
 use super::tree::Tree;
 use crate::geometry::aabb::Aabb;
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 /// A parametric surface.
 pub(super) struct ParametricShape {
@@ -27,11 +27,6 @@ impl ParametricShape {
     /// Tells whether a point lies on the surface, up to an error in world units.
     pub fn is_near(&self, at: DVec3, error: f64) -> bool {
         self.located().nearest(at, error).is_some_and(|place| place.off <= 2.0 * error)
-    }
-
-    /// Returns the least u and v.
-    pub fn corner(&self) -> DVec2 {
-        DVec2::from(self.ends().map(|side| side.low))
     }
 
     /// Returns the rectangle of u and v.
