@@ -19,22 +19,47 @@ const answerOf = (status, bytes) => ({
   arrayBuffer: async () => bytes,
 })
 
+// The time in milliseconds after which a worker that has not heard of a new scene is given up.
+const PATIENCE = 2000
+
 /// Starts a worker; `hears` takes what it says by itself.
 const start = (module, hears) => new Promise((ready) => {
-  const source = new Blob([$('#worker').textContent], { type: 'text/javascript' })
-  const worker = new Worker(URL.createObjectURL(source)), waiting = new Map()
-  let last = 0
+  const source = URL.createObjectURL(new Blob([$('#worker').textContent], { type: 'text/javascript' }))
+  const waiting = new Map()
+  let worker = null, last = 0
   const ask = (path, body = '', paints = false) => new Promise((done) => {
-    waiting.set(++last, done)
-    worker.postMessage({ id: last, path, body, paints })
+    const request = { id: ++last, path, body, paints }
+    // What the worker is busy with is of an older scene, and no longer wanted.
+    waiting.set(last, { request, done, timer: paints ? setTimeout(anew, PATIENCE) : 0 })
+    worker.postMessage(request)
   })
-  worker.onmessage = ({ data }) => {
-    if (data.ready) return ready(ask)
-    if (!data.id) return hears(data)
-    waiting.get(data.id)(answerOf(data.status, data.bytes))
-    waiting.delete(data.id)
+  const begin = () => {
+    worker?.terminate()
+    worker = new Worker(source)
+    worker.onmessage = ({ data }) => {
+      if (data.ready) return ready(ask)
+      if (data.heard) return Object.assign(waiting.get(data.heard), { isHeard: true }), clearTimeout(waiting.get(data.heard).timer)
+      if (!data.id) return hears(data)
+      waiting.get(data.id).done(answerOf(data.status, data.bytes))
+      waiting.delete(data.id)
+    }
+    worker.postMessage({ module })
   }
-  worker.postMessage({ module })
+  const anew = () => {
+    const asked = [...waiting.values()]
+    begin()
+    hears({ late: true })
+    for (const { request, done, timer, isHeard } of asked) {
+      clearTimeout(timer)
+      if (!isHeard) {
+        worker.postMessage(request)
+        continue
+      }
+      waiting.delete(request.id)
+      done(answerOf(503, new TextEncoder().encode('{"lines":[],"report":"error: this took too long"}')))
+    }
+  }
+  begin()
 })
 
 let painter = null, helper = null
@@ -62,8 +87,9 @@ const nameOf = (text) => text.match(/^#\s*([^:\n]{1,60})/)?.[1].trim() || 'scene
 
 /// Takes in what the painter sends.
 const hear = (data) => {
-  if (data.restarted) {
-    root.dataset.restarts = 1 + +(root.dataset.restarts ?? 0)
+  const counted = data.restarted ? 'restarts' : data.late ? 'late' : null
+  if (counted) {
+    root.dataset[counted] = 1 + +(root.dataset[counted] ?? 0)
     return
   }
   if (data.version !== `${version}`) return

@@ -83,6 +83,7 @@ onmessage = ({ data }) => {
     return postMessage({ ready: true })
   }
   const { id, path, body, paints } = data
+  postMessage({ heard: id })
   if (path === 'memory') return postMessage({ id, status: 200, bytes: coder.encode(`${program.memory.buffer.byteLength}`).buffer })
   const { status, bytes } = askSafely(path, body)
   postMessage({ id, status, bytes }, [bytes])
