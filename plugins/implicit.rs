@@ -60,6 +60,12 @@ inventory::submit! {
                  the box",
             ));
         }
+        if field::overflows(&formula, corners) {
+            return Err(refusal(
+                "nowhere a finite number",
+                "its values are greater than 1.8e308: make its coefficients smaller",
+            ));
+        }
         if field::is_nowhere(&formula, corners) {
             return Err(refusal(
                 "nowhere 0",

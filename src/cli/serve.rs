@@ -53,8 +53,9 @@ impl Server {
                 "port {port} is in use; give another with `--port`, or leave it out for the first free one"
             )),
             _ => {
-                let (at, reason) = (SocketAddr::new(reach.host, port), text::reason(&error));
-                Failure::Failed(format!("cannot listen on {at}: {reason}"))
+                let reason = text::reason(&error);
+                let at = if reach.host.is_loopback() { String::new() } else { format!(" of {}", reach.host) };
+                Failure::Failed(format!("cannot listen on port {port}{at}: {reason}"))
             }
         })?;
         let access = Access::new(reach, port)

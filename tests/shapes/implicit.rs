@@ -535,6 +535,32 @@ fn formulas_without_bounds_end() {
     }
 }
 
+/// A formula whose terms are greater than f64 numbers can be, but for places near two planes; it counts how often it is
+/// evaluated.
+struct Overflowing(Arc<AtomicUsize>);
+
+impl Formula for Overflowing {
+    fn value<N: Scalar>(&self, [x, y, _]: [N; 3]) -> N {
+        self.0.fetch_add(1, Ordering::Relaxed);
+        let much = N::constant(1e200);
+        much * (much * x.sin()) - much * (much * y.sin())
+    }
+}
+
+#[test]
+fn where_terms_overflow_a_ray_takes_few_evaluations() {
+    let (count, mut dice) = (Arc::new(AtomicUsize::new(0)), Dice::new());
+    let shape = shape(Overflowing(Arc::clone(&count)), DVec3::splat(-1.0), DVec3::splat(1.0));
+    let rays = 20;
+    for _ in 0..rays {
+        let origin = dice.direction() * 3.0;
+        shape.distance(&Ray { origin, dir: -origin.normalize() }, &RayRange::ALL);
+    }
+    // A search that is not given up takes some 16,000 pieces, and more than one evaluation for each.
+    let each = count.swap(0, Ordering::Relaxed) / rays;
+    assert!(each < 8000, "{each} evaluations");
+}
+
 /// The formula of a heart, which counts how often it is evaluated.
 struct Counted(Arc<AtomicUsize>);
 

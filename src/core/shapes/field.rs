@@ -125,6 +125,26 @@ pub fn bounds(field: &Field, [low, high]: [DVec3; 2]) -> Interval {
     field.at([0, 1, 2].map(|axis| Interval { low: low[axis], high: high[axis] }))
 }
 
+/// The places along each side of a box at which a formula is tried.
+const TRIED: usize = 9;
+
+/// Tells whether a formula has no number at any place of a box that is tried, and an infinite one at most: its values are
+/// greater than f64 numbers can be.
+pub fn overflows(field: &Field, [low, high]: [DVec3; 2]) -> bool {
+    let along = |place: usize| (place as f64 + 0.5) / TRIED as f64;
+    let places = (0..TRIED.pow(3)).map(|place| [place % TRIED, place / TRIED % TRIED, place / TRIED.pow(2)]);
+    let mut infinite = 0;
+    for place in places {
+        let part = DVec3::from(place.map(along));
+        let value = field.at((low + part * (high - low)).to_array());
+        if value.is_finite() {
+            return false;
+        }
+        infinite += usize::from(value.is_infinite());
+    }
+    2 * infinite > TRIED.pow(3)
+}
+
 /// Tells whether a formula is certainly nowhere 0 in a box.
 pub fn is_nowhere(field: &Field, corners: [DVec3; 2]) -> bool {
     let (mut signs, mut left) = ([false; 2], parts_of(field));

@@ -36,6 +36,9 @@ pub struct FirstRoot {
 /// The largest number of pieces that are judged before the proof is given up; only the wildest functions take more.
 pub const MAX_PIECES: usize = 16_384;
 
+/// The number of pieces after which those are not cut any more on which the function has no value.
+const MANY_PIECES: usize = 512;
+
 /// The largest number of pieces that are left to [`undecided`](FunctionOnLine::undecided) in one search, which takes up to
 /// 0.1 ms for each. Only a line that is rounded by more than the size of a shape has more; it has no root beyond them.
 const MAX_UNDECIDED: usize = 256;
@@ -239,6 +242,13 @@ impl<L: FunctionOnLine> Search<'_, L> {
         let half = (middle - low).max(high - middle).next_up();
         let around = Interval { low: -half, high: half };
         let Dual { value, slope } = self.line.at(Dual::variable(Interval::constant(middle)));
+        // Where values are beyond all f64 numbers, shorter pieces would not help; at a pole, they are not beside it.
+        let is_beyond =
+            |part: f64| !self.line.at(Interval::<f64>::constant(low + part * (high - low))).is_bounded();
+        let has_taken_many = *self.pieces < MAX_PIECES - MANY_PIECES;
+        if has_taken_many && value.has_zero() && [0.25, 0.5, 0.75].into_iter().all(is_beyond) {
+            return self.undecided(low, high);
+        }
         // Taylor's theorem of the second order, or of the first where the curvature has no bound.
         let (values, slopes) = if curvature.is_bounded() {
             let bend = curvature * around;

@@ -171,6 +171,6 @@ fn turned_copies_and_turned_pieces_are_closed() {
 fn a_mesh_keeps_to_its_memory() {
     let model = model("sphere a { material m  center 0 0 0  radius 1 }");
     let body = Body::of(&model, "a").expect("a closed object");
-    let Err(NoMesh::TooMany(least)) = mesh(&body, 0.001, Some(10_000_000)) else { panic!("it takes more") };
+    let Err(NoMesh::TooMany(least)) = mesh(&body, 0.0001, Some(10_000_000)) else { panic!("it takes more") };
     assert!(mesh(&body, least, Some(10_000_000)).is_ok(), "{least}");
 }

@@ -1,6 +1,7 @@
 //! The light of what is spread out that reaches the points of a surface.
 
-use super::light::{LightPoints, power, unit};
+use super::directions::unit;
+use super::light::{LightPoints, power};
 use super::number::{Endpoint, Number, ranges};
 use super::panes::{Ends, Passes, passed};
 use super::sampled::{self, Points, Round};

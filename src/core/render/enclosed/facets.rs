@@ -1,6 +1,6 @@
 //! The facet of a rough surface that a sample chooses, in the words of the tracer's own facets.
 
-use super::light::{in_disc, orthonormal_pair, unit};
+use super::directions::{in_disc, orthonormal_pair, unit};
 use super::number::Number;
 use super::surface::HitPoints;
 use glam::DVec2;

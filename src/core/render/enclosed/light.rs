@@ -1,5 +1,6 @@
 //! The light that reaches the points of a surface.
 
+use super::directions::{in_disc, orthonormal_pair, unit};
 use super::number::{Endpoint, Number, ranges};
 use super::panes::{Ends, passed};
 use super::scene::{Colour, EnclosedScene, Path};
@@ -8,8 +9,6 @@ use crate::geometry::sight::Line;
 use crate::world::packets::light::PacketLight;
 use crate::world::rules::{Falloff, Rules};
 use crate::world::sample::Sample;
-use glam::DVec2;
-use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{cross, dot, per_axis};
 
 /// The greatest exponent of a highlight that is taken as a product.
@@ -97,15 +96,6 @@ fn toward<N: Number>(
     Some(per_axis(|axis| toward[axis] + (x * across[axis] + y * up[axis])))
 }
 
-/// Encloses the point of the unit disc that two numbers from 0 to 1 choose, as [`sample::on_disc`](crate::world::sample::on_disc)
-/// does.
-pub(super) fn in_disc<N: Number>(numbers: DVec2) -> [N; 2] {
-    let n = N::constant;
-    let (sin, cos) = (n(2.0) * N::enclosing(Interval::pi()) * n(numbers.y)).sin_cos();
-    let radius = n(numbers.x).sqrt();
-    [radius * cos, radius * sin]
-}
-
 /// Encloses the vectors to all points of a disc of this radius that faces the points from which `toward` leads to its middle.
 pub(super) fn on_disc<N: Number>(toward: [N; 3], radius: N) -> [N; 3] {
     let magnitude = |axis: &usize| toward[*axis].coarse().middle().abs();
@@ -117,27 +107,6 @@ pub(super) fn on_disc<N: Number>(toward: [N; 3], radius: N) -> [N; 3] {
     let up = cross(sight, across);
     let [x, y] = [0, 1].map(|coordinate| radius * N::on_light(coordinate));
     per_axis(|axis| toward[axis] + (x * across[axis] + y * up[axis]))
-}
-
-/// Encloses the unit vectors along vectors.
-pub(super) fn unit<N: Number>(vector: [N; 3]) -> [N; 3] {
-    let length = dot(vector, vector).sqrt();
-    per_axis(|axis| vector[axis] / length)
-}
-
-/// Encloses the two vectors perpendicular to a unit vector that `glam` chooses; `None` where they are open.
-pub(super) fn orthonormal_pair<N: Number>([x, y, z]: [N; 3]) -> Option<[[N; 3]; 2]> {
-    let (n, side) = (N::constant, z.range());
-    let sign = if side.low >= N::of(0.0) {
-        n(1.0)
-    } else if side.high < N::of(0.0) {
-        n(-1.0)
-    } else {
-        return None;
-    };
-    let a = n(-1.0) / (sign + z);
-    let b = x * y * a;
-    Some([[n(1.0) + sign * x * x * a, sign * b, -sign * x], [b, sign + y * y * a, -y]])
 }
 
 /// Encloses the power of a cosine above 0; 0 below.

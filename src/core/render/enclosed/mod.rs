@@ -12,6 +12,7 @@
 //! [`Affine`]: tabray_exact::affine::Affine
 
 mod crossing;
+mod directions;
 mod emitted;
 mod facets;
 mod light;

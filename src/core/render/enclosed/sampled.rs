@@ -1,6 +1,7 @@
 //! The points of lights that are spread out which samples see.
 
-use super::light::{on_disc, orthonormal_pair, unit};
+use super::directions::{orthonormal_pair, unit};
+use super::light::on_disc;
 use super::number::Number;
 use super::panes::Ends;
 use super::scene::Colour;

@@ -1,6 +1,6 @@
 //! The directions in which u and v grow along a surface, as the tracer finds them: by comparing places near each other.
 
-use super::light::orthonormal_pair;
+use super::directions::orthonormal_pair;
 use super::number::Endpoint;
 use crate::world::any_shape::AnyShape;
 use crate::world::shader::{NEAR, size_of};
