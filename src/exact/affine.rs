@@ -23,12 +23,12 @@ pub struct Affine {
     pub centre: f64,
     /// The change with each variable.
     pub linear: [f64; VARIABLES],
-    /// A bound on the magnitude of what is not linear, at least 0.
+    /// A bound on the magnitude of the part that is not linear; at least 0.
     pub rest: f64,
 }
 
-/// Bounds the roundings of an operation, as a fraction of the sum of the magnitudes of its terms: of about 20 in a
-/// product of two numbers, each term takes part in at most 12 sums and one product.
+/// A bound on the roundings of an operation, as a fraction of the sum of the magnitudes of its terms. A product of two
+/// numbers has about 20 terms, and each term takes part in at most 12 sums and one product.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// A bound on the error of terms that underflow.
@@ -47,11 +47,11 @@ impl Affine {
         Self { centre, linear, rest: 0.0 }
     }
 
-    /// Makes a number of its parts, and adds the roundings of terms whose magnitudes add up to `size`.
+    /// Makes a number from its parts, and adds the roundings of terms whose magnitudes add up to `size`.
     #[inline]
     fn rounded(centre: f64, linear: [f64; VARIABLES], rest: f64, size: f64) -> Self {
         let rest = rest + (ROUNDING * size + UNDERFLOW);
-        // A NaN in any part makes this sum no finite number.
+        // If any part is a NaN, this sum is not finite.
         if (rest + size + centre.abs() + spread(&linear)).is_finite() {
             Self { centre, linear, rest }
         } else {
@@ -76,13 +76,13 @@ impl Affine {
         if self.is_thin() { Interval::point(self.centre) } else { around(self.centre, self.rest) }
     }
 
-    /// Returns the mean over the variable of this index, which is the same at any value of the others and has the mean 0.
+    /// Returns the mean over the variable of this index, which does not depend on the others and has the mean 0.
     pub fn without(mut self, index: usize) -> Self {
         self.linear[index] = 0.0;
         self
     }
 
-    /// Returns the quantity with the dependence on the variable of this index in the rest.
+    /// Moves the dependence on the variable of this index into the rest.
     pub fn absorbing(self, index: usize) -> Self {
         let rest = (self.rest + self.linear[index].abs()) * (1.0 + f64::EPSILON);
         Self { rest, ..self.without(index) }
@@ -110,7 +110,7 @@ impl Affine {
         self.rest.is_finite()
     }
 
-    /// Encloses what may be either of two quantities.
+    /// Encloses a quantity that may be either of two.
     pub fn hull(self, other: Self) -> Self {
         if self == other { self } else { self.range().hull(other.range()).into() }
     }

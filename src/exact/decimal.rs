@@ -3,13 +3,13 @@
 /// The reason why a word is not a finite number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DecimalFault {
-    /// It is another number than 0, and would be rounded to 0.
+    /// The word is a number other than 0 that would be rounded to 0.
     TooSmall,
-    /// It would be rounded to infinity.
+    /// The word is a number that would be rounded to infinity.
     TooLarge,
-    /// It is a word for infinity or for no number.
+    /// The word means infinity or "not a number".
     NotFinite,
-    /// It is another word.
+    /// The word is not a number at all.
     NotANumber,
 }
 
@@ -46,7 +46,7 @@ pub fn read(word: &str) -> Result<f64, DecimalFault> {
     }
 }
 
-/// Tells whether a number that is read as 0 is written as another one.
+/// Tells whether a word that is read as 0 stands for a number other than 0.
 fn underflows(word: &str) -> bool {
     let mut digits = word.bytes().take_while(|byte| !byte.eq_ignore_ascii_case(&b'e'));
     digits.any(|byte| matches!(byte, b'1'..=b'9'))

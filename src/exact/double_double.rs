@@ -20,7 +20,7 @@ pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
 /// Returns the rounded product of two numbers and its rounding error. Factors beyond 1e300 overflow.
 #[inline(always)]
 pub fn two_product(a: f64, b: f64) -> (f64, f64) {
-    /// Splits a number into its upper half of the digits and the rest.
+    /// Splits a number into the upper half of its digits and the rest.
     #[inline(always)]
     fn split(a: f64) -> (f64, f64) {
         const SPLITTER: f64 = 134_217_729.0; // 2^27 + 1
@@ -59,7 +59,7 @@ pub fn dot(a: [f64; 3], b: [f64; 3], b_low: [f64; 3], small: f64) -> f64 {
 /// Returns the exponent of the power of two that scales a magnitude to between 1/2 and 1; 0 for 0.
 #[inline]
 pub fn exponent_to_one(magnitude: f64) -> i32 {
-    // Subnormal numbers are scaled as the smallest normal number is.
+    // Subnormal numbers are scaled like the smallest normal number.
     let bits = magnitude.abs().max(f64::MIN_POSITIVE).to_bits() >> 52;
     if magnitude == 0.0 { 0 } else { 1022 - bits as i32 }
 }

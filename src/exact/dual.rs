@@ -125,7 +125,7 @@ impl<N: Scalar> Scalar for Dual<N> {
     fn atan2(self, x: Self) -> Self {
         let (one, other) = (x.value * self.slope, self.value * x.slope);
         let turns = (one - other) / (x.value.powi(2) + self.value.powi(2));
-        // Without bounds where the angle jumps.
+        // The slope has no bounds where the angle jumps.
         Self { value: self.value.atan2(x.value), slope: turns + self.value.d_step() * (-x.value).step() }
     }
 
@@ -189,7 +189,8 @@ impl<N: Scalar> Scalar for Dual<N> {
         Self { value: self.value.shifted(by), slope: self.slope }
     }
 
-    /// Differentiates the power as a whole: its derivatives have bounds where those of its base have none.
+    /// Differentiates the power as a whole: its derivatives may have bounds where the derivatives of its base have
+    /// none.
     #[inline(always)]
     fn ramp(self, exponent: i32) -> Self {
         let derivative = if exponent == 1 {

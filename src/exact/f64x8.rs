@@ -1,7 +1,7 @@
-//! Eight lanes of `f64` that formulas are evaluated with at a time.
+//! Eight lanes of `f64`: formulas are evaluated for eight numbers at a time.
 //!
-//! Each lane gets the bits that it would get alone. Sines and cosines are those of the `libm` crate, all eight at once
-//! where that is possible.
+//! Each lane gets the bits that it would get alone. Sines and cosines equal those of the `libm` crate, and are computed
+//! for all eight lanes at once where that is possible.
 
 use crate::scalar::Scalar;
 use crate::sines::sines;

@@ -230,7 +230,8 @@ impl<N: Scalar> Scalar for Jet<N> {
         Self { value: self.value.shifted(by), ..self }
     }
 
-    /// Differentiates the power as a whole: its derivatives have bounds where those of its base have none.
+    /// Differentiates the power as a whole: its derivatives may have bounds where the derivatives of its base have
+    /// none.
     #[inline(always)]
     fn ramp(self, exponent: i32) -> Self {
         let derivative = if exponent == 1 {

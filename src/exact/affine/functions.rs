@@ -11,7 +11,7 @@ impl Affine {
     #[inline]
     fn chain(&self, value: Interval, slope: Interval, bend: Interval) -> Self {
         let radius = Interval { low: 0.0, high: self.radius() };
-        // By Taylor's theorem, of which half of the second derivative and the square of a difference remain.
+        // The remainder in Taylor's theorem is half of the second derivative times the square of a difference.
         let curved = Interval::constant(0.5) * bend * radius * radius;
         let (from, to) = (curved.low.min(0.0), curved.high.max(0.0));
         let (middle, steep) = (value.middle(), slope.middle());
@@ -32,12 +32,12 @@ impl Affine {
         self.chain(value, -(value * value), Interval::constant(2.0) / range.powi(3))
     }
 
-    /// Returns the number, or what else is known to enclose it where that says more of its mean.
+    /// Returns the number, or its range where the range bounds the mean more closely.
     fn or(self, range: Interval) -> Self {
         if 0.5 * range.width() < self.rest { range.into() } else { self }
     }
 
-    /// Applies a function of intervals, where nothing more is known.
+    /// Applies a function by its range alone, where nothing more is known.
     fn by_range(self, function: impl FnOnce(Interval) -> Interval) -> Self {
         function(self.range()).into()
     }

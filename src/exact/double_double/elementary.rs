@@ -1,5 +1,5 @@
-//! The functions of formulas in double-double arithmetic, by their series: for what `f64` leaves undecided, and for the
-//! true hits that tests compare with.
+//! The functions of formulas in double-double arithmetic, by their series. They decide what `f64` leaves open, and
+//! compute the true hits for tests.
 
 use super::{DoubleDouble, power_of_two, two_product};
 use crate::scalar::{Scalar, of_cubic, of_noise, per_axis};
@@ -129,7 +129,8 @@ impl Scalar for DoubleDouble {
         (ratio * series).scaled(1).without(-doublings, &LN_2)
     }
 
-    /// Turns the point by the angle that `f64` tells: what is left is so small that it is its own tangent.
+    /// Turns the point back by its angle as `f64` knows it. The angle that is left is so small that it equals its
+    /// tangent.
     fn atan2(self, x: Self) -> Self {
         let angle = Self::from(libm::atan2(self.high, x.high));
         let (sin, cos) = angle.sin_cos();
@@ -178,7 +179,7 @@ impl Scalar for DoubleDouble {
     }
 
     fn noise(at: [Self; 3], orders: [u8; 3]) -> Self {
-        // A corner that is too far to be one number is a little off, and so is the cell.
+        // A corner whose coordinates are too large for one `f64` is slightly off, and so is its cell.
         let corner = at.map(|along| along.floor().high);
         of_noise(corner, per_axis(|axis| at[axis].shifted(-corner[axis])), orders)
     }

@@ -30,7 +30,7 @@ impl Exact {
         Self { parts }
     }
 
-    /// Returns the parts that the number is the sum of.
+    /// Returns the parts whose sum is the number.
     pub fn parts(&self) -> &[f64] {
         &self.parts
     }

@@ -15,8 +15,8 @@ pub fn cross(a: [DoubleDouble; 3], b: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
     quick_cross(a, b).unwrap_or_else(|| exact_cross(a, b))
 }
 
-/// Returns the cross product of two vectors whose components are plain numbers, where each component is exactly a
-/// double-double, as it mostly is; else `None`.
+/// Returns the cross product of two vectors whose components are plain numbers, if each component is exactly a
+/// double-double, which is the common case; `None` otherwise.
 #[inline]
 fn quick_cross(a: [DoubleDouble; 3], b: [DoubleDouble; 3]) -> Option<[DoubleDouble; 3]> {
     let is_plain = |of: [DoubleDouble; 3]| (of[0].low == 0.0) & (of[1].low == 0.0) & (of[2].low == 0.0);
@@ -27,8 +27,8 @@ fn quick_cross(a: [DoubleDouble; 3], b: [DoubleDouble; 3]) -> Option<[DoubleDoub
     (lost == 0.0).then_some(product)
 }
 
-/// Returns the cross product of two vectors, and the sum of what its components lack, without signs: where that is 0,
-/// each is exactly a double-double.
+/// Returns the cross product of two vectors, and the sum of the magnitudes of the errors of its components. Where that
+/// sum is 0, each component is exactly a double-double.
 #[inline(always)]
 pub fn plain_cross(a: [f64; 3], b: [f64; 3]) -> ([DoubleDouble; 3], f64) {
     let part = |one: usize, other: usize| {

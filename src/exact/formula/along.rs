@@ -1,4 +1,5 @@
-//! Formulas along lines, as polynomials: their operations in place, as polynomials are too long to be copied for each.
+//! Formulas along lines, as polynomials. Operations work in place, because a polynomial is too long to be copied for
+//! each of them.
 
 use super::program::{MOST_REGISTERS, Program, Value, Values};
 use super::step::Step;
@@ -51,12 +52,13 @@ fn add<C: Coefficient, const N: usize>(
     }
 }
 
-/// Which powers are products, of other powers of the same number where they are known: `x^6` of `x^4` and `x^2`.
+/// Which powers are computed as products. The factors are powers of the same number that are already known, if there
+/// are any: `x^6` is the product of `x^4` and `x^2`.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Products {
     /// All powers.
     All,
-    /// Even powers, of squares: bounds of such a product are as near as those of the power.
+    /// Even powers, as products of squares: bounds on such a product are as tight as bounds on the power.
     OfSquares,
 }
 
@@ -84,7 +86,7 @@ pub(super) fn by_products(steps: &[Step], variables: usize, which: Products) -> 
 
 struct Powers {
     list: Vec<Value>,
-    /// Values, exponents, and the values that are these powers.
+    /// Powers that are already computed: the base, the exponent, and the value of the power.
     known: Vec<(usize, u32, usize)>,
 }
 
@@ -94,7 +96,7 @@ impl Powers {
         self.list.len() - 1
     }
 
-    /// Returns the value that is a power of another one, which is 1 or more.
+    /// Returns the value that is the power of another one with an exponent of 1 or more.
     fn power(&mut self, of: usize, exponent: u32) -> usize {
         if exponent == 1 {
             return of;

@@ -1,27 +1,28 @@
-//! A formula in a box that is cut into cells: in each, only those of its operations are made that may matter there.
+//! A formula in a box that is cut into cells. In each cell, only the operations that may matter there are carried out.
 //!
-//! Where the smallest of many distances is taken, intervals tell for a small cell that most of them are not the smallest. Each
-//! cell has a program without these, made from that of the cell that it is a half of.
+//! Where a formula takes the smallest of many distances, intervals show that most of the distances cannot be the
+//! smallest in a small cell. Each cell has a program without those distances, made from the program of the larger cell
+//! of which it is a half.
 //!
-//! Source: M. J. Keeter, "Massively Parallel Rendering of Complex Closed-Form Implicit Surfaces" (2020), where tapes are
-//! shortened for the tiles of an image.
+//! Source: M. J. Keeter, "Massively Parallel Rendering of Complex Closed-Form Implicit Surfaces" (2020), which shortens
+//! tapes for the tiles of an image.
 
 use super::program::{MOST_REGISTERS, Program, Value, Values};
 use super::step::{Function, Step};
 use crate::interval::Interval;
 
-/// The most operations of a cell that is not cut: more cells would take longer to walk through.
+/// A cell with this many operations or fewer is not cut: more cells would take longer to walk through.
 const FEW: usize = 32;
 
-/// The number of times that the box is halved at most: ten times along each axis.
+/// The maximum number of times that the box is halved: ten times along each axis.
 const HALVINGS: usize = 30;
 
-/// The number of operations with intervals that making cells may take: about a second. What is not cut then takes longer to be
-/// hit, and is hit all the same.
+/// The maximum number of interval operations for making cells: about a second. Hits in a cell that is then left uncut
+/// take longer to find, and are the same.
 const OPERATIONS: usize = 20_000_000;
 
-/// By how much a cell is larger than it is cut, on all sides, as a fraction of the box: places at its sides belong to it,
-/// however they are rounded.
+/// The margin around a cell on all sides, as a fraction of the box. Places on the sides of a cell belong to it, however
+/// they are rounded.
 pub const MARGIN: f64 = 1.0 / (1 << 20) as f64;
 
 /// A formula's cells.
@@ -58,8 +59,8 @@ impl Cells {
         (cells.cells.len() > 1).then_some(cells)
     }
 
-    /// Adds a cell that is a part of one with these values and this program, after a number of halvings, and the cells that it
-    /// is cut into.
+    /// Adds a cell and the cells into which it is cut. The new cell is a part of a cell with these values and this
+    /// program, after this number of halvings.
     fn add(
         &mut self,
         values: &Values,
@@ -76,7 +77,8 @@ impl Cells {
         let is_shorter = 4 * values.list.len() < 3 * known || !is_cut && values.list.len() < known;
         if is_shorter {
             let shorter = Program::of(&values, 3);
-            // What is shared waits in a register, for longer where what is between is left out.
+            // A shared value waits in a register. The program without some operations may need more registers than the
+            // long one.
             if shorter.registers <= MOST_REGISTERS {
                 program = self.programs.len();
                 self.programs.push(shorter);
@@ -122,8 +124,8 @@ impl Cells {
         Some(&self.programs[cell.program])
     }
 
-    /// Calls a function with the part of a line, from one place to another, in each cell where the formula may be 0, in their
-    /// order, until it returns something. The line is the points `base + t dir`.
+    /// Calls a function with the part of a line, from one place to another, in each cell where the formula may be 0, in
+    /// order along the line, until the function returns something. The line is the points `base + t dir`.
     pub fn visit<R>(
         &self,
         base: [f64; 3],
@@ -149,7 +151,7 @@ impl Cells {
         let (base, dir) = (line.0[axis], line.1[axis]);
         let cut = (place - base) / dir;
         let halves = if dir > 0.0 { [below, above] } else { [above, below] };
-        // Written so that a NaN, of a line in the plane of the cut, is no cut.
+        // A line in the plane of the cut gives a NaN, which both comparisons treat as no cut.
         if cut > low && cut < high {
             let found = self.visit_cell(halves[0], line, (low, cut), visit);
             return found.or_else(|| self.visit_cell(halves[1], line, (cut, high), visit));
@@ -170,17 +172,17 @@ fn widened(place: [Interval; 3], margin: [f64; 3]) -> [Interval; 3] {
         .map(|axis| Interval { low: place[axis].low - margin[axis], high: place[axis].high + margin[axis] })
 }
 
-/// Tells whether an operation may be one of several, depending on the place.
+/// Tells whether an operation may choose among several, depending on the place.
 pub(super) fn is_choice(step: Step) -> bool {
     use Function::{Abs, Floor, Heaviside, If, Max, Min};
     matches!(step, Step::Call(Min | Max | Abs | Floor | Heaviside | If))
 }
 
-/// Returns the values of a formula that matter in a box, and bounds of the formula there.
+/// Returns the values of a formula that matter in a box, and bounds on the formula there.
 fn pruned(values: &Values, place: [Interval; 3]) -> (Values, Interval) {
     let list = &values.list;
     let mut bounds: Vec<Interval> = Vec::with_capacity(list.len());
-    // What each value is the same as, and its operation.
+    // For each value, the value that it equals in the box, and its operation.
     let (mut same, mut steps) = (Vec::with_capacity(list.len()), Vec::with_capacity(list.len()));
     for (index, value) in list.iter().enumerate() {
         // Variables, which come first, and numbers have no operands.
@@ -217,7 +219,7 @@ fn pruned(values: &Values, place: [Interval; 3]) -> (Values, Interval) {
     }
     let result = same[values.result];
     let value = bounds[result];
-    // The values that the result is made of, in their order.
+    // The values from which the result is computed, in order.
     let mut is_used = vec![false; list.len()];
     is_used[..3].fill(true);
     is_used[result] = true;

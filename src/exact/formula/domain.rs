@@ -10,7 +10,7 @@ use crate::scalar::Scalar;
 use std::mem::take;
 use std::sync::Arc;
 
-/// The largest number of jumps in a box on whose sides a formula is evaluated, each on two.
+/// The maximum number of jumps in a box. The formula is evaluated on both sides of each.
 const MOST_JUMPS: u32 = 4;
 
 impl Field {
@@ -21,10 +21,10 @@ impl Field {
         let within = [0, 1, 2].map(|axis| Interval { low: low[axis], high: high[axis] });
         let steps = &self.formula().steps;
         let mut starts: Vec<usize> = Vec::new();
-        // What must not be below 0, each with the index of the operation that asks for it.
+        // The operands that must not be below 0, each with the index of the operation that requires it.
         let (mut conditions, mut of_all): (Vec<(usize, Vec<Step>)>, Vec<Step>) = (Vec::new(), Vec::new());
         for (index, step) in steps.iter().enumerate() {
-            // Where the operation's operands start, and where the first of them ends.
+            // The place where the operation's operands start, and the place where the first of them ends.
             let (mut first, mut end, mut last) = (index, index, index);
             for _ in 0..step.operands() {
                 (first, end, last) = (starts.pop().unwrap_or(0), first, end);
@@ -33,7 +33,7 @@ impl Field {
                 Step::Call(Function::Sqrt | Function::Ln | Function::Pow) => {
                     conditions.push((index, steps[first..end].to_vec()));
                 }
-                // What is not chosen need not be defined.
+                // An operand that is not chosen need not be defined.
                 Step::Call(Function::If) => {
                     for (at, condition) in conditions.iter_mut().filter(|(at, _)| *at >= end) {
                         let fulfilled = vec![Step::Number(1.0)];
@@ -48,7 +48,7 @@ impl Field {
         }
         let conditions: Vec<_> = conditions.into_iter().map(|(_, condition)| condition).collect();
         for (index, condition) in conditions.iter().enumerate() {
-            // What cannot be below 0 may be by rounding.
+            // An operand that cannot be below 0 may still be below 0 after rounding.
             let may_be_below = self.with(condition.to_vec()).at(within).low < -f64::MIN_POSITIVE;
             if !may_be_below || conditions[..index].contains(condition) {
                 continue;
@@ -62,7 +62,7 @@ impl Field {
         (!of_all.is_empty()).then(|| self.with(of_all))
     }
 
-    /// Returns a field of other operations.
+    /// Returns a field with other operations.
     fn with(&self, steps: Vec<Step>) -> Self {
         let formula = Formula::new(self.formula().to_string(), SPACE, steps);
         Self::new(Arc::new(formula)).unwrap_or_else(|| self.clone())
@@ -78,8 +78,8 @@ impl Field {
         (1..1 << jumps).all(|sides| !self.beside(at, sides, &mut 0).has_zero())
     }
 
-    /// Encloses the formula on one side of each jump and pole in a box: above it where a bit of `sides` is set, below it else.
-    /// Counts them, and what jumps more than once as too many.
+    /// Encloses the formula on one side of each jump and pole in a box: above it where its bit of `sides` is set, and
+    /// below it otherwise. Counts the jumps and poles. An operation that jumps more than once counts as too many.
     fn beside<F: Float>(&self, at: [Interval<F>; 3], sides: u32, jumps: &mut u32) -> Interval<F> {
         let program = self.program();
         let mut registers = [at[0]; MOST_REGISTERS];
@@ -99,7 +99,7 @@ impl Field {
                     value = if is_above { b } else { c() };
                     *jumps += 1;
                 }
-                // Below 0, they are not defined.
+                // Logarithms and powers are not defined below 0.
                 Step::Call(Function::Ln | Function::Pow) if a.low < zero && a.high >= zero => {
                     let end = Interval::point(a.high);
                     value = match step {

@@ -1,4 +1,4 @@
-//! Factors that a formula has more than once: where one of them is 0, its sign does not change, or the slope is 0.
+//! Repeated factors of a formula. Where such a factor is 0, the formula does not change its sign, or its slope is 0.
 
 use super::Formula;
 use super::field::Field;
@@ -15,8 +15,8 @@ const LINES: [[[f64; 3]; 2]; 3] = [
 ];
 
 impl Field {
-    /// Returns the formula without the powers of its factors as they are written, and the factors whose powers were left out;
-    /// `None` if it has none. The new formula is 0 where the old one is.
+    /// Returns the formula with each of its factors to the first power, and the text of the factors whose powers were
+    /// left out; `None` if all factors have the power 1. The new formula is 0 where the old one is 0.
     pub fn without_powers(&self) -> Option<(Self, Vec<String>)> {
         let mut factors = Factors::default();
         let sign = factors.add(&self.formula().steps, 1);
@@ -39,14 +39,14 @@ impl Field {
         Some((Self::new(Arc::new(formula))?, names))
     }
 
-    /// Tells whether the formula is a polynomial, of a degree that one along a line may have.
+    /// Tells whether the formula is a polynomial whose degree is within the limit for polynomials along a line.
     pub fn is_polynomial(&self) -> bool {
         let [origin, dir] = LINES[0].map(|of| of.map(Rational::from));
         self.exactly_along(&origin, &dir).is_some()
     }
 
-    /// Tells whether the formula is a polynomial that has a factor more than once, as three lines tell that meet every factor,
-    /// unless they meet one in as few places as no line in a million does.
+    /// Tells whether the formula is a polynomial with a repeated factor. The answer comes from three lines. They meet
+    /// every factor, unless all three meet one in unusually few places, as fewer than one line in a million does.
     pub fn has_repeated_factor(&self) -> bool {
         LINES.iter().all(|[origin, dir]| {
             let along = self.exactly_along(&origin.map(Rational::from), &dir.map(Rational::from));

@@ -1,4 +1,4 @@
-//! Formulas in x, y and z, and in all that is known of a point of a surface.
+//! Formulas in x, y and z, or in everything that is known about a point of a surface.
 
 use super::along::{Products, by_products};
 use super::cells::{Cells, is_choice};
@@ -11,11 +11,11 @@ use crate::polynomial::{Coefficient, Polynomial};
 use crate::scalar::Scalar;
 use std::sync::Arc;
 
-/// The number of registers that suffices for most formulas of space, in values. [`MOST_REGISTERS`] take longer to set up
-/// than most formulas to evaluate.
+/// The number of registers that suffices for most formulas of space, in values. Setting up [`MOST_REGISTERS`] takes
+/// longer than evaluating most formulas.
 const SOME_REGISTERS: usize = 12;
 
-/// The same for a formula of a surface, which has more variables.
+/// The number of registers, in values, that suffices for most formulas of a surface, which have more variables.
 const MORE_REGISTERS: usize = 15;
 
 /// A formula in x, y and z: `x^2 + y^2 + z^2 - 1`.
@@ -30,14 +30,14 @@ pub type PatchField = FieldOf<{ PATCH.len() }>;
 /// A formula in t.
 pub type CurveField = FieldOf<{ CURVE.len() }>;
 
-/// A formula in the variables of [`SPACE`], [`PATCH`], [`CURVE`] or [`SURFACE`], by their number.
+/// A formula in the variables of [`SPACE`], [`PATCH`], [`CURVE`] or [`SURFACE`], depending on their number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldOf<const N: usize> {
-    /// The formula as it was read.
+    /// The formula as read.
     formula: Arc<Formula>,
     /// The same formula with fewer operations.
     quick: Formula,
-    /// The operations in which powers are products, for polynomials along lines.
+    /// The operations with products for powers, for polynomials along lines.
     products: Option<Program>,
     /// The cells of a box, each with a program of its own.
     cells: Option<Arc<Cells>>,
@@ -52,7 +52,7 @@ impl<const COUNT: usize> FieldOf<COUNT> {
         _ => SURFACE,
     };
 
-    /// Takes a formula, if its variables are these.
+    /// Makes a field of a formula; `None` if the formula has other variables.
     pub fn new(formula: Arc<Formula>) -> Option<Self> {
         if formula.variables() != Self::VARIABLES {
             return None;
@@ -77,8 +77,8 @@ impl<const COUNT: usize> FieldOf<COUNT> {
         self.quick.steps.contains(&Step::Variable(index as u8))
     }
 
-    /// Tells whether intervals enclose the formula also where it takes a square root of what may be negative: in a formula
-    /// of a surface, that is 0.
+    /// Tells whether intervals also enclose the formula where it may take the square root of a negative number. In a
+    /// formula of a surface, such a root is 0.
     pub fn is_enclosed(&self) -> bool {
         let is_root = |step: &Step| *step == Step::Call(Function::Sqrt);
         let roots = |steps: &[Step]| steps.iter().filter(|step| is_root(step)).count();
@@ -126,7 +126,7 @@ impl<const COUNT: usize> FieldOf<COUNT> {
     }
 }
 
-/// The number of operations from which a formula is cut into cells.
+/// The least number of operations for which a formula is cut into cells.
 const MANY: usize = 64;
 
 impl Field {
@@ -150,10 +150,10 @@ impl Field {
     }
 }
 
-/// A square root of which that of a negative number is 0.
+/// A square root that is 0 for a negative number.
 const ROOT: [Step; 3] = [Step::Number(0.0), Step::Call(Function::Max), Step::Call(Function::Sqrt)];
 
-/// Returns the same operations, where square roots of negative numbers are 0.
+/// Returns the same operations, with square roots that are 0 for negative numbers.
 fn with_roots(steps: &[Step]) -> Vec<Step> {
     let mut out = Vec::with_capacity(steps.len());
     for step in steps {
@@ -165,8 +165,8 @@ fn with_roots(steps: &[Step]) -> Vec<Step> {
     out
 }
 
-/// Returns the same operations, where those with a constant take one step and no derivatives of the constant, and products of
-/// the same are squares.
+/// Returns the same operations, simplified: an operation with a constant takes one step and no derivatives of the
+/// constant, and a product of two equal values is a square.
 fn with_constants(steps: &[Step]) -> Vec<Step> {
     let (mut out, mut starts) = (Vec::with_capacity(steps.len()), Vec::new());
     for step in steps {
@@ -176,7 +176,7 @@ fn with_constants(steps: &[Step]) -> Vec<Step> {
                 let second = starts.pop().unwrap_or(0);
                 let first = starts.last().copied().unwrap_or(0);
                 let last = out.len() - 1;
-                // Bounds of a square are not below 0.
+                // The bounds on a square are not below 0.
                 if *step == Step::Mul && out[first..second] == out[second..] {
                     out.truncate(second);
                     out.push(Step::Powi(2));

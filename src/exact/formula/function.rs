@@ -1,4 +1,4 @@
-//! The functions that a formula can call: those that number types compute, and those that are formulas of these.
+//! The functions that a formula can call. Number types compute some of them; the others are formulas made of those.
 
 use super::step::Function;
 
@@ -13,13 +13,13 @@ pub(super) struct FormulaFunction {
 /// What a function computes.
 #[derive(Clone, Copy)]
 pub(super) enum Meaning {
-    /// An operation of one value, or of two, which may take further ones, one after the other.
+    /// An operation on one value, or on two. The latter may be applied to further values, one after the other.
     Operation(Function),
-    /// An operation of as many values as it names.
+    /// An operation on exactly as many values as it names.
     Fixed(Function),
     /// A comparison, and the values where it holds and where it does not.
     Choice,
-    /// The formula of its arguments that this text is.
+    /// A formula in its arguments, given by this text.
     Formula(&'static str),
 }
 
@@ -98,12 +98,13 @@ pub(super) fn find(name: &str) -> Option<&'static FormulaFunction> {
 }
 
 impl FormulaFunction {
-    /// Tells whether the function takes more arguments than it names: the smallest of many.
+    /// Tells whether the function takes more arguments than it names, as the smallest of many does.
     pub fn takes_more(&self) -> bool {
         matches!(self.meaning, Operation(Function::Min | Function::Max))
     }
 
-    /// Tells whether no number of a scene can have its name. The names of functions that came later may be those of numbers.
+    /// Tells whether the name is reserved, so that no number of a scene can have it. Names of functions that were added
+    /// later are not reserved.
     pub fn is_reserved(&self) -> bool {
         matches!(self.meaning, Operation(_))
     }

@@ -1,4 +1,4 @@
-//! Formulas, as a scene or a profile plugin writes them: `2 + sin(y)`, or in x, y and z.
+//! Formulas as a scene or a profile plugin writes them: in y, such as `2 + sin(y)`, or in x, y and z.
 
 mod along;
 pub mod cells;
@@ -55,7 +55,7 @@ impl OwnFunction {
     /// Parses a function of these arguments.
     ///
     /// # Errors
-    /// The first place where the text is not a formula of them.
+    /// Returns the first place where the text is not a formula of these arguments.
     pub fn parse(arguments: &[&str], text: &str, named: Named<'_>) -> Result<Self, FormulaFault> {
         let value = |steps: &[Step]| Formula::new(String::new(), &[], steps.to_vec()).at(0.0);
         let Operations { steps, pieces, .. } = parser::parse(text, arguments, named, value)?;
@@ -80,8 +80,9 @@ impl Formula {
         Self::parse_with(text, variables, &|_| None)
     }
 
-    /// Parses a formula in these variables, named numbers and functions of the scene. Its own text has the numbers in place of
-    /// their names, and what functions stand for in place of their calls, and stands on one line.
+    /// Parses a formula in these variables that may use named numbers and functions of the scene. The text of the new
+    /// formula stands on one line. It contains the numbers instead of their names, and the formulas of functions
+    /// instead of calls.
     ///
     /// # Errors
     /// Returns the first place where the text is not a formula.
@@ -97,7 +98,7 @@ impl Formula {
         if written.contains('\n') || written.contains("  ") {
             written = written.split_whitespace().collect::<Vec<_>>().join(" ");
         }
-        // What functions stand for is nested more deeply than their calls. A number that is not known is NaN.
+        // The formulas of functions are nested more deeply than calls of them. An unknown number is NaN.
         let is_known = |step: &Step| !matches!(step, Step::Number(number) if number.is_nan());
         if has_calls
             && steps.iter().all(is_known)
@@ -113,8 +114,8 @@ impl Formula {
         self.variables
     }
 
-    /// Returns the square of the formula. The square of a root is its operand: where a sphere's profile ends, its slope
-    /// is infinite, and that of its square is not.
+    /// Returns the square of the formula. The square of a root is its operand: where a sphere's profile ends, the slope
+    /// of the profile is infinite, and the slope of its square is finite.
     pub fn squared(&self) -> Self {
         let mut steps = self.steps.clone();
         match steps.last() {
@@ -129,8 +130,8 @@ impl Formula {
 
     fn new(text: String, variables: &'static [&'static str], steps: Vec<Step>) -> Self {
         let program = Program::new(&steps, variables.len());
-        // The derivative of a general power takes more than arithmetic, noise looks things up, and eight y may choose
-        // differently.
+        // The derivative of a general power takes more than arithmetic, noise needs a table, and a choice may differ
+        // among eight y.
         let is_long =
             |step: &Step| matches!(step, Step::Call(Function::Pow | Function::Noise | Function::If));
         let is_plain = program.registers <= FEW_REGISTERS && !steps.iter().any(is_long);
@@ -153,8 +154,8 @@ impl Formula {
         self.steps.iter().map(|step| step.cost()).sum()
     }
 
-    /// Evaluates the formula in registers, of which the first ones have the variables; one function for each number type,
-    /// for any number of registers.
+    /// Evaluates the formula in registers. The first registers hold the variables. One function per number type serves
+    /// any number of registers.
     fn run<N: Scalar>(&self, registers: &mut [N]) -> N {
         self.run_inline::<N, true>(&self.program, registers)
     }

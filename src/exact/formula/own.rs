@@ -1,4 +1,4 @@
-//! Functions that a scene defines, and the texts of formulas without the names of a scene.
+//! Functions that a scene defines, and texts of formulas in which the names of a scene are replaced.
 
 use super::function;
 use super::step::Step;
@@ -9,7 +9,7 @@ use std::ops::Range;
 /// The most arguments of a function.
 const MOST_ARGUMENTS: usize = 16;
 
-/// The longest text of a formula in which calls are written as what they stand for, in bytes.
+/// The maximum length of a formula's text, in bytes, after calls are replaced by the formulas of their functions.
 const LONGEST: usize = 1 << 20;
 
 /// A function that a scene defines, as `f` of u and v as `u^2 + v`.
@@ -22,7 +22,7 @@ pub struct OwnFunction {
 }
 
 impl OwnFunction {
-    /// Makes a function of so many arguments, given its operations and the pieces of its text.
+    /// Makes a function with this number of arguments from its operations and the pieces of its text.
     pub(super) fn new(count: usize, steps: Vec<Step>, pieces: Vec<Piece>) -> Self {
         Self { count, steps, pieces }
     }
@@ -33,10 +33,10 @@ impl OwnFunction {
     }
 }
 
-/// Splits the head of a function, `f(u, v)`, into its name and its arguments; `None` if it is no head of one.
+/// Splits the head of a function, `f(u, v)`, into its name and its arguments; `None` if the text is not such a head.
 ///
 /// # Errors
-/// Why it cannot be the head of a function.
+/// Returns why the text cannot be the head of a function.
 pub fn head(text: &str) -> Option<(&str, Result<Vec<&str>, String>)> {
     let (name, rest) = text.split_once('(')?;
     let arguments = || {
@@ -69,7 +69,7 @@ pub(super) enum Piece {
     Variable(usize, String),
 }
 
-/// Returns the text that pieces make.
+/// Joins pieces into a text.
 pub(super) fn joined(pieces: &[Piece]) -> String {
     let of = |piece: &Piece| match piece {
         Piece::Text(text) | Piece::Variable(_, text) => text.clone(),
@@ -84,16 +84,16 @@ fn length(pieces: &[Piece]) -> usize {
     pieces.iter().map(of).sum()
 }
 
-/// What stands in the place of names in a text, in the order of the text.
+/// The replacements for names in a text, in the order of the text.
 #[derive(Default)]
 pub(super) struct Edits {
     all: Vec<(Range<usize>, Vec<Piece>)>,
-    /// Whether any is a call.
+    /// Whether any replacement is for a call.
     pub has_calls: bool,
 }
 
 impl Edits {
-    /// Puts a number in the place of its name.
+    /// Replaces the name of a number by the number.
     pub fn number(&mut self, text: &str, place: Range<usize>, number: f64) {
         let number = text::shortest(number);
         // In `2n`, the digits of a number would be part of the number before it.
@@ -108,7 +108,7 @@ impl Edits {
         self.all.push((place, vec![Piece::Variable(index, String::new())]));
     }
 
-    /// Puts what a function stands for in the place of its call; returns whether that is short enough.
+    /// Replaces a call by the formula of its function; returns whether the result is short enough.
     pub fn call(&mut self, place: Range<usize>, of: &[Piece], arguments: &[Vec<Piece>]) -> bool {
         let bracket = |text: &str| Piece::Text(text.to_owned());
         let mut pieces = vec![bracket("(")];
@@ -137,7 +137,7 @@ impl Edits {
         true
     }
 
-    /// Takes the edits in a range of the text, and returns the text there with them.
+    /// Removes the replacements in a range of the text, and returns the text of the range with these replacements made.
     pub fn take(&mut self, text: &str, range: Range<usize>) -> Vec<Piece> {
         let first = self.all.partition_point(|(place, _)| place.start < range.start);
         let (mut pieces, mut at) = (Vec::new(), range.start);

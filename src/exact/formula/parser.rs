@@ -27,17 +27,17 @@ pub type Named<'n> = &'n dyn Fn(&str) -> Option<Meant>;
 /// What a text says.
 pub(super) struct Operations {
     pub steps: Vec<Step>,
-    /// The text without the names of a scene.
+    /// The text, with the names of a scene replaced.
     pub pieces: Vec<Piece>,
     /// Whether it calls functions of the scene.
     pub has_calls: bool,
 }
 
-/// The greatest whole exponent of a power that is computed by multiplications.
+/// The greatest whole exponent for which a power is computed by multiplications.
 const MAX_POWER: i32 = 1000;
 
-/// The most operations of a formula: a function that is itself a formula may use an argument more than once, and so in
-/// nested calls many times.
+/// The maximum number of operations of a formula. A function that is itself a formula may use an argument more than
+/// once, so nested calls may use it many times.
 const MAX_STEPS: usize = 1 << 18;
 
 /// Parses the operations of a formula in these variables and named numbers. An equation in x, y and z is the difference
@@ -354,7 +354,7 @@ impl<'t> Parser<'t> {
         self.edits.variable(place, index);
     }
 
-    /// Explains a name that means nothing.
+    /// Explains a name that has no meaning here.
     fn unknown(&self, word: &str, place: Range<usize>) -> FormulaFault {
         let fault = self.fault(place, format!("unknown name `{word}` in a formula"));
         let product: Vec<_> = word.split("").filter(|letter| !letter.is_empty()).collect();
@@ -380,7 +380,7 @@ impl<'t> Parser<'t> {
             self.deeper()?;
             self.enclosed(false)?;
             if let Meaning::Operation(of) = function.meaning {
-                // The values so far are one, so that many arguments nest no deeper than two.
+                // The values so far are combined into one, so that many arguments nest no deeper than two.
                 self.steps.push(Step::Call(of));
                 self.depth = depth;
             }
@@ -415,7 +415,7 @@ impl<'t> Parser<'t> {
         }
     }
 
-    /// Refuses another number of arguments than a function takes.
+    /// Reports a fault if the number of arguments is not one that the function takes.
     fn counted(&mut self, name: &str, place: &Range<usize>, found: usize, count: usize) -> Parsed {
         let takes = text::count(count, "value");
         if found < count {
@@ -427,7 +427,8 @@ impl<'t> Parser<'t> {
         }
     }
 
-    /// Puts the operations of a function of arguments, which start there, in the place of the arguments.
+    /// Replaces the operations of arguments by the operations of a function of them. `starts` are the places where the
+    /// arguments start.
     fn apply(&mut self, of: &[Step], starts: &[usize], place: &Range<usize>) -> Parsed {
         let uses = |step: &Step| match step {
             Step::Variable(index) => {
@@ -477,8 +478,8 @@ impl<'t> Parser<'t> {
         Ok(())
     }
 
-    /// Parses the sign of a comparison and its other side: what is 0 or above where it holds or, if it is reversed, where it does
-    /// not. Returns whether it is reversed.
+    /// Parses the sign of a comparison and its right side. The resulting value is 0 or above where the comparison holds
+    /// or, if it is reversed, where it does not hold. Returns whether it is reversed.
     fn comparison(&mut self) -> Result<bool, FormulaFault> {
         let Some(sign) = self.take(&['<', '>', '≤', '≥']) else {
             let fault = self.fault_here("expected a comparison");
@@ -491,7 +492,7 @@ impl<'t> Parser<'t> {
         self.enclosed(false)?;
         self.depth -= 1;
         self.steps.push(Step::Sub);
-        // a < b is the opposite of a - b >= 0, and a > b that of b - a >= 0.
+        // a < b is the opposite of a - b >= 0, and a > b is the opposite of b - a >= 0.
         if matches!((sign, is_or_equal), ('>', false) | ('<' | '≤', true)) {
             self.steps.push(Step::Neg);
         }

@@ -1,4 +1,4 @@
-//! Formulas as programs: operations on registers, of which equal ones are made once.
+//! Formulas as programs: operations on registers. Equal operations are carried out once.
 
 use super::step::{Function, MAX_DEPTH, Step};
 use super::variables::SURFACE;
@@ -29,33 +29,33 @@ impl Instruction {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Program {
     pub instructions: Vec<Instruction>,
-    /// The register that has the result in the end.
+    /// The register that holds the result in the end.
     pub result: u8,
-    /// The number of registers. The first ones have the variables.
+    /// The number of registers. The first registers hold the variables.
     pub registers: usize,
 }
 
-/// The number of registers of the largest program, in values: those of all variables and of the deepest nesting, in which
-/// the innermost operation is a square root that is made of its operand and a 0.
+/// The number of registers of the largest program, in values: one for each variable, and those for the deepest nesting,
+/// whose innermost operation is a square root computed from its operand and a 0.
 pub(super) const MOST_REGISTERS: usize = SURFACE.len() + MAX_DEPTH + 1;
 
-/// An operation and the values that it is applied to, by their indices.
+/// An operation, and the indices of the values that it is applied to.
 #[derive(Clone, Copy)]
 pub(super) struct Value {
     pub step: Step,
     pub operands: [usize; 3],
 }
 
-/// The values of a formula, each after those that it is made of, the variables first.
+/// The values of a formula. The variables come first, and each value comes after its operands.
 #[derive(Clone)]
 pub(super) struct Values {
     pub list: Vec<Value>,
-    /// The index of the value that the formula has.
+    /// The index of the value of the whole formula.
     pub result: usize,
 }
 
 impl Value {
-    /// Returns what values have in common that are the same number.
+    /// Returns a key that is the same for values that are the same number.
     fn key(&self) -> (Discriminant<Step>, u64, [usize; 3]) {
         let payload = match self.step {
             Step::Number(number) | Step::Scale(number) | Step::Shift(number) => number.to_bits(),
@@ -112,8 +112,8 @@ impl Program {
 }
 
 impl Values {
-    /// Returns the values of operations in postfix order: each of them once, if there are registers for that. What is shared
-    /// waits in a register until its last use.
+    /// Returns the values of operations in postfix order: each value once, if there are enough registers for that. A
+    /// shared value waits in a register until its last use.
     pub fn new(steps: &[Step], variables: usize) -> Self {
         let shared = values(steps, variables, true);
         let fits = |values: &Self| Program::of(values, variables).registers <= MOST_REGISTERS;
@@ -128,7 +128,8 @@ impl Values {
         }
     }
 
-    /// Returns the same values, of which the sine and the cosine of a number follow each other; `None` if there is no such pair.
+    /// Returns the same values, reordered so that the sine and the cosine of a number follow each other; `None` if
+    /// there is no such pair.
     fn paired(&self, variables: usize) -> Option<Self> {
         let list = &self.list;
         let pairs = list.iter().map(|value| {
@@ -199,7 +200,7 @@ mod tests {
         let formula = formula.expect("a formula");
         let operations = &formula.program.instructions;
         let squares = operations.iter().filter(|operation| operation.step == Step::Powi(2)).count();
-        // Of x, of y, and of the first factor.
+        // The squares of x, of y, and of the first factor.
         assert_eq!((squares, operations.len()), (3, 13));
         let field = Field::new(Arc::new(formula)).expect("its variables are x, y and z");
         let expected = (9.0 + 4.0 - 1.0) * (9.0 + 4.0 - 1.0) * (4.0 + 1.5 - 1.0) + 9_f64.sin().powi(2);

@@ -1,7 +1,7 @@
 //! Formulas along lines of rational numbers, exactly: polynomials with whole coefficients.
 //!
-//! The numbers of a formula are `f64`, and so fractions. A formula that adds, subtracts and multiplies, and divides by numbers
-//! alone, is a polynomial along a line, whose coefficients are fractions if the line's are.
+//! The numbers of a formula are `f64`, and therefore fractions. A formula that adds, subtracts and multiplies, and
+//! divides by numbers alone, is a polynomial along a line, whose coefficients are fractions if the line's are.
 
 use super::field::Field;
 use super::program::{Instruction, Program};
@@ -12,11 +12,12 @@ use crate::roots::whole::{Dyadic, Whole};
 use dashu_int::IBig;
 use dashu_int::ops::{Abs, BitTest};
 
-/// The largest power of two by which numbers are scaled to add them, or to make them whole: a number of 1e-300 to the 12th
-/// power is smaller, and not worth the time.
+/// The largest power of two by which numbers are scaled to add them, or to make them whole: the 12th power of 1e-300 is
+/// smaller, and not worth the time.
 const MOST_BITS: i64 = 1 << 14;
 
-/// The most digits of a number, in bits: coefficients of polynomials of degree 40 have some thousands.
+/// The maximum number of digits of a number, in bits: coefficients of polynomials of degree 40 have some thousands of
+/// bits.
 const MOST_DIGITS: usize = 1 << 16;
 
 /// A polynomial whose coefficients are these whole numbers times a power of two, divided by a positive number.
@@ -39,7 +40,7 @@ impl Rational {
         Self { numerators: vec![numerator], exponent, denominator }
     }
 
-    /// Takes a fraction, if it is exact.
+    /// Takes a fraction; `None` if it is not exact.
     pub fn of(fraction: Fraction) -> Option<Self> {
         let [above, below] = fraction.exactly()?.map(Dyadic::from);
         Some(Self::new(above.digits, above.exponent - below.exponent, below.digits))
@@ -55,7 +56,7 @@ impl Rational {
         self
     }
 
-    /// Returns the polynomial that has another one as its coefficient of t.
+    /// Returns the polynomial plus t times another one.
     fn with_slope(&self, slope: &Self) -> Option<Self> {
         let rises = Self { numerators: vec![IBig::ZERO, slope.numerators[0].clone()], ..slope.clone() };
         self.plus(&rises)
@@ -88,7 +89,7 @@ impl Rational {
         Self { numerators, exponent, denominator }.not_too_long()
     }
 
-    /// Returns the polynomial, unless a number of it has too many digits.
+    /// Returns the polynomial, unless one of its numbers has too many digits.
     fn not_too_long(self) -> Option<Self> {
         let numbers = self.numerators.iter().chain([&self.denominator]);
         let is_short = numbers.into_iter().all(|number| number.bit_len() <= MOST_DIGITS);

@@ -3,7 +3,7 @@
 use crate::scalar::{Scalar, apart, apart_if};
 use crate::spline::Spline;
 
-/// The size of a number, in bytes, from which each of its operations is a call.
+/// The least size of a number, in bytes, for which each operation is a call.
 const LONG: usize = 64;
 
 /// An operation of a formula.

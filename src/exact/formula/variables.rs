@@ -16,5 +16,6 @@ pub const PATCH: &[&str] = &["u", "v"];
 pub const SURFACE: &[&str] =
     &["x", "y", "z", "u", "v", "nx", "ny", "nz", "gradient", "mean_curvature", "gauss_curvature"];
 
-/// Those of a surface that is given by a formula. A scene's own number of such a name is meant in place of the variable.
+/// The variables of a surface that is given by a formula. If the scene has a number with the name of a variable, the
+/// name means that number.
 pub const OF_FORMULAS: &[&str] = SURFACE.split_at(8).1;

@@ -26,7 +26,7 @@ pub fn is_taken(name: &str) -> bool {
 /// The digits of exponents, from 0.
 pub(super) const SUPERSCRIPTS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
 
-/// Returns whether a character can be part of a name in a formula. The `²` of `x²` is no part of one.
+/// Returns whether a character can be part of a name in a formula. The `²` of `x²` is not part of a name.
 pub fn is_in_name(letter: char) -> bool {
     (letter.is_alphanumeric() || letter == '_') && !SUPERSCRIPTS.contains(&letter)
 }

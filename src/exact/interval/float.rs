@@ -58,7 +58,7 @@ pub trait Float:
     fn tan(self) -> Self;
     /// Returns e raised to this power.
     fn exp(self) -> Self;
-    /// Returns the natural logarithm of a number that is not negative; that of 0 is negative infinity.
+    /// Returns the natural logarithm of a number that is not negative; the logarithm of 0 is negative infinity.
     fn ln(self) -> Self;
     /// Returns the angle in radians, from -π to π, from the positive x axis to the point with this y.
     fn atan2(self, x: Self) -> Self;
@@ -114,7 +114,7 @@ impl Float for f64 {
 
     /// Widens by a product and a difference, which are many times faster than `next_up` and `next_down`. The product is
     /// at least 1.04 ulps, so at least one whole ulp is left after the difference is rounded; `UNDERFLOW` is more than
-    /// what results that underflow lose.
+    /// the loss of a result that underflows.
     #[inline(always)]
     fn outward(low: Self, high: Self) -> (Self, Self) {
         const UNDERFLOW: f64 = 1e-305;
@@ -175,8 +175,8 @@ impl Float for f64 {
         libm::atan2(self, x)
     }
 
-    /// Without the instruction for it, which processors have that this is not compiled for, the standard library's function
-    /// is a call.
+    /// The standard library's function is a call unless this is compiled for processors that have an instruction for
+    /// it.
     #[inline(always)]
     fn floor(self) -> Self {
         /// Adding this rounds to an integer. From there on, numbers are integers.

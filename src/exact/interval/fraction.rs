@@ -1,8 +1,9 @@
 //! Fractions of two numbers of 237 bits, which stay exact as long as they fit.
 //!
-//! Where a ray passes exactly through the edge of a tile, or starts exactly on a second surface, no interval decides, however
-//! narrow it is. With the round numbers of scenes such places are fractions of few digits: of these, sums, products,
-//! quotients and roots of squares are computed without rounding, and an interval of such a number is the number itself.
+//! Where a ray passes exactly through the edge of a tile, or starts exactly on a second surface, no interval decides,
+//! however narrow it is. With the round numbers of scenes, such places are fractions of few digits. Sums, products,
+//! quotients and roots of squares of these fractions are computed without rounding, and the interval of such a fraction
+//! is the fraction itself.
 
 use super::float::Float;
 use crate::double_double::power_of_two;
@@ -17,9 +18,9 @@ const BITS: u32 = 237;
 #[derive(Clone, Copy, Debug)]
 pub struct Fraction {
     numerator: f256,
-    /// Positive; 1 for a number that is infinite, that is no number, or that is rounded.
+    /// The denominator is positive; it is 1 for a number that is infinite, NaN or rounded.
     denominator: f256,
-    /// A bound on the difference from the number that was to be computed; 0 for an exact result.
+    /// A bound on the difference from the true result; 0 for an exact result.
     error: f256,
 }
 
@@ -40,7 +41,7 @@ impl Fraction {
         Self { numerator: number, denominator: f256::ONE, error }
     }
 
-    /// Returns a quotient of numbers of which the divisor is not 0: a whole number where it is one.
+    /// Returns a quotient with a denominator other than 0. Where the quotient is a whole number, it is returned as one.
     fn quotient(numerator: f256, denominator: f256) -> Self {
         let (numerator, denominator) =
             if denominator < f256::ZERO { (-numerator, -denominator) } else { (numerator, denominator) };

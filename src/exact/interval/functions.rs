@@ -30,13 +30,14 @@ impl<F: Float> Interval<F> {
     }
 
     /// Returns whether the interval is narrower than a bound in radians, and below 1e15 radians, where sines still mean
-    /// something; other angles are taken for any angle.
+    /// something; other intervals are taken to hold every angle.
     fn is_narrower(self, than: F) -> bool {
         self.width() < than && self.magnitude() < F::of(1e15)
     }
 
-    /// Tells whether a sine or cosine certainly has no turning point in the interval, by its derivative at the endpoints: of
-    /// two turning points that follow each other, the derivative has one sign between, and another one beyond.
+    /// Tells whether a sine or cosine certainly has no turning point in the interval, by its derivative at the
+    /// endpoints: between two neighbouring turning points the derivative has one sign, and beyond them it has the
+    /// other.
     #[inline]
     fn is_monotone(self, slopes: [F; 2]) -> bool {
         // The derivative is smaller than the distance from a turning point, and far above rounding.
@@ -99,7 +100,7 @@ impl<F: Float> Interval<F> {
 }
 
 impl Interval {
-    /// Encloses the arc cosines, in radians, of those of the numbers that lie from -1 to 1.
+    /// Encloses the arc cosines, in radians, of the numbers of the interval that lie from -1 to 1.
     pub fn acos(self) -> Self {
         let [least, most] = [self.high, self.low].map(|cosine| libm::acos(cosine.clamp(-1.0, 1.0)));
         let Self { low, high } = Self { low: least, high: most }.around_angle();
@@ -185,7 +186,7 @@ impl<F: Float> Scalar for Interval<F> {
         if !(self.low > zero || self.high < zero || x.low > zero) {
             return Self { low: -half_turn.high, high: half_turn.high };
         }
-        // Lines of one angle are straight, so that the least and the greatest angle are those of corners.
+        // Points with the same angle lie on a straight line, so the least and the greatest angle are at corners.
         let angles = [(self.low, x.low), (self.low, x.high), (self.high, x.low), (self.high, x.high)]
             .map(|(y, x)| Self::point(y.atan2(x)));
         angles.into_iter().reduce(Self::hull).map_or(Self::whole(), Self::around_angle)

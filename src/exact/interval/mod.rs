@@ -91,7 +91,8 @@ impl<F: Float> Interval<F> {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
-    /// Converts to `f64`, rounded outward. What needs no rounding stays: a line parallel to an axis is parallel to it.
+    /// Converts to `f64`, rounded outward. Numbers that need no rounding stay as they are: a line parallel to an axis
+    /// stays parallel to it.
     pub fn coarse(self) -> Interval {
         let (low, high) = (self.low.to_f64(), self.high.to_f64());
         Interval {
@@ -219,7 +220,7 @@ impl<F: Float> Interval<F> {
         if touches(self, other) || touches(other, self) {
             return Self::outward(low.min(F::of(0.0)), high.max(F::of(0.0)));
         }
-        // Products of numbers that are not negative are not negative: so a root can be taken of them.
+        // Products of numbers that are not negative are not negative, so that their square roots are defined.
         let zero = F::of(0.0);
         if self.low >= zero && other.low >= zero && low == zero {
             return Self { low, ..Self::outward(low, high) };

@@ -18,7 +18,8 @@ pub trait Coefficient:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// A bound of the relative error of a product that is added to a sum. Each of the two operations has at most half of it.
+    /// A bound of the relative error of a product that is added to a sum. Each of the two operations contributes at
+    /// most half of it.
     const ROUNDING: f64;
 
     /// The size from which products may overflow on the way.
@@ -33,8 +34,8 @@ pub trait Coefficient:
     /// Encloses all numbers that differ from this one by no more than an error.
     fn bounds(self, error: f64) -> Interval<Self::End>;
 
-    /// Returns a number in an interval, and a bound of its distance from any other one there; infinite where the interval is
-    /// not bounded.
+    /// Returns a number in an interval, and a bound on its distance from any other number there; infinite where the
+    /// interval is not bounded.
     fn about(bounds: Interval<Self::End>) -> (Self, f64);
 }
 

@@ -1,7 +1,7 @@
-//! Polynomials: what a formula is along a line, if it does nothing but add, subtract and multiply.
+//! Polynomials. A formula that does nothing but add, subtract and multiply is a polynomial along a line.
 //!
-//! A polynomial stands for all that differ from it by no more than its error, a bound of the sum of the absolute errors of
-//! its coefficients. Where -1 <= s <= 1 this is a bound of the error of its value, too.
+//! A polynomial stands for all polynomials that differ from it by no more than its error: a bound on the sum of the
+//! absolute errors of the coefficients. Where -1 <= s <= 1, this is also a bound on the error of the value.
 
 mod coefficient;
 
@@ -11,14 +11,15 @@ use crate::spline::Spline;
 pub use coefficient::Coefficient;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// The number of coefficients of most polynomials, of at most the twelfth degree. In `f64`, a polynomial of this degree takes
-/// 128 bytes, more than which compilers do not copy inline.
+/// The number of coefficients that suffices for most polynomials: degrees up to 12. In `f64`, a polynomial of degree 12
+/// takes 128 bytes; compilers do not copy larger values inline.
 pub const FEW: usize = 13;
 
-/// The largest number of coefficients: the highest degree is 40. A product of a higher one is unknown.
+/// The largest number of coefficients: the highest degree is 40. A product of a higher degree is unknown.
 pub const MOST: usize = 41;
 
-/// What a bound is multiplied by, so that it is one although up to eight operations on numbers above 0 were rounded.
+/// A computed bound is multiplied by this factor, so that it stays a bound after up to eight rounded operations on
+/// numbers above 0.
 const ROUNDED_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 
 /// A polynomial in s, of less than `N` coefficients that are of type `C`.
@@ -52,8 +53,8 @@ impl<C: Coefficient, const N: usize> Polynomial<C, N> {
         if error < f64::INFINITY { Self::number(value, error) } else { Self::unknown() }
     }
 
-    /// Returns the place on a piece of a line: its lower end at s = -1, its upper end at s = 1. Stands also for places that
-    /// are off by eight times the rounding of the ends.
+    /// Returns the place on a piece of a line: its lower end at s = -1, its upper end at s = 1. The result also stands
+    /// for places that are off by up to eight times the rounding of the ends.
     pub fn along(piece: Interval) -> Self {
         let (low, high) = (C::from(0.5 * piece.low), C::from(0.5 * piece.high));
         let (middle, half) = (low + high, high - low);

@@ -24,7 +24,7 @@ pub(super) static BINOMIALS: [[f64; MOST]; MOST] = {
     of
 };
 
-/// A polynomial on a piece of a line, and all that differ from it by at most its error.
+/// A polynomial on a piece of a line. It stands for all polynomials that differ from it by at most its error.
 #[derive(Clone, Copy)]
 pub struct Bernstein<C = f64, const N: usize = FEW> {
     coefficients: [C; N],
@@ -38,8 +38,8 @@ pub struct Bernstein<C = f64, const N: usize = FEW> {
 pub enum Roots {
     /// There is no root.
     None,
-    /// There is one root, at which the sign changes, and the ends are no roots. The root is near this part of the piece,
-    /// from 0 to 1.
+    /// There is one root, at which the sign changes, and the ends are not roots. The root is near this part of the
+    /// piece, from 0 to 1.
     One {
         /// Whether the polynomial rises there.
         rises: bool,
@@ -151,7 +151,8 @@ impl<C: Coefficient, const N: usize> Bernstein<C, N> {
         while last_ones <= last && sign(last - last_ones) == end {
             last_ones += 1;
         }
-        // Whichever sign a single coefficient has between those of either sign, signs change once.
+        // Where a single coefficient lies between coefficients of opposite signs, the signs change once, whichever sign
+        // it has.
         if start * end < 0 && first_ones + last_ones >= last {
             return Roots::One { rises, near };
         }

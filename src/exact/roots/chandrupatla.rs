@@ -1,8 +1,8 @@
 //! Inverse quadratic interpolation through the last three places where that can be trusted, bisection elsewhere.
 //!
 //! T. R. Chandrupatla, "A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function without
-//! using derivatives" (1997). Among methods without derivatives, it takes few evaluations; where derivatives are to be
-//! had, Newton's method takes half as many.
+//! using derivatives" (1997). Among methods without derivatives, it takes few evaluations; where derivatives are
+//! available, Newton's method takes half as many.
 
 /// Returns the root between two places where the function's signs differ, to within the tolerance.
 pub fn root(f: impl Fn(f64) -> f64, (low, high): (f64, f64), tolerance: f64) -> f64 {

@@ -2,7 +2,7 @@
 //! that the signs at the ends decide.
 //!
 //! D. P. Mitchell, "Robust ray intersection with interval arithmetic" (1990). It loses no root; but the bounds shrink
-//! with the length of a piece and not with its square, so that grazing rays take hundreds of pieces.
+//! with the length of a piece and not with its square, so that a grazing ray takes hundreds of pieces.
 
 use super::refiner::{Refiner, value_and_slope};
 use super::taylor::FunctionOnLine;

@@ -1,4 +1,4 @@
-//! Roots of a polynomial in their order, isolated as far as the precision of its coefficients tells.
+//! Isolates the roots of a polynomial, in order, as far as the precision of its coefficients allows.
 
 use super::bernstein::{Bernstein, Roots};
 use crate::polynomial::{Coefficient, Polynomial};
@@ -17,8 +17,8 @@ pub enum RootPart<C> {
     Hidden([C; 2]),
 }
 
-/// Visits the parts that have a root or may have some, in their order, until one is taken. `None` also where nothing is known
-/// of the polynomial.
+/// Visits the parts that have a root or may have some, in order, until the visitor takes one. `None` also where nothing
+/// is known of the polynomial.
 pub fn visit<C: Coefficient, const N: usize, R>(
     polynomial: &Polynomial<C, N>,
     visit: impl FnMut(RootPart<C>) -> Option<R>,
@@ -102,8 +102,8 @@ pub fn refined<C: Coefficient, const N: usize>(
     at
 }
 
-/// Returns places around the only root between two others, as near to it as rounding allows; the polynomial has certain signs
-/// there, or they are the ends.
+/// Returns places around the only root between two others, as near to it as rounding allows; the signs of the
+/// polynomial are certain at these places, unless they are the ends.
 pub fn enclosed<C: Coefficient, const N: usize>(
     polynomial: &Polynomial<C, N>,
     [low, high]: [C; 2],

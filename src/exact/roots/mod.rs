@@ -1,9 +1,9 @@
 //! Methods that find the first root of a function along a line, one per file, which `tabray chart` compares.
 //!
 //! Scenes are traced with two of them. [`taylor`] finds the hits of shapes that are one formula, and decides where a
-//! ray grazes a surface of revolution, whose other hits come from quadrics (`revolution` of tabray-core);
-//! [`newton`] refines the roots of both. The others are what other programs use; each file says where its method is
-//! from and where it fails.
+//! ray grazes a surface of revolution, whose other hits come from quadrics (`revolution` of tabray-core); [`newton`]
+//! refines the roots of both. Other programs use the other methods; each file says where its method comes from and
+//! where it fails.
 
 pub mod bernstein;
 pub mod bisection;
@@ -67,8 +67,8 @@ impl Method {
     /// [`taylor`] divides the span in a way that does not depend on the range; the other methods search only the part
     /// of the span that is in the range.
     ///
-    /// If the line starts on the surface and leaves it to a side, the root where it starts is not meant. `shortest` is
-    /// a few ulps of the largest numbers on the line.
+    /// If the line starts on the surface and leaves it to a side, the root at its start does not count. `shortest` is a
+    /// few ulps of the largest numbers on the line.
     pub fn first_root(
         self,
         line: &impl FunctionOnLine,

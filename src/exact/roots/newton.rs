@@ -3,8 +3,8 @@
 use crate::dual::Dual;
 use std::array::from_fn;
 
-/// The largest number of steps, after which a root is taken as it is; a bracket that is only bisected has shrunk by
-/// 2^-100 then.
+/// The largest number of steps, after which the root is returned as found; a bracket that is only bisected has shrunk
+/// by 2^-100 then.
 const MAX_STEPS: usize = 100;
 
 /// `N` functions that are evaluated together. A trait, as closures are not reliably inlined into kernels.
@@ -26,8 +26,8 @@ impl<F: Fn(f64) -> Dual> Functions<1> for F {
 pub struct Start<const N: usize> {
     /// The lower ends of the brackets.
     pub low: [f64; N],
-    /// The upper ends of the brackets, where the signs differ from those at the lower ends. Where one is not above the
-    /// lower end, the guess is returned.
+    /// The upper ends of the brackets, where the signs differ from those at the lower ends. Where an upper end is not
+    /// above the lower end, the guess is returned.
     pub high: [f64; N],
     /// 1 where the function falls across the bracket, -1 where it rises; 0 to take the sign from the slope at the
     /// guess.

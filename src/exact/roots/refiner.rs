@@ -60,7 +60,7 @@ impl Refiner {
 
 /// Returns the first two consecutive places between which the function's sign changes.
 ///
-/// If the line leaves the surface, the side is known that it starts on, whatever the computed sign.
+/// If the line leaves the surface, the side on which it starts is known, whatever the computed sign.
 pub(super) fn sign_change(
     line: &impl FunctionOnLine,
     mut places: impl Iterator<Item = f64>,

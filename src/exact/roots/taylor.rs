@@ -36,14 +36,15 @@ pub struct FirstRoot {
 /// The largest number of pieces that are judged before the proof is given up; only the wildest functions take more.
 pub const MAX_PIECES: usize = 16_384;
 
-/// The number of pieces after which those are not cut any more on which the function has no value.
+/// After this many pieces, a piece on which the function has no value is not cut any more.
 const MANY_PIECES: usize = 512;
 
-/// The largest number of pieces that are left to [`undecided`](FunctionOnLine::undecided) in one search, which takes up to
-/// 0.1 ms for each. Only a line that is rounded by more than the size of a shape has more; it has no root beyond them.
+/// The largest number of pieces that are left to [`undecided`](FunctionOnLine::undecided) in one search, which takes up
+/// to 0.1 ms for each. Only a line that is rounded by more than the size of a shape has more such pieces; it has no
+/// root beyond them.
 const MAX_UNDECIDED: usize = 256;
 
-/// Pieces are not cut whose bounds are below this many times the rounding error of one evaluation: the part of the
+/// A piece is not cut if its bounds are below this many times the rounding error of one evaluation: the part of the
 /// bounds that shrinks with the length of the piece is at most three times the part that does not.
 const HIDDEN: f64 = 4.0;
 
@@ -56,8 +57,8 @@ const STACK_SIZE: usize = 64;
 /// The stretch is divided in a way that does not depend on the range, so that a root is the same in every range that
 /// contains it.
 ///
-/// If the line starts on the surface, the range tells the side that it leaves to, and the root where it starts is not
-/// meant: only a root where the function falls counts if it leaves to the outside, and only one where it rises if it
+/// If the line starts on the surface, the range tells the side that it leaves to, and the root at its start does not
+/// count: only a root where the function falls counts if it leaves to the outside, and only one where it rises if it
 /// leaves to the inside.
 ///
 /// Pieces that are not longer than `shortest` are not cut: a few ulps of the largest numbers on the line.
@@ -87,7 +88,7 @@ pub fn first_root_within(
     if !(start <= end && start.is_finite() && end.is_finite()) {
         return FirstRoot { root: None, is_certain: true };
     }
-    // The line may have reached the ends outside of `inner`, and is certainly between them inside.
+    // Outside of `inner`, the line may have passed the ends; inside, it is certainly between them.
     let inner = stretch.inner.start.clamp(start, end)..stretch.inner.end.clamp(start, end);
     let mut search = Search {
         line,
@@ -130,8 +131,8 @@ pub struct SignChange {
 /// How often the bracket of a root is made four times as wide until the function has certain signs at both ends.
 const WIDENINGS: usize = 8;
 
-/// Returns two places around a certain root, at least `width` from it, between which every line crosses 0 that this one
-/// may have been rounded from. `None` where bounds in `f64` do not tell.
+/// Returns two places around a certain root, at least `width` from it. Every line that this one may have been rounded
+/// from crosses 0 between them. `None` where bounds in `f64` do not prove that.
 pub fn bracket(line: &impl FunctionOnLine, root: f64, mut width: f64) -> Option<SignChange> {
     let value = |t: f64| line.at(Interval::<f64>::constant(t));
     for _ in 0..WIDENINGS {
@@ -213,7 +214,8 @@ impl<L: FunctionOnLine> Search<'_, L> {
         self.range.near < distance && distance < self.range.far
     }
 
-    /// Tells whether a root counts at which the function rises, or falls: not if the ray leaves the surface to that side.
+    /// Tells whether a root at which the function rises, or falls, counts. It does not count if the ray leaves the
+    /// surface to that side.
     fn counts(&self, rises: bool) -> bool {
         self.range.origin_side.is_none_or(|side| rises == (side == Side::Inside))
     }

@@ -1,6 +1,6 @@
 //! Sphere tracing: steps of the function's value divided by a bound of its slope, which cannot step past a root.
 //!
-//! J. C. Hart, "Sphere tracing" (1996); what shaders with distance fields do. Here the bound comes from interval
+//! J. C. Hart, "Sphere tracing" (1996); shaders with distance fields do this. Here the bound comes from interval
 //! arithmetic over the whole span; programs that ask the user for it, as POV-Ray does for isosurfaces, lose what they
 //! step over where the user's guess is too low. A step below 1e-6 counts as a hit: a ray that only comes near counts as
 //! a hit, too, and one that runs along the surface takes very many steps.

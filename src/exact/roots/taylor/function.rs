@@ -16,7 +16,8 @@ pub trait FunctionOnLine {
     /// is worth it where the line is mostly far from its roots.
     const VALUES_FIRST: bool = false;
 
-    /// Whether only a root that bounds in `f64` prove is wanted: then a search need not go on where they do not decide.
+    /// Whether only a root that bounds in `f64` prove is wanted: then a search may stop where these bounds do not
+    /// decide.
     fn wants_proof(&self) -> bool {
         false
     }
@@ -38,8 +39,8 @@ pub trait FunctionOnLine {
         false
     }
 
-    /// Returns the degree of the function, if it is a polynomial, less than [`MOST`](crate::polynomial::MOST): that isolates
-    /// roots with fewer operations.
+    /// Returns the degree of the function, if it is a polynomial; less than [`MOST`](crate::polynomial::MOST). The
+    /// roots of a polynomial are isolated with fewer operations.
     fn degree(&self) -> Option<usize> {
         None
     }
@@ -49,7 +50,7 @@ pub trait FunctionOnLine {
         Polynomial::unknown()
     }
 
-    /// Returns a simple root of a polynomial with the last digits right, where the one given may be off by rounding.
+    /// Returns a simple root of a polynomial with correct last digits. The given root may be off by rounding.
     fn polished(&self, root: f64) -> f64 {
         root
     }

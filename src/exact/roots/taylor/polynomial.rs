@@ -58,7 +58,8 @@ impl<L: FunctionOnLine> Search<'_, L> {
         expansion: &Expansion<'_, N>,
     ) -> Option<f64> {
         let is_given_up = self.line.wants_proof() && !self.is_certain;
-        // What is hidden is judged with all that is hidden beside it, wherever the range begins or ends: the root is the same.
+        // A hidden piece is judged together with all hidden pieces next to it, wherever the range begins or ends, so
+        // that the root is the same for every range.
         let is_beyond = self.base + low >= self.range.far && self.hidden.is_none();
         if is_given_up || is_beyond {
             return None;
@@ -110,8 +111,8 @@ impl<L: FunctionOnLine> Search<'_, L> {
         self.is_in_range(root).then_some(root)
     }
 
-    /// Notes that nothing is certain where the root on a piece may lie where rounding hides whether the line is still between
-    /// the ends.
+    /// Notes that nothing is certain if the root on a piece may lie where rounding hides whether the line is still
+    /// between the ends.
     fn note_ends(&mut self, low: f64, high: f64) {
         let Range { start, end } = self.inner;
         let may_be_zero = |low: f64, high: f64| low < high && self.line.at(Interval { low, high }).has_zero();
