@@ -19,7 +19,8 @@ pub trait Attribute: Sync {
     fn name(&self) -> &'static str;
     /// Returns the other names.
     fn aliases(&self) -> &'static [&'static str];
-    /// Returns what other programs call it, in lower case: messages about these words suggest the attribute.
+    /// Returns the words by which other programs call the attribute, in lower case. Messages about these words suggest
+    /// the attribute.
     fn known_as(&self) -> &'static [&'static str];
     /// Returns the meaning, in a few words.
     fn meaning(&self) -> &'static str;

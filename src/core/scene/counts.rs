@@ -1,4 +1,4 @@
-//! How many values an attribute takes, and of which attributes a scene gives one.
+//! The number of values that an attribute takes, and groups of attributes of which a scene gives one.
 
 use crate::text;
 

@@ -35,7 +35,7 @@ pub struct Entity {
     pub meaning: &'static str,
     /// Other names that a scene may use.
     pub aliases: &'static [&'static str],
-    /// What other programs call it, in lower case: messages about these words suggest the type.
+    /// The words by which other programs call the type, in lower case. Messages about these words suggest the type.
     pub known_as: &'static [&'static str],
     /// Makes the entity from its checked values.
     pub construct: Construct,
@@ -76,7 +76,8 @@ pub enum Construct {
     Background(fn(&Args) -> Result<AnyBackground, Refusal>),
 }
 
-/// Writes the functions that describe entity types, each by the kind of its constructor and what that makes.
+/// Writes the functions that describe entity types. Each is given by the kind of its constructor and the type that the
+/// constructor makes.
 macro_rules! entity_types {
     ($($(#[$doc:meta])* $name:ident: $Kind:ident($Made:ty);)*) => {$(
         $(#[$doc])*

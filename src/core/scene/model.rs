@@ -104,15 +104,16 @@ pub struct Object {
 }
 
 impl Object {
-    /// Tells whether the object, as a mirror, keeps apart what it mirrors as it was: a patch of a surface is as large in it
-    /// as it would be at the end of the whole path.
+    /// Tells whether the object is a mirror that keeps sizes: a patch of a surface appears as large in it as at the end
+    /// of a straight path of the same length.
     pub(crate) fn is_flat_mirror(&self) -> bool {
         let is_bent = self.shape.is_smooth() || self.shader.bends();
         self.shape.facts().plane.is_some() && !is_bent && self.material.roughness() == 0.0
     }
 
-    /// Tells whether another object certainly has the same shape: it is of the same type, and has the same values but for
-    /// its material and its shader. Of objects that may be made of several, such as solids and meshes, that is not told.
+    /// Tells whether another object certainly has the same shape: it is of the same type, and has the same values but
+    /// for its material and its shader. The answer is `false` for objects that may be made of others, such as solids,
+    /// and for those read from files, such as meshes.
     pub fn is_shaped_as(&self, other: &Self) -> bool {
         let entity = self.args.entity();
         if !ptr::eq(entity, other.args.entity()) || entity.reads_files() {
@@ -140,9 +141,9 @@ impl Object {
         SurfacePoint::seen(&*self.shape, sees, position, normal, side)
     }
 
-    /// Returns the fraction of light that passes through at this point, for each channel: transparency times the diffuse
-    /// colour, scaled so that the strongest channel is 1. Glass without a diffuse colour is grey. The fraction is at most
-    /// 1, and below 0 where the diffuse colour is.
+    /// Returns the fraction of light that passes through at this point, for each channel: transparency times the
+    /// diffuse colour, scaled so that the strongest channel is 1. Glass without a diffuse colour is grey. The fraction
+    /// is at most 1, and below 0 where the diffuse colour is below 0.
     pub fn tint(&self, at: &SurfacePoint) -> Rgb {
         let diffuse = self.shader.diffuse(&self.material, at);
         let strongest = diffuse.max_element();

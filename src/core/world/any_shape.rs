@@ -16,7 +16,7 @@ use tabray_exact::interval::Fraction;
 /// The shape of an object, of any type. It dereferences to [`Hittable`].
 pub struct AnyShape {
     shape: Box<dyn PacketShape>,
-    // The facts that each hit asks for; all of them would take more memory than most shapes.
+    // The facts that each hit needs. All facts together would take more memory than most shapes.
     can_hit_itself: Sides,
     is_two_sided: bool,
     is_smooth: bool,
@@ -29,7 +29,7 @@ impl AnyShape {
         Self { shape: Box::new(shape), can_hit_itself, is_two_sided, is_smooth }
     }
 
-    /// Tells whether a ray that leaves the shape on a side may hit it again, as its facts say.
+    /// Tells whether a ray that leaves the shape on a side may hit it again, according to its facts.
     #[inline]
     pub fn can_hit_itself(&self, leaving: Side) -> bool {
         self.can_hit_itself.contain(leaving)
@@ -41,14 +41,14 @@ impl AnyShape {
         self.is_two_sided
     }
 
-    /// Tells whether the surface is shaded with other normals than its own anywhere, as its facts say.
+    /// Tells whether the surface is anywhere shaded with normals other than its own, according to its facts.
     #[inline]
     pub fn is_smooth(&self) -> bool {
         self.is_smooth
     }
 
-    /// Returns the bounding box by which the shape may be culled, if there is one. Shapes of the notes never are, since the
-    /// notes' program tests every ray against every shape.
+    /// Returns the bounding box by which the shape may be culled, if there is one. Shapes of the notes are never
+    /// culled, since the notes' program tests every ray against every shape.
     pub fn culling_bounds(&self) -> Option<Aabb> {
         self.facts().bounds.filter(|_| !self.shape.is_of_the_notes())
     }
@@ -82,7 +82,7 @@ impl AnyShape {
     }
 
     /// Tells whether a point lies in a closed shape; `None` where the surface may be within an error in world units
-    /// along each axis. Where a box cuts a surface, what is inside of both is meant.
+    /// along each axis. Where a box cuts a surface, the inside is what lies inside of both.
     pub fn contains(&self, at: DVec3, error: f64) -> Option<bool> {
         self.shape.contains(at, error)
     }
@@ -99,14 +99,14 @@ impl AnyShape {
         self.shape.facet(at, error)
     }
 
-    /// Passes on what proofs about the shape start from, each with the name of the entity type that it is about: `of`, or
-    /// where the shape is made of others, as a copy and a solid are, the type of these.
+    /// Passes on the premises of proofs about the shape, each with the name of its entity type. That is `of`, or, where
+    /// the shape is made of other shapes, as a copy or a solid is, the type of the other shape.
     pub fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
         self.shape.premises(of, each);
     }
 
-    /// Tells whether the shape, and each of those that it is made of, has an equation. About the hits of others nothing
-    /// is proven but that they lie in their bounds.
+    /// Tells whether the shape has an equation, and so has each shape that it is made of. About a shape without an
+    /// equation, nothing is proven but that its hits lie in its bounds.
     pub fn is_certified(&self) -> bool {
         let mut is_certified = true;
         self.premises("", &mut |_, premise| is_certified &= premise != Premise::NoEquation);
@@ -120,8 +120,8 @@ impl AnyShape {
         if is_open && self.is_parallel(sight) { Enclosure::Misses } else { found }
     }
 
-    /// Tells whether a ray is parallel to an unbounded shape, as a plane is to the rays of a row of pixels at the horizon.
-    /// No number of digits tells that of numbers such as a third, but fractions do.
+    /// Tells whether a ray is parallel to an unbounded shape, as a plane is to the rays of a row of pixels at the
+    /// horizon. For numbers such as a third, no number of digits proves that, but fractions do.
     fn is_parallel(&self, sight: &Sight) -> bool {
         let found = |proven| HitProofs::<Fraction>::first_hit(proven, &sight.line(), None).0;
         self.facts().bounds.is_none()

@@ -15,12 +15,13 @@ pub trait Background: Send + Sync {
     /// Returns the colour in a direction, given by a unit vector. Every channel is finite and 0 or more.
     fn colour(&self, toward: DVec3) -> Rgb;
 
-    /// Returns an upper bound of all colours, per channel. It decides how deep rays are followed into mirrors and glass.
+    /// Returns an upper bound of all colours, per channel. The bound decides how deep rays are followed into mirrors
+    /// and glass.
     fn brightest(&self) -> Rgb;
 
-    /// Returns the columns and rows of an equirectangular map, as that of an environment, in whose cells the colours vary
-    /// little; `None` if they vary slowly everywhere. It decides in which directions its light is looked for, and changes
-    /// no mean.
+    /// Returns the numbers of columns and rows of an equirectangular map, as of an environment, that make the colours
+    /// vary little within a cell; `None` if the colours vary slowly everywhere. The map decides in which directions
+    /// light is sampled, and changes no mean.
     fn detail(&self) -> Option<[u32; 2]> {
         None
     }

@@ -12,11 +12,11 @@ pub trait Bend: Send + Sync {
     /// What it sees of a point beside the normal.
     const SEES: ShaderInputs;
 
-    /// Returns the outward unit normal with which a point is shaded, in place of this one.
+    /// Returns the outward unit normal with which a point is shaded instead of this one.
     fn bent(&self, at: &SurfacePoint, normal: DVec3) -> DVec3;
 
-    /// Encloses the unit normals that [`bent`](Self::bent) returns in place of these, before any rounding, at every point of a
-    /// box; `None` where they are not known. `None` is always correct.
+    /// Encloses the unit normals that [`bent`](Self::bent) returns instead of these, before any rounding, at every
+    /// point of a box; `None` where the bent normals are not known. `None` is always correct.
     fn enclose<F: Precise>(
         &self,
         _at: &PointBounds<F>,

@@ -15,13 +15,13 @@ use std::sync::{Arc, OnceLock};
 /// Any [`Shader`]: `Arc::new(shader)` makes one.
 pub type AnyShader = Arc<dyn PacketShader>;
 
-/// What a shader entity of a scene makes: a function that makes the shader of each object that names the entity.
+/// The value of a shader entity: a function that makes the shader of each object that names the entity.
 #[derive(Clone)]
 pub struct ShaderFactory(Arc<dyn Fn(Anchor) -> AnyShader + Send + Sync>);
 
 impl ShaderFactory {
-    /// Makes a factory of a function, which is called for each object with the origin and the unit of length of the
-    /// pattern on it.
+    /// Makes a factory from a function. The function is called for each object, with the origin and the unit of length
+    /// of the pattern on it.
     pub fn new<S: Shader + 'static>(make: impl Fn(Anchor) -> S + Send + Sync + 'static) -> Self {
         Self(Arc::new(move |anchor| Arc::new(make(anchor))))
     }
@@ -88,7 +88,7 @@ impl fmt::Debug for NamedBody {
 /// Wraps a shader so that it sees points of a copied object in the coordinates of the original.
 pub type ToObjectSpace = Box<dyn Fn(AnyShader) -> AnyShader + Send + Sync>;
 
-/// Makes the boundary of what lies inside of an object's shape, where that is not the shape itself.
+/// Makes the boundary of an object's inside, where the boundary differs from the object's shape.
 pub type MakeBoundary = Box<dyn Fn() -> Option<AnyShape> + Send + Sync>;
 
 /// What an object's constructor returns: the object's shape and its shader.
@@ -97,16 +97,16 @@ pub struct Body {
     pub shape: AnyShape,
     /// The object's reflectivities.
     pub shader: AnyShader,
-    /// The origin and the unit of length of patterns on it; `None` for those of its bounding box.
+    /// The origin and the unit of length of patterns on the object; `None` to take them from its bounding box.
     pub anchor: Option<Anchor>,
     /// Wraps a shader so that it sees points in the coordinates of the original, if the object is a copy.
     pub to_object_space: Option<ToObjectSpace>,
-    /// Makes a shape without those parts of the object's own that lie inside of it: solids take it in place of that, and so
-    /// does what is refracted. `None` for an object that has no such parts.
+    /// Makes the object's shape without the parts that lie inside of it. Solids and refracted rays use this boundary
+    /// instead of the shape. `None` for an object that has no such parts.
     pub boundary: Option<MakeBoundary>,
     /// What the user should know about the object, although it can be rendered.
     pub warnings: Vec<Warning>,
-    /// The files that it was read from beside those that its attributes name, whether they exist or not.
+    /// The files that the object was read from besides those that its attributes name, whether they exist or not.
     pub files: Vec<PathBuf>,
     /// The memory that the object takes beside the scene, in bytes.
     pub bytes: u64,
@@ -216,12 +216,12 @@ impl Body {
         self.anchor.or_else(of_box).unwrap_or(anywhere)
     }
 
-    /// Returns the boundary of what lies inside of the object, where that is not its shape.
+    /// Returns the boundary of the object's inside, where the boundary differs from the object's shape.
     pub fn boundary(&self) -> Option<AnyShape> {
         self.boundary.as_ref().and_then(|make| make())
     }
 
-    /// Gives the object the look of a shader, in place of its own.
+    /// Gives the object the look of a shader, instead of its own.
     pub fn painted(mut self, paint: &ShaderFactory) -> Self {
         let painted = |one: Self| if one.keeps_look { one } else { one.painted(paint) };
         self.more = self.more.into_iter().map(painted).collect();

@@ -51,9 +51,9 @@ pub trait Camera: fmt::Debug + Send + Sync + 'static {
         None
     }
 
-    /// Returns the ray before anything is rounded: each component of the direction that [`ray`](Self::ray) returns is
-    /// within 3 units of 2^-53 of it, and the origin is the same. The default takes the numbers of `ray` for exact, so
-    /// that proofs are about the rays as computed.
+    /// Returns the ray before anything is rounded. Each component of the direction that [`ray`](Self::ray) returns is
+    /// within 3 units of 2^-53 of the component here, and the origin is the same. The default treats the numbers of
+    /// `ray` as exact, so that proofs are about the rays as computed.
     fn sight(&self, at: &ImagePoint, lens: DVec2) -> Sight {
         Sight::along(&self.ray(at, lens))
     }
@@ -119,7 +119,7 @@ pub enum Projected {
 
 /// A camera for packets. Every [`Camera`] is one.
 pub trait PacketCamera: Camera {
-    /// Writes the directions of the rays that are seen at many places, which all start at one point.
+    /// Writes the directions of the rays through many places of the image. All these rays start at one point.
     fn look(&self, cpu: Cpu, places: &Places, dirs: ViewMut);
     /// Writes the origins and the directions of the rays that are seen at many places.
     fn look_from(&self, cpu: Cpu, places: &Places, origins: ViewMut, dirs: ViewMut);
@@ -167,7 +167,7 @@ kernels! {
         let mut zeros = 0;
         for lane in 0..count {
             let dir = camera.plain_ray(&ImagePoint { at: [x[lane], y[lane]], pixels }, DVec2::ZERO).dir;
-            // The product of two others may underflow; then, too, the rays are asked for again.
+            // The product of two components may underflow. Then, too, the single ray is asked for again.
             zeros |= u64::from(dir.x * dir.y == 0.0);
             dirs.set(lane, dir);
         }

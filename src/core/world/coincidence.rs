@@ -1,4 +1,5 @@
-//! Several surfaces through one point: which of them a ray hits first, and which ones a ray that starts there leaves.
+//! Several surfaces through one point: which surface a ray hits first, and which ones are left by a ray that starts
+//! there.
 //!
 //! The point where a ray hits a surface is rounded. Another surface within the rounding error of the point counts as
 //! passing through it, and a ray that starts there leaves both: a floor casts no shadow on a rug that lies on it, and

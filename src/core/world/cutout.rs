@@ -1,4 +1,4 @@
-//! Shapes of which their shaders cut parts out, as an image of a leaf does of a rectangle.
+//! Shapes with parts cut out by their shaders, as an image of a leaf cuts its outline out of a rectangle.
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{MISS, Ray, RayRange, Side};
@@ -14,7 +14,7 @@ use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
 use tabray_exact::double_double::DoubleDouble;
 
-/// The most cut parts that a ray passes on its way: it hits nothing behind that.
+/// The maximum number of cut parts that a ray passes on its way. Beyond them, it hits nothing.
 const MOST_PASSED: usize = 1 << 16;
 
 /// A shape without the parts that a shader cuts out. Rays pass there.
@@ -23,7 +23,7 @@ pub(crate) struct Cutout {
     shader: Arc<dyn PacketShader>,
 }
 
-/// Marks a shape of whose hits nothing is proven but that they are hits of the whole shape.
+/// Marks a shape about whose hits one thing is proven: they are hits of the whole shape.
 pub(crate) struct ByWhole;
 
 impl TieBreaking for ByWhole {}

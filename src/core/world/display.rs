@@ -11,8 +11,8 @@ pub enum Tone {
     /// Light above white is white.
     #[default]
     Clip,
-    /// Light above white is compressed, and what is far above loses its hue: the Khronos PBR neutral tone mapper (Khronos
-    /// Group, 2024).
+    /// Light above white is compressed, and light far above white loses its hue: the Khronos PBR neutral tone mapper
+    /// (Khronos Group, 2024).
     Neutral,
 }
 
@@ -58,18 +58,19 @@ impl Transfer {
     }
 }
 
-/// What the tone mapper takes from all channels at most, and from where on it compresses the brightest one.
+/// The most that the tone mapper subtracts from all channels, and the value above which it compresses the brightest
+/// channel.
 const TOE: f64 = 0.04;
 const SHOULDER: f64 = 0.8 - TOE;
 /// How quickly colours turn white beyond.
 const DESATURATION: f64 = 0.15;
 
-/// Returns what the neutral tone mapper takes from all channels, from the least of them.
+/// Returns the amount that the neutral tone mapper subtracts from all channels, given the least channel.
 fn offset(least: f64) -> f64 {
     if least < 2.0 * TOE { least - 6.25 * least * least } else { TOE }
 }
 
-/// Returns the compressed peak of a colour, and how far the colour turns white.
+/// Returns the compressed peak of a colour, and the degree to which the colour turns white.
 fn compressed(peak: f64) -> (f64, f64) {
     if peak < SHOULDER {
         return (peak, 0.0);
@@ -135,7 +136,8 @@ static SRGB: LazyLock<[f64; 255]> = LazyLock::new(|| {
 });
 
 impl Display {
-    /// Describes how light is shown by these rules, with an exposure in stops; the notes' know neither tone nor transfer.
+    /// Describes how light is shown by these rules, with an exposure in stops. The notes' rules know neither tone nor
+    /// transfer.
     pub fn new(rules: Rules, exposure: f64, tone: Tone, transfer: Transfer) -> Self {
         let (tone, transfer) = match rules {
             Rules::Notes => (Tone::Clip, Transfer::Linear),
@@ -154,8 +156,8 @@ impl Display {
         self.gain
     }
 
-    /// Returns the light as a file of full range has it: by the notes' rules after exposure, and by the free rules before
-    /// all that is done for images.
+    /// Returns the light for a file of full range: by the notes' rules after exposure, and by the free rules before any
+    /// step that is made for images.
     pub fn full_range(&self, light: Rgb) -> Rgb {
         match self.rules {
             Rules::Notes if self.gain != 1.0 => self.gain * light,
@@ -163,7 +165,7 @@ impl Display {
         }
     }
 
-    /// Bounds how much any channel of what is shown changes, as a multiple of the change of light.
+    /// Bounds how much any channel of the shown colour changes, as a multiple of the change of light.
     pub fn steepest(&self) -> f64 {
         // A channel of the tone mapper loses what the least one adds, the brightest one scales all, and whitening adds less
         // than a sixth: at most 2 * 2.15.
@@ -205,7 +207,7 @@ impl Display {
         }
     }
 
-    /// Returns light between bounds that shows about the middle of what is shown between them.
+    /// Returns light between two bounds that is shown as about the middle of the colours shown for the bounds.
     pub fn middle(&self, [low, high]: [Rgb; 2]) -> Rgb {
         let gain = self.gain;
         let channel = |low: f64, high: f64| {
@@ -234,8 +236,8 @@ impl Display {
         }
     }
 
-    /// Returns the light that a byte of a texture stands for, from 0 to 1: that which the image shows with this byte, but
-    /// for exposure and tone. The notes divide by 256.
+    /// Returns the light that a byte of a texture stands for, from 0 to 1. The image shows this light with the same
+    /// byte, apart from exposure and tone. The notes divide by 256.
     pub fn light_of(&self, byte: u8) -> f64 {
         match self.rules {
             Rules::Notes => f64::from(byte) / 256.0,

@@ -1,9 +1,9 @@
 //! Lights that are spread out, over a surface or over the sky: the trait that a plugin implements beside
 //! [`Light`](crate::world::light::Light).
 //!
-//! Of radiance L, such a light adds `diffuse / pi` times the integral of `L cos(theta) V` over the directions in which it is
-//! seen, where V tells whether anything is in the way. Each sample of a pixel sees one of its points, and the mean of the
-//! samples tends to the integral.
+//! A light of radiance L adds `diffuse / pi` times the integral of `L cos(theta) V` over the directions in which it is
+//! seen. V is 0 where anything is in the way, and 1 elsewhere. Each sample of a pixel sees one point of the light, and
+//! the mean of the samples tends to the integral.
 
 use crate::world::background::Background;
 use crate::world::ball::Ball;
@@ -15,16 +15,16 @@ use glam::{DVec2, DVec3};
 
 /// A light that is spread out.
 pub trait Emitter: Send + Sync {
-    /// Chooses a point of the light by two numbers from 0 to 1, as seen from a point `at` with a unit normal; `None` where
-    /// the numbers stand for no point of it.
+    /// Chooses a point of the light by two numbers from 0 to 1, as seen from a point `at` with a unit normal; `None`
+    /// where the numbers stand for no point of the light.
     fn sample(&self, at: DVec3, normal: DVec3, numbers: DVec2) -> Option<LightSample>;
 
-    /// Describes all of its points, for proofs, and how they are chosen. The default is always correct.
+    /// Describes all points of the light, for proofs, and how samples choose among them. The default is always correct.
     fn extent(&self) -> Extent<'_> {
         Extent::Unknown
     }
 
-    /// Tells whether surfaces with a shininess show its highlights. What mirrors show themselves has none.
+    /// Tells whether surfaces with a shininess show highlights of the light. A light that is seen in mirrors has none.
     fn has_highlights(&self) -> bool {
         true
     }
@@ -35,7 +35,7 @@ pub trait Emitter: Send + Sync {
 pub struct LightSample {
     /// The unit vector toward it.
     pub toward: DVec3,
-    /// The distance up to which objects are in its way, in world units; infinite for light from the sky.
+    /// The distance up to which objects can be in the light's way, in world units; infinite for light from the sky.
     pub distance: f64,
     /// The radiance of the sample, divided by pi and by the density of such samples per unit of solid angle. The cosine of
     /// the angle at which the light arrives is not in it.
@@ -50,15 +50,15 @@ pub enum Extent<'e> {
     Panel(Panel),
     /// The points of a ball's surface, chosen by [`Ball::sample`].
     Ball(Ball),
-    /// The directions around a unit vector, chosen by [`in_cone`]. Their radiance is such that a surface that faces this vector
-    /// gets what `enclose` returns.
+    /// The directions around a unit vector, chosen by [`in_cone`]. A surface that faces this vector gets the light that
+    /// `enclose` returns.
     Cone {
         /// The middle.
         axis: DVec3,
         /// 1 minus the cosine of the largest angle to it.
         height: f64,
     },
-    /// The directions of a sky, chosen by the cosine, and where there is a map, half of them by it.
+    /// The directions of a sky, chosen by the cosine. Where there is a map, it chooses half of them.
     Sky {
         /// The radiance.
         background: &'e dyn Background,

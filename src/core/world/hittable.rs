@@ -97,8 +97,8 @@ pub trait Hittable: Send + Sync {
         SurfaceHit { normal: self.normal(at), uv: self.uv(at), face: self.face_hit(ray, distance) }
     }
 
-    /// Passes to a function what proofs about the shape take for exact, although it was rounded on its way from the numbers
-    /// of the scene.
+    /// Passes to a function the numbers that proofs about the shape treat as exact, although they were computed from
+    /// the numbers of the scene and rounded.
     fn assumes(&self, _each: &mut dyn FnMut(Assumption)) {}
 
     /// Passes the bytes that the shape has read from files beside the scene to a function: a part of an image can only
@@ -124,14 +124,14 @@ pub trait Hittable: Send + Sync {
     }
 }
 
-/// How a surface that is given by a formula bends at a point. What does not exist there, as at the tip of a cone, is NaN or
-/// infinite.
+/// How a surface that is given by a formula bends at a point. A value that does not exist there, as at the tip of a
+/// cone, is NaN or infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Curvature {
     /// The length of the formula's gradient.
     pub gradient: f64,
-    /// The mean of the two principal curvatures, in the reciprocal of units of length: above 0 where the surface bends as a
-    /// sphere that is seen from outside.
+    /// The mean of the two principal curvatures, per unit of length. It is above 0 where the surface bends like a
+    /// sphere seen from outside.
     pub mean: f64,
     /// The product of the principal curvatures, the Gaussian curvature: below 0 on a saddle.
     pub gauss: f64,
@@ -216,7 +216,7 @@ pub struct Facts {
 }
 
 impl Facts {
-    /// Returns the facts of a shape without bounds of which no more is known than its largest coordinate.
+    /// Returns the facts of a shape without bounds, if only its largest coordinate is known.
     #[inline]
     pub const fn unbounded(max_coordinate: f64) -> Self {
         Self {
@@ -231,7 +231,7 @@ impl Facts {
         }
     }
 
-    /// Returns the facts of a shape of which no more is known than a box that contains it.
+    /// Returns the facts of a shape, if only a box that contains it is known.
     #[inline]
     pub fn within(bounds: Aabb) -> Self {
         let max_coordinate = bounds.low.abs().max(bounds.high.abs()).max_element();

@@ -22,8 +22,8 @@ pub trait Interface: Send + Sync {
         true
     }
 
-    /// Returns what absorbs light behind the surface, on its inside; `None` if all light passes. It is the same in every
-    /// call.
+    /// Returns the medium that absorbs light behind the surface, on its inside; `None` if all light passes. The medium
+    /// is the same in every call.
     fn medium(&self) -> Option<Medium> {
         None
     }
@@ -51,7 +51,7 @@ pub enum Law {
     Unknown,
 }
 
-/// A clear medium that absorbs light by the length of the way through it (Beer's law).
+/// A clear medium that absorbs light according to the length of the path through it (Beer's law).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Medium {
     /// The fractions of light that are left after the length `at`.

@@ -1,4 +1,4 @@
-//! Lamps: the lights of a scene, each with what all lights have beside their own attributes.
+//! Lamps: the lights of a scene, each with the attributes that all lights share.
 
 use crate::world::body::AnyLight;
 use crate::world::packets::light::PacketLight;

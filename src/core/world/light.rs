@@ -11,7 +11,7 @@ use tabray_exact::scalar::constants;
 
 /// A source of light: a point, a ball with a [`size`](Self::size), or what an [`emitter`](Self::emitter) describes.
 pub trait Light: Send + Sync {
-    /// Returns the light's position, in world coordinates: a point, or the middle of what shines.
+    /// Returns the light's position, in world coordinates: its point, or its middle.
     fn location(&self) -> DVec3;
 
     /// Returns the light sent toward a point, or `None` where the light does not point there (the notes' `vischeck`).
@@ -44,15 +44,17 @@ pub trait Light: Send + Sync {
         false
     }
 
-    /// Returns the radius of a spherical light in world units; 0 for a point light, whose shadows have sharp edges. Of
-    /// another shape, it is that of a ball around its [`location`](Self::location) which holds all of it.
+    /// Returns the radius of a spherical light in world units; 0 for a point light, whose shadows have sharp edges. For
+    /// a light of another shape, this is the radius of a ball around its [`location`](Self::location) that contains the
+    /// whole light.
     fn size(&self) -> f64 {
         0.0
     }
 
-    /// Returns how the light is spread out, if it is neither a point nor a ball. What it adds is then what its samples say,
-    /// and [`emissivity`](Self::emissivity) is its radiance; [`brightest`](Self::brightest) bounds `light` of each sample
-    /// times the cosine of the angle at which it arrives, and if it has highlights, without the cosine.
+    /// Returns how the light is spread out, if it is neither a point nor a ball. Its samples then determine the light
+    /// that it adds, and [`emissivity`](Self::emissivity) is its radiance; [`brightest`](Self::brightest) bounds
+    /// `light` of each sample times the cosine of the angle at which it arrives, and if it has highlights, without the
+    /// cosine.
     fn emitter(&self) -> Option<&dyn Emitter> {
         None
     }

@@ -15,8 +15,8 @@ pub struct Material {
     pub diffuse: Rgb,
     /// The mirror reflectivity.
     pub specular: Rgb,
-    /// The exponent of the specular highlight; 0 for no highlight. Those of a transparent material with an interface are as
-    /// strong as the light itself; others are `specular` of it.
+    /// The exponent of the specular highlight; 0 for no highlight. Highlights of a transparent material with an
+    /// interface are as strong as the light itself; the strength of others is `specular` times the light.
     pub shininess: f64,
     /// The fraction of light that passes through the surface, from 0 to 1.
     pub transparency: f64,
@@ -36,8 +36,8 @@ impl Material {
         })
     }
 
-    /// Tells whether lamps show in the surface as highlights, beside the light that it scatters: in glass they do, whatever
-    /// it transmits.
+    /// Tells whether lamps show as highlights in the surface, in addition to the light that it scatters. In glass they
+    /// do, whatever it transmits.
     pub(crate) fn glints(&self) -> bool {
         self.interface.is_some() && self.transparency != 0.0 && self.shininess != 0.0
     }

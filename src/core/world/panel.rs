@@ -8,8 +8,8 @@ use std::f64::consts::{FRAC_PI_4, PI};
 pub struct Panel {
     /// The middle, in world coordinates.
     pub middle: DVec3,
-    /// From the middle to the middles of two sides, or to the rim, in world units; perpendicular to each other, and of the
-    /// same length if it `is_round`.
+    /// The vectors from the middle to the middles of two sides, or to the rim, in world units. They are perpendicular
+    /// to each other, and have the same length if the panel `is_round`.
     pub half: [DVec3; 2],
     /// Whether x and y are within the unit circle; otherwise, both are from -1 to 1.
     pub is_round: bool,
@@ -33,7 +33,7 @@ impl Panel {
         if self.is_round { one.sqrt() } else { (one + other).sqrt() }
     }
 
-    /// Returns the distance from which on points are chosen by area, in world units.
+    /// Returns the distance beyond which points are chosen by area, in world units.
     pub fn far(&self) -> f64 {
         if self.is_round { 4.0 * self.radius() } else { 32.0 * self.radius() }
     }

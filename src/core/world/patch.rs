@@ -1,8 +1,8 @@
 //! The part of a surface that a sample shows, over which shaders take the mean of their pattern.
 //!
-//! By the free rules, a sample of an image in which all pixels have as many stands for a part of its pixel, and so for a patch
-//! of the surface that its ray hits. Far away, a patch is larger than the squares of a chequered floor; the mean over it is what
-//! many samples would show.
+//! By the free rules, and where all pixels have the same number of samples, a sample stands for a part of its pixel,
+//! and so for a patch of the surface that its ray hits. Far away, a patch is larger than the squares of a chequered
+//! floor; the mean over it is what many samples would show.
 
 use crate::world::hittable::Hittable;
 use crate::world::material::Rgb;
@@ -21,10 +21,10 @@ pub struct Window {
     pub pixel: f64,
 }
 
-/// The least cosine of the angle at which a patch is seen; at smaller ones, patches are as long as at this.
+/// The least cosine of the angle at which a patch is seen. At smaller cosines, patches are as long as at this one.
 pub(crate) const LEAST_COSINE: f64 = 1e-6;
 
-/// More than the rounding errors of a mean over a patch, as a part of what it is taken of.
+/// More than the rounding errors of a mean over a patch, as a fraction of the averaged values.
 pub(crate) const MEAN_ROUNDING: f64 = 1e-7;
 
 /// A part of a surface around a point: a parallelogram that touches the surface there.
@@ -50,7 +50,7 @@ impl Patch {
         Self { sides: [width / cosine.abs().max(LEAST_COSINE) * along, width * across], pixel, uv: None }
     }
 
-    /// Finds u and v at the corners of the patch around a point of a shape, where they are these in the middle.
+    /// Finds u and v at the corners of the patch around a point of a shape, given u and v in the middle.
     pub(crate) fn find_uv(&mut self, shape: &dyn Hittable, middle: DVec3, uv: DVec2) {
         let [one, other] = self.sides.map(|side| 0.5 * side);
         let mut ends = [uv; 2];
@@ -102,8 +102,8 @@ impl<F: Float> PatchBounds<F> {
         Some(Self { middle, sides: [along.map(|axis| long * axis), across], uv: None })
     }
 
-    /// Encloses u and v at the corners of the patch, where they are these in the middle, as [`Patch::find_uv`] finds them, given a
-    /// function that encloses those of a point.
+    /// Encloses u and v at the corners of the patch, given u and v in the middle, as [`Patch::find_uv`] finds them,
+    /// given a function that encloses those of a point.
     pub(crate) fn find_uv(
         &mut self,
         uv: [Interval; 2],
@@ -142,8 +142,8 @@ impl<F: Float> PatchBounds<F> {
     }
 }
 
-/// Tells whether a square or a tile is odd, given its two whole numbers: in a row, every other one is. One that is no
-/// number counts as odd.
+/// Tells whether a square or a tile is odd, given its two whole numbers. In a row, every other square is odd. A square
+/// whose number is NaN counts as odd.
 #[inline(always)]
 pub fn is_odd(square: DVec2) -> bool {
     // Exact, and many times faster than a remainder.
@@ -151,8 +151,8 @@ pub fn is_odd(square: DVec2) -> bool {
     half - half.floor() != 0.0
 }
 
-/// Returns the part that odd squares have of a rectangle with this middle and these widths, where space is tiled with squares
-/// of side 1 and the one from 0 to 1 is even.
+/// Returns the fraction of a rectangle with this middle and these widths that odd squares cover. Space is tiled with
+/// squares of side 1, and the square from 0 to 1 is even.
 pub fn odd_part(middle: DVec2, widths: DVec2) -> f64 {
     0.5 - 0.5 * balance(middle.x, widths.x) * balance(middle.y, widths.y)
 }

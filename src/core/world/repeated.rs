@@ -8,8 +8,8 @@ use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{Scalar, constants, per_axis};
 
 impl Texture {
-    /// Returns the blend of the four texels around a place, which is given in texels from the lower left corner: of colours, or
-    /// what else `texel` returns for a column and a row. The image goes on where it ends.
+    /// Returns the blend of the four texels around a place, which is given in texels from the lower left corner.
+    /// `texel` returns the colour, or another quantity, for a column and a row. The image repeats beyond its edges.
     pub fn blended(&self, place: DVec2, texel: impl Fn(u32, u32) -> DVec3) -> DVec3 {
         let size = self.size().map(f64::from);
         let (corner, part) = ((place - 0.5).floor(), (place - 0.5) - (place - 0.5).floor());
@@ -48,8 +48,9 @@ impl Texture {
         around.flat_map(|y| all(columns).map(move |x| [x, y])).map(|[x, y]| texel(x, y)).reduce(hull)
     }
 
-    /// Encloses what [`mean_repeated`](Self::mean_repeated) returns for rectangles whose corners are enclosed; `None` where one may
-    /// be empty. Of corners that are known up to little, means are known up to the light on what is around.
+    /// Encloses what [`mean_repeated`](Self::mean_repeated) returns for rectangles whose corners are enclosed; `None`
+    /// where one may be empty. Where the corners are nearly known, the mean is known up to the light of the texels near
+    /// the edges.
     pub fn enclose_mean_repeated<F: Float>(
         &self,
         [low, high]: [[Interval; 2]; 2],
@@ -71,8 +72,8 @@ impl Texture {
         }))
     }
 
-    /// Returns the mean light of a rectangle, given by its lower left and its upper right corner in texels. The image goes on
-    /// where it ends.
+    /// Returns the mean light of a rectangle, given by its lower left and its upper right corner in texels. The image
+    /// repeats beyond its edges.
     pub fn mean_repeated(&self, low: DVec2, high: DVec2) -> Rgb {
         let size = DVec2::from(self.size().map(f64::from));
         // Two runs of texels in one repetition, and their parts of the whole: what reaches beyond the end begins again.

@@ -1,9 +1,10 @@
-//! The rules of light, in any numbers: those of images, and those that enclose what images should show.
+//! The rules of light, in any type of numbers: the numbers of images, and numbers that enclose what images should show.
 //!
-//! A ray that hits a point returns the point's own light, ambient and that of each lamp, and what it sees through the point
-//! and in it. By the notes' rules the own light is divided by the length of the path, and that of a lamp once more by the
-//! lamp's distance; by the free rules neither is, and a lamp weakens only as its falloff says. Numbers are one channel each,
-//! or colours where no more than sums and products are asked of them.
+//! A ray that hits a point returns the point's own light, which is its ambient light and the light of each lamp, and
+//! the light that is seen through the point and mirrored in it. By the notes' rules, the own light is divided by the
+//! length of the path, and the light of a lamp is divided once more by the lamp's distance. By the free rules, neither
+//! is divided, and a lamp weakens only as its falloff says. A number is one channel, or a colour where only sums and
+//! products are needed.
 
 use serde::{Deserialize, Serialize};
 use std::ops::{Add, Mul};
@@ -68,7 +69,7 @@ pub enum Falloff {
 pub struct Fading {
     /// How the light weakens.
     pub falloff: Falloff,
-    /// The distance, in world units, at which it has neither gained nor lost; above 0.
+    /// The distance, in world units, at which the lamp's light equals its emissivity; above 0.
     pub at: f64,
 }
 
@@ -105,8 +106,8 @@ pub fn attenuation<N: Scalar>(travelled: N) -> N {
     N::constant(1.0) / travelled
 }
 
-/// Returns the light of a transparent surface, from its own, the fraction of it that is kept, the light from behind, and the
-/// fraction of that which passes.
+/// Returns the light of a transparent surface, from its own, the fraction of it that is kept, the light from behind,
+/// and the fraction of the latter that passes.
 #[inline(always)]
 pub fn transmitted<C: Mul<Output = C> + Add<Output = C>>(own: C, kept: C, behind: C, tint: C) -> C {
     kept * own + tint * behind

@@ -31,7 +31,7 @@ impl Sampler {
     pub const MOST: u32 = 1 << 16;
 }
 
-/// The number that scrambles the sequences of an image that shares no samples with a render.
+/// The number that scrambles the sequences of an image whose samples must differ from those of a render.
 pub const SCRAMBLE: u32 = 0x5bd1_e995;
 
 /// A sample of a pixel.

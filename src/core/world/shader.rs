@@ -68,10 +68,11 @@ impl SurfacePoint {
     }
 }
 
-/// How far apart the places are where u and v are compared, as a part of the size of a shape.
+/// The distance between the places where u and v are compared, as a fraction of the size of a shape.
 pub(crate) const NEAR: f64 = 1e-6;
 
-/// Returns the size of a shape, in world units; if it has no bounds, the distance of a point of it from the origin.
+/// Returns the size of a shape, in world units; if the shape has no bounds, the distance of one of its points from the
+/// origin.
 pub(crate) fn size_of(shape: &dyn Hittable, distance: impl FnOnce() -> f64) -> f64 {
     shape.facts().bounds.map_or_else(distance, |Aabb { low, high }| (high - low).length())
 }
@@ -155,8 +156,8 @@ pub struct PointBounds<F> {
     pub uv: Option<[Interval; 2]>,
     /// The index of the face; `None` where the shape has none, it is not known, or the shader does not see it.
     pub face: Option<u32>,
-    /// The patch of which the mean is shown, of all whose points are these; `None` where a point is shown, or the patch is not
-    /// known.
+    /// The patch over which the mean is shown, for all of these points; `None` where a point is shown, or the patch is
+    /// not known.
     pub patch: Option<PatchBounds<F>>,
     /// The unit directions along the surface in which u and v grow; `None` where they are not known, or the shader does not see
     /// them.
@@ -193,7 +194,7 @@ pub struct Anchor {
 ///
 /// The defaults are the material's, as in the notes' `material_getamb`, `material_getdiff` and `material_getspec`.
 pub trait Shader: Send + Sync {
-    /// Tells what the shader sees of a point beside its position. It is the same in every call.
+    /// Tells what the shader sees of a point besides its position. The answer is the same in every call.
     #[inline(always)]
     fn sees(&self) -> ShaderInputs {
         ShaderInputs::POSITION
@@ -243,8 +244,8 @@ pub trait Shader: Send + Sync {
         false
     }
 
-    /// Encloses the unit normals to which the shader bends these outward ones, those of [`colours`](Self::colours), before any
-    /// rounding, at every point of a box; `None` where they are not known. `None` is always correct.
+    /// Encloses the unit normals to which the shader of [`colours`](Self::colours) bends these outward normals, before
+    /// any rounding, at every point of a box; `None` where the bent normals are not known. `None` is always correct.
     fn enclose_bend<F: Precise>(
         &self,
         _at: &PointBounds<F>,

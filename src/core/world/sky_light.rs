@@ -66,7 +66,7 @@ impl Emitter for SkyLight {
             let light = self.background.colour(toward) / cosine;
             return (cosine > 0.0).then_some(LightSample { toward, distance: f64::INFINITY, light });
         };
-        // The middle of the numbers goes by the cosine, so that one sample is the most even one.
+        // The middle of the numbers chooses by the cosine, so that a single sample is the most even one.
         let DVec2 { x, y } = numbers;
         let toward = match x {
             x if (0.25..0.75).contains(&x) => by_cosine(normal, DVec2::new(2.0 * (x - 0.25), y)),

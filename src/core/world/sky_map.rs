@@ -23,9 +23,9 @@ const MANY: usize = 64;
 pub struct SkyMap {
     columns: usize,
     rows: usize,
-    /// The part of all light that comes from the rows up to each one, counted from below.
+    /// For each row, the fraction of all light that comes from this row and the rows below it.
     rows_up_to: Vec<f64>,
-    /// For each row, the part of its light that comes from the cells up to each one.
+    /// For each row and each of its cells, the fraction of the row's light that comes from the cells up to this one.
     cells_up_to: Vec<f64>,
 }
 
@@ -50,8 +50,8 @@ impl SkyMap {
             (0..width).map(|x| background.colour(direction(place(x))).max_element().max(0.0) as f32).collect()
         };
         let looks = parallel::map_ranges(height, MANY, &|range| range.map(light).collect());
-        // The mean of colours that are interpolated between the middles of texels: over a part of a texel on one side of its
-        // middle, that of its own middle; over a texel, one to which the texels around add.
+        // The mean of colours that are interpolated between the middles of texels. Over a part of a texel on one side
+        // of its middle, the colour of the middle is taken for it. Over a whole texel, the texels around contribute.
         let mean = |x: usize, y: usize| {
             let at = |x: usize, y: usize| f64::from(looks[y][x % width]);
             if fine > 1 {
@@ -161,8 +161,8 @@ fn direction(place: DVec2) -> DVec3 {
     DVec3::new(flat * sin, height, -flat * cos)
 }
 
-/// Returns the place in a list of ascending numbers up to 1 that a number from 0 to 1 chooses, and how far it is past the one
-/// before, as a part of the difference.
+/// Returns the place in a list of ascending numbers up to 1 that a number from 0 to 1 chooses, and how far the number
+/// is past the entry before, as a fraction of the difference.
 fn chosen(up_to: &[f64], number: f64) -> (usize, f64) {
     let index = up_to.partition_point(|end| *end <= number).min(up_to.len() - 1);
     let before = if index == 0 { 0.0 } else { up_to[index - 1] };

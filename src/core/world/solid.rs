@@ -26,7 +26,7 @@ pub enum Tree {
 }
 
 impl Tree {
-    /// Tells whether the condition holds at a point; `None` where that is undecided. `inside` tells the same of the
+    /// Tells whether the condition holds at a point; `None` where that is undecided. `inside` tells the same for the
     /// part of an index.
     pub fn holds(&self, inside: &mut dyn FnMut(usize) -> Option<bool>) -> Option<bool> {
         match self {
@@ -181,7 +181,8 @@ impl Tree {
 
     /// Returns the part whose surface is that of the solid at a point; `None` if the point does not lie on the solid's
     /// surface. `one` and `other` tell for each part whether it contains the points beside the point, on either side of
-    /// the surface. If several parts have a surface there, the first one that is the solid's by itself counts.
+    /// the surface. If several parts have a surface there, the first part whose surface alone is that of the solid
+    /// counts.
     pub fn owner(&self, one: &[bool], other: &[bool]) -> Option<usize> {
         let holds = |inside: &[bool]| self.holds(&mut |part| Some(inside[part]));
         if holds(one) == holds(other) {

@@ -6,7 +6,8 @@ use crate::world::material::Rgb;
 use crate::world::texels::Texels;
 use glam::DVec2;
 
-/// The least width and height of a rectangle whose mean is taken, in texels: that of a narrower one would be lost in rounding.
+/// The least width and height, in texels, of a rectangle whose mean is taken. The mean of a narrower one would be lost
+/// in rounding.
 const THINNEST: f64 = 1.0 / 64.0;
 
 /// For each corner between texels, the sum of all texels to the left and below.

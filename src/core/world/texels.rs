@@ -24,7 +24,7 @@ enum Pixels {
 }
 
 impl Texels {
-    /// Makes texels of bytes. Their light is that which an image would show with the same bytes.
+    /// Makes texels from bytes. An image would show their light with the same bytes.
     pub(super) fn of_bytes(image: RgbImage, alpha: Option<GrayImage>, display: &Display) -> Self {
         let light = std::array::from_fn(|byte| display.light_of(byte as u8));
         Self { pixels: Pixels::Bytes(image), light, alpha }
@@ -46,8 +46,8 @@ impl Texels {
         }
     }
 
-    /// Returns the light of a texel by its column from the left and its row from the bottom. Beyond an edge, it is that of
-    /// the texel at the edge.
+    /// Returns the light of a texel by its column from the left and its row from the bottom. Beyond an edge, the texel
+    /// at the edge counts.
     #[inline]
     pub fn light(&self, column: u32, row: u32) -> Rgb {
         self.texel(column, row, |byte| self.light[usize::from(byte)])

@@ -24,7 +24,7 @@ use tabray_exact::scalar::{Scalar, constants, per_axis};
 /// The memory that a decoder may take beside the image, in bytes.
 const ASIDE: u64 = 1 << 20;
 
-/// How far a place of an image must be opaque for a surface to be there, where nothing else is said.
+/// The least opacity of a place of an image at which the surface is there, by default.
 pub const CUTOFF: f64 = 0.5;
 
 /// The number of columns or rows from which on an enclosure no longer examines each texel.
@@ -36,7 +36,7 @@ pub struct Texture {
     path: PathBuf,
     /// The contents of the file, where they are not to be read from the path.
     contents: Option<Vec<u8>>,
-    /// Whether transparent texels show their colours as others do, and how far each is opaque is kept.
+    /// Whether transparent texels show their colours as other texels do, and the opacity of each texel is kept.
     is_opaque: bool,
     cuts_out: bool,
     /// How the image that is rendered shows light; unless that is known, by the notes' rules.
@@ -53,7 +53,8 @@ struct Picture {
     remarks: Vec<&'static str>,
 }
 
-/// The files that are not read, and how they begin, as far as the reader of images does not know them.
+/// Types of files that cannot be read and that the reader of images does not recognise, and the bytes with which they
+/// begin.
 const OTHERS: [(&[u8], usize, &str); 7] = [
     (b"<", 0, "XML, as SVG is"),
     (b"8BPS", 0, "a file of Photoshop"),
@@ -104,7 +105,7 @@ impl Texture {
         &self.path
     }
 
-    /// Lets bytes stand for the light that an image shows with them. That must be known before the file is read.
+    /// Lets bytes stand for the light that an image shows with them. This must be set before the file is read.
     pub fn decode_by(&self, display: Display) {
         let _ = self.display.set(display);
     }
@@ -150,7 +151,7 @@ impl Texture {
             Some(file) => file,
             None => &mut held,
         };
-        // A colour profile, of which nothing is used, may be a thousand times as long as a PNG tells it.
+        // A colour profile, which is not used, may be a thousand times as long as its compressed form in a PNG.
         let row = row_of_png(bytes.fill_buf().map_err(|error| text::reason(&error))?);
         let beside = row.map_or(most, |row| most.min(row + length));
         let mut limits = Limits::no_limits();
@@ -212,7 +213,7 @@ impl Texture {
         Ok(Picture { texels, sums: OnceLock::new(), remarks })
     }
 
-    /// Returns what is not shown as the image has it, phrased to follow the texture's name.
+    /// Returns what is shown differently from the image, phrased to follow the texture's name.
     pub fn remarks(&self) -> &[&'static str] {
         self.picture.get().and_then(|picture| picture.as_ref().ok()).map_or(&[], |picture| &picture.remarks)
     }

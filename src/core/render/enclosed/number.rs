@@ -117,9 +117,9 @@ pub trait Number: Scalar + PartialEq {
     /// Returns the mean over the points of a light with a size.
     fn mean_over_light(self) -> Self;
 
-    /// Calls `met` with the possible hits with t > 0 of a shape, each with its part of the shape: of each part up to the
-    /// first that every line certainly has, or until `met` returns false. `leaves` is the part on which the lines' true
-    /// starts lie, if they lie on the shape.
+    /// Calls `met` with the possible hits with t > 0 of a shape, each with its part of the shape. For each part, these
+    /// are the hits up to the first one that every line certainly has. The calls end when `met` returns false. `leaves`
+    /// is the part on which the lines' true starts lie, if they lie on the shape.
     fn hits(
         shape: &dyn ProofMethods,
         line: &Line<Self>,

@@ -1,4 +1,4 @@
-//! First hits of a surface whose equation is a polynomial: by its coefficients along the line, rounded or exact.
+//! First hits of a surface whose equation is a polynomial, found by its coefficients along the line, rounded or exact.
 
 use super::equation::{Equation, HitEnclosure, Values, is_kept};
 use crate::geometry::sight::{Line, Sight};
@@ -74,8 +74,8 @@ pub(super) fn first_hit<C: Coefficient>(
     Some(found.unwrap_or(HitEnclosure::Misses))
 }
 
-/// Finds the first hit with t > 0 of a ray exactly; `None` where the equation is no polynomial, or its coefficients or the
-/// numbers of the ray are no fractions of so few digits.
+/// Finds the first hit with t > 0 of a ray exactly; `None` where the equation is no polynomial, or if its coefficients
+/// or the numbers of the ray are not fractions of few enough digits.
 pub(super) fn exact_hit(shape: &impl Equation, sight: &Sight) -> Option<HitEnclosure<f256>> {
     let field = shape.field()?;
     let line = shape.to_local(sight.line::<Fine>());

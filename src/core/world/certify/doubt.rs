@@ -15,7 +15,7 @@ pub enum Doubt {
     Touched,
     /// The equation has no slope there, as where a profile jumps.
     Jumps,
-    /// The surface is neither touched nor jumps: the search takes more digits or more steps.
+    /// The ray does not touch the surface, and the equation does not jump: the search needs more digits or more steps.
     Long,
     /// The surface has no equation, but u and v, and Krawczyk's test decides nothing where derivatives by them are parallel or
     /// 0, and where two sheets are equally far, as far as 237 bits tell.

@@ -22,8 +22,8 @@ pub trait Equation {
         line
     }
 
-    /// Encloses the coordinates u and v that [`Hittable::uv`] returns, as mathematics has them, of the points of the surface
-    /// in a box; `None` where they are not known, which is always correct. Proofs of colours ask for them.
+    /// Encloses the coordinates u and v that [`Hittable::uv`] returns, before any rounding, of the points of the
+    /// surface in a box; `None` where they are not known, which is always correct. Proofs of colours ask for them.
     ///
     /// [`Hittable::uv`]: crate::world::hittable::Hittable::uv
     fn uv_bounds(&self, _at: [Interval; 3]) -> Option<[Interval; 2]> {
@@ -43,7 +43,7 @@ pub trait Equation {
         self.value(at)
     }
 
-    /// Returns the formula that [`value`](Self::value) is, if it is one of the scene.
+    /// Returns the formula that [`value`](Self::value) evaluates, if it is a formula of the scene.
     fn field(&self) -> Option<&Field> {
         None
     }
@@ -59,16 +59,16 @@ pub trait Equation {
         N::constant(1.0)
     }
 
-    /// Returns the low and the high corner of a box, in the equation's coordinates, outside of which nothing is kept.
-    /// Surfaces that are not quadratic need one. The box may be infinite along an axis, but the hits of a ray parallel
-    /// to that axis are then in doubt.
+    /// Returns the low and the high corner of a box, in the equation's coordinates, outside of which the surface is cut
+    /// off. Surfaces that are not quadratic need a box. The box may be infinite along an axis, but the hits of a ray
+    /// parallel to that axis are then in doubt.
     fn extent(&self) -> [DVec3; 2] {
         [DVec3::NEG_INFINITY, DVec3::INFINITY]
     }
 }
 
-/// An equation in one type of numbers that enclose values. Proofs take it as a `dyn`, so that they are compiled once for a
-/// type, not once for a shape.
+/// An equation in one type of enclosing numbers. Proofs take it as a `dyn`, so that they are compiled once for each
+/// number type, not once for each shape.
 pub(super) trait Values<N: Scalar> {
     /// Returns [`Equation::IS_QUADRATIC`].
     fn is_quadratic(&self) -> bool;

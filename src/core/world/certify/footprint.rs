@@ -45,8 +45,9 @@ impl FootprintHit {
 
 /// Proofs about a shape's hits along all lines of a footprint.
 pub trait OverFootprint {
-    /// Calls `met` with the possible hits with t > 0, each with its part of the shape: of each part up to the first that
-    /// every line certainly has. `leaves` is the part on which the lines' true starts lie, if they lie on the shape.
+    /// Calls `met` with the possible hits with t > 0, each with its part of the shape. For each part, these are the
+    /// hits up to the first one that every line certainly has. `leaves` is the part on which the lines' true starts
+    /// lie, if they lie on the shape.
     fn hits(&self, line: &Line<Affine>, leaves: Option<usize>, met: &mut dyn FnMut(FootprintHit, usize));
 
     /// Encloses the value of the equation of a part at points in world coordinates, and its derivative.

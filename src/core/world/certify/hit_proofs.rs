@@ -1,7 +1,8 @@
 //! Proofs about rays that continue from a point of a surface: mirrored rays, those that glass lets pass, and shadow rays.
 //!
-//! Nothing about such a ray is a number of the scene. Its line has intervals as coefficients, and starts at the true point
-//! on the surface, somewhere in an enclosure. That the point lies on the surface is known, although no interval tells.
+//! No number of such a ray comes from the scene. The coefficients of its line are intervals, and the line starts at the
+//! true point on the surface, somewhere in an enclosure. The point is known to lie on the surface, although no interval
+//! shows that.
 
 use super::algebraic;
 use super::along::{PIECES, first_along, most_pieces};
@@ -23,13 +24,13 @@ pub trait HitProofs<F: Float> {
     /// Encloses the value of the equation of a part at a point in world coordinates, and its derivative.
     fn slope(&self, at: [Dual<Interval<F>>; 3], part: usize) -> Dual<Interval<F>>;
 
-    /// Tells whether a part has an equation. Of one that has none, [`slope`](Self::slope) knows no value.
+    /// Tells whether a part has an equation. For a part without one, [`slope`](Self::slope) knows no value.
     fn has_equation(&self, _part: usize) -> bool {
         true
     }
 
-    /// Encloses the unit normal with which a point of a part is shaded, where it is not that of the surface, which is
-    /// `normal`, turned to the ray where both sides are lit; `None` where it is open.
+    /// Encloses the unit normal with which a point of a part is shaded, where that normal differs from `normal`, the
+    /// normal of the surface. It is turned to the ray where both sides are lit; `None` where it is open.
     fn shading_normal(
         &self,
         _at: [Interval<F>; 3],

@@ -7,11 +7,12 @@ use std::fmt;
 pub enum Premise {
     /// The proofs take this for exact.
     Assumed(Assumption),
-    /// There is no equation to prove hits by: that a hit lies in the bounds of the shape is all that is known.
+    /// There is no equation to prove hits by. All that is known is that a hit lies in the bounds of the shape.
     NoEquation,
 }
 
-/// Numbers that a proof starts from, and that are not those of the scene: they follow from these, and were rounded.
+/// Numbers that a proof starts from but that are not in the scene: they were computed from the scene's numbers, and
+/// rounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Assumption {
     /// The camera rays.

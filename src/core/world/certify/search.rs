@@ -13,7 +13,7 @@ use tabray_exact::scalar::{Scalar, per_axis};
 /// functions take a long time.
 const JUMP: f64 = f64::EPSILON / 16.0;
 
-/// The number of pieces after which the search for a shape is given up that is smaller than the line's rounding.
+/// The number of pieces after which a search is given up if the shape is smaller than the rounding of the line.
 const FEW_PIECES: usize = 16;
 
 /// Finds the first hit with t > 0. The search is given up after `pieces` pieces of the line. With `leaves`, the line's
@@ -41,7 +41,8 @@ pub fn first_hit<F: Float>(
     // The parameter counts from near the shape, so that a piece of the line is not a small difference of large numbers.
     let base = Interval::point(from + F::of(0.5) * (to - from));
     let near = Line { origin: line.at(base), dir: line.dir };
-    // Where rounding moves the line by more than the shape's size, a hit cannot be told, and a miss, if at all, at once.
+    // Where rounding moves the line by more than the shape's size, a hit cannot be proven, and a miss is proven at once
+    // or not at all.
     let [low, high] = shape.extent();
     let is_lost = (0..3).any(|axis| near.origin[axis].width() > F::of(high[axis] - low[axis]));
     let pieces = if is_lost { pieces.min(FEW_PIECES) } else { pieces };
@@ -225,8 +226,9 @@ impl<F: Float> Search<'_, F> {
         if bend.has_zero() || !bend.is_bounded() { Judgement::Open } else { self.turning(piece, bend) }
     }
 
-    /// Judges a piece on which the second derivative has these bounds, which do not contain 0, so that the slope is 0 at one
-    /// place at most. If it is, the value there decides, and where no digits tell that from 0, shorter pieces would not.
+    /// Judges a piece on which the second derivative has these bounds, which do not contain 0, so that the slope is 0
+    /// at one place at most. If there is such a place, the value there decides. Where no number of digits tells that
+    /// value from 0, shorter pieces would not help.
     fn turning(&self, piece: Interval<F>, bend: Interval<F>) -> Judgement<F> {
         let (mut place, mut exists) = (piece, false);
         loop {

@@ -24,8 +24,8 @@ pub trait HitQueries: Send + Sync {
         None
     }
 
-    /// Tells whether the shape is a part of a solid's surface, of which [`contains`](Self::contains) tells what lies in the
-    /// solid.
+    /// Tells whether the shape is a part of a solid's surface, for which [`contains`](Self::contains) tells whether a
+    /// point lies in the solid.
     fn is_of_solid(&self) -> bool {
         false
     }
@@ -40,8 +40,8 @@ pub trait HitQueries: Send + Sync {
     /// can be computed.
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble>;
 
-    /// Passes on what proofs about the shape start from, each with the name of the entity type that it is about: `of`, or
-    /// where the shape is made of others, as a copy and a solid are, the type of these.
+    /// Passes on the premises of proofs about the shape, each with the name of its entity type. That is `of`, or, where
+    /// the shape is made of other shapes, as a copy or a solid is, the type of the other shape.
     fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise));
 
     /// Returns what is proven about a ray's first hit.
