@@ -72,7 +72,7 @@ pub struct Attribute {
     pub period: Option<[f64; 2]>,
     /// The least and the greatest number that each value may be; null where there are none.
     pub range: Option<[f64; 2]>,
-    /// The kind of entity that a name refers to, also in place of a choice; null for other types.
+    /// The kind of entity that a name refers to, also where it may stand for a choice; null for other types.
     pub refers_to: Option<Kind>,
     /// Whether a scene must give it.
     pub required: bool,

@@ -108,8 +108,8 @@ impl Registry {
         entity.map(|entity| syntax.entity_usage(entity, name)).unwrap_or_default()
     }
 
-    /// Returns the entity type with the fewest attributes, none of them a list, of those that a condition holds for; of several,
-    /// the first by name.
+    /// Returns the entity type with the fewest attributes, none of them a list, among the types for which a condition
+    /// holds. Of several such types, the first by name is returned.
     pub fn simplest(&self, is_one: impl Fn(&Entity) -> bool) -> Option<&'static Entity> {
         let has_no_list = |entity: &Entity| entity.attributes().all(|its| its.arity().examples().len() == 1);
         let all = self.iter().filter(|entity| is_one(entity) && has_no_list(entity));

@@ -242,8 +242,8 @@ fn value(attribute: &'static dyn Attribute) -> Schema {
     Schema { description: Some(description(attribute)), default, ..any }
 }
 
-/// Returns the bounds of an attribute of one number whose rule has words and no range: the least number, and the number
-/// that it must be above. One of them is 0, or neither is given.
+/// Returns the bounds of an attribute of one number whose rule is given in words: the least number, and the number that
+/// the value must exceed. One of the two bounds is 0, or there is none.
 fn least(attribute: &dyn Attribute) -> [Option<f64>; 2] {
     let allows = |number: i64| {
         attribute.allows(&match attribute.value_type() {

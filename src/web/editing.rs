@@ -97,7 +97,7 @@ pub fn signature(registry: &Registry, text: &str, at: usize) -> Option<Value> {
 /// Returns the text in its form.
 ///
 /// # Errors
-/// Why it has none.
+/// Returns why the text cannot be formatted.
 pub fn formatted(registry: &Registry, text: &str) -> Result<String, String> {
     let view = view(registry, text);
     editor::formatted(&view).ok_or_else(|| {

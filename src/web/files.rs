@@ -16,7 +16,7 @@ const FRACTION: f64 = 1.0 / 50.0;
 /// Returns the picture as a PNG.
 ///
 /// # Errors
-/// Why there is none.
+/// Returns why the file cannot be made.
 pub fn png(painting: &Painting) -> Result<Vec<u8>, String> {
     let Whole { size, bytes, .. } = painting.whole()?;
     let mut out = Vec::new();
@@ -28,7 +28,7 @@ pub fn png(painting: &Painting) -> Result<Vec<u8>, String> {
 /// Returns the picture as OpenEXR: colours before they are clamped.
 ///
 /// # Errors
-/// Why there is none.
+/// Returns why the file cannot be made.
 pub fn exr(painting: &Painting) -> Result<Vec<u8>, String> {
     let Whole { size, colours, .. } = painting.whole()?;
     let mut out = Vec::new();
@@ -46,7 +46,7 @@ pub fn names(model: &Model) -> Vec<&str> {
 /// Returns an object as a closed mesh, in binary STL.
 ///
 /// # Errors
-/// Why there is none.
+/// Returns why the file cannot be made.
 pub fn stl(model: &Model, name: &str) -> Result<Vec<u8>, String> {
     let body = Body::of(model, name).map_err(|fault| match fault {
         NoBody::Unknown(names) => {

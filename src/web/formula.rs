@@ -42,11 +42,11 @@ pub fn of(registry: &Registry, text: &str) -> Value {
     place(&view).map_or(Value::Null, |place| view.slice(place).into())
 }
 
-/// Puts a formula into a text in place of that of its first `implicit`; a text without one is replaced. Names that the text
-/// does not know become numbers of it, which are 1.
+/// Replaces the formula of a text's first `implicit`; a text without an `implicit` is replaced as a whole. Names that
+/// the text does not know become numbers in the text, with the value 1.
 ///
 /// # Errors
-/// Why the formula cannot stand there.
+/// Returns why the formula cannot stand there.
 pub fn changed(registry: &Registry, body: &str) -> Result<String, String> {
     let FormulaRequest { text, formula } =
         serde_json::from_str(body).map_err(|_| "this is not a formula".to_owned())?;
@@ -122,7 +122,7 @@ pub fn entities(registry: &Registry, model: &Model, text: &str) -> Vec<Value> {
 /// Returns a text with another value of a number that it names.
 ///
 /// # Errors
-/// Says that it names none so.
+/// Returns a message if the text names no such number.
 pub fn with_number(registry: &Registry, text: &str, name: &str, value: &str) -> Result<String, String> {
     let view = read(registry, text);
     let found = lets(&view).into_iter().find(|(known, _)| known == name);

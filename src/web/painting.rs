@@ -89,7 +89,7 @@ impl Painting {
     /// Returns the picture.
     ///
     /// # Errors
-    /// Says that it is not complete.
+    /// Returns a message if the picture is not complete.
     pub fn whole(&self) -> Result<Whole<'_>, String> {
         let is_done = self.steps.as_ref().is_some_and(Steps::is_done);
         is_done

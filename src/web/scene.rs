@@ -60,7 +60,7 @@ impl Scene {
     /// Reads a scene.
     ///
     /// # Errors
-    /// Its faults.
+    /// Returns the faults of the scene.
     pub fn read(registry: &Registry, version: &str, text: &str) -> Result<Self, Unread> {
         let options = ReadOptions { memory: Some(MEMORY), ..ReadOptions::default() };
         let loaded = reader::read_by(registry, NAME, Path::new(""), text.as_bytes(), options)
@@ -97,7 +97,7 @@ impl Scene {
     /// Returns the text with the camera moved.
     ///
     /// # Errors
-    /// Why it cannot be.
+    /// Returns why the camera cannot be moved.
     pub fn moved(&self, registry: &Registry, body: &str) -> Result<String, String> {
         let wanted: MoveRequest =
             serde_json::from_str(body).map_err(|_| "this is not a movement of the camera".to_owned())?;
@@ -126,10 +126,10 @@ impl Scene {
         })
     }
 
-    /// Returns the text with a `look_at` in place of its `camera`.
+    /// Returns the text with a `look_at` instead of its `camera`.
     ///
     /// # Errors
-    /// Why there is none.
+    /// Returns why no `look_at` can be written.
     pub fn turned(&self, registry: &Registry) -> Result<String, String> {
         let (name, view) = (self.model.camera.args.name(), self.shown().view(registry));
         let camera =
@@ -142,7 +142,7 @@ impl Scene {
     /// Returns the text with other values of an attribute, or with another number of a `let`.
     ///
     /// # Errors
-    /// Why it stays as it is.
+    /// Returns why the text stays as it is.
     pub fn tried(&self, registry: &Registry, body: &str) -> Result<String, String> {
         let wanted: Option<Try> = serde_json::from_str(body).ok();
         let are_numbers = |values: &[String]| values.iter().all(|value| value.parse::<f64>().is_ok());

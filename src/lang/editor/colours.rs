@@ -1,4 +1,4 @@
-//! The colours of a scene, as swatches, and how another one is written in the place of one.
+//! The colours of a scene, as swatches, and the text that replaces a colour by another one.
 
 use super::view::{Form, Item, View, Word};
 use crate::syntax::Syntax;
@@ -43,13 +43,13 @@ fn numbers(view: &View, words: &[Word]) -> Option<[f64; 3]> {
     Some(colour)
 }
 
-/// Returns by what a colour is divided to be shown: 1, or its brightest channel if that is more.
+/// Returns the number by which a colour is divided to be shown: 1, or its brightest channel if that is greater.
 fn brightest(colour: [f64; 3]) -> f64 {
     colour.into_iter().fold(1.0, f64::max)
 }
 
-/// Returns how a colour is written in place of the one in a range. It is as bright as that one where that is brighter
-/// than 1.
+/// Returns the text of a colour that replaces the one in a range. Where the old colour is brighter than 1, the new one
+/// is as bright.
 pub fn presented(view: &View, place: &Range<usize>, colour: [f64; 3]) -> String {
     let old = view.slice(place.clone()).split([' ', ',', '\t', '\n']).filter(|word| !word.is_empty());
     let old: Vec<f64> = old.filter_map(|word| word.parse().ok()).collect();

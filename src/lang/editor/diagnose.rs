@@ -1,4 +1,4 @@
-//! The faults of a scene, as the loader tells them, in the files in which they are.
+//! The faults of a scene, as the loader reports them, each in its file.
 
 use super::text::{Position, Text};
 use crate::reader::{self, Fault, Located, ReadOptions, Severity};
@@ -36,8 +36,8 @@ pub struct Remark {
     pub text: String,
 }
 
-/// Reads a scene as a render does, but files that it includes as they are in the editor where they are `open`, and returns
-/// its faults.
+/// Reads a scene as a render does, and returns its faults. Included files that are `open` in the editor are read as
+/// they are there.
 pub fn diagnose(
     registry: &Registry,
     path: &Path,

@@ -1,5 +1,5 @@
-//! Formats a scene: one attribute on each line, in columns, as the scenes of this repository are written. The order,
-//! the comments, and what stands on one line stay.
+//! Formats a scene: one attribute on each line, in columns, as the scenes of this repository are written. The order and
+//! the comments stay, and entities on one line stay on one line.
 
 use super::format_toml;
 use super::toml_events;
@@ -28,7 +28,7 @@ pub fn problem(view: &View) -> Option<Fault> {
     })
 }
 
-/// Returns the text of a scene as it should be written, or `None` where its form has faults.
+/// Returns the text of a scene as it should be written, or `None` where the form of the text has faults.
 pub fn formatted(view: &View) -> Option<String> {
     if !view.breaks.is_empty() {
         return None;
@@ -261,7 +261,7 @@ impl Writer<'_> {
     }
 }
 
-/// Returns the width to which texts are padded: that of the widest which is not too wide.
+/// Returns the width to which texts are padded: the width of the widest text that is not too wide.
 fn width<'t>(texts: impl Iterator<Item = &'t String>, widest: usize) -> usize {
     texts.map(|text| text.chars().count()).filter(|width| *width <= widest).max().unwrap_or(0)
 }
@@ -343,7 +343,8 @@ fn entities(run: &[Line]) -> Vec<String> {
     let names_of = |attributes: &[[String; 2]]| -> Vec<String> {
         attributes.iter().map(|[name, _]| name.clone()).collect()
     };
-    // The widths of the columns, for each beginning that entities with another attribute after it share.
+    // The widths of the columns. Entities that begin alike and have another attribute after that beginning share a
+    // width.
     let mut widths = std::collections::HashMap::<Vec<String>, usize>::new();
     for (_, attributes) in &parts {
         for end in 1..attributes.len() {

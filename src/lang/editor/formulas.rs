@@ -3,7 +3,7 @@
 use std::ops::Range;
 use tabray_exact::formula::{is_in_name, is_taken};
 
-/// Returns the places of the names in a formula that its variables, its functions and `pi` are not, in bytes.
+/// Returns the places, in bytes, of the names in a formula other than its variables, its functions and `pi`.
 pub fn names(formula: &str) -> Vec<Range<usize>> {
     let mut found = Vec::new();
     let mut at = 0;

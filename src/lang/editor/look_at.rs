@@ -42,10 +42,10 @@ impl LookAt {
 
 /// Returns what makes a `look_at` of the `camera` in a range of a text; `None` if there is none.
 ///
-/// The viewer stays, and the middle of the image plane is seen in the middle of the image, as large as before.
+/// The viewer stays, and the middle of the image plane appears in the middle of the image, at the same size as before.
 ///
 /// # Errors
-/// Why no `look_at` shows its view, or why the text does not tell.
+/// Returns why no `look_at` shows the view of the `camera`, or why the text does not tell.
 pub fn look_at(view: &View, wanted: &Range<usize>) -> Option<Result<LookAt, String>> {
     let camera = view.items.iter().find_map(|item| match item {
         Item::Entity(entity) if entity.known.is_some_and(|known| known.name == "camera") => Some(entity),
@@ -97,8 +97,8 @@ fn turned(view: &View, camera: &Entity) -> Result<LookAt, String> {
     Ok(LookAt { edits, change })
 }
 
-/// Returns the angle of view across an image in degrees, with which square pixels show what those of an image plane at z = 0
-/// do, and the change of the view.
+/// Returns the angle of view across an image, in degrees, for which square pixels show what the pixels of an image
+/// plane at z = 0 show, and the change of the view.
 fn angle(pixels: [f64; 2], size: [f64; 2], [x, y, z]: [f64; 3]) -> Result<(f64, Change), String> {
     if z <= 0.0 {
         return Err("the viewer is behind the image plane, which mirrors the image".to_owned());

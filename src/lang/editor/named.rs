@@ -43,7 +43,8 @@ pub struct Definition {
     pub again: Vec<Name>,
     /// The range of what has the name.
     pub whole: Range<usize>,
-    /// The range in which it can be used as it is, if that is what is repeated; otherwise it can be used everywhere.
+    /// The range in which the name can be used as written, if the definition is repeated; without a range, the name can
+    /// be used everywhere.
     pub scope: Option<Range<usize>>,
     /// By how many `repeat` it is repeated.
     pub depth: usize,

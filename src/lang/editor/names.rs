@@ -123,8 +123,8 @@ pub fn name_at_cursor(view: &View, at: usize) -> Option<NameAtCursor> {
     Some(NameAtCursor { kind: describe(name.namespace), text: name.text.clone(), place: name.place.clone() })
 }
 
-/// Returns the names in the formula at a range of a text that mean nothing: no word of formulas, and no number that the text
-/// names. Those of functions are left out.
+/// Returns the names in the formula at a range of a text that mean nothing: they are neither words of formulas nor
+/// numbers that the text names. Names of functions are left out.
 pub fn unknown_numbers(view: &View, formula: &Range<usize>) -> Vec<String> {
     let (names, text) = (view.names(), view.slice(formula.clone()));
     let mut unknown: Vec<String> = Vec::new();
@@ -164,7 +164,7 @@ pub fn check_name(namespace: Namespace, name: &str) -> Result<(), String> {
     }
 }
 
-/// Returns a name with the numbers of rounds that a use adds to that of its definition.
+/// Returns a name with the numbers of rounds that a use adds to the name in the definition.
 pub fn written(syntax: Syntax, context: NameContext, name: &str) -> String {
     match context {
         NameContext::Formula => name.to_owned(),

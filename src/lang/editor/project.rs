@@ -10,7 +10,7 @@ use tabray_core::files::plain;
 /// The most files of a scene that are read.
 const MOST_FILES: usize = 1000;
 
-/// Gives access to files, as they are in the editor or else as they are stored.
+/// Gives access to files: as they are in the editor if they are open there, and otherwise as stored.
 pub trait Files {
     /// Returns the view of a file, if it can be read.
     fn view(&self, path: &Path) -> Option<Arc<View>>;
@@ -48,7 +48,7 @@ fn with_included(files: &dyn Files, root: &Path) -> Group {
     group
 }
 
-/// Returns a file, those that it includes, and those of the scenes among `scenes` that include it.
+/// Returns a file, the files that it includes, and the files of those `scenes` that include it.
 pub fn group(files: &dyn Files, path: &Path, scenes: &[PathBuf]) -> Group {
     let mut group = with_included(files, path);
     for scene in scenes.iter().filter(|scene| *scene != path) {
@@ -67,7 +67,7 @@ pub fn group(files: &dyn Files, path: &Path, scenes: &[PathBuf]) -> Group {
 /// A definition: the index of its file, and its own.
 type Id = (usize, usize);
 
-/// Returns the definition that a name in a file means, and how many letters of it are the numbers of rounds.
+/// Returns the definition that a name in a file means, and the number of letters at its end that are numbers of rounds.
 fn resolved(names: &[&Names], file: usize, name: &Name) -> Option<(Id, usize)> {
     let mut text = name.text.as_str();
     let mut rounds = 0;
@@ -167,7 +167,7 @@ pub fn usages(group: &Group, at: usize, with_definition: bool) -> Vec<Location> 
 /// Returns the changes by which the name at a position of the group's first file becomes another one.
 ///
 /// # Errors
-/// Why it cannot.
+/// Returns why the name cannot be changed.
 pub fn renamed(group: &Group, at: usize, new: &str) -> Result<Vec<(Location, String)>, String> {
     let names = all_names(group);
     let id = definition(&names, at).ok_or("there is no name of the scene here")?;

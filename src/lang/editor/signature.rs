@@ -1,4 +1,4 @@
-//! The values of an attribute while they are written: what they are, and which one is next.
+//! The values of an attribute while they are written: their names, and which value comes next.
 
 use super::hover::about;
 use super::types::value_name;

@@ -54,7 +54,7 @@ impl Text {
         self.starts.partition_point(|start| *start <= at).saturating_sub(1)
     }
 
-    /// Returns the position of a byte; of one within a character, the position of the character.
+    /// Returns the position of a byte. For a byte within a character, that is the position of the character.
     pub fn position(&self, at: usize) -> Position {
         let at = boundary(&self.text, at);
         let line = self.line_of(at);
@@ -64,7 +64,8 @@ impl Text {
         Position { line: line as u32, character: units as u32 }
     }
 
-    /// Returns the byte at a position. One after the end of a line is the end, and one within a character its beginning.
+    /// Returns the byte at a position. A position after the end of a line gives the end of the line, and a position
+    /// within a character gives the beginning of the character.
     pub fn offset(&self, position: Position) -> usize {
         let line = self.line(position.line as usize);
         let mut left = position.character as usize;

@@ -1,4 +1,4 @@
-//! What the values of an attribute are, for everything here that depends on it. A new type of values is told of here.
+//! The types of an attribute's values, for all code here that depends on them. A new type of values is added here.
 
 use super::view::{Entity, View};
 use tabray_core::scene::attribute::Attribute;

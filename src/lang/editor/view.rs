@@ -1,4 +1,5 @@
-//! What a text says, as far as it can be told: entities, attributes and values with their places, in either syntax.
+//! The content of a text as far as it can be recognised: entities, attributes and values with their places, in either
+//! syntax.
 
 use super::named::Names;
 use super::text::Text;
@@ -142,7 +143,7 @@ impl View {
         }
     }
 
-    /// Calls a function with each item, and with those that it is repeated by, from the outermost on.
+    /// Calls a function with each item and with the items that repeat it, from the outermost one inward.
     pub fn visit<'v>(&'v self, visit: &mut dyn FnMut(&'v Item, &[&'v Repeat])) {
         fn walk<'v>(
             items: &'v [Item],
@@ -193,7 +194,7 @@ impl View {
         }
     }
 
-    /// Returns the entity of a name that stands in the text once, and is not repeated.
+    /// Returns the entity with a name, if the name stands in the text once and the entity is not repeated.
     pub fn entity(&self, name: &str) -> Option<&Entity> {
         let mut found = self.items.iter().filter_map(|item| match item {
             Item::Entity(entity) if entity.name.is_some_and(|word| self.word(word) == name) => Some(entity),
@@ -202,7 +203,8 @@ impl View {
         found.next().filter(|_| found.next().is_none())
     }
 
-    /// Returns the place for one more attribute of an entity, and what must stand between it and those before.
+    /// Returns the place for one more attribute of an entity, and the text that must separate it from the attributes
+    /// before.
     pub fn room(&self, entity: &Entity) -> (usize, String) {
         let (at, is_first) = match entity.attributes.last() {
             Some(last) => (last.end, false),
@@ -230,7 +232,7 @@ impl View {
         given.any(|given| given.values.iter().any(|word| word.form != Form::Bare))
     }
 
-    /// Tells whether anything in the text is a scene's: a file in TOML may be about something else.
+    /// Tells whether anything in the text belongs to a scene: a file in TOML may be about something else.
     pub fn is_scene(&self) -> bool {
         self.syntax == Syntax::Notes
             || self.items.iter().any(|item| match item {

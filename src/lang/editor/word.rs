@@ -18,7 +18,7 @@ pub struct Word {
 pub enum Form {
     /// Not at all.
     Bare,
-    /// By quotes that this many bytes at each end are, with escape sequences in between.
+    /// By quotes of this many bytes at each end, with escape sequences in between.
     Quoted(u8),
     /// By quotes that this many bytes at each end are, without escape sequences.
     Literal(u8),

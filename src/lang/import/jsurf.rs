@@ -193,8 +193,8 @@ impl File<'_> {
         let (surface, surface_moved) = self.matrix("surface_transform_matrix", notes);
         let [scale] = self.numbers("scale_factor", [0.0], notes);
         let scale = libm::pow(10.0, scale);
-        // The picture's z is 0 where the camera's is as far as the camera is moved. From there to the coordinates in which
-        // a ball of radius 1 around 0 cuts, and further to those of the formula.
+        // The picture's z is 0 at the distance by which the camera is moved. The maps lead from there to the
+        // coordinates in which a ball of radius 1 around 0 cuts the surface, and on to the coordinates of the formula.
         let middle = DVec3::new(0.0, 0.0, moved.z);
         let to_ball = transform * rotation * camera.inverse();
         let ball_moved = transform_moved + transform * rotation_moved - to_ball * (moved - middle);

@@ -1,6 +1,6 @@
-//! Surfaces in the files of other programs: SURFER's `.jsurf`, and the scripts of surf 1.0.6. [`scene`] writes what such a
-//! file shows as a scene in the notes' syntax: the formula as it is, with its parameters, seen from the same side, cut by
-//! the same body, in the same colours.
+//! Surfaces in the files of other programs: SURFER's `.jsurf`, and the scripts of surf 1.0.6. [`scene`] writes what
+//! such a file shows as a scene in the notes' syntax: the unchanged formula with its parameters, seen from the same
+//! side, cut by the same body, and in the same colours.
 
 mod expression;
 mod jsurf;
@@ -23,15 +23,15 @@ pub struct Imported {
     pub text: String,
     /// What the scene shows in another way.
     pub warnings: Report,
-    /// The words that have no part in what is seen, in the order of the file, each with the line where it stands first.
+    /// The words that do not affect the picture, in the order of the file, each with the line where it first stands.
     pub left: Vec<(String, usize)>,
 }
 
-/// Returns what a file shows, if it is one of these programs by its name or, if this is no scene's, by its text. `name` is
-/// what messages call it.
+/// Returns what a file shows, if its name is that of such a program's file or, where the name is not that of a scene,
+/// if its text is. `name` is what messages call it.
 ///
 /// # Errors
-/// The faults of the file.
+/// Returns the faults of the file.
 pub fn scene(name: &str, bytes: &[u8]) -> Result<Option<Imported>, Report> {
     let by_name = Program::of_name(name);
     if by_name.is_none()

@@ -9,7 +9,7 @@ use tabray_core::text::shortest;
 /// seven digits.
 const SIMILAR: f64 = 1e-5;
 
-/// How far from its middle a picture without a clip reaches, in heights of the picture.
+/// The distance from the middle to which a picture without a clip reaches, in heights of the picture.
 const DEEP: f64 = 5.0;
 
 /// What is seen, in the coordinates of the picture: x right, y up and z toward the viewer.
@@ -58,13 +58,14 @@ pub enum Clip {
     Cylinder(DVec3, f64),
     /// A cube, by its centre and half its side.
     Cube(DVec3, f64),
-    /// What lies on this side of a plane across the z axis: below it if the sign is 1, above it if it is -1.
+    /// The half of space on one side of a plane across the z axis: below the plane if the sign is 1, above it if the
+    /// sign is -1.
     Plane(f64, f64),
 }
 
 impl Picture {
-    /// Writes the scene. Its coordinates are those of the formula, so that this stays as it is; those of the picture where
-    /// there are several formulas in different places, or one that is stretched.
+    /// Writes the scene. Its coordinates are those of the formula, so that the formula stays as it is. Where there are
+    /// several formulas in different places, or a stretched one, the coordinates are those of the picture.
     pub fn scene(&self) -> String {
         let common = self.surfaces[0].map;
         let is_common = self.surfaces.iter().all(|surface| surface.map == common) && is_similar(common.0);
@@ -153,7 +154,7 @@ impl Picture {
     /// Returns a box around what is kept, in the picture's coordinates.
     fn bounds(&self) -> [DVec3; 2] {
         let [wide, high] = self.size;
-        // Without a clip, what is seen is cut at the edges of the picture, with a margin for the outermost pixels.
+        // Without a clip, the surface is cut at the edges of the picture, with a margin for the outermost pixels.
         let seen = DVec3::new(0.6 * wide, 0.6 * high, DEEP * wide.max(high));
         let mut bounds = [-seen, seen];
         for clip in &self.clips {

@@ -26,7 +26,7 @@ const MAX_PIXELS: f64 = 100_000.0;
 const CLIPS: [&str; 8] =
     ["sphere", "tetrahedron", "cube", "octahedron", "dodecahedron", "icosahedron", "cylinder", "none"];
 
-/// Words for how surf computes, and for what it does with a picture: all that begin with one of these.
+/// Words for how surf computes and for what it does with a picture: all words that begin with one of these.
 const LEFT: [&str; 21] = [
     "antialiasing",
     "background_dither",
@@ -361,7 +361,7 @@ impl Script<'_, '_> {
             }
         }
         let lights = SURFACES.filter_map(|index| {
-            // Unless they are moved, they stand in three rows of three in front of the picture.
+            // Lights that are not moved stand in three rows of three in front of the picture.
             let (column, row) = ((index - 1) % 3, (index - 1) / 3);
             let default = [100.0 * (column as f64 - 1.0), 100.0 * (1.0 - row as f64), 100.0];
             let at = self.numbers(["x", "y", "z"].map(|axis| format!("light{index}_{axis}")), default);

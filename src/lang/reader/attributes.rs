@@ -92,7 +92,8 @@ impl AttributeChecker<'_, '_> {
         sound.then_some(values)
     }
 
-    /// Tells whether exactly one attribute of each group is given that needs one, and reports what is not so.
+    /// Tells whether exactly one attribute of each required group is given, and reports the groups for which this is
+    /// not so.
     fn groups(
         &mut self,
         title: &str,
@@ -145,7 +146,7 @@ impl AttributeChecker<'_, '_> {
             given.is_none() && attribute.default().is_none() && !near.contains(&Some(attribute.name()))
         });
         let missing: Vec<_> = missing.map(|(attribute, _)| *attribute).collect();
-        // As many are unknown as are missing, of as many numbers each: other programs call them so.
+        // As many attributes are unknown as are missing, with as many numbers each: other programs use these names.
         let strange: Vec<_> = (0..unknown.len()).filter(|index| near[*index].is_none()).collect();
         let fits = |(index, attribute): (&usize, &&dyn Attribute)| {
             let values = unknown[*index].1;
@@ -202,7 +203,8 @@ impl AttributeChecker<'_, '_> {
                 self.store.datum(index).clone()
             }
             (Type::Name(kind), [name]) if name.form != Form::Number => {
-                // An object that may be left out is a part of another one, as what clips a surface is. A copy is none.
+                // An optional object is a part of the object that names it, as an object that clips a surface is. The
+                // original of a copy is not such a part.
                 self.names.combines |= kind == Kind::Object && attribute.default().is_some();
                 self.names.resolve(self.store, kind, name)
             }
@@ -248,7 +250,7 @@ impl AttributeChecker<'_, '_> {
     }
 }
 
-/// Returns what is wrong if values cannot be those of an attribute at all, or are not as many as it takes.
+/// Returns what is wrong if words cannot be values of an attribute at all, or if it takes a different number of values.
 fn fault_of_values(
     attribute: &dyn Attribute,
     title: &str,

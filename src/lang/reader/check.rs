@@ -38,8 +38,8 @@ use tabray_core::world::texture::Texture;
 pub enum Source<'s, 'a> {
     /// A text in the notes' syntax, and its parser.
     Text(&'a str, Box<Parser<'a, 's>>),
-    /// A long text in TOML, as what returns the next entities until there are none. Of these, nothing is known later: if there
-    /// is anything to say of them, the text is read again as a list.
+    /// A long text in TOML, as a function that returns the next entities until there are none. Entities are not kept:
+    /// if there is anything to report about them, the text is read again as a list.
     Stream(Box<dyn FnMut() -> Vec<Parsed<'a>> + Send + 's>),
     /// Entities in their order.
     List(&'s [Parsed<'a>]),
@@ -186,7 +186,7 @@ impl Check<'_, '_> {
         }
     }
 
-    /// Takes over entities that were checked, and checks those again about which there is something to say.
+    /// Takes over entities that were checked, and checks an entity again if there is something to report about it.
     fn take(&mut self, parsed: &[&Parsed<'_>], quick: &Quick<'_>) {
         for (parsed, packed) in parsed.iter().zip(quick.packed()) {
             match packed {
@@ -227,7 +227,7 @@ impl Check<'_, '_> {
         .values(parsed);
         let values = values.filter(|_| counts);
         self.store.add(entity, text, values.as_deref());
-        // What one entity refers to, an object or a type of shader that stands for a shader, is often that of many.
+        // Many entities often refer to the same object or the same type of shader.
         for (datum, _) in values.iter().flatten() {
             let (kind, name) = match datum {
                 Datum::Object { name, .. } => (Kind::Object, name),

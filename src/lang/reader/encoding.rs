@@ -10,7 +10,7 @@ const PAIRS: [usize; 2] = [8, 256];
 /// Decodes a file's bytes as UTF-8 text.
 ///
 /// # Errors
-/// The encoding that the text probably has, or the first place that is not UTF-8 text.
+/// Returns the encoding that the text probably has, or the first place that is not UTF-8 text.
 pub fn decode<'b>(name: &str, bytes: &'b [u8]) -> Result<&'b str, Report<'static>> {
     if let Some(encoding) = utf_16(bytes) {
         let mut report = Report::new(name, String::new(), Syntax::default());
@@ -69,8 +69,8 @@ fn utf_16(bytes: &[u8]) -> Option<&'static str> {
     }
 }
 
-/// Reads bytes of which the first that is not ASCII is at `bad` as text of one byte per letter, and returns the encoding;
-/// `None` if they have control characters, and so are no text.
+/// Reads bytes as text of one byte per letter, and returns the encoding. The first byte that is not ASCII is at `bad`.
+/// `None` if there are control characters, so that the bytes are not text.
 fn windows_1252(bytes: &[u8], bad: usize) -> Option<(&'static str, String)> {
     let is_text = |byte: &u8| !byte.is_ascii_control() || matches!(byte, b'\t' | b'\n' | b'\r' | 0x0c);
     if !bytes[..bad].is_ascii() || !bytes.iter().all(is_text) {

@@ -6,8 +6,8 @@ use tabray_core::text;
 /// The maximum number of places of similar faults that one fault lists.
 const PLACES: usize = 3;
 
-/// A range of a scene's text, in bytes, after which come those of the files that it includes and of the options that set
-/// values; `None` for an entity that was built without a text.
+/// A range of a scene's text, in bytes. The texts of included files and of options that set values follow the scene's
+/// own text. `None` for an entity that was built without a text.
 pub type Place = Option<Range<usize>>;
 
 /// The places of a scene's entities, from the type of each to its end, by their order.

@@ -1,6 +1,6 @@
-//! What scenes have that were written as other programs read them: brackets, commas, `=`, `;`, curly quotes, comments
-//! after `//`, colours as `#8080ff`. Where a scene has errors, each of these is reported once, with what would be
-//! right, and the scene is read again without them, so that none of the errors that follow from them is reported.
+//! Syntax that other programs read and scenes do not have: brackets, commas, `=`, `;`, curly quotes, comments after
+//! `//`, colours as `#8080ff`. Where a scene has errors, each of these is reported once, with what would be right, and
+//! the scene is read again without them, so that none of the errors that follow from them is reported.
 
 use super::fault::{Fault, Severity};
 use super::report::Report;
@@ -25,14 +25,15 @@ struct Finding {
     places: Vec<Range<usize>>,
 }
 
-/// A text without what scenes do not have: each letter of it stands where it stood.
+/// A text without the syntax that scenes do not have. Each letter that is left stands where it stood.
 struct Cleaned {
     bytes: Vec<u8>,
     found: BTreeMap<ForeignSyntax, Finding>,
 }
 
-/// Returns the report on a scene with errors: the same, or if the text has fewer errors without what other programs
-/// would read, the report of reading it `again` without that, and what it was.
+/// Returns the report on a scene with errors. If the text has fewer errors without the syntax of other programs, it is
+/// the report of reading the text `again` without this syntax, together with faults about the syntax. Otherwise it is
+/// the same report.
 pub fn explained(
     report: Report<'static>,
     text: &str,
@@ -98,7 +99,7 @@ fn is_followed_by_a_brace(text: &str) -> bool {
 }
 
 impl Cleaned {
-    /// Replaces all that scenes do not have. A text is only looked through for what its bytes allow.
+    /// Replaces all syntax that scenes do not have. The text is searched only for syntax that its bytes allow.
     fn all(&mut self) {
         if self.bytes.contains(&b'/') {
             self.comments();
@@ -128,7 +129,7 @@ impl Cleaned {
         String::from_utf8_lossy(&self.bytes).into_owned()
     }
 
-    /// Puts white space in the place of comments that begin with `//` or `/*`, where a word could begin.
+    /// Replaces by white space the comments that begin with `//` or `/*`, where a word could begin.
     fn comments(&mut self) {
         let text = self.text();
         let (mut at, mut may_begin) = (0, true);
@@ -161,7 +162,7 @@ impl Cleaned {
         }
     }
 
-    /// Puts three numbers in the place of each colour such as `#8080ff` that follows a word on its line.
+    /// Replaces each colour such as `#8080ff` that follows a word on its line by three numbers.
     fn colours(&mut self) {
         let text = self.text();
         let mut start = 0;
@@ -237,7 +238,7 @@ impl Cleaned {
         }
     }
 
-    /// Puts white space in the place of brackets, commas, `=` and `;` around values.
+    /// Replaces brackets, commas, `=` and `;` around values by white space.
     fn marks(&mut self) {
         let text = self.text();
         let nowhere = &mut Report::default();
@@ -309,7 +310,7 @@ impl Cleaned {
     }
 }
 
-/// Tells whether this is what no values have: other programs put it around and between them.
+/// Tells whether this character is never part of a value: other programs put it around and between values.
 fn is_mark(c: char) -> bool {
     matches!(c, '<' | '>' | '(' | ')' | '[' | ']' | ',' | ';' | '=')
 }

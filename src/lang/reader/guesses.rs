@@ -1,4 +1,5 @@
-//! Finds attributes by their names, tells them from values, and guesses which one a misspelt word was meant to be.
+//! Finds attributes by their names, tells attributes from values, and guesses which attribute a misspelt word was meant
+//! to be.
 
 use crate::registry::Registry;
 use std::collections::HashMap;
@@ -87,8 +88,8 @@ pub struct Tables {
 }
 
 impl Tables {
-    /// Returns the index of the table of the entity type of this name or alias. Most entities are of the type of the one
-    /// before.
+    /// Returns the index of the table of the entity type with this name or alias. Most entities have the type of the
+    /// entity before.
     pub fn named(&mut self, registry: &Registry, name: &str) -> Option<usize> {
         if self.all.get(self.last).is_none_or(|table| table.entity.name != name) {
             self.last = self.of(registry.find(name)?);
@@ -142,8 +143,8 @@ pub fn near_attribute(
     near.and_then(|name| find_attribute(entity, name))
 }
 
-/// Tells whether a word is a value, rather than the next attribute: there are some `already`, and in a text that is being
-/// written it may be on a line below them.
+/// Tells whether a word is a value rather than the next attribute. A number of values stand before it `already`, and in
+/// a text that is being written the word may be on a line below them.
 pub fn is_value(
     table: Option<&Table>,
     attribute: Option<&KnownAttribute>,

@@ -75,7 +75,8 @@ fn in_another_language(place: Range<usize>, what: &str) -> Fault {
         .help("`tabray new scene NAME` writes a scene to start from; `tabray list` lists the entity types")
 }
 
-/// Returns the report on a text that is not read as a scene: the one given, or that it is one in another language.
+/// Returns the report on a text that cannot be read as a scene: the given one, or a report that the text is in another
+/// language.
 pub fn recognised(
     registry: &Registry,
     report: Report<'static>,
@@ -158,7 +159,8 @@ fn of_surfaces(name: &str, text: &str) -> Option<Fault> {
 /// The endings of the names of files of meshes.
 const MESHES: [&str; 5] = [".glb", ".gltf", ".obj", ".ply", ".stl"];
 
-/// Returns the report on a file that is no text: the one given, or that it is a mesh by its name.
+/// Returns the report on a file that is not text: the given one, or a report that the file is a mesh according to its
+/// name.
 pub fn of_bytes(report: Report<'static>, name: &str) -> Report<'static> {
     let Some(fault) = of_meshes(name, "") else { return report };
     let mut report = Report::new(name, String::new(), Syntax::default());

@@ -5,7 +5,8 @@ use tabray_core::scene::entity::Args;
 use tabray_core::scene::value::Datum;
 use tabray_core::text::short;
 
-/// The least brightest channel of such a colour. Scenes have colours of up to some tens, where objects are far away.
+/// The least value of the brightest channel of such a colour. Scenes have colours of up to some tens, where objects are
+/// far away.
 const LEAST: f64 = 100.0;
 
 /// Returns a warning if a material's colour has the numbers of levels from 0 to 255, and the attribute that has them.

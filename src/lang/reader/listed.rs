@@ -1,5 +1,5 @@
-//! What a scene in TOML says, in the order of its text: entities, and numbers, files and rounds, from which more entities
-//! follow.
+//! The content of a scene in TOML, in the order of its text: entities, and numbers, files and rounds that lead to more
+//! entities.
 
 use super::fault::Severity;
 use super::guesses::Tables;

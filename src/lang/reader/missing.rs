@@ -6,10 +6,11 @@ use hashbrown::HashSet;
 use std::collections::{BTreeMap, btree_map};
 use std::hash::Hash;
 
-/// The maximum number of different missing names of one sort that are kept. Of more, only the number is known.
+/// The maximum number of different missing names of one sort that are kept. Further names are only counted.
 const MAX_MISSING: usize = 10_000;
 
-/// Names of which a scene has no entity or no type, so many that a scene of nothing else takes little memory.
+/// Names for which a scene has no entity or no type. Their number is limited, so that a scene that consists of such
+/// names takes little memory.
 pub struct Missing<K> {
     /// The first names, each with its first place and the number of its places.
     pub names: BTreeMap<(K, String), (Place, usize)>,

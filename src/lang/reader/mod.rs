@@ -88,7 +88,7 @@ pub struct Loaded {
 /// overrides the scene's own.
 ///
 /// # Errors
-/// Every fault of the scene, warnings among them, in the order of the text.
+/// Returns all faults of the scene, including warnings, in the order of the text.
 pub fn read(
     registry: &Registry,
     name: &str,
@@ -102,7 +102,7 @@ pub fn read(
 /// Reads a scene as [`read`] does, but with the choices of [`ReadOptions`].
 ///
 /// # Errors
-/// Every fault of the scene, warnings among them, in the order of the text.
+/// Returns all faults of the scene, including warnings, in the order of the text.
 pub fn read_by(
     registry: &Registry,
     name: &str,
@@ -130,10 +130,10 @@ pub fn read_by(
     })
 }
 
-/// Reads a scene of which only rays are asked, as [`read_by`] does. A scene without a camera is given one.
+/// Reads a scene as [`read_by`] does, for questions about rays only. A scene without a camera is given one.
 ///
 /// # Errors
-/// Every fault of the scene, warnings among them, in the order of the text.
+/// Returns all faults of the scene, including warnings, in the order of the text.
 pub fn read_for_rays(
     registry: &Registry,
     name: &str,
@@ -149,7 +149,7 @@ pub fn read_for_rays(
     })
 }
 
-/// Tells whether nothing in a scene can be seen, of which the warnings of reading it tell.
+/// Tells whether nothing in a scene can be seen, as the warnings of reading the scene say.
 pub fn is_black(model: &Model) -> bool {
     unseen::warning(model).is_some()
 }
@@ -210,7 +210,7 @@ fn read_text(
         return finish(all, registry, report, options);
     }
     drop(all);
-    // All syntax errors are reported before all other faults. After too many, nothing else is.
+    // All syntax errors are reported before all other faults. After too many syntax errors, nothing else is reported.
     let (mut report, mut nowhere) = (begin(), report::Report::default());
     statements::parse(registry, &sources, &mut report);
     if report.has_enough() {
@@ -280,7 +280,7 @@ fn read_list<'s>(
 /// ```
 ///
 /// # Errors
-/// Every fault of the scene, without places.
+/// Returns all faults of the scene, without places.
 pub fn build(
     registry: &Registry,
     parsed: impl IntoIterator<Item = Parsed<'static>>,

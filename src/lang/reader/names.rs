@@ -38,7 +38,7 @@ struct First {
     order: u32,
 }
 
-/// The names of a scene, as far as the scene has been checked. Their letters are in the [`Store`].
+/// The names of the part of a scene that has been checked. Their letters are in the [`Store`].
 #[derive(Default)]
 pub struct Names {
     hasher: DefaultHashBuilder,
@@ -243,7 +243,7 @@ fn known(store: &Store, kinds: impl Iterator<Item = Kind>) -> BTreeMap<Kind, Vec
     known
 }
 
-/// Returns the name of the entity in which a place is: the last one whose name comes before it.
+/// Returns the name of the entity that contains a place: the last entity whose name comes before the place.
 fn owner<'s>(store: &'s Store, place: impl Fn(usize) -> Place, at: &Place) -> Option<&'s str> {
     let (at, mut orders) = (at.as_ref()?.start, 0..store.count());
     while !orders.is_empty() {
@@ -285,7 +285,7 @@ fn is_of(store: &Store, first: &First, hash: u32, kind: Kind, name: &str) -> boo
         && store.name(order) == name
 }
 
-/// Returns a default entity, in place of one that is faulty or missing. All of a kind are the same.
+/// Returns a default entity that stands for a faulty or missing one. All default entities of a kind are the same.
 pub fn placeholder(kind: Kind) -> Datum {
     match kind {
         Kind::Object => return Datum::Object { name: Arc::from(""), body: NamedBody::default() },

@@ -13,7 +13,7 @@ use std::ops::Range;
 use tabray_core::scene::kind::Kind;
 use tabray_core::scene::value::Type;
 
-/// Parses the entity that begins at a byte of a text once more; what is wrong with it is reported already.
+/// Parses again the entity that begins at a byte of a text. Its faults have already been reported.
 pub fn again<'a>(registry: &Registry, text: &'a str, at: usize) -> Option<Parsed<'a>> {
     let mut nowhere = Report::default();
     let mut entity = None;
@@ -50,7 +50,7 @@ pub enum Node<'a> {
 pub struct Statement<'a> {
     pub keyword: Keyword,
     pub first: Token,
-    /// The words after it: a file, a name and a value, or a name and a count. One that is missing is reported.
+    /// The words after the keyword: a file, a name and a value, or a name and a count. A missing word is reported.
     pub words: [Option<Word<'a>>; 2],
     /// The brace before what is repeated.
     pub open: Option<Token>,
@@ -62,8 +62,8 @@ pub struct Grammar<'a, 'r> {
     pub tokens: Tokens<'a>,
     pub report: &'r mut Report<'a>,
     pub tables: Tables,
-    /// Whether the text is being written: then a line break ends values before an attribute, and an entity ends what is
-    /// half written before it; and all values are kept.
+    /// Whether the text is being written: then a line break ends values before an attribute, and an entity ends the
+    /// unfinished entity before it; and all values are kept.
     is_draft: bool,
     /// The place of the token read last.
     pub before: Range<usize>,
@@ -157,8 +157,8 @@ impl<'a, 'r> Grammar<'a, 'r> {
             || has_entities(self.registry, self.tokens.text).is_some()
     }
 
-    /// Reads the next part, an entity in the memory of another one if there is one. In what `is_repeated`, a brace is the
-    /// end of it.
+    /// Reads the next part. An entity reuses the memory of another one if there is one. In a text that `is_repeated`, a
+    /// brace ends the text.
     pub fn next(&mut self, is_repeated: bool, memory: &mut Option<Parsed<'a>>) -> Option<Node<'a>> {
         if let Some(keyword) = self.keyword() {
             self.statement(keyword).map(Node::Statement)

@@ -1,4 +1,4 @@
-//! The named numbers and the functions of a scene, and formulas in place of numbers.
+//! The named numbers and the functions of a scene, and formulas that stand for numbers.
 
 use super::fault::{Fault, Place, Severity};
 use super::parsed::{Form, Word};
@@ -21,7 +21,7 @@ const FUNCTION: &str = "write a function as `let f(u, v) \"u^2 + v\"`";
 /// A number or a function that a scene names.
 struct Number {
     name: String,
-    /// `None` if what it should be is faulty: then nothing that uses it is reported.
+    /// `None` if the definition is faulty: then uses of the name are not reported.
     value: Option<Meant>,
     place: Place,
 }
@@ -222,8 +222,8 @@ impl<'a> Numbers<'a> {
         self.named(used, |named| Formula::parse_with(&word.text, variables, named))
     }
 
-    /// Calls a function with what names stand for, and notes the numbers among them; functions count as 0, and what is faulty as
-    /// NaN.
+    /// Calls a function with the meanings of names, and notes which of them are numbers. Functions count as 0, and
+    /// faulty definitions as NaN.
     fn named<T>(&self, used: &mut Vec<(String, f64)>, parse: impl FnOnce(Named<'_>) -> T) -> T {
         let seen = RefCell::new(used);
         parse(&|name| {

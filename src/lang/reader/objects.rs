@@ -1,4 +1,4 @@
-//! Constructs the objects and the lights of a scene, which may ask for what the whole scene has.
+//! Constructs the objects and the lights of a scene, which may depend on the whole scene.
 
 use super::check::{Check, PIECE, Source, TOGETHER, place_of};
 use super::fault::Fault;
@@ -193,7 +193,7 @@ fn only_free(attribute: Option<&'static str>) -> Refusal {
     }
 }
 
-/// Returns the objects that are seen of a body, with their own materials or the one that the record names.
+/// Returns the visible objects of a body, with their own materials or with the material that the record names.
 fn objects(record: Record, mut body: Body) -> impl Iterator<Item = Object> {
     let more = take(&mut body.more);
     iter::once(body).chain(more).filter_map(move |body| {

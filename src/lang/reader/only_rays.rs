@@ -18,7 +18,8 @@ position = [0, 0, 1]
 target = [0, 0, 0]
 angle = 40";
 
-/// Returns the text of a scene of which only rays are asked: the mesh in a file, which is named relative to the scene's folder.
+/// Returns the text of a scene for questions about rays only. The scene consists of the mesh in a file, whose name is
+/// relative to the scene's folder.
 pub fn mesh_for_rays(file: &Path) -> String {
     let text = |part: Option<&OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
     let (name, file) = (text(file.file_stem()), Datum::Word(text(file.file_name())));

@@ -22,7 +22,7 @@ pub struct ReadOptions<'s> {
     /// Whether only rays are asked about, so that nothing is said of the image.
     pub only_rays: bool,
     /// The limit on the memory of the scene's textures and of its objects' files, in bytes; by default 1 GiB for the
-    /// textures, and none for the objects, which take little more than their files do.
+    /// textures, and no limit for the objects, which take little more memory than their files.
     pub memory: Option<u64>,
     /// The caller's clock, for the time that making a model takes: the time since some moment.
     pub clock: Option<fn() -> Duration>,

@@ -10,8 +10,8 @@ pub struct TextPart {
     pub name: String,
     /// The part's range of the whole text, in bytes.
     pub range: Range<usize>,
-    /// Where a file is included whose name is not that of a scene: of such a file, messages show nothing, because it may be
-    /// any file of the machine.
+    /// The place where a file is included whose name is not that of a scene. Messages show nothing of such a file,
+    /// because it may be any file of the machine.
     pub included_at: Option<Range<usize>>,
 }
 

@@ -1,5 +1,5 @@
-//! Checks and packs entities in which nothing is wrong; whatever else there is,
-//! [`AttributeChecker`](super::attributes::AttributeChecker) explains.
+//! Checks and packs entities without faults. All other entities are left to
+//! [`AttributeChecker`](super::attributes::AttributeChecker), which explains what is wrong.
 
 use super::guesses::{Table, Tables};
 use super::names::Names;
@@ -66,7 +66,8 @@ impl<'r> Quick<'r> {
         })
     }
 
-    /// Checks objects and lights in place of others. What they refer to must be defined.
+    /// Checks objects and lights, and keeps them instead of those checked before. The entities that they refer to must
+    /// be defined.
     pub fn check(&mut self, names: &Names, store: &Store, parsed: &[&Parsed<'_>]) {
         self.bytes.clear();
         self.entities.clear();

@@ -13,8 +13,8 @@ const MAX_LISTED: usize = 8;
 
 impl Names {
     /// Warns of names that several entities have: once for each name, or once for all of them where they are many.
-    /// `place` returns the place of the name of the entity of an order. If they `may_share` one, there is no warning of
-    /// entities that are all used.
+    /// `place` returns the place of an entity's name, given the entity's order. If entities `may_share` a name, there
+    /// is no warning where all of them are used.
     pub fn report_repeated(
         &self,
         store: &Store,
@@ -66,8 +66,8 @@ impl Names {
         }
     }
 
-    /// Returns the names that several entities have: those of which all but the first are left out, and those of which all are
-    /// used.
+    /// Returns the names that several entities have: first the names for which only the first entity is used, then the
+    /// names for which all entities are used.
     fn repeated<'s>(&self, store: &'s Store) -> [Vec<Repeated<'s>>; 2] {
         let (mut left_out, mut shared) = (Vec::new(), Vec::new());
         for (first, RepeatedClaims { again, .. }) in &self.again {
@@ -111,7 +111,7 @@ impl<'n> Repeated<'n> {
     }
 }
 
-/// Returns names that are repeated. Of more than [`MAX_LISTED`], the first stands for all.
+/// Returns repeated names. If there are more than [`MAX_LISTED`], the first name stands for all.
 fn few(mut all: Vec<Repeated<'_>>, is_placed: bool) -> Vec<Repeated<'_>> {
     // Entities without places come in the order of their names.
     all.sort_unstable_by_key(|repeated| (is_placed.then_some(repeated.orders[1]), repeated.text));

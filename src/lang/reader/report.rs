@@ -16,8 +16,8 @@ use tabray_core::text;
 /// counted.
 const MAX_LISTED: usize = 100;
 
-/// The maximum number of faults differing only in their places that are listed separately. Of more, only the first is
-/// listed, with their number.
+/// The maximum number of faults differing only in their places that are listed separately. If there are more, only the
+/// first is listed, with their number.
 const MAX_ALIKE: usize = 8;
 
 /// The maximum number of repeated ranges of a text that are kept.
@@ -48,7 +48,7 @@ struct Notes {
     guesses: Guesses,
     /// The parts of the text, if there are several.
     parts: Vec<TextPart>,
-    /// The ranges of the text that are read more than once. Of the faults at one place of them, one is listed.
+    /// The ranges of the text that are read more than once. At each place in such a range, only one fault is listed.
     repeated: Vec<Range<usize>>,
 }
 
@@ -64,7 +64,7 @@ impl<'t> Report<'t> {
         self
     }
 
-    /// Notes that a range of the text is read more than once: of the faults at one place there, one is listed.
+    /// Notes that a range of the text is read more than once: at each place in it, only one fault is listed.
     pub(super) fn repeat(&mut self, range: Range<usize>) {
         if self.notes.repeated.len() < MAX_REPEATED {
             self.notes.repeated.push(range);
@@ -80,7 +80,7 @@ impl<'t> Report<'t> {
         Report { name, text: text.into(), syntax, faults, notes, files }
     }
 
-    /// Leaves out the places of all faults, where nobody wrote the text that they are in.
+    /// Leaves out the places of all faults, for a text that nobody wrote.
     pub fn without_places(mut self) -> Self {
         for fault in &mut self.faults {
             fault.place = None;
@@ -113,7 +113,7 @@ impl<'t> Report<'t> {
         }
     }
 
-    /// Replaces a fault in a part of which nothing is shown; tells whether it is in one.
+    /// Replaces a fault in a part whose text is not shown; tells whether the fault is in such a part.
     fn conceal(&self, fault: &mut Fault) -> bool {
         let part_at = |place: &Place| {
             let place = place.as_ref()?;

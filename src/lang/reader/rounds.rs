@@ -31,7 +31,7 @@ pub struct Rounds<'a> {
     /// How many rounds and repeated entities there were, and the length of their texts, in bytes.
     count: usize,
     bytes: usize,
-    /// The ranges of the text that are read more than once, as far as they are not yet taken.
+    /// The ranges of the text that are read more than once and that have not been taken yet.
     repeated: Vec<Range<usize>>,
 }
 
@@ -68,7 +68,7 @@ impl<'a> Rounds<'a> {
         !self.open.is_empty()
     }
 
-    /// Gives an entity the name of this round, and numbers in place of formulas and of what is set.
+    /// Gives an entity the name of this round, and replaces formulas and set values by numbers.
     pub fn entity(
         &mut self,
         entity: &mut Parsed<'a>,
@@ -195,8 +195,8 @@ impl<'a> Rounds<'a> {
         self.open[..depth].iter().map(|round| format!("_{}", round.index)).collect()
     }
 
-    /// Returns a word of an attribute's values with numbers in place of formulas, and the name of the entity of this
-    /// round in place of that in the body.
+    /// Returns a word of an attribute's values with formulas replaced by numbers, and with the name of an entity in the
+    /// body replaced by the name of that entity in this round.
     fn word(&mut self, word: Word<'a>, value_type: Option<Type>, report: &mut Report<'_>) -> Word<'a> {
         if let Some(Type::Name(_) | Type::Choice(Choices { kind: Some(_), .. })) = value_type {
             let depth = self.open.iter().rposition(|round| round.entities.contains(&*word.text));

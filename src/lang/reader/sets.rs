@@ -69,7 +69,7 @@ impl<'a> Sets<'a> {
         found
     }
 
-    /// Gives an entity the values that are set for it, with numbers in place of formulas.
+    /// Gives an entity the values that are set for it, with formulas replaced by numbers.
     pub fn apply(
         &mut self,
         entity: &mut Parsed<'a>,
@@ -86,7 +86,7 @@ impl<'a> Sets<'a> {
         self.put(entity, registry, Some((numbers, report)));
     }
 
-    /// Gives an entity the words that are set for it, with numbers in place of formulas where these are given.
+    /// Gives an entity the words that are set for it. Where named numbers are given, formulas are replaced by numbers.
     pub fn put(
         &self,
         entity: &mut Parsed<'a>,

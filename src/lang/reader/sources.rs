@@ -33,7 +33,7 @@ pub struct Sources<'t> {
     pub text: Cow<'t, str>,
     /// The parts of the text; empty if it is one.
     pub parts: Vec<TextPart>,
-    /// The part that each `include` includes, by the place at which its file is named, or why it cannot.
+    /// The part that each `include` includes, or why it cannot be included, by the place at which the file is named.
     includes: HashMap<usize, Result<usize, Fault>>,
     /// The range of the scene's own text.
     pub own: Range<usize>,
@@ -198,7 +198,7 @@ impl<'t> Sources<'t> {
 /// What is wrong with a file that is included, and what would be right.
 type Refused = (String, Option<String>);
 
-/// Checks that a file includes itself in no way, and that there are not too many.
+/// Checks that a file does not include itself, directly or through others, and that there are not too many files.
 fn may_include(readings: &[OpenSource], includer: usize, file: &str, path: &Path) -> Result<(), Refused> {
     let same = |other: &Path| match (other.canonicalize(), path.canonicalize()) {
         (Ok(other), Ok(path)) => other == path,

@@ -182,7 +182,7 @@ pub fn body(text: &str, start: usize) -> (HashSet<String>, usize) {
             _ => {}
         }
         let is_repeat = token.form == TokenForm::Word && tokens.raw(token) == "repeat";
-        // A `repeat` has two words before its brace, of which none is the name of an entity.
+        // A `repeat` has two words before its brace. Neither is the name of an entity.
         before = match (token.is_brace(), before) {
             (true, _) => [None; 2],
             (false, _) if is_repeat && depth == 0 => [None; 2],

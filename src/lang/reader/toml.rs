@@ -150,8 +150,8 @@ pub fn part(text: &str, part: Range<usize>) -> Vec<Statement<'_>> {
     }
 }
 
-/// Returns the type and the name of what other parts may name, too. Values by name and `include` stand before the first
-/// title.
+/// Returns the type and the name of a statement that other parts may also have. Values by name and `include` stand
+/// before the first title.
 fn name<'s>(statement: &'s Statement<'_>) -> Option<(&'s str, &'s str)> {
     match statement {
         Statement::Entity(entity) => Some((entity.kind.text.as_ref(), entity.name.text.as_ref())),
@@ -167,8 +167,8 @@ fn one(text: &str, part: Range<usize>, start: usize) -> Outcome<'_> {
     if !errors.iter().all(is_duplicate) {
         return Outcome::Broken;
     }
-    // A part goes on where the one before ends, unless it begins with a title. And a title of one word may be that of what
-    // other parts have, too.
+    // A part goes on where the one before ends, unless it begins with a title. And other parts may have the same title
+    // of one word.
     let has_own_title = at == 0 || text.lines().next().is_some_and(is_title);
     let is_whole = |line: &str| !line.trim_start().starts_with('[') || is_title(line);
     if !errors.is_empty() || !has_own_title || !text.lines().all(is_whole) {
@@ -183,7 +183,7 @@ fn one(text: &str, part: Range<usize>, start: usize) -> Outcome<'_> {
     Outcome::Statements(statements)
 }
 
-/// Tells whether two parts name the same, which is several entities, or a duplicate.
+/// Tells whether two parts use the same name, either for several entities or as a duplicate.
 fn depend_on_each_other(parts: &[Vec<Statement<'_>>]) -> bool {
     let mut known = HashMap::new();
     for (index, part) in parts.iter().enumerate() {

@@ -71,7 +71,8 @@ fn is_dark(object: &Object) -> bool {
     object.shader.brightest(&object.material).is_some_and(|look| look.ambient == Rgb::ZERO)
 }
 
-/// Tells whether all objects have bounds of which this is so. At the first other one, no more are asked for.
+/// Tells whether all objects have bounds for which a condition holds. The search ends at the first object for which it
+/// does not hold.
 fn all_are(model: &Model, is_so: impl Fn(&Aabb) -> bool) -> bool {
     model.objects.iter().all(|object| object.shape.facts().bounds.is_some_and(|bounds| is_so(&bounds)))
 }

@@ -13,7 +13,7 @@ use tabray_exact::formula::Formula;
 /// Reads words as values of a type.
 ///
 /// # Errors
-/// A fault for each word that is not a value of the type.
+/// Returns a fault for each word that is not a value of the type.
 pub fn read(value_type: Type, words: &[Word<'_>]) -> Result<Datum, Vec<Fault>> {
     match value_type {
         Type::Whole => all(words, whole).map(Datum::Whole),

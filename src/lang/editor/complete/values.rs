@@ -1,4 +1,4 @@
-//! The attributes of an entity that are not given yet, and the values of one that is.
+//! The attributes of an entity that are not given yet, and the values of an attribute that is given.
 
 use super::proposal::{Completion, CompletionContext, CompletionKind, plain};
 use crate::editor::hover::about;

@@ -1,4 +1,4 @@
-//! What the codes of a scene of numbers stand for, and the lines that follow each.
+//! The meanings of the codes in a scene of numbers, and the lines that follow each code.
 
 /// What a code stands for.
 pub struct Code {
@@ -161,7 +161,7 @@ pub const PROJECTOR: u32 = 12;
 /// The code of a light.
 pub const LIGHT: u32 = 10;
 
-/// The first lines after the viewpoint that tell of more lines of each material.
+/// The first lines after the viewpoint that announce additional lines for each material.
 pub const TRANSPARENCY: u32 = 9000;
 pub const REFRACTION: u32 = 9001;
 
@@ -199,7 +199,7 @@ pub const MATERIAL: [Numbers; 5] = [
 ];
 
 impl Code {
-    /// Says which lines follow the code, of materials with so many lines, and how many numbers each has.
+    /// Says which lines follow the code, given the number of lines of a material, and how many numbers each line has.
     pub fn usage(&self, of_material: usize) -> String {
         let mut lines = Vec::new();
         for line in self.lines {

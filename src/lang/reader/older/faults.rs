@@ -42,7 +42,8 @@ pub fn unread(code: u32, place: Range<usize>) -> Option<Fault> {
     Some(Fault::error(Some(place), *message).help("leave its lines out"))
 }
 
-/// The object whose lines are read, for messages: what it is called, the place of its code, and what follows that.
+/// The object whose lines are read, for messages: its name in messages, the place of its code, and the lines that
+/// follow the code.
 pub struct Context {
     pub name: &'static str,
     pub place: Option<Range<usize>>,

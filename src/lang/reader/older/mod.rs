@@ -22,7 +22,7 @@ use std::ops::Range;
 use std::path::Path;
 use unmapped::Unmapped;
 
-/// What most of these scenes have in their first two lines: the world's size and the viewpoint.
+/// The usual first two lines of these scenes: the world's size and the viewpoint.
 const USUAL: ([f64; 2], [f64; 3]) = ([8.0, 6.0], [0.0, 0.0, 3.0]);
 
 /// Tells whether a text is such a scene. No scene in the language of words, or in TOML, is.
@@ -213,8 +213,8 @@ impl<'a> Reader<'a, '_, '_> {
         true
     }
 
-    /// Reads the lines that follow a code. Returns `None` where it is in doubt which lines are meant, and an error where
-    /// they are wrong in themselves.
+    /// Reads the lines that follow a code. Returns `None` where it is unclear which lines belong to the code, and an
+    /// error where the lines themselves are wrong.
     fn lines_of(&mut self, code: &'static Code, place: Range<usize>) -> Option<Result<Found<'a>, ()>> {
         let context =
             Context { name: code.name, place: Some(place.clone()), usage: code.usage(self.of_material) };
@@ -262,7 +262,8 @@ impl<'a> Reader<'a, '_, '_> {
         given.flatten()
     }
 
-    /// Reads a line of numbers. Returns `None` where it has too few, and nothing in it where they are not what they must be.
+    /// Reads a line of numbers. Returns `None` where the line has too few numbers, and `Some(None)` where their values
+    /// are not allowed.
     fn checked(&mut self, line: Numbers, context: &Context) -> Option<Option<Given>> {
         let Some(row) = self.next() else {
             self.report.add(faults::ends_early(line.name, context, self.end));

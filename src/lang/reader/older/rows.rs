@@ -1,4 +1,5 @@
-//! The lines of a scene of numbers. Each begins with as many numbers as are wanted there; the rest of it is a comment.
+//! The lines of a scene of numbers. Each line begins with the numbers that are expected there; the rest of the line is
+//! a comment.
 
 use std::ops::Range;
 
@@ -70,7 +71,8 @@ impl<'a> Row<'a> {
         self.numbers(2).into_iter().nth(1).filter(|index| !index.is_joined)
     }
 
-    /// Returns what looks like more digits of the number that ends at this position of the whole text: `,5` after `1`.
+    /// Returns the text that looks like further digits of the number ending at this position of the whole text: `,5`
+    /// after `1`.
     pub fn more_digits(&self, number: &Number) -> Option<&'a str> {
         let rest = &self.text[number.place.end - self.start..];
         let digits = rest.strip_prefix([',', '.', '-', '+'])?;
