@@ -1,5 +1,5 @@
-//! Opens files that a scene or a command names; the path may lead to something else than a file, or out of a folder that the
-//! program is confined to.
+//! Opens files that a scene or a command names; the path may lead to something other than a file, or out of a folder
+//! that the program is confined to.
 
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, BufRead, Seek};
@@ -17,7 +17,7 @@ static ROOT: OnceLock<PathBuf> = OnceLock::new();
 /// Confines the program to a folder, once and for good: outside of it, nothing is opened.
 ///
 /// # Errors
-/// Those of the system, and an error where the path does not lead to a folder.
+/// Returns the errors of the system, and an error where the path does not lead to a folder.
 pub fn confine(root: &Path) -> io::Result<()> {
     let root = root.canonicalize()?;
     if !root.is_dir() {
@@ -27,11 +27,11 @@ pub fn confine(root: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Refuses a path that leads out of the folder that the program is confined to, by its real path: after all links. What does
-/// not exist is where the nearest folder that does is.
+/// Refuses a path that leads out of the folder that the program is confined to, by its real path: after all links. A
+/// path that does not exist counts as lying where its nearest existing folder lies.
 ///
 /// # Errors
-/// An error that says so.
+/// Returns an error if the path leads outside.
 pub fn refuse_outside(path: &Path) -> io::Result<()> {
     let is_inside = |root: &PathBuf| {
         let around = |path: &Path| match path.parent() {
@@ -64,10 +64,11 @@ pub fn refuse_outside(path: &Path) -> io::Result<()> {
 /// end.
 ///
 /// # Errors
-/// Those of the system, and an error where the path does not lead to a file, or [leads outside](refuse_outside).
+/// Returns the errors of the system, and an error where the path does not lead to a file, or [leads
+/// outside](refuse_outside).
 pub fn open(path: &Path) -> io::Result<File> {
     refuse_outside(path)?;
-    // Opening a device may already do something. What is opened may be something else by then.
+    // Opening a device may already have an effect. By the time of opening, the path may lead to something else.
     refuse_other(&fs::metadata(path)?)?;
     let file = without_waiting().read(true).open(path)?;
     refuse_other(&file.metadata()?)?;
@@ -84,8 +85,8 @@ fn refuse_other(kind: &Metadata) -> io::Result<()> {
     Ok(())
 }
 
-/// Returns options of opening and reading that never wait: some files of the system's, as `/proc/kmsg`, have more to read
-/// only later.
+/// Returns options of opening and reading that never wait: some files of the system, such as `/proc/kmsg`, have more to
+/// read only later.
 fn without_waiting() -> OpenOptions {
     #[cfg_attr(not(unix), allow(unused_mut, reason = "only there is something to be set"))]
     let mut options = OpenOptions::new();

@@ -1,7 +1,7 @@
 //! Memory that may be refused.
 //!
 //! Rust ends a program if memory is refused, unless the code asked for memory in a way that can fail. A program whose
-//! allocator tells the user of refused memory can find out here which of the two it is.
+//! allocator tells the user of refused memory can find out here whether the refused allocation was one that may fail.
 
 use std::cell::Cell;
 

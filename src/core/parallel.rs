@@ -4,8 +4,8 @@
 //! each core. Where there are none, as on a system that refuses them or in a browser, the calling thread does all of the
 //! work.
 //!
-//! What rayon offers is generic in all that a loop does, and each loop so written is some thousand lines for the compiler.
-//! Here that code is compiled once, and only what a loop does itself for each.
+//! The functions of rayon are generic in everything that a loop does, so that each loop costs the compiler some
+//! thousand lines. Here that code is compiled once, and only the body of a loop is compiled for each.
 
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -109,7 +109,7 @@ pub fn map_ranges<T: Send>(
     all
 }
 
-/// Returns the first index below a number for which some question is answered with yes.
+/// Returns the first index below a number for which a condition holds.
 pub fn find_first(count: usize, is: impl Fn(usize) -> bool + Sync) -> Option<usize> {
     map_ranges(count, 2, &|mut range| range.find(|index| is(*index)).into_iter().collect()).first().copied()
 }

@@ -39,8 +39,8 @@ pub fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Opti
             }
             left = left.checked_sub(count * letters)?;
             let distance = strsim::damerau_levenshtein(&lower, candidate);
-            // Of words that are equally far, one to which something was added, and then the one that has more letters in
-            // the same places.
+            // Among words that are equally far, a word to which letters were added comes first, and then the word with
+            // more letters in the same places.
             let unlike = || match lower.starts_with(candidate) || lower.ends_with(candidate) {
                 true => 0.0,
                 false => 1.0 - strsim::jaro(&lower, candidate),
@@ -114,8 +114,8 @@ pub fn visible(text: &str) -> Cow<'_, str> {
     visible_but(text, &[])
 }
 
-/// Writes characters that are not seen as [`visible`] does, but keeps line ends and tabs: what people read on a terminal
-/// or on a page.
+/// Writes characters that are not seen as [`visible`] does, but keeps line ends and tabs: for texts that people read on
+/// a terminal or on a page.
 pub fn visible_lines(text: &str) -> Cow<'_, str> {
     visible_but(text, &['\n', '\t'])
 }
@@ -134,7 +134,8 @@ fn visible_but<'t>(text: &'t str, kept: &[char]) -> Cow<'t, str> {
     Cow::Owned(shown)
 }
 
-/// Writes a path, or another word of the system, for people: as [`visible`] does, and bytes that are no UTF-8 as `\xff`.
+/// Writes a path, or another word of the system, for people: as [`visible`] does, and bytes that are not UTF-8 as
+/// `\xff`.
 pub fn shown(word: impl AsRef<OsStr>) -> String {
     let mut shown = String::new();
     for chunk in word.as_ref().as_encoded_bytes().utf8_chunks() {
@@ -149,8 +150,8 @@ pub fn boundary(text: &str, at: usize) -> usize {
     (0..=at.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0)
 }
 
-/// Quotes a word of a command for a shell. What is not seen, or is no UTF-8, is written as `$'\033'`, as bash, zsh, and
-/// POSIX of 2024 read it.
+/// Quotes a word of a command for a shell. Characters that are not seen, and bytes that are not UTF-8, are written as
+/// `$'\033'`, which bash, zsh, and POSIX of 2024 can read.
 pub fn quoted(word: &OsStr) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-./:=+,@%".contains(c);
     match word.to_str() {
@@ -274,7 +275,8 @@ pub fn json_in_lines(value: &impl Serialize) -> String {
     escaped(serde_json::to_string_pretty(value).expect(NAMED)) + "\n"
 }
 
-/// Escapes what is not seen in JSON. Except for line ends between values, it can stand in strings alone.
+/// Escapes the characters of JSON that are not seen. Except for line ends between values, such characters can stand
+/// only in strings.
 fn escaped(json: String) -> String {
     let is_shown = |letter: char| letter == '\n' || !is_unseen(letter);
     if json.chars().all(is_shown) {

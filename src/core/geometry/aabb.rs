@@ -73,7 +73,7 @@ pub fn clearance(from: DVec3, bounds: Option<Aabb>, is_clear_of: impl Fn(&Aabb) 
         return outside * (1.0 - SLACK);
     }
     // The largest clear cube around the point, to one eighth of its size. Its half size exceeds 1e-8 of the
-    // coordinates, so that rounding moves its sides by less than 1e-6 of it.
+    // coordinates, so that rounding moves the sides of the cube by less than 1e-6 of its size.
     let clear = |half: &f64| is_clear_of(&Aabb { low: from - *half, high: from + *half });
     let min_half = (1e4 * SLACK * scale).max(1e-12);
     let sizes = (-40..60).rev().map(power_of_two).take_while(|half| *half > min_half);

@@ -14,7 +14,7 @@ pub struct Facet {
     placement: Option<Placement>,
 }
 
-/// A plane, by numbers that are not rounded. Different numbers may describe the same plane.
+/// A plane, described by unrounded numbers. Different numbers may describe the same plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Plane {
     /// The points with this coordinate on an axis of the world: the exact sum of two numbers, of which the first is
@@ -25,8 +25,8 @@ enum Plane {
 }
 
 impl Facet {
-    /// Returns the facet of a triangle with this outward normal, which need not be exact; `None` where the triangle is not
-    /// across an axis.
+    /// Returns the facet of a triangle with this outward normal, which need not be exact; `None` where the triangle is
+    /// not perpendicular to an axis.
     pub(crate) fn of_triangle([a, b, c]: [DVec3; 3], normal: DVec3) -> Option<Self> {
         let axis = (0..3).find(|axis| a[*axis] == b[*axis] && b[*axis] == c[*axis])?;
         Some(Self::across(axis, (a[axis], 0.0), normal[axis] > 0.0))
@@ -47,7 +47,7 @@ impl Facet {
         Self { plane: Plane::Across { axis, at }, is_upward, placement: None }
     }
 
-    /// Returns the facet of a copy; `None` where it takes more than one placement to say where it lies.
+    /// Returns the facet of a copy; `None` where more than one placement is needed to say where the copy lies.
     pub fn placed(self, placement: Placement) -> Option<Self> {
         let Self { plane, is_upward, placement: None } = self else { return None };
         if let Plane::Across { axis, at: (high, low) } = plane

@@ -11,7 +11,7 @@ use tabray_exact::scalar::{Scalar, constants, dot, per_axis};
 pub use tabray_exact::roots::stretch::BLUR;
 
 /// Returns a bound of the rounding error of each coordinate of a point in a frame at this distance along a ray, in
-/// world units: that of [`BLUR`], and that of the direction of a camera ray, which is less than EPSILON.
+/// world units. It consists of [`BLUR`] and of the error of a camera ray's direction, which is less than EPSILON.
 #[inline(always)]
 pub fn blur(at: DVec3, distance: f64) -> f64 {
     BLUR * at.abs().element_sum() + 2.0 * f64::EPSILON * distance.abs()

@@ -30,7 +30,8 @@ pub(crate) fn side_of_plane(plane: [DVec3; 3], at: DVec3) -> Ordering {
     let error = TRIPLE_ERROR * size(a) * size(b) * size(c) + UNDERFLOW * (1.0 + size(c));
     known(a.cross(b).dot(c), error).unwrap_or_else(|| {
         let [a, b, c] = plane.map(|corner| between(at, corner));
-        // In twice the digits, which nearly always tell: sums of a few products of numbers up to 1, off by 2^-100 each.
+        // Twice the digits nearly always decide. The sums have a few products of numbers up to 1, and each is off by
+        // 2^-100.
         let part = |one: usize, other: usize| a[one] * b[other] - a[other] * b[one];
         let about = product([part(1, 2), part(2, 0), part(0, 1)], c);
         sign(if about.high.abs() > 1e-28 { about } else { triple_product(a, b, c) })

@@ -53,8 +53,8 @@ impl Bracket {
 
 /// A ray, and how far the rays that it stands for may be from it.
 ///
-/// A ray that was taken to a copy's own coordinates stands for all rays that rounding may have made it of. A ray of the
-/// world stands for itself: the rounding of a camera ray's direction, 3 units of 2^-53 in each component, is not counted
+/// A ray in a copy's own coordinates stands for all rays that rounding may have turned into it. A ray of the world
+/// stands for itself. The rounding of a camera ray's direction, 3 units of 2^-53 in each component, is not counted
 /// here, and shapes allow for it.
 #[derive(Clone, Copy, Debug)]
 pub struct RayBall {

@@ -85,12 +85,12 @@ impl<'r> RayPacket<'r> {
     }
 }
 
-/// The closest hits of a packet's rays, as far as they are known. All arrays have one element per ray.
+/// The closest known hits of a packet's rays. All arrays have one element per ray.
 pub struct Nearest<'n> {
     /// Lower bounds of the distance of the hit of the object in `hit_ids`, in world units.
     pub near: &'n mut [f64],
-    /// Upper bounds of that distance, equal to `near` where it is known exactly. Both are the end of the search where
-    /// nothing is hit.
+    /// Upper bounds of that distance, equal to `near` where the distance is known exactly. Where nothing is hit, both
+    /// bounds are the end of the search.
     pub far: &'n mut [f64],
     /// The object's index plus 1; 0 for no object.
     pub hit_ids: &'n mut [u64],
@@ -167,7 +167,7 @@ pub(crate) fn merge_nearest(
     for lane in 0..count {
         let Bracket { near: low, far: high } = brackets.get(lane, far[lane]);
         let is_nearer = high < near[lane];
-        // Of two hits at the same distance, the object that is earlier in the scene wins.
+        // If two hits have the same distance, the object that is earlier in the scene wins.
         let is_earlier = (low == far[lane]) & (hit_ids[lane] > id);
         let is_farther = (low >= far[lane]) & !is_earlier;
         // A minimum, not a choice between two values: the compiler would turn a choice into masked stores, which are

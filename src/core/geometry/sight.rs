@@ -17,7 +17,7 @@ use tabray_exact::scalar::{Scalar, constants, per_axis};
 pub struct Sight {
     origin: DVec3,
     toward: SightTarget,
-    /// The placement in whose coordinates the line is, if it is not in the world's.
+    /// The placement whose coordinates the line has, unless it has world coordinates.
     within: Option<Arc<PlacementChain>>,
 }
 
@@ -41,7 +41,7 @@ enum SightTarget {
     Ahead(Arc<(ViewFrame, f64, ImagePoint)>),
 }
 
-/// The numbers of a ray that are not those of the scene, but were computed from them and rounded.
+/// The numbers of a ray that do not come from the scene, but were computed from its numbers and rounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rounded {
     /// None.
@@ -106,12 +106,12 @@ impl Sight {
         }
     }
 
-    /// Returns a sight along a ray, taking all of its numbers for exact, including the length of its direction.
+    /// Returns a sight along a ray. All numbers of the ray count as exact, including the length of its direction.
     pub fn along(ray: &Ray) -> Self {
         Self { origin: ray.origin, toward: SightTarget::Direction(ray.dir, Rounded::Ray), within: None }
     }
 
-    /// Returns the ray from a point along a direction of any length but 0, whose numbers are those that are meant.
+    /// Returns the ray from a point along a direction of any length but 0. The numbers of both count as exact.
     pub fn exactly(origin: DVec3, dir: DVec3) -> Self {
         Self { origin, toward: SightTarget::Direction(dir, Rounded::Nothing), within: None }
     }
@@ -125,8 +125,8 @@ impl Sight {
         }
     }
 
-    /// Returns the sight whose [`line`](Self::line) is this one's in the own coordinates of a shape that is placed. What t
-    /// means does not change.
+    /// Returns the sight whose [`line`](Self::line) is the line of this one in the coordinates of a placed shape. The
+    /// meaning of t does not change.
     pub fn within(&self, placement: Placement) -> Self {
         let Self { origin, toward, within: outer } = self.clone();
         Self { origin, toward, within: Some(Arc::new(PlacementChain { placement, outer })) }

@@ -104,8 +104,8 @@ impl ViewFrame {
     }
 }
 
-/// Returns a point of an image in units of which half the image's width has this many, to the right and up from its
-/// middle.
+/// Returns a point of an image, to the right and up from its middle, in units such that half the image's width is this
+/// number of units.
 #[inline(always)]
 fn across(half: DoubleDouble, at: &ImagePoint) -> [DoubleDouble; 2] {
     // The same for all places of an image.

@@ -17,8 +17,9 @@ use serde::{Deserialize, Serialize};
 use std::io;
 use std::ops::ControlFlow;
 
-/// An image beside the main one (an arbitrary output variable). All but the colour, the cost, the samples, the colours of
-/// the error and what is undecided are taken along the ray through the centre of each pixel, however many samples the pixel has.
+/// An image beside the main one (an arbitrary output variable). All but the colour, the cost, the samples, the colours
+/// of the error and what is undecided are taken along the ray through the centre of each pixel, however many samples
+/// the pixel has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Aov {
@@ -63,11 +64,11 @@ pub enum Aov {
 pub struct Layer {
     /// Red, green and blue of each pixel, to be looked at.
     pub bytes: Vec<u8>,
-    /// The numbers behind the image, where they say more than the bytes. A normal is 0 where nothing is hit. Samples consist of their
-    /// number, the estimated error of the colour, and 1 where that is above the limit, else 0. An error consists of the
-    /// error of the colour, the root of the mean square over its channels; the error of the distance to the first hit,
-    /// in world units; and 1 where another object is hit, else 0. A proven bound consists of the bound, where 1 is white,
-    /// the number of footprints, and 1 where the bound is above the limit, else 0.
+    /// The numbers behind the image, where the numbers say more than the bytes. A normal is 0 where nothing is hit.
+    /// Samples consist of their number, the estimated error of the colour, and 1 where that is above the limit, else 0.
+    /// An error consists of the error of the colour, the root of the mean square over its channels; the error of the
+    /// distance to the first hit, in world units; and 1 where another object is hit, else 0. A proven bound consists of
+    /// the bound, where 1 is white, the number of footprints, and 1 where the bound is above the limit, else 0.
     pub numbers: Option<Numbers>,
     /// The number of rays of the most expensive pixel, and that pixel: its column from the left and its row from the
     /// bottom.
@@ -76,7 +77,8 @@ pub struct Layer {
     pub worst: Option<(f64, [usize; 2])>,
 }
 
-/// The grey of the farthest depth, as a fraction of white, so that it differs from the black where nothing is hit.
+/// The grey of the farthest depth, as a fraction of white, so that this depth differs from the black where nothing is
+/// hit.
 const FARTHEST: f64 = 0.1;
 
 named!(Aov {

@@ -6,7 +6,7 @@ use crate::render::plan::Plan;
 use crate::render::trace::{self, PixelBound};
 use glam::DVec3;
 
-/// The numbers of a pixel. What an image does not need is 0, and what there is not is NaN.
+/// The numbers of a pixel. A number that an image does not need is 0, and a number that does not exist is NaN.
 pub type Values = [f64; 3];
 
 impl Aov {

@@ -20,13 +20,13 @@ pub struct Comparison {
     pub rms: f64,
     /// The first pixel that differs by more than the tolerance, row by row from the top, each row from the left.
     pub first: Option<Pixel>,
-    /// The pixel with the largest difference of a channel, if it differs by more than the tolerance: of several, the one
-    /// whose channels differ by more together, and of these the first.
+    /// The pixel with the largest difference of a channel, if it differs by more than the tolerance: among several such
+    /// pixels, the one whose channels together differ most, and among equal ones the first.
     pub worst: Option<Pixel>,
 }
 
-/// The difference of two images of the same size, of which one at least has numbers of full range. Differences are in
-/// levels, of which there are 255 from black to white, and any number beyond.
+/// The difference of two images of the same size, at least one of them with numbers of full range. Differences are in
+/// levels. There are 255 levels from black to white, and further levels beyond.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FullRangeComparison {
     /// The number of pixels.
@@ -35,7 +35,8 @@ pub struct FullRangeComparison {
     pub tolerance: u8,
     /// The number of pixels that differ by more than the tolerance.
     pub differing: usize,
-    /// The largest difference of any channel; infinite where one number is NaN or infinite and the other is another.
+    /// The largest difference of any channel; infinite where one number is NaN or infinite and the other number is
+    /// different.
     pub largest: f64,
     /// The root mean square of the differences of all channels.
     pub rms: f64,

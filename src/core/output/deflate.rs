@@ -57,7 +57,7 @@ impl Piece {
     /// Compresses the rows.
     ///
     /// # Errors
-    /// None is known: memory takes all that is written.
+    /// No error is known: all output is written to memory.
     pub fn pack(&self, compression: Compression) -> io::Result<CompressedPiece> {
         match compression {
             Compression::Fast => self.pack_fast(),
@@ -117,7 +117,8 @@ impl Piece {
         Ok(())
     }
 
-    /// Returns the length of the filtered rows in bytes: each has one more, which says how it is filtered.
+    /// Returns the length of the filtered rows in bytes. Each row has one more byte, which says how the row is
+    /// filtered.
     fn filtered_len(&self) -> usize {
         self.rows.len() / self.row * (self.row + 1)
     }
@@ -126,8 +127,8 @@ impl Piece {
 /// Turns the one block that `fdeflate` writes, which is its stream's last, into one that others follow.
 fn continues(stream: &mut Vec<u8>) {
     stream[HEADER.len()] &= !1;
-    // The code that ends the block ends with a 1, after which the last byte is filled up with zeros. Three of them begin
-    // a block of bytes that are stored as they are, which goes on at a whole byte with its length: there are none.
+    // The code that ends the block ends with a 1, after which the last byte is filled up with zeros. Three zeros begin
+    // a block of stored bytes, which continues at the next whole byte with its length. That length is 0.
     let filled = stream.last().map_or(0, |last| last.leading_zeros());
     if filled < 3 {
         stream.push(0);

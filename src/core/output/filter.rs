@@ -1,4 +1,4 @@
-//! The filters of a PNG's rows, which leave small numbers where a pixel is like those around it.
+//! The filters of a PNG's rows, which leave small numbers where a pixel is like its neighbours.
 
 use std::iter;
 
@@ -17,7 +17,7 @@ pub(super) enum Filter {
 }
 
 impl Filter {
-    /// Writes what a row differs by from its prediction, after a byte that says how it was predicted.
+    /// Writes the differences of a row from its prediction, after a byte that names the predictor.
     pub fn apply(self, above: &[u8], row: &[u8], filtered: &mut [u8]) {
         match self {
             Self::None => {
@@ -56,8 +56,8 @@ enum Predictor {
     Paeth = 4,
 }
 
-/// Writes what a row differs by from what a predictor says, after the predictor's number. To the left of a row and above
-/// the image everything is 0.
+/// Writes the differences of a row from the prediction of a predictor, after the predictor's number. To the left of a
+/// row and above the image everything is 0.
 fn predict(predictor: Predictor, above: &[u8], row: &[u8], filtered: &mut [u8]) {
     let (number, filtered) = filtered.split_at_mut(1);
     number[0] = predictor as u8;
@@ -69,8 +69,8 @@ fn predict(predictor: Predictor, above: &[u8], row: &[u8], filtered: &mut [u8]) 
     }
 }
 
-/// Writes what the bytes of a row differ by from what `prediction` says of the bytes to the left, above, and above that
-/// to the left.
+/// Writes the differences of the bytes of a row from their `prediction`, which depends on the bytes to the left, above,
+/// and above to the left.
 #[inline(always)]
 fn each(above: &[u8], row: &[u8], filtered: &mut [u8], prediction: impl Fn(u8, u8, u8) -> u8) {
     for at in 0..PIXEL.min(row.len()) {

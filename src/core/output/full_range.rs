@@ -1,4 +1,4 @@
-//! Image files with colours as they are computed: numbers of any size, in place of 256 levels.
+//! Image files with colours as they are computed: numbers of any size, instead of 256 levels.
 
 use image::codecs::openexr::OpenExrEncoder;
 use image::{ExtendedColorType, ImageEncoder, Rgb32FImage};
@@ -30,7 +30,7 @@ impl FullRange {
     /// Writes a whole image: red, green and blue of each pixel, in rows from the top, each from the left.
     ///
     /// # Errors
-    /// Those of `out`, and an error where the format cannot hold the size.
+    /// Returns the errors of `out`, and an error where the format cannot hold the size.
     pub fn write(self, out: &mut impl Write, [width, height]: [usize; 2], pixels: &[f32]) -> io::Result<()> {
         match self {
             Self::Exr => {
@@ -58,7 +58,7 @@ impl FullRange {
 /// Reads a portable float map of three channels.
 ///
 /// # Errors
-/// Those of the file; of kind `InvalidData` if it is no such map.
+/// Returns the errors of the file, and one of kind `InvalidData` if the file is not such a map.
 pub fn read_pfm(mut file: impl BufRead) -> io::Result<Rgb32FImage> {
     let wrong = || io::Error::from(io::ErrorKind::InvalidData);
     let mut line = || {

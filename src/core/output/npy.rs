@@ -5,10 +5,10 @@ use std::io::{self, Write};
 /// How each file begins.
 pub const MAGIC: &[u8] = b"\x93NUMPY";
 
-/// Writes what comes before the numbers of an array of this type and shape, both as NumPy writes them: `'<f8'` and `(3, 4)`.
+/// Writes the header of an array with this type and shape, both as NumPy writes them: `'<f8'` and `(3, 4)`.
 ///
 /// # Errors
-/// Those of `out`.
+/// Returns the errors of `out`.
 pub fn begin(descr: &str, shape: &str, out: &mut dyn Write) -> io::Result<()> {
     let head = format!("{{'descr': {descr}, 'fortran_order': False, 'shape': {shape}, }}");
     // The numbers begin at a multiple of 64 bytes.

@@ -13,7 +13,7 @@ use std::io::{self, Cursor};
 pub enum Numbers {
     /// Three of each pixel.
     Triples(Vec<f32>),
-    /// The distance of what each pixel shows, in world units; infinite where nothing is hit.
+    /// The distance of the object that each pixel shows, in world units; infinite where nothing is hit.
     Distances(Vec<f64>),
     /// An index of each pixel, from 0.
     Indices {
@@ -27,7 +27,8 @@ pub enum Numbers {
 /// A format of files that hold numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NumberFormat {
-    /// OpenEXR: three channels of f32, of which a distance fills all, or one of u32, where [`NONE`] says that there is no index.
+    /// OpenEXR: three channels of f32, of which a distance fills all, or one of u32, where [`NONE`] says that there is
+    /// no index.
     Exr,
     /// A NumPy array of shape (height, width): f8, or i4, where -1 says that there is no index. Triples have none.
     Npy,

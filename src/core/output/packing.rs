@@ -6,8 +6,8 @@ use crate::render::renderer::Renderer;
 use std::io;
 use std::mem::take;
 
-/// The maximum length of a piece in bytes, unless one row has more. A shorter one would make files larger, as each piece
-/// has its own codes: in a black image of such pieces these are a hundredth.
+/// The maximum length of a piece in bytes, unless one row has more. Shorter pieces would make files larger, as each
+/// piece has its own codes: in a black image with pieces of this length, the codes are a hundredth of the file.
 pub const PIECE: usize = 1 << 20;
 
 /// The maximum number of pieces that wait until they are compressed together, as many as a renderer has rendered at one
@@ -34,7 +34,7 @@ pub(super) struct Packing<'r> {
 }
 
 impl<'r> Packing<'r> {
-    /// Makes one for an image of this width and height in pixels. Its pieces depend on the size alone.
+    /// Makes a packer for an image of this width and height in pixels. The pieces depend on the size alone.
     pub fn new(
         [width, height]: [usize; 2],
         compression: Compression,
@@ -59,7 +59,7 @@ impl<'r> Packing<'r> {
     /// the rows before it.
     ///
     /// # Errors
-    /// Those of `rows` and of `put`, and an error where there are not as many rows as the image has.
+    /// Returns the errors of `rows` and of `put`, and an error where the number of rows is not that of the image.
     pub fn run(
         mut self,
         rows: impl IntoIterator<Item = io::Result<Vec<u8>>>,

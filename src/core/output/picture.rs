@@ -39,7 +39,7 @@ impl Format {
     /// each pixel from the left.
     ///
     /// # Errors
-    /// Those of `out` and of `rows`, and an error where the format cannot hold the size.
+    /// Returns the errors of `out` and of `rows`, and an error where the format cannot hold the size.
     pub fn write(
         self,
         out: impl Write,
@@ -50,10 +50,10 @@ impl Format {
     }
 
     /// Writes a whole image as [`write`](Self::write) does, and compresses it on a renderer's threads, if there is one.
-    /// The bytes do not depend on it. A PNG gets texts, each with its keyword.
+    /// The bytes do not depend on the threads. A PNG gets texts, each with its keyword.
     ///
     /// # Errors
-    /// Those of [`write`](Self::write).
+    /// Returns the errors of [`write`](Self::write).
     pub fn write_on(
         self,
         renderer: Option<&Renderer>,
@@ -81,7 +81,7 @@ impl Format {
     /// Opens a file that [`write`](Self::write) wrote, to read it from its first row.
     ///
     /// # Errors
-    /// Those of the file.
+    /// Returns the errors of the file.
     pub fn read(self, file: File) -> io::Result<Rows> {
         let mut file = BufReader::with_capacity(1 << 16, file);
         Ok(match self {
@@ -106,7 +106,7 @@ impl Rows {
     /// Reads the next row: red, green and blue of each pixel.
     ///
     /// # Errors
-    /// Those of the file, and an error where it has no further row of this length.
+    /// Returns the errors of the file, and an error where the file has no further row of this length.
     pub fn next(&mut self, row: &mut [u8]) -> io::Result<()> {
         match self {
             Self::Ppm(file) => file.read_exact(row),
@@ -136,7 +136,7 @@ fn write_ppm(
 /// images.
 ///
 /// No transfer function is applied: the byte of a channel is 255 times what the notes' formulas give, truncated. So the
-/// formulas work in encoded display values, not in linear light, of which half would be byte 188. That is how scenes
+/// formulas work in encoded display values, not in linear light, where one half would be byte 188. That is how scenes
 /// were made and viewed: their numbers were chosen for a display that takes the bytes as they are. `gAMA` 1 would
 /// declare the bytes proportional to light, and a viewer that honours it would show the same scene far brighter than
 /// its PPM.

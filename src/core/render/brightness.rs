@@ -10,8 +10,8 @@ use crate::world::sensor::Sensor;
 use std::cell::Cell;
 use tabray_exact::affine::Affine;
 
-/// Bounds the colours of a model's primary rays, where light with a size counts by its mean. They are multiplied by the
-/// most that an image shows of a little light, so that white is 1 or more.
+/// Bounds the colours of a model's primary rays, where light with a size counts by its mean. The bounds are multiplied
+/// by the greatest slope with which an image shows light, so that white is 1 or more.
 pub struct Brightness<'m> {
     model: &'m Model,
     depth: Depth,

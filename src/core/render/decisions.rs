@@ -22,7 +22,7 @@ use std::sync::Arc;
 /// The maximum number of names that are listed.
 const NAMED: usize = 4;
 
-/// The number of levels up to which a decision says how little a light changes.
+/// The largest change, in levels, that a decision states for a light with little effect.
 const FAINT: f64 = 2.0;
 
 /// A decision, and the reason for it.

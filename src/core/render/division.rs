@@ -86,7 +86,8 @@ const RAY_ONWARD: u64 = 4;
 const TEST: u64 = 1;
 
 /// Divides an image, or a part of one, into `parts` runs of tiles, and returns the ends of all runs, beginning with 0.
-/// Each has at least one tile, so there must be as many. `columns` count from the left and `rows` from the top.
+/// Each run has at least one tile, so there must be at least `parts` tiles. `columns` count from the left and `rows`
+/// from the top.
 pub fn divide(
     renderer: &Renderer,
     plan: &Plan,

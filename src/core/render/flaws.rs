@@ -5,7 +5,7 @@ use crate::render::observer::{Count, RayKind, TraceObserver};
 use crate::world::certify::Doubt;
 use std::collections::BTreeMap;
 
-/// The pixels that are not as they should be. As an observer, it counts nothing else.
+/// Counts the pixels that are not as they should be. As an observer, it counts nothing else.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Flaws {
     /// The pixels that have used up their ray budget.

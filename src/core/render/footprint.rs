@@ -24,7 +24,7 @@ use tabray_exact::double_double::power_of_two;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::Scalar;
 
-/// How far the rays of a footprint are followed: branches are left out that add no more than 1/400 of a level.
+/// How far the rays of a footprint are followed: branches that add no more than 1/400 of a level are left out.
 pub(super) const LIMITS: Limits =
     Limits { hits: 48, depth: 24, places: 6, negligible: 1e-5, tolerable: f64::INFINITY };
 
@@ -34,7 +34,7 @@ pub(crate) const MAX_FOOTPRINTS: usize = 1 + 4 * 256;
 /// The maximum number of times that a footprint may be cut into quarters.
 pub(crate) const MAX_CUTS: u32 = 10;
 
-/// The number of footprints from which on it is judged whether [`MAX_FOOTPRINTS`] will be enough.
+/// From this number of footprints on, the search judges whether [`MAX_FOOTPRINTS`] will be enough.
 const JUDGED: usize = 1 + 4 * 16;
 
 /// More than the roundings of a colour within its bounds, where 1 is white.
@@ -43,9 +43,9 @@ const ROUNDING: f64 = 1e-14;
 /// Proven bounds of a pixel's colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Proof {
-    /// The least colour that it may be, before exposure; infinite where nothing is known.
+    /// The least possible colour, before exposure; infinite where nothing is known.
     pub low: Rgb,
-    /// The greatest colour that it may be, before exposure.
+    /// The greatest possible colour, before exposure.
     pub high: Rgb,
     /// The number of footprints that were examined.
     pub footprints: u32,

@@ -1,4 +1,4 @@
-//! The limits of how far light is followed, and of how many rays a primary ray may cost.
+//! Limits on how far light is followed, and on the number of rays that a primary ray may cost.
 
 pub use crate::world::rules::MAX_DIST;
 
@@ -15,8 +15,8 @@ pub const MAX_TREE: u32 = 4096;
 /// The part of both that a sample has at least, however many there are.
 pub const LEAST_PART: u32 = 8;
 
-/// The depth of the reflections that are traced even where the rays that were transmitted before them have used up the
-/// ray budget: that of primary rays, and that of the rays which these continue as.
+/// The depth of the reflections that are traced even where the rays transmitted before them have used up the ray
+/// budget: the reflections of primary rays, and of the rays by which these continue.
 pub(crate) const KEPT_DEPTH: usize = 2;
 
 /// The divisor of a primary ray's budget that gives the part reserved for each such reflection. At most three of them

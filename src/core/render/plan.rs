@@ -27,8 +27,8 @@ const MANY: usize = 1 << 14;
 pub struct Plan<'m> {
     /// The scene.
     pub model: &'m Model,
-    /// The camera, initially the model's own. What may be changed afterwards: a fixed number of samples, the sampler, and,
-    /// in a plan for any ray, the size of the image. The plan depends on the rest.
+    /// The camera, initially the model's own. Three things may be changed afterwards: a fixed number of samples, the
+    /// sampler, and, in a plan for any ray, the size of the image. The plan depends on all others.
     pub camera: Sensor,
     /// The indices of the objects without bounds.
     pub(crate) unbounded: Vec<usize>,
@@ -135,7 +135,7 @@ impl<'m> Plan<'m> {
         }
     }
 
-    /// Lets pixels take different numbers of samples, or all the same. The plan must be one for any ray.
+    /// Lets pixels take different numbers of samples, or makes all take the same. The plan must be one for any ray.
     pub fn set_adaptive(&mut self, adaptive: Option<Adaptive>) {
         self.camera.adaptive = adaptive;
         if adaptive.is_some() && self.features.is_none() {

@@ -105,8 +105,8 @@ fn passes(pixels: [usize; 2], samples: u32) -> impl Iterator<Item = Pass> {
     })
 }
 
-/// What is left of an image that is rendered step by step on one thread, as [`render`] does it at one go: between two areas,
-/// whoever waits may ask for something else.
+/// The rest of an image that is rendered step by step on one thread, where [`render`] renders it in one go. Between two
+/// areas, the caller may do something else.
 #[derive(Clone, Debug)]
 pub struct Steps {
     /// The areas and the samples of their pixels, the last one first.

@@ -22,7 +22,7 @@ pub struct RayStats {
     sampled: [u64; SAMPLE_COUNTS],
 }
 
-/// The number of different numbers of samples that a pixel can take: the powers of two up to [`Sampler::MOST`].
+/// The count of the possible numbers of samples of a pixel: the powers of two up to [`Sampler::MOST`].
 const SAMPLE_COUNTS: usize = Sampler::MOST.ilog2() as usize + 1;
 
 /// The pixels with proven bounds of their colours.

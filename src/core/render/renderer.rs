@@ -30,8 +30,8 @@ pub struct RenderCallbacks<'o> {
 
 /// Renders on threads of the caller.
 ///
-/// By default these are those of the rayon pool that the caller is in, or rayon's own, or the calling thread where there
-/// are none. The deepest chains of reflections may take a stack of [`STACK`] bytes.
+/// By default, the threads are those of the rayon pool that the caller is in, or rayon's own threads, or the calling
+/// thread where there are none. The deepest chains of reflections may take a stack of [`STACK`] bytes.
 ///
 /// ```
 /// use tabray_core::render::{Renderer, renderer::STACK};
@@ -58,7 +58,7 @@ impl Renderer {
         Self { pool: Some(pool), ..Self::default() }
     }
 
-    /// Uses this instruction set in place of the best that this machine has. The image is the same.
+    /// Uses this instruction set instead of the best one of this machine. The image is the same.
     pub fn on(mut self, cpu: Cpu) -> Self {
         self.cpu = cpu;
         self
@@ -131,9 +131,9 @@ impl Renderer {
         self.run(|| parallel::for_each_in_order(band.strips.len(), &strip));
     }
 
-    /// Renders a part of the image with its light before it is clamped and rounded: for each pixel what `of` makes of its light, in
-    /// rows from the top, each from the left. Returns `None` if the overseer stops it. Observers are passed to `watched` as in
-    /// [`bands`](Self::bands).
+    /// Renders a part of the image with its light before it is clamped and rounded: for each pixel, the value that `of`
+    /// makes from its light, in rows from the top, each from the left. Returns `None` if the overseer stops it.
+    /// Observers are passed to `watched` as in [`bands`](Self::bands).
     pub fn light<W: ImageObserver, T: Clone + Default + Send>(
         &self,
         plan: &Plan,
@@ -224,8 +224,8 @@ pub struct StripTiles<'s> {
 /// each.
 type TileSink<'s> = dyn FnMut(usize, &[[usize; 2]], View) + 's;
 
-/// An observer with which images are rendered. What traces rays for it is compiled in this crate, and not again in each that
-/// renders.
+/// An observer with which images are rendered. The code that traces rays for it is compiled in this crate, and not
+/// again in each crate that renders.
 pub trait ImageObserver: TraceObserver + Default {
     /// Computes the colours of tiles, with a new observer, which is returned; until `stops` returns true, which breaks.
     fn trace(

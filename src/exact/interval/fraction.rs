@@ -1,9 +1,8 @@
 //! Fractions of two numbers of 237 bits, which stay exact as long as they fit.
 //!
 //! Where a ray passes exactly through the edge of a tile, or starts exactly on a second surface, no interval decides,
-//! however narrow it is. With the round numbers of scenes, such places are fractions of few digits. Sums, products,
-//! quotients and roots of squares of these fractions are computed without rounding, and the interval of such a fraction
-//! is the fraction itself.
+//! however narrow it is. With the round numbers of scenes, such places are fractions of few digits. Their sums,
+//! products, quotients and roots of squares are computed without rounding, and intervals of them have no width.
 
 use super::float::Float;
 use crate::double_double::power_of_two;
@@ -18,7 +17,7 @@ const BITS: u32 = 237;
 #[derive(Clone, Copy, Debug)]
 pub struct Fraction {
     numerator: f256,
-    /// The denominator is positive; it is 1 for a number that is infinite, NaN or rounded.
+    /// Positive; 1 for a number that is infinite, NaN or rounded.
     denominator: f256,
     /// A bound on the difference from the true result; 0 for an exact result.
     error: f256,

@@ -22,16 +22,16 @@ const LEAST_SLACK: f64 = 1e-100;
 
 /// Rays that are tested together: bounds of their origins and of their directions.
 ///
-/// The origins' bounds have a slack of [`SLACK`] times their largest coordinate. It is more than the rounding of the
-/// distances to planes, and than the distance by which rounding moves a ray of that size. So where a beam misses a box,
-/// so do the rays before anything was rounded.
+/// The origins' bounds have a slack of [`SLACK`] times their largest coordinate. The slack exceeds the rounding of the
+/// distances to planes, and the distance by which rounding moves a ray with such coordinates. So where a beam misses a
+/// box, the rays before rounding miss it too.
 #[derive(Clone, Copy)]
 pub struct Beam {
-    /// The bounds of the origins along each axis, those from which near planes are measured first: the high one to low
-    /// planes, and the low one to high planes. Of four numbers the last is 0.
+    /// The bounds of the origins along each axis. The first bounds are for measuring distances to near planes: the high
+    /// bound for low planes, and the low bound for high planes. The last of the four numbers is 0.
     pub from: [[f64; 4]; 2],
-    /// The reciprocals of the components of the directions, likewise: the largest component's for low planes, and the
-    /// smallest one's for high planes.
+    /// The reciprocals of the components of the directions, in the same way: of the largest component for low planes,
+    /// and of the smallest one for high planes.
     pub inverse: [[f64; 4]; 2],
     /// The side of a box that the rays reach first along each axis, [`LOW`] or [`HIGH`].
     pub near: [usize; 3],
@@ -40,7 +40,7 @@ pub struct Beam {
     pub is_mixed: [bool; 3],
     /// The slack of the origins, in world units.
     slack: f64,
-    /// A bound on the difference between the directions and those that they stand for.
+    /// A bound on the difference between the directions and the directions that they stand for.
     swerve: f64,
     /// The largest magnitude of a coordinate of the origins, in world units.
     reach: f64,
@@ -135,7 +135,7 @@ impl Beam {
         Aabb { low: *low - slack, high: *high + slack }
     }
 
-    /// Returns how far apart the rays are at a distance, in world units along the axis where that is most.
+    /// Returns how far apart the rays are at a distance, in world units, along the axis where they are farthest apart.
     #[inline(always)]
     pub fn width(&self, distance: f64) -> f64 {
         self.width + distance * self.spread

@@ -125,7 +125,8 @@ kernels! {
         bins
     }
 
-    /// Returns the cut between two bins whose sides cost least, and what lies on each side; `None` where no cost is finite.
+    /// Returns the cheapest cut between two bins, and the objects on each side of the cut; `None` where no cost is
+    /// finite.
     pub fn best_cut(bins: &[Bin; BINS]) -> Option<(usize, [Bin; 2])> {
         // The probability that a ray enters a box is proportional to its surface area.
         let cost = |(count, limits): (u32, Limits)| f64::from(count) * half_area(limits);

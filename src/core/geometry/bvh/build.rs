@@ -19,7 +19,7 @@ use tabray_exact::scalar::per_axis;
 /// The number of objects from which on a part is built by a thread of its own.
 const LARGE: usize = 4096;
 
-/// The number of levels from which on parts are halved by number, so that no scene makes the tree too deep.
+/// From this level on, parts are halved by the number of objects, so that no scene makes the tree too deep.
 const DEEP: usize = 40;
 
 /// Nodes and objects, each node's children in a row. Node 0 is the root.
@@ -112,7 +112,7 @@ impl Parts {
 
     /// Appends a tree, with its root as the node of this index.
     fn append(&mut self, mut part: Self, root: usize) {
-        // The root moves to its place, and the others follow the nodes that there are.
+        // The root moves to its place, and the other nodes are added after the existing ones.
         let (nodes, objects) = (self.nodes.len() as u32 - 1, self.objects.len() as u32);
         for node in &mut part.nodes {
             node.first_node += nodes;
@@ -131,7 +131,7 @@ impl Parts {
 fn divide(whole: ItemSet, depth: usize) -> Vec<ItemSet> {
     let mut parts = Vec::with_capacity(WIDTH);
     parts.push(whole);
-    // While there is room, the largest part is split that does not fit into a node.
+    // While there is room, the largest part that does not fit into a node is split.
     while parts.len() < WIDTH {
         let size = |part: &ItemSet| match part.items.len() {
             len if len <= WIDTH => -1.0,

@@ -1,5 +1,5 @@
-//! Searches of a hierarchy along a line whose numbers are intervals, for proofs: they share no arithmetic with the search
-//! that images are made by.
+//! Searches of a hierarchy along a line whose numbers are intervals, for proofs: they share no arithmetic with the
+//! search that renders images.
 
 use crate::geometry::bvh::beam::{HIGH, LOW};
 use crate::geometry::bvh::node::{Node, WIDTH};
@@ -15,7 +15,8 @@ struct Slabs {
 
 /// What is known of a line along one axis.
 enum Axis {
-    /// The line rises, in a mirror if it falls: bounds of its start, and of the t that it takes for a unit, all positive.
+    /// The line rises, in a mirror if it falls: bounds of its start, and of the t that the line takes per unit. All
+    /// numbers are positive.
     Rises { is_mirrored: bool, origin: Interval, inverse: Interval },
     /// It stays where it starts.
     Level(Interval),
@@ -52,8 +53,8 @@ impl Axis {
 }
 
 impl Slabs {
-    /// Returns lower bounds of the t, from 0 on, at which the line enters the boxes of a node's children, infinite for those
-    /// that it certainly misses or enters after `end` only.
+    /// Returns lower bounds of the t, from 0 on, at which the line enters the boxes of a node's children, infinite for
+    /// boxes that the line certainly misses or enters only after `end`.
     #[inline(always)]
     fn entered(&self, node: &Node, end: f64) -> [f64; WIDTH] {
         let (mut enters, mut leaves) = ([0.0; WIDTH], [end; WIDTH]);

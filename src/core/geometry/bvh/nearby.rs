@@ -14,7 +14,7 @@ impl Bvh {
             ahead.push((0.0, true, 0));
         }
         while let Some((nearest, is_node, index)) = ahead.pop() {
-            // The boxes' own slack is more than the rounding of distances where the point is near; this is for others.
+            // Near the point, the boxes' own slack is more than the rounding of distances; this slack is for far boxes.
             if nearest * (1.0 - SLACK) > limit {
                 continue;
             }
@@ -35,7 +35,7 @@ impl Bvh {
         }
     }
 
-    /// Visits the objects that lie in boxes which a test lets pass, their own and those around it.
+    /// Visits the objects for which a test accepts their own box and all boxes around it.
     pub fn within(&self, mut enters: impl FnMut(&Aabb) -> bool, mut visit: impl FnMut(usize)) {
         let mut ahead: Vec<_> = self.nodes.first().into_iter().collect();
         while let Some(node) = ahead.pop() {

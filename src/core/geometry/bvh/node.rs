@@ -83,8 +83,8 @@ impl Node {
         for axis in 0..3 {
             let corner = node.corner[axis];
             let size = whole.high[axis] + slack - corner;
-            // The least power of two of which `STEPS` are at least the size; one more where rounding of the last plane
-            // needs it.
+            // The least power of two such that `STEPS` of it are at least the size, or the next one where the rounding
+            // of the last plane requires it.
             let mut exponent = (exponent(size / STEPS) + 1).clamp(-1022, 1015);
             while corner + STEPS * exp2(exponent) < whole.high[axis] + slack {
                 exponent += 1;
@@ -115,7 +115,7 @@ impl Node {
         }
         let planes = self.planes(beam);
         let (mut enters, mut is_entered) = ([0.0; WIDTH], [0; WIDTH]);
-        // One loop over all planes of a child, which the compiler takes eight children at a time.
+        // One loop over all planes of a child. The compiler processes eight children at a time.
         for child in 0..WIDTH {
             let mut enter = larger(planes.distance(NEAR, 0, child), 0.0);
             enter = larger(planes.distance(NEAR, 1, child), enter);
@@ -240,13 +240,14 @@ fn exp2(exponent: i16) -> f64 {
 pub enum Order {
     /// For the nearest hit, behind which nothing is visited.
     Nearest,
-    /// For any hit of a ray that leaves a surface: the many boxes around its origin hold the surface that it leaves, and
-    /// seldom what it hits.
+    /// For any hit of a ray that leaves a surface: the many boxes around its origin hold the surface that it leaves,
+    /// and seldom the one that it hits.
     Farthest,
 }
 
 impl Order {
-    /// Tells whether the child that a ray enters at one distance is visited after that which it enters at another one.
+    /// Tells whether a child that a ray enters at one distance is visited after a child that the ray enters at another
+    /// distance.
     #[inline(always)]
     pub(super) fn is_later(self, one: f64, other: f64) -> bool {
         match self {

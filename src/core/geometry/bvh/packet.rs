@@ -26,8 +26,9 @@ const ALL: u64 = u64::from_le_bytes([1; LANES]);
 
 /// What is done with the objects that a packet's rays may hit.
 ///
-/// `t_max` holds the distance at which each ray of the packet ends, in world units, for which a test may put a lesser
-/// one. It is handed over, and the visitor is behind `dyn`, so that the search is compiled once for all visitors.
+/// `t_max` holds the distance at which each ray of the packet ends, in world units, which a test may replace by a
+/// lesser distance. It is handed over, and the visitor is behind `dyn`, so that the search is compiled once for all
+/// visitors.
 pub trait PacketVisitor {
     /// Tests the rays in a range of lanes against the object of this index. The range is as long as a multiple of
     /// [`LANES`], and no ray is tested against one object twice, here or alone.
@@ -36,7 +37,7 @@ pub trait PacketVisitor {
     /// Tests the ray in one lane against the object of this index.
     fn test_one(&mut self, object: usize, lane: usize, t_max: &mut [f64]);
 
-    /// Returns the number of rays up to which it is quicker to test them one by one than eight at a time.
+    /// Returns the largest number of rays that are tested more quickly one by one than eight at a time.
     fn few(&self) -> u32 {
         0
     }
@@ -48,8 +49,9 @@ pub trait PacketVisitor {
 }
 
 kernels! {
-    /// Visits the objects whose boxes the rays of a packet enter before their ends, roughly in the visitor's order. A ray that
-    /// ends at 0 or less is not searched for. With a drift, so do the objects that rays within it may hit.
+    /// Visits the objects whose boxes the rays of a packet enter before their ends, roughly in the visitor's order. A
+    /// ray that ends at 0 or less is not searched for. With a drift, objects that rays within the drift may hit are
+    /// visited as well.
     pub fn visit(
         tree: &Bvh, stack: &mut Stack, rays: RayPacket, drift: RayError, t_max: &mut [f64], visitor: &mut dyn PacketVisitor
     ) {
@@ -79,7 +81,8 @@ struct Search<'s, 'v> {
     eights: &'s mut Vec<Eight>,
     /// A bit for each eight that is set.
     is_set: u64,
-    /// The bounds of each eight, and then each ray as a beam of its own, as soon as they were needed.
+    /// The bounds of each group of eight rays, and after them each ray as a beam of its own. They are computed when
+    /// they are first needed.
     beams: &'s mut Vec<Option<Beam>>,
     /// The first lane of the part, and the number of its lanes.
     start: usize,

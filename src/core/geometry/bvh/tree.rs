@@ -11,7 +11,7 @@ use std::mem::take;
 /// A hierarchy of bounding boxes, with up to eight children in each node.
 ///
 /// Searches visit each object whose box a ray enters before its end, roughly in an `Order`. Boxes need no slack for
-/// rounding: it is added here, and covers the rounding of the ray as well.
+/// rounding: the search adds a slack that covers the rounding of the ray as well.
 pub struct Bvh {
     pub(super) nodes: Vec<Node>,
     /// The objects' indices, node by node; empty where each is its place.
@@ -25,7 +25,7 @@ pub(super) struct Ahead {
     pub enters: f64,
     /// The index of a node, or with [`OBJECT`] the position of an object.
     pub child: u32,
-    /// The index of the parent and the child's place in it, for objects: eight times the one, plus the other.
+    /// For objects, eight times the index of the parent, plus the child's place in the parent.
     pub place: u32,
 }
 
@@ -38,8 +38,8 @@ const MOST: usize = 1 << 29;
 /// The scratch space of searches, which is reused from one search to the next.
 #[derive(Default)]
 pub struct Stack {
-    /// What is still to be visited, the next one last. It grows as it must: a search for one ray, for eight and for a
-    /// packet within each other each add up to seven children for each level of the tree.
+    /// The children that are still to be visited, the next one last. The list grows as needed: nested searches for a
+    /// packet, for eight rays and for one ray each add up to seven children per level of the tree.
     pub(super) ahead: Vec<Ahead>,
     /// The current rays of a packet.
     pub(super) eights: Vec<Eight>,

@@ -14,7 +14,7 @@ pub(super) struct Crossings<N> {
     pub onward: Option<[N; 3]>,
 }
 
-/// Encloses how rays continue that hit points along unit vectors; `None` where it is open.
+/// Encloses how rays that hit points along unit vectors continue; `None` where that is open.
 pub(super) fn crossings<N: Number>(law: Law, surface: &HitPoints<N>, dir: [N; 3]) -> Option<Crossings<N>> {
     let (n, one) = (N::constant, N::constant(1.0));
     let cosine = -dot(dir, surface.normal);
@@ -47,7 +47,8 @@ pub(super) fn crossings<N: Number>(law: Law, surface: &HitPoints<N>, dir: [N; 3]
             let reflected = n(0.5) * (across.powi(2) + along.powi(2));
             let bend = ratio * cosine - root;
             let onward = per_axis(|axis| ratio * dir[axis] + bend * surface.normal[axis]);
-            // Bent normals may lead a ray back to the side from which it comes: the surface's own take their place.
+            // Bent normals may lead a ray back to the side from which it comes. Then the surface's own normals replace
+            // them.
             if let Some(unbent) = surface.unbent {
                 let through = dot(onward, unbent).range();
                 if through.low >= N::of(0.0) {

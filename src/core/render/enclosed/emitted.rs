@@ -16,9 +16,8 @@ use tabray_exact::scalar::{dot, per_axis};
 /// Encloses what a light that is spread out adds to the colour of points; `None` where it is open. `dir` is the unit vector
 /// along the rays that see the points.
 ///
-/// A sample is enclosed by what its point adds, and the mean over a panel, a ball or a cone by what all points add. Where these
-/// are open, and of the mean over a sky, it is known that there is no less than nothing, and no more than the most that there
-/// may be.
+/// A sample is enclosed by what its point adds, and the mean over a panel, a ball or a cone by what all points add.
+/// Where that is open, and for the mean over a sky, the light is at least none, and at most the most that it can be.
 pub(super) fn shine<N: Number>(
     scene: &EnclosedScene,
     (index, seen): (usize, LightPoints),
@@ -90,7 +89,7 @@ struct Shining<'s, N: Number> {
 }
 
 impl<N: Number> Shining<'_, N> {
-    /// Encloses what a sample adds that looks at the points that two numbers choose; `None` where it is open.
+    /// Encloses the light that a sample adds, given the two numbers that choose its points; `None` where it is open.
     fn sampled(&self, extent: &Extent, numbers: DVec2, sent: &Colour<N>) -> Option<Colour<N>> {
         match sampled::chosen(extent, self.surface, numbers)? {
             Some(points) => self.at(&points, sent),
@@ -98,7 +97,7 @@ impl<N: Number> Shining<'_, N> {
         }
     }
 
-    /// Encloses what points of the light add, which send such light; `None` where it is open.
+    /// Encloses the contribution of points of the light that send this light; `None` where it is open.
     fn at(&self, points: &Points<N>, sent: &Colour<N>) -> Option<Colour<N>> {
         let Points { toward, are_far, light } = points;
         let rise = dot(*toward, self.surface.normal);
@@ -118,7 +117,8 @@ impl<N: Number> Shining<'_, N> {
         self.passes(*toward, Ends::at(end)).lit(self.scene, &full, above)
     }
 
-    /// Encloses what all points add of a light that looks round, which send such light; `None` where it is open.
+    /// Encloses the contribution of all points of a light that looks round and sends this light; `None` where it is
+    /// open.
     fn round(&self, round: &Round<N>, sent: &Colour<N>) -> Option<Colour<N>> {
         let (n, surface) = (N::constant, self.surface);
         // How far its middle is above the horizon.
@@ -129,7 +129,7 @@ impl<N: Number> Shining<'_, N> {
         }
         let is_whole = (above - round.radius).range().low > N::of(0.0);
         let part = |of: N| if is_whole { of } else { of.hull(n(0.0)) };
-        // The part above the horizon adds no more than all of it to a surface that faces it.
+        // The part above the horizon adds no more than the whole light adds to a surface that faces it.
         let cosine = if is_whole { rise / round.distance } else { part(n(1.0)) };
         let [facing, all] = round.light;
         let mut scattered = per_axis(|channel| surface.diffuse[channel] * cosine * facing);

@@ -7,8 +7,8 @@ use glam::DVec2;
 use tabray_exact::scalar::{dot, per_axis};
 
 impl<N: Number> HitPoints<N> {
-    /// Returns the points with the normals of the facets that two numbers from 0 to 1 choose, of those that unit vectors along
-    /// the rays see; `None` where they are open.
+    /// Returns the points with the normals of the facets that two numbers from 0 to 1 choose, among the facets that are
+    /// seen along these unit vectors; `None` where the normals are open.
     pub fn with_facet(&self, dir: [N; 3], roughness: f64, numbers: DVec2) -> Option<Self> {
         let normal = self.normal;
         // Bent normals may face away from the rays, and are turned.
@@ -22,7 +22,7 @@ impl<N: Number> HitPoints<N> {
         let seen = unit(seen);
         let [right, above] = orthonormal_pair(seen)?;
         let [x, y] = in_disc::<N>(numbers);
-        // The half of the disc that is turned away is squeezed into what can be seen of it.
+        // The half of the disc that is turned away is squeezed into the part of it that can be seen.
         let part = N::constant(0.5) * (one + seen[2]);
         let y = (one - part) * (one - x * x).max(zero).sqrt() + part * y;
         let z = (one - x * x - y * y).max(zero).sqrt();

@@ -74,8 +74,8 @@ pub(super) fn shine<N: Number>(
     Some(lit.map(N::mean_over_light))
 }
 
-/// Encloses the vectors from points to a light: to its own point, or to those seen of the disc around it that faces the
-/// points. `None` where they are open.
+/// Encloses the vectors from points to a light: to its own point, or to the points seen of the disc around it that
+/// faces the points. `None` where the vectors are open.
 fn toward<N: Number>(
     light: &(dyn PacketLight + 'static),
     (index, seen): (usize, LightPoints),

@@ -1,12 +1,13 @@
-//! Light on its way through media that absorb it, as the tracer has it: a way is through the medium of the object that the
-//! lines leave on its inside, or else of the object that they hit there.
+//! Light on its way through media that absorb it, as in the tracer. The medium of a path is that of the object that the
+//! lines leave on its inside, or otherwise that of the object that they hit on its inside.
 
 use super::number::Number;
 use super::scene::{Colour, EnclosedScene, Path};
 use crate::world::interface::Medium;
 use tabray_exact::scalar::per_axis;
 
-/// Returns what absorbs light between the start of lines and an object that they hit on its inside, or not, if they hit any.
+/// Returns the medium that absorbs light between the start of lines and the object that they hit, if any, on its inside
+/// or on its outside.
 pub(super) fn between<N: Number>(
     scene: &EnclosedScene,
     path: &Path<N>,

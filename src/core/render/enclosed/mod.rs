@@ -1,9 +1,9 @@
 //! The colours that rays return, by the rules of light in numbers that enclose them.
 //!
-//! This is a second evaluation of a scene, beside that of images, from the scene's numbers on. With the tracer it shares the
-//! rules, the equations of shapes, and the plugins in which shaders and lights enclose what they send. In [`Interval`]s, it
-//! proves the colour that one ray returns; in [`Affine`] numbers, the mean of the colours of all rays through a
-//! [footprint](super::footprint).
+//! This is a second evaluation of a scene, beside that of images, from the scene's numbers on. It shares with the
+//! tracer the rules, the equations of shapes, and the plugins, in which shaders and lights enclose their own light. In
+//! [`Interval`]s, it proves the colour that one ray returns; in [`Affine`] numbers, the mean of the colours of all rays
+//! through a [footprint](super::footprint).
 //!
 //! It follows each hit, shadow ray, mirror and pane. Where a decision is open, such as which of two objects is seen, the
 //! colour is anything that it would be either way; where nothing else is known, anything that the scene's brightness allows.

@@ -10,7 +10,8 @@ use std::ptr;
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{dot, per_axis};
 
-/// The number of walls of one transparent object on a shadow ray after which what passes is open.
+/// The maximum number of walls of one transparent object on a shadow ray. Beyond it, the fraction of light that passes
+/// is open.
 const MAX_PANES: usize = 100;
 
 /// The fraction of a light that reaches points.
@@ -25,8 +26,8 @@ pub(super) enum Passes<N> {
 }
 
 impl<N: Number> Passes<N> {
-    /// Encloses what reaches points of the light that they would get, and which comes from above the surface for the part of
-    /// them whose cosines are above 0; `None` where that is open.
+    /// Encloses the part of a light that reaches points, given the full light. The light comes from above the surface
+    /// for those points whose cosines are above 0. `None` where that is open.
     pub fn lit(
         &self,
         scene: &EnclosedScene,
@@ -50,7 +51,7 @@ impl<N: Number> Passes<N> {
     }
 }
 
-/// Where lines end on a light: at no t before the first and none after the last.
+/// Where lines end on a light: between these two t.
 #[derive(Clone, Copy)]
 pub(super) struct Ends<F> {
     pub first: F,
@@ -139,7 +140,7 @@ impl<N: Number> Panes<N> {
     /// Adds each wall of a transparent object that the lines pass through before they end.
     ///
     /// # Errors
-    /// The t before which all are added, where it is open which follow.
+    /// Returns the t before which all walls are added, where the walls after it are open.
     fn add(
         &mut self,
         scene: &EnclosedScene,

@@ -151,7 +151,7 @@ impl<'s> EnclosingTracer<'s> {
         absorbed(seen, media::between(self.scene, &ray.path, None), None)
     }
 
-    /// Encloses the colours that rays return which hit a place at t; `None` where they are open.
+    /// Encloses the colours that rays return that hit a place at t; `None` where the colours are open.
     fn seen<N: Number>(&mut self, ray: &Ray<N>, t: N, place: Place) -> Option<Colour<N>> {
         let interface = self.scene.model.objects[place.object].material.interface.as_deref();
         let mut any = None;
@@ -189,8 +189,8 @@ impl<'s> EnclosingTracer<'s> {
         Some(colour)
     }
 
-    /// Encloses the colours that rays return which an interface divides. Of a rough surface, the facet of a sample is enclosed,
-    /// not the mean over all.
+    /// Encloses the colours that rays return which an interface divides. For a rough surface, the facet of one sample
+    /// is enclosed, not the mean over all facets.
     fn divided<N: Number>(
         &mut self,
         ray: &Ray<N>,
@@ -275,7 +275,8 @@ impl<'s> EnclosingTracer<'s> {
         self.colour(&Ray { path, length, travelled, weight, depth, shows_patches })
     }
 
-    /// Returns all colours up to a magnitude, where nothing else is known of what rays return; `None` where that is no use.
+    /// Returns all colours up to a magnitude, where nothing else is known about the rays' colours; `None` where that is
+    /// of no use.
     fn open<N: Number>(&mut self, ray: &Ray<N>, most: f64) -> Option<Colour<N>> {
         self.is_open = true;
         (ray.weight * most <= self.limits.tolerable).then(|| up_to(most))
@@ -316,7 +317,7 @@ impl<'s> EnclosingTracer<'s> {
     }
 }
 
-/// Encloses what a medium leaves of colours on a way of this length, in world units; `None` is endless.
+/// Encloses colours after a path of this length through a medium, in world units; `None` is endless.
 fn absorbed<N: Number>(colour: Colour<N>, medium: Option<Medium>, length: Option<N>) -> Colour<N> {
     let Some(medium) = medium else { return colour };
     let passed = media::passed(&medium, length);

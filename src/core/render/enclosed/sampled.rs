@@ -21,7 +21,8 @@ pub(super) struct Points<N: Number> {
     pub toward: [N; 3],
     /// Whether they are infinitely far away.
     pub are_far: bool,
-    /// The light of a sample, as that of an [`Emitter`](crate::world::emitter::Emitter), of a radiance of 1, or of the sky's.
+    /// The light of a sample, in the unit of an [`Emitter`](crate::world::emitter::Emitter)'s samples, for a radiance
+    /// of 1 or for the radiance of the sky.
     pub light: Colour<N>,
 }
 
@@ -57,7 +58,7 @@ pub(super) fn at_place<N: Number>(panel: &Panel, at: [N; 3], place: [N; 2]) -> P
     let Panel { middle, half, .. } = panel;
     let toward = per_axis(|axis| n(middle[axis]) - at[axis] + (x * n(half[0][axis]) + y * n(half[1][axis])));
     let square = dot(toward, toward);
-    // The rounding of its area and its direction is below what colours are compared to.
+    // The rounding of its area and its direction is less than the tolerance with which colours are compared.
     let leaving = (dot(toward, constants(panel.facing())) / square.sqrt()).abs();
     Points::even(toward, n(panel.area()) * leaving / (N::enclosing(Interval::pi()) * square))
 }
@@ -156,8 +157,8 @@ pub(super) struct Round<N: Number> {
     cosine: N,
     /// Where lines to a disc around its middle end, behind which it looks the same.
     pub ends: Ends<N::End>,
-    /// The light that a surface gets which faces all of it at a radiance of 1, and the sum of that of all samples, as those of an
-    /// [`Emitter`](crate::world::emitter::Emitter).
+    /// The light that a surface gets that faces the whole light, at a radiance of 1, and the sum of the light of all
+    /// samples, in the unit of an [`Emitter`](crate::world::emitter::Emitter)'s samples.
     pub light: [N; 2],
 }
 

@@ -37,7 +37,7 @@ pub struct SceneBounds {
     boxes: Vec<Option<Aabb>>,
     /// A bound on any channel of what a primary ray returns, times the path length; infinite where there is none.
     pub(super) most: f64,
-    /// Whether what glass lets pass of a channel is known to lie between none of it and all.
+    /// Whether the fraction of each channel that glass lets pass is known to lie between 0 and 1.
     pub(super) passes_fractions: bool,
 }
 
@@ -74,15 +74,15 @@ pub struct EnclosedScene<'a> {
 }
 
 impl EnclosedScene<'_> {
-    /// Notes that the hits of the object of this index are open; of a shape without an equation, they always are.
+    /// Notes that the hits of the object of this index are open. For a shape without an equation, they always are.
     pub(super) fn note_open(&self, object: usize) {
         if !self.model.objects[object].shape.is_certified() {
             self.meets_uncertified.set(true);
         }
     }
 
-    /// Calls `met` with the possible hits of all lines with an object, until it returns false. `coarse` encloses the lines.
-    /// Returns whether it never did.
+    /// Calls `met` with the possible hits of all lines with an object, until `met` returns false. `coarse` encloses the
+    /// lines. Returns whether `met` never returned false.
     pub(super) fn hits<N: Number>(
         &self,
         path: &Path<N>,

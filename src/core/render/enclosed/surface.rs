@@ -14,7 +14,7 @@ use tabray_exact::scalar::{dot, per_axis};
 
 /// A patch of a surface of which the mean is shown.
 struct SeenPatch<F> {
-    /// How far its points are from its middle at most, in world units along each axis.
+    /// The maximum distance of the points from the middle, in world units along each axis.
     reach: f64,
     bounds: Option<PatchBounds<F>>,
 }
@@ -81,7 +81,8 @@ impl<N: Number> HitPoints<N> {
         Some(all)
     }
 
-    /// Returns points whose normals face the lines, turned inward or not. Of a patch, the look is the mean over it.
+    /// Returns points whose normals face the lines, turned inward or not. For a patch, the look is the mean over the
+    /// patch.
     fn shaded(
         object: &Object,
         at: [N; 3],

@@ -1,4 +1,5 @@
-//! Lights that a closed object keeps from all that is seen, as either the viewer or the light is inside of it.
+//! Lights that a closed object keeps from everything that is seen, because either the viewer or the light is inside of
+//! it.
 //!
 //! Each path from such a light to the viewer crosses the object, which is opaque. Shadow rays find that out one by one,
 //! except for those that start at an edge: there they leave all faces, and pass to the other side.
@@ -11,7 +12,7 @@ use crate::world::accuracy::Accuracy;
 use glam::DVec3;
 
 /// The least distance of the viewer and of a light from an object, as a fraction of their coordinates and of the
-/// object's: far more than their rounding. A light nearer to it is one on the surface.
+/// object's: far more than their rounding. A light nearer to the object counts as being on the surface.
 const MARGIN: f64 = 1e-9;
 
 /// The objects of a plan, as they are searched.

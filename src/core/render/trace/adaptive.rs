@@ -2,8 +2,8 @@
 //!
 //! A pixel first takes [`Sensor::samples`] samples, and then twice as many again and again, by the sampler's sequence,
 //! until [`Estimate::error`] is small enough. That depends on the pixel's own samples and on probes at the corners of
-//! the pixel and of the eight around it, and so not on tiles, threads, or the part of the image that is rendered. A
-//! pixel that ends with N samples has the colour that it has in an image of N samples per pixel.
+//! the pixel and of the eight around it, and therefore not on tiles, threads, or the part of the image that is
+//! rendered. A pixel that ends with N samples has the colour that it has in an image of N samples per pixel.
 //!
 //! Probes add nothing to colours. They go through points that no sample goes through: a straight edge that crosses a
 //! pixel separates its corners, and a shadow edge that crosses a light separates points of the light's rim, to each of
@@ -101,7 +101,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         active.extend(0..pixels.len() as u32);
         let (display, doubt) = (camera.display(), if adaptive.error.is_some() { DOUBT } else { 1.0 });
         while !active.is_empty() {
-            // What a pixel's rays met matters only as long as all of them have met the same, or for small objects.
+            // The objects that a pixel's rays have met matter only while all rays have met the same ones, or for small
+            // objects.
             for has_several_paths in [false, true] {
                 rays.tracer.scratch.trails.is_on = has_features || !has_several_paths;
                 rays.take_samples(active, pixels, has_several_paths, estimates);
@@ -170,8 +171,8 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
         for corners in probes.chunks(PACKET_SIZE) {
             self.probe(corners, |corner, found| grid[place(corner)] = found);
         }
-        // Each place gets what is found there and at the next, and then what there and at the next two have: so it has
-        // what is found at four of a row, and then in four rows.
+        // Each place first includes the results of the next place, and then the results collected two places on. So it
+        // has the results of four places in a row, and after the same steps by rows, of four rows.
         for step in [1, 2, wide, 2 * wide] {
             for from in 0..grid.len() - step {
                 let next = grid[from + step];
@@ -232,7 +233,7 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
             for of in active {
                 let estimate = &estimates[*of as usize];
                 if estimate.count < estimate.goal && estimate.has_several_paths() == has_several_paths {
-                    // What a sample may cost depends on those before it, if nothing bounds the light.
+                    // The cost that a sample may have depends on the samples before it, if nothing bounds the light.
                     let end = if self.is_unbounded { estimate.count + 1 } else { estimate.goal };
                     let ray_budget = (estimate.missing == f64::INFINITY).then_some(sampled::REST);
                     lacks_more |= end < estimate.goal;

@@ -26,8 +26,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.scratch.any_missing = false;
     }
 
-    /// Keeps a part of their primary rays' budgets for the first reflections, which are traced after all that is transmitted
-    /// at the same point. A ray that never uses up its budget is not changed by that.
+    /// Keeps a part of the primary rays' budgets for the first reflections, which are traced after all rays transmitted
+    /// at the same point. That does not change a ray that never uses up its budget.
     pub(super) fn keep_first_reflections(&mut self, group: &mut RayGroup) {
         if self.depth >= KEPT_DEPTH || self.plan.depth.is_none() {
             return;
@@ -122,8 +122,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     }
 }
 
-/// The number of rays of a pixel from which on searches are charged where a scene has one costly shape, as searches are
-/// made again to be counted. Of several shapes, each has its share, since a ray may be searched for in all of them.
+/// After this number of rays of a pixel, searches are charged if a scene has one costly shape; charging them repeats
+/// them in order to count their steps. Several shapes share this number, since a ray may be searched for in all of
+/// them.
 const UNCOUNTED: u32 = 16;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {

@@ -25,8 +25,8 @@ pub(super) fn is_certified(plan: &Plan, proof: &Proof) -> bool {
 }
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
-    /// Computes the colours of pixels, given by column and row: those that are certain within the limit, and by samples
-    /// the others.
+    /// Computes the colours of pixels, given by column and row: colours that are certain within the limit are taken as
+    /// proven, and the others are sampled.
     pub(super) fn certain_pixels(
         &mut self,
         pixels: &[[usize; 2]],

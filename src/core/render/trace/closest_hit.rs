@@ -110,7 +110,7 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
         let (one, other) = ((shape(index), distance), (shape(rival), far));
         let certain = || {
             let sight = start.sight.as_ref()?;
-            // A proof of equal distances takes as many digits as there are, and some shapes milliseconds.
+            // A proof of equal distances needs all available digits, and for some shapes milliseconds.
             match self.model.objects[index].is_shaped_as(&self.model.objects[rival]) {
                 true => Some(Ordering::Equal),
                 false => certain_order(one.0, other.0, sight),

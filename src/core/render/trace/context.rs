@@ -129,7 +129,8 @@ pub(super) struct UndecidedRay {
     pub lane: usize,
     /// The object's index.
     pub object: usize,
-    /// The distance from which on it may, in lengths of the direction of the ray before anything is rounded.
+    /// The least distance at which the ray may hit it, in lengths of the direction of the ray before anything is
+    /// rounded.
     pub from: f256,
 }
 

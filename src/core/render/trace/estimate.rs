@@ -14,8 +14,9 @@ const BLOCKS: usize = 8;
 /// to end by luck.
 const MANY_BLOCKS: usize = 32;
 
-/// The part of an estimated error that is left at least when the number of samples doubles, where [`MANY_BLOCKS`] are compared. It
-/// falls faster where samples are spread evenly over smooth light; more often, the blocks happen to be alike.
+/// The least fraction of an estimated error that is left when the number of samples doubles, where [`MANY_BLOCKS`] are
+/// compared. The true error falls faster where samples are spread evenly over smooth light; more often, a faster fall
+/// means that the blocks happen to be alike.
 const LEFT: f64 = 0.5;
 
 /// The fraction of the contrast around a pixel that may lie unseen between its samples; it is divided by their number.
@@ -23,8 +24,8 @@ const LEFT: f64 = 0.5;
 const UNSEEN: f64 = 0.25;
 const UNSEEN_WITHIN: f64 = 0.06;
 
-/// The number of estimated errors by which a colour beyond white or black may be off: one that is farther beyond cannot
-/// become a colour that can be shown.
+/// The number of estimated errors by which a colour beyond white or black may be off. A colour that is farther beyond
+/// cannot turn out to be one that can be shown.
 const FAR: f64 = 4.0;
 
 /// The scratch space of pixels that take more samples where that is needed.
@@ -214,8 +215,8 @@ impl Estimate {
     }
 
     /// Estimates the error of the colour as it is shown, the largest of its channels, where 1 is white: the standard
-    /// error of the mean, as the means of its blocks have it, and what the contrast around leaves open. `doubt` is the factor of
-    /// the standard error.
+    /// error of the mean, estimated from the means of its blocks, plus the error that the contrast around leaves open.
+    /// `doubt` is the factor of the standard error.
     ///
     /// Sobol points are spread more evenly than independent ones, so that blocks differ more than their number says.
     #[inline]

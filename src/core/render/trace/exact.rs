@@ -1,5 +1,5 @@
-//! What one ray hits, where rounding leaves the hits of a packet in doubt: whether it hits a shape, which of two it hits
-//! first, and where 237 bits do not tell.
+//! Decides what one ray hits where rounding leaves the hits of a packet in doubt: whether it hits a shape, which of two
+//! shapes it hits first, and where 237 bits do not tell.
 
 use super::context::{Tracer, UndecidedPixel, UndecidedRay};
 use super::ray_group::{HitRecord, RayGroup};
@@ -91,7 +91,7 @@ pub(super) fn located(shape: &AnyShape, start: &RoundedRay, origin_side: Option<
     }
 }
 
-/// The width from which on an enclosure of a distance is too wide to be that of a point, as a fraction of the distance.
+/// An enclosure of a distance wider than this fraction of the distance is too wide to be that of a point.
 const WIDE: f64 = 64.0 * f64::EPSILON;
 
 /// Returns a hit with this distance, if the ray before anything is rounded hits the shape as far as a proof with 237 bits
@@ -99,7 +99,7 @@ const WIDE: f64 = 64.0 * f64::EPSILON;
 fn decided(shape: &AnyShape, sight: &Sight, distance: f64) -> Located {
     let enclosure = match shape.certify(sight, Precision::Double) {
         Enclosure::Edge(_) | Enclosure::Doubtful(_) => shape.certify(sight, Precision::Octuple),
-        // As where the ray passes near the edge of a face that it grazes, which holds much of the ray.
+        // An example is a ray that passes near the edge of a face that it grazes: much of the ray is near the face.
         Enclosure::Hits(at) if at.width().to_f64() > WIDE * at.high.to_f64() => {
             shape.certify(sight, Precision::Octuple)
         }
@@ -211,8 +211,8 @@ pub(super) fn certain_order(one: &AnyShape, other: &AnyShape, sight: &Sight) -> 
 }
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
-    /// Notes the pixels of a packet whose undecided hits lie no farther than what their rays hit for certain. Of a shape
-    /// without an equation nothing is decided, and its own distance counts.
+    /// Notes the pixels of a packet whose undecided hits lie no farther than what their rays hit for certain. For a
+    /// shape without an equation, nothing is decided, and its own distance counts.
     #[cold]
     pub(super) fn note_undecided(&mut self, group: &RayGroup, hits: &HitRecord) {
         let rays = take(&mut self.scratch.undecided.rays);

@@ -12,7 +12,7 @@ use crate::render::observer::TraceObserver;
 use crate::world::sample::on_disc;
 use glam::{DVec2, DVec3};
 
-/// Where probes see facets: so far from the middle that the rest of them covers as much.
+/// Where probes see facets: at a distance from the middle beyond which the remaining facets cover the same area.
 const PROBED: f64 = 0.5;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
@@ -49,14 +49,14 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     }
 }
 
-/// Returns the normal of the facet that two numbers from 0 to 1 choose, of those that are seen in a direction. `width` is
-/// the parameter alpha of the distribution.
+/// Returns the normal of the facet that two numbers from 0 to 1 choose, among the facets that are seen in a direction.
+/// `width` is the parameter alpha of the distribution.
 fn facet(normal: DVec3, toward: DVec3, width: f64, numbers: DVec2) -> DVec3 {
     let (across, up) = normal.any_orthonormal_pair();
     let seen = DVec3::new(width * toward.dot(across), width * toward.dot(up), toward.dot(normal).max(0.0));
     let Some(seen) = seen.try_normalize() else { return normal };
     let (right, above) = seen.any_orthonormal_pair();
-    // The half of the disc that is turned away is squeezed into what can be seen of it.
+    // The half of the disc that is turned away is squeezed into the part of it that can be seen.
     let DVec2 { x, y } = on_disc(numbers);
     let part = 0.5 * (1.0 + seen.z);
     let y = (1.0 - part) * (1.0 - x * x).max(0.0).sqrt() + part * y;

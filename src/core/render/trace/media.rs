@@ -1,7 +1,8 @@
 //! Light on its way through media that absorb it.
 //!
-//! A way is through the medium of the object that its ray leaves on the inside, or else of the object that it hits on the
-//! inside: so a viewer may be in glass, and objects may be in it. Between two other objects in glass, light passes freely.
+//! The medium of a path is that of the object that its ray leaves on the inside, or otherwise that of the object that
+//! it hits on the inside. So a viewer may be in glass, and objects may be in it. Between two other objects in glass,
+//! light passes freely.
 
 use super::arrays::VectorList;
 use super::context::Tracer;

@@ -38,7 +38,7 @@ pub(super) struct RayGroup {
     pub travelled: Vec<f64>,
     /// The number of rays that each ray may still cost, itself included.
     pub ray_budget: Vec<u32>,
-    /// The rays before anything is rounded, where they are rays of which that is known and no camera's.
+    /// The rays before anything is rounded, where these are known and the rays are not the camera's.
     pub sights: Vec<Sight>,
     /// Whether these are the current primary rays, each through its position in [`Scratch::places`].
     ///

@@ -1,9 +1,9 @@
 //! Pixels with several samples, where nothing bounds the light that rays may return.
 //!
 //! A pixel is then off by an unknown amount as soon as one of its samples uses up its ray budget, whatever the others
-//! return. So those after it get a small part of the budget, and the pixel costs about as much as one of a single
-//! sample; where the number of samples depends on the pixel, it takes only the first number. What a sample may cost
-//! depends on those before it, which are traced first.
+//! return. So the samples after it get a small part of the budget, and the pixel costs about as much as a pixel with a
+//! single sample; where the number of samples depends on the pixel, it takes only the first number. What a sample may
+//! cost depends on those before it, which are traced first.
 
 use super::context::{PrimaryScratch, Scratch, Tracer};
 use crate::geometry::ray_packet::PACKET_SIZE;

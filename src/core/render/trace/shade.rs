@@ -55,7 +55,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.scratch.levels.push(level);
     }
 
-    /// Computes the colours that rays return which all hit the object of this index, at distances in these brackets.
+    /// Computes the colours of rays that all hit the object of this index, at distances in these brackets.
     fn shade(
         &mut self,
         group: &mut RayGroup,

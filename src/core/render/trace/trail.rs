@@ -57,8 +57,8 @@ impl PathHashes {
         }
     }
 
-    /// Records on which of these points the light of this index shines, as far as they reflect any of it: others may
-    /// not have been looked at. `has_tints` tells that its colours differ only by the glass on the way.
+    /// Records on which of these points the light of this index shines, for those points that reflect any of it: the
+    /// others may not have been looked at. `has_tints` tells that its colours differ only by the glass on the way.
     #[inline]
     pub fn see_light(
         &mut self,

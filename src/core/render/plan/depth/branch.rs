@@ -66,8 +66,8 @@ pub(crate) fn step(reflected: f64) -> Option<i32> {
 }
 
 impl Branch {
-    /// Returns the branch of the rays at an interface whose reflected fraction is of this `step`. Where all is reflected,
-    /// no other ray continues, and the reflected one gets the whole allowance.
+    /// Returns the branch of the rays at an interface whose reflected fraction is of this `step`. Where all light is
+    /// reflected, no other ray continues, and the reflected ray gets the whole allowance.
     pub fn reduced(self, step: i32) -> Self {
         if step == 0 {
             return Self { share: 1.0, faint: REFLECTED * self.faint, ..self };

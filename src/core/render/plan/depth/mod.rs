@@ -27,9 +27,9 @@
 //! beyond(i, side) >= kept_j * S_j + max(T_j * beyond(j, other side), beyond(j, same side))
 //! ```
 //!
-//! and so for `P`, but with 0 for `kept_j * S_j` where nothing is kept. The reflected ray gets a quarter of the allowance,
-//! and the transmitted one the rest, or either one all where the other is none. The weight of the reflected branch is the
-//! largest `r` of a channel, rounded up to a power of two.
+//! and so for `P`, but with 0 for `kept_j * S_j` where nothing is kept. The reflected ray gets a quarter of the
+//! allowance, and the transmitted one the rest, or one of them gets all where the other does not exist. The weight of
+//! the reflected branch is the largest `r` of a channel, rounded up to a power of two.
 //!
 //! The background counts as an object around everything, whose own light `S` is its brightest channel times
 //! [`MAX_DIST`]: it is not divided by the path length `d`, but no ray leaves an object
@@ -78,11 +78,13 @@ use surface::{BoundedLight, SurfaceLight};
 
 /// Bounds on what the branches of a scene with mirrors or glass can return.
 pub struct Depth {
-    /// A bound on any channel of what a primary ray returns that hits an object, times the path length; infinite where there is none.
+    /// A bound on any channel of the light that a primary ray returns if it hits an object, times the path length;
+    /// infinite where there is no bound.
     pub most: f64,
     /// The bounds for each object, by the object's index.
     pub objects: Vec<ContinuationBounds>,
-    /// By the free rules, the bounds of what rays that leave each object return, on each side of it, the outside first.
+    /// By the free rules, the bounds of the light that rays leaving each object return, for each side of the object,
+    /// the outside first.
     pub ranges: Vec<[LightRange; 2]>,
 }
 

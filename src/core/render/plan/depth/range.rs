@@ -1,13 +1,14 @@
 //! What rays that leave objects can return by the free rules, from below and from above.
 //!
-//! A range `[low, high]` of light holds for all rays that leave surfaces if every surface returns light in it when it is
-//! given light in it, and the background lies in it: then so does each sum of branches whose ends are filled with light in
-//! it, however deep. So in a furnace, where everything is as bright as the background, no ray need be followed at all.
+//! A range `[low, high]` of light holds for all rays that leave surfaces under two conditions: every surface that
+//! receives light in the range returns light in the range, and the background lies in it. Then each sum of branches
+//! whose ends are filled with light in the range lies in it too, however deep. So in a furnace, where everything is as
+//! bright as the background, no ray need be followed at all.
 //!
 //! The upper bounds solve the inequalities of the [depth](super), for each channel. The lower one is the same for all
 //! surfaces: the darkest background, or less, so that `left * (ambient + passed * low) >= low` for each surface, where
-//! `passed` is the least that it passes on, and `left` the least that is left of light on any way through a medium. It does
-//! not count on lamps, which may be in shadow everywhere.
+//! `passed` is the least fraction that a surface passes on, and `left` the least fraction of light that is left on any
+//! path through a medium. This bound does not count on lamps, which may be in shadow everywhere.
 
 use super::sides::{SIDES, Sides};
 use super::solve::VisibleSurfaces;

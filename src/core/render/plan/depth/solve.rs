@@ -13,7 +13,8 @@ use glam::DVec3;
 /// The number of iterations after which the search for bounds is given up.
 const ROUNDS: usize = 50;
 
-/// The maximum number of reflecting and transmitting objects for which it is determined which lie behind which.
+/// The maximum number of reflecting and transmitting objects for which the plan determines which objects lie behind
+/// which.
 const PAIRS: usize = 64;
 
 /// The surfaces of a scene, and which of them rays may hit from which.
@@ -22,7 +23,8 @@ pub(super) struct VisibleSurfaces {
     /// The indices of the surfaces from which rays continue, and whether rays that leave one on a side may hit it
     /// again.
     shiny: Vec<(usize, Sides<bool>)>,
-    /// On which sides of one shiny surface another one lies, for each pair; empty for more than [`PAIRS`] surfaces.
+    /// For each pair of shiny surfaces, the sides of the one on which the other lies; empty for more than [`PAIRS`]
+    /// surfaces.
     lies: Vec<Sides<bool>>,
     /// For each shiny surface and side, the largest light of the background and of the matt surfaces that may be hit
     /// from there.
@@ -39,7 +41,7 @@ impl VisibleSurfaces {
         let is_few = shiny.len() <= PAIRS;
         let farthest = match model.camera.value.rules {
             Rules::Notes => MAX_DIST,
-            // The coordinates of the scene's points bound what matters of the length of a path.
+            // The coordinates of the scene's points bound the part of a path's length that matters.
             Rules::Free => model.camera.value.max_coordinate(),
         };
         let lies = |of: usize, object: usize| {

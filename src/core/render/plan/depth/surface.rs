@@ -16,7 +16,7 @@ const ROUNDING: f64 = 1.0 + 1e-11;
 /// The light that is bounded.
 #[derive(Clone, Copy, Default)]
 pub(super) struct BoundedLight {
-    /// The light of which surfaces scatter their own; `None` for all of them, and the ambient colours.
+    /// The light whose scattered part is the surfaces' own light; `None` for all lights and the ambient colours.
     pub light: Option<usize>,
     /// The channel; `None` for the largest.
     pub channel: Option<usize>,

@@ -5,9 +5,9 @@ use glam::DVec3;
 
 /// The hull of some points and of the rays that leave them in some directions.
 ///
-/// It is stored as half-spaces. Each contains the hull, so that what lies outside of one of them is certainly outside of
-/// the hull. They are the hull's faces and, for boxes that lie askew to the faces, the planes through its edges along the
-/// axes.
+/// A hull is stored as half-spaces. Each half-space contains the hull, so that a point outside of one is certainly
+/// outside of the hull. Their planes are the hull's faces and, for boxes that lie askew to the faces, the planes
+/// through its edges along the axes.
 pub(super) struct Hull {
     points: Vec<DVec3>,
     dirs: Vec<DVec3>,

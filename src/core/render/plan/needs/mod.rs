@@ -7,11 +7,11 @@
 //!
 //! **Lights.** A light is left out where it adds nothing to anything that a view may meet: it lies behind the object's
 //! plane, it does not shine on the object's region ([`is_clear_of`](crate::world::light::Light::is_clear_of)), or the
-//! product of its colour and the object's reflectivities is black. The plan also leaves out those that a closed object keeps
-//! from all that is seen.
+//! product of its colour and the object's reflectivities is black. The plan also leaves out lights that a closed object
+//! keeps from everything that is seen.
 //!
-//! **Objects.** An object is left out where it is clear of all views, and of all paths from what is seen to a light that
-//! is needed. What is left out is tested by no ray that could meet it, so the image stays the same to the byte. All tests
+//! **Objects.** An object is left out where it is clear of all views, and of all paths from what is seen to a light
+//! that is needed. No ray could meet an object that is left out, so the image stays the same to the byte. All tests
 //! have margins far above the rounding errors of rays.
 //!
 //! Where pixels take more samples the less certain their colours are, nothing is left out: that is decided by pixels around
@@ -93,8 +93,8 @@ impl Needs {
         }
     }
 
-    /// What the image of the model's camera needs, given the objects' bounding boxes. `depth` has the mirrors that
-    /// reflect nothing.
+    /// Finds what the image of the model's camera needs, given the objects' bounding boxes. `depth` has the mirrors
+    /// that reflect nothing.
     pub fn of(model: &Model, bounds: &[Option<Aabb>], depth: Option<&Depth>) -> Self {
         if model.camera.value.adaptive.is_some() {
             return Self::all(model);
