@@ -217,7 +217,7 @@ fn shown(hasher: Sha256) -> String {
 /// after the other, whether they are rendered or not.
 ///
 /// # Errors
-/// Those of `out` and `next`, and an error where a PNG cannot have the size.
+/// Returns the errors of `out` and `next`, and an error where a PNG cannot have the size.
 pub fn write(
     mut out: impl Write,
     [width, height]: [usize; 2],
@@ -261,7 +261,7 @@ impl Checkpoint {
     /// Opens a checkpoint.
     ///
     /// # Errors
-    /// Those of the file; of kind `InvalidData` if it is not a checkpoint.
+    /// Returns the errors of the file, and one of kind `InvalidData` if the file is not a checkpoint.
     pub fn open(file: File) -> io::Result<Self> {
         let mut png = png::Decoder::new(BufReader::with_capacity(1 << 16, file));
         png.ignore_checksums(false);
@@ -287,8 +287,8 @@ impl Checkpoint {
     /// the top.
     ///
     /// # Errors
-    /// Those of the file; of kind `InvalidData` if it is corrupt. Some corruption is noticed only at the end of the file,
-    /// after earlier bands were filled.
+    /// Returns the errors of the file, and one of kind `InvalidData` if the file is corrupt. Some corruption is noticed
+    /// only at the end of the file, after earlier bands were filled.
     pub fn fill(&mut self, band: &Band) -> io::Result<()> {
         let mut row = vec![[0; 4]; self.width];
         for index in 0..band.strips.len() {

@@ -44,7 +44,7 @@ named!(LogLine {
 /// Traces one pixel and prints these lines about it, in the order in which the notes' program prints them.
 ///
 /// # Errors
-/// Those of `out`.
+/// Returns the errors of `out`.
 pub fn pixel(plan: &Plan, x: usize, y: usize, lines: &[LogLine], out: &mut impl Write) -> io::Result<()> {
     if lines.contains(&LogLine::Pix) {
         write!(out, "\nPIX {y:>4} {x:>4} - ")?;

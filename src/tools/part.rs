@@ -181,7 +181,7 @@ impl<W: Write> Writer<W> {
     /// Writes the label.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// Returns the errors of `out`.
     pub fn new(out: W, label: &Label) -> io::Result<Self> {
         let mut writer = Self { out, hasher: Sha256::new(), begin: 0 };
         let line = text::json(label) + "\n";
@@ -194,7 +194,7 @@ impl<W: Write> Writer<W> {
     /// Writes bytes of pixels.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// Returns the errors of `out`.
     pub fn put(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.hasher.update(bytes);
         self.out.write_all(bytes)
@@ -203,7 +203,7 @@ impl<W: Write> Writer<W> {
     /// Writes the checksum.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// Returns the errors of `out`.
     pub fn finish(mut self) -> io::Result<W> {
         self.out.write_all(&self.hasher.finalize())?;
         Ok(self.out)
@@ -229,7 +229,8 @@ impl Reader {
     /// Reads the label of a part.
     ///
     /// # Errors
-    /// Those of the file; of kind `InvalidData`, with the reason, if it is no part or is cut off.
+    /// Returns the errors of the file, and one of kind `InvalidData`, with the reason, if the file is not a part or is
+    /// cut off.
     pub fn open(file: File) -> io::Result<Self> {
         let wrong = |reason: &'static str| io::Error::new(io::ErrorKind::InvalidData, reason);
         let len = file.metadata()?.len();
@@ -258,7 +259,7 @@ impl Reader {
     /// Reads the next bytes. Damage is noticed at the end of the file, after the bytes before it were passed on.
     ///
     /// # Errors
-    /// Those of the file; of kind `InvalidData`, with the reason, if the checksum is wrong.
+    /// Returns the errors of the file, and one of kind `InvalidData`, with the reason, if the checksum is wrong.
     pub fn read(&mut self, bytes: &mut [u8]) -> io::Result<()> {
         self.file.read_exact(bytes)?;
         self.hasher.update(&*bytes);
@@ -279,7 +280,7 @@ impl Reader {
     /// Reads all that is left, to see whether it is whole.
     ///
     /// # Errors
-    /// Those of [`read`](Self::read).
+    /// Returns the errors of [`read`](Self::read).
     pub fn check(&mut self) -> io::Result<()> {
         let mut block = vec![0; 1 << 16];
         while self.left > 0 {
@@ -292,7 +293,7 @@ impl Reader {
     /// Returns the checksum that the file has at its end.
     ///
     /// # Errors
-    /// Those of the file.
+    /// Returns the errors of the file.
     pub fn checksum(self) -> io::Result<[u8; CHECKSUM]> {
         let (mut file, mut checksum) = (self.file, [0; CHECKSUM]);
         file.seek(SeekFrom::End(-(CHECKSUM as i64)))?;

@@ -1,4 +1,4 @@
-//! Shapes whose hits are found by another root-finding method than their own, for comparison.
+//! Shapes whose hits are found by a root-finding method other than their own, for comparison.
 
 use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::geometry::sight::Sight;

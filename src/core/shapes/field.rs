@@ -1,5 +1,5 @@
-//! What is asked of a formula in x, y and z in a box: whether it is anywhere 0, whether it may have an inside, and how it is
-//! said with fewer operations. Interval arithmetic answers on smaller and smaller parts of the box.
+//! Questions about a formula in x, y and z in a box: whether it is 0 anywhere, whether it may have an inside, and how
+//! to write it with fewer operations. Interval arithmetic answers on smaller and smaller parts of the box.
 
 use crate::world::body::Warning;
 use glam::DVec3;
@@ -23,8 +23,8 @@ pub struct Reduced {
     pub formula: Field,
     /// The denominator that was left out, if there was one.
     pub denominator: Option<Field>,
-    /// What was left out of the formula, or what could not be: where a squared factor is 0, the formula does not change its
-    /// sign.
+    /// The factors that were left out of the formula, or those that could not be: where a squared factor is 0, the
+    /// formula does not change its sign.
     pub warnings: Vec<Warning>,
 }
 
@@ -68,7 +68,7 @@ pub fn is_regular(field: &Field, corners: [DVec3; 2]) -> bool {
     while let Some(part) = waiting.pop() {
         let ([low, high], halvings) = part;
         let at = [0, 1, 2].map(|axis| Interval { low: low[axis], high: high[axis] });
-        // The value, and a slope along each axis, of which each takes several times as long.
+        // The value, and a slope along each axis. Each slope takes several times as long as the value.
         let Some(after) = left.checked_sub(16 * field.cost(at).max(1)) else { return false };
         left = after;
         let value = field.at(at);

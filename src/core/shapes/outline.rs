@@ -126,7 +126,7 @@ pub fn sum(one: DVec3, other: DVec3, is_rounded: &mut bool) -> DVec3 {
 /// Makes an object of triangles, whose vertices may have been rounded.
 ///
 /// # Errors
-/// The reason why the triangles make none.
+/// Returns the reason why the triangles make no object.
 pub fn body(model: Model, are_rounded: bool, accuracy: Accuracy) -> Result<Body, SurfaceError> {
     let in_place = ToWorld::new(DVec3::ONE, Rotation::NONE, DVec3::ZERO);
     let mut surface = Surface::new(model, &in_place, Look::default())?;

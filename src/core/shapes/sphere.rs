@@ -2,7 +2,7 @@
 //!
 //! The course notes' formula loses far, small and grazed spheres, as `b^2 - 4ac` cancels. Here the discriminant comes
 //! from the line's point closest to the center (Haines, Günther and Akenine-Möller 2019), the root is corrected by a
-//! step of Newton's method, and what rounding could decide is decided in double-double arithmetic.
+//! step of Newton's method, and cases that rounding could decide are decided in double-double arithmetic.
 
 use crate::geometry::aabb::{Aabb, SLACK, larger};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayError, RayRange, Side};
@@ -241,8 +241,8 @@ pub fn t_bounds(
     }
 }
 
-/// Returns what is to be added to the `spread` with which [`t_bounds`] holds for a ray with a unit direction, to hold for
-/// all rays within a drift of it.
+/// Returns the amount to add to the `spread` for a ray with a unit direction, so that [`t_bounds`] holds for all rays
+/// within a drift of it.
 ///
 /// The drift moves `aside` by `k` EPSILON of the size. Where the discriminant exceeds `doubt`, which grows with the
 /// spread `K`, that moves half the chord by less than `k EPSILON size / sqrt(32,768 EPSILON K)`, of which half of

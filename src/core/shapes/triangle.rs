@@ -28,7 +28,7 @@ pub struct Triangle<A> {
 }
 
 impl Triangle<Classic> {
-    /// Returns the triangle with these corners; `None` where they are collinear as far as `f64` tells.
+    /// Returns the triangle with these corners; `None` where `f64` cannot tell the corners from collinear ones.
     pub fn classic(corners: [DVec3; 3]) -> Option<Self> {
         let [a, b, c] = corners;
         let normal = (b - a).cross(c - a).try_normalize()?;
@@ -124,7 +124,7 @@ pub(crate) fn exact_side(from: DVec3, to: DVec3, ray: &Ray) -> f64 {
 }
 
 /// Returns the plane through the corners of a triangle with an area, for distances only: its unit normal, which takes
-/// longer than all else of it, is left 0.
+/// longer than everything else, is left 0.
 #[inline]
 pub(crate) fn plane_for_distances<A>(corners: [DVec3; 3]) -> Plane<A> {
     Plane::new(DVec3::ZERO, exact_normal(corners), corners[0])
@@ -224,8 +224,8 @@ pub(crate) fn unit_normals(corners: &[Vectors<LANES>; 3]) -> Vectors<LANES> {
     normals
 }
 
-/// Computes what follows from the corners of a triangle, unless they are those of the last one: neighbouring rays often
-/// hit the same triangle.
+/// Computes the quantities that follow from the corners of a triangle, unless the corners equal those of the last
+/// triangle: neighbouring rays often hit the same one.
 #[inline(always)]
 fn unless_last<T: Copy>(
     last: &mut Option<([DVec3; 3], T)>,

@@ -113,7 +113,7 @@ impl Texture {
     /// Returns the texels, and reads their file at the first call.
     ///
     /// # Errors
-    /// The reason why it cannot be read.
+    /// Returns the reason why the image cannot be read.
     pub fn load(&self) -> Result<&Texels, &str> {
         self.load_within(u64::MAX)
     }
@@ -121,7 +121,7 @@ impl Texture {
     /// Returns the texels, and reads their file at the first call, unless that takes more than `bytes` bytes of memory.
     ///
     /// # Errors
-    /// The reason why it cannot be read.
+    /// Returns the reason why the image cannot be read.
     pub fn load_within(&self, bytes: u64) -> Result<&Texels, &str> {
         let picture = self.picture.get_or_init(|| self.read(bytes));
         picture.as_ref().map(|picture| &picture.texels).map_err(String::as_str)

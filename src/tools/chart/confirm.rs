@@ -1,7 +1,7 @@
 //! The choice that is likely to meet a goal, measured on so many pixels that it certainly does.
 //!
-//! A bound that holds whatever is in the pixels that are not measured needs many that are: but few samples in each beside
-//! those of the choice itself, since their noise is as often too high as too low.
+//! A bound that holds whatever the unmeasured pixels contain needs many measured pixels. Few samples in each suffice,
+//! in addition to those of the choice itself, since their noise is as often too high as too low.
 
 use super::goal::{Estimate, Goal};
 use super::needed;

@@ -68,7 +68,8 @@ const FEWEST: usize = 128;
 /// with work of this CPU time, in seconds.
 ///
 /// # Errors
-/// Those of `load`, and those of starting threads; `Interrupted` if `progress` breaks off before enough is known.
+/// Returns the errors of `load` and of starting threads, and `Interrupted` if `progress` breaks off before enough is
+/// known.
 pub fn estimates(
     load: Load,
     goal: Goal,
@@ -136,7 +137,7 @@ pub fn estimates(
 /// Compares accuracies and numbers of samples together, as [`estimates`] measures them.
 ///
 /// # Errors
-/// Those of [`estimates`].
+/// Returns the errors of [`estimates`].
 pub(super) fn panel(load: Load, progress: &mut dyn Progress) -> io::Result<Panel> {
     let model = load(None)?;
     let Sensor { samples, pixels: [width, height], .. } = model.camera.value;

@@ -64,7 +64,7 @@ use study::Study;
 /// Measures the cost and the error of a scene's choices. If `progress` breaks off a panel, the others are kept.
 ///
 /// # Errors
-/// Those of `load`, and those of starting threads.
+/// Returns the errors of `load` and of starting threads.
 pub fn measure(scene: &str, load: Load, progress: &mut dyn Progress) -> io::Result<Chart> {
     let study = Study::new(load)?;
     let mut chart = Chart::empty(scene);
@@ -76,7 +76,7 @@ pub fn measure(scene: &str, load: Load, progress: &mut dyn Progress) -> io::Resu
 /// and grazing rays. If `progress` breaks off a set, those before it are kept.
 ///
 /// # Errors
-/// Those of [`measure`].
+/// Returns the errors of [`measure`].
 pub fn wrong_hits(
     load: Load,
     pairs: [usize; 2],

@@ -12,7 +12,7 @@ pub trait Progress: Send {
     /// Says that what is left is to take the time that is left, and consists of this many panels: then the one that
     /// begins may take its share.
     fn share(&mut self, _panels: usize) {}
-    /// Tells whether half of the panel's share is used: what is known by then of the truth must do.
+    /// Tells whether half of the panel's share of time is used. Then the part of the truth that is known must do.
     fn is_late(&self) -> bool {
         false
     }

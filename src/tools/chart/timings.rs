@@ -47,7 +47,7 @@ pub(super) struct Timings {
 }
 
 impl Timings {
-    /// Begins with what is not tracing. A render begins with work of this CPU time, in seconds.
+    /// Begins with the work that is not tracing. A render begins with work of this CPU time, in seconds.
     pub fn new(model: &Model, threads: &Renderer, beginning: f64) -> Self {
         let (size, mut plan) = (model.camera.value.pixels, plan(model));
         plan.camera.samples = 1;

@@ -41,7 +41,7 @@ impl Grade {
     /// `make` makes the scene's model again, each time to be changed.
     ///
     /// # Errors
-    /// Those of `make`.
+    /// Returns the errors of `make`.
     pub fn new<E>(
         renderer: &Renderer,
         model: &Model,

@@ -30,7 +30,7 @@ const BESIDE: u8 = 4;
 /// A change of the scene.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord)]
 enum Trial {
-    /// This object alone, without these lights: what is in the way of the others is gone.
+    /// This object alone, without these lights. Objects in the way of the other lights are gone.
     Alone { object: usize, dark: Vec<usize> },
     /// Without these lights.
     Dark(Vec<usize>),
@@ -66,7 +66,7 @@ struct Trials<'t, E> {
 /// Explains pixels that differ from what is right in this view.
 ///
 /// # Errors
-/// Those of `make`.
+/// Returns the errors of `make`.
 pub(super) fn explain<E>(
     renderer: &Renderer,
     compared: &Compared,

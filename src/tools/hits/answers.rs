@@ -142,10 +142,11 @@ impl<'m> Answered<'m> {
 }
 
 impl AnswerFormat {
-    /// Writes what comes before the answers. An array needs their number. `are_all` says whether a ray may have several.
+    /// Writes the text before the answers. An array needs the number of answers. `are_all` says whether a ray may have
+    /// several.
     ///
     /// # Errors
-    /// Those of `out`; and for an array, where the number is not known.
+    /// Returns the errors of `out`, and for an array, an error where the number is not known.
     pub fn begin(self, count: Option<u64>, are_all: bool, out: &mut dyn Write) -> io::Result<()> {
         match (self, count) {
             (Self::JsonLines, _) => Ok(()),

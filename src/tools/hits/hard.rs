@@ -260,7 +260,7 @@ impl Search {
 /// Writes rays, as [`RayReader`](super::rays::RayReader) reads them.
 ///
 /// # Errors
-/// Those of `out`.
+/// Returns the errors of `out`.
 pub fn write(format: AnswerFormat, rays: &[HardRay], out: &mut dyn Write) -> io::Result<()> {
     match format {
         AnswerFormat::JsonLines => {

@@ -168,7 +168,7 @@ impl Report {
 /// their order.
 ///
 /// # Errors
-/// The first lines that are no answers, unless `skip_bad`.
+/// Returns the first lines that are not answers, unless `skip_bad` is set.
 pub fn read(
     renderer: &Renderer,
     query: &Query,

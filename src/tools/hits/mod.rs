@@ -64,7 +64,7 @@ type Ray = (ExactRay, f64);
 /// how many rays are done.
 ///
 /// # Errors
-/// Without `skip_bad`, the first rays that are none; and what the output says.
+/// Returns the first invalid rays, unless `skip_bad` is set, and the errors of the output.
 pub fn read(
     renderer: &Renderer,
     query: &Query,
@@ -110,7 +110,7 @@ pub fn read(
 /// Answers the rays through the pixels of a scene's camera, row by row from the top.
 ///
 /// # Errors
-/// Those of the output.
+/// Returns the errors of the output.
 pub fn of_camera(
     renderer: &Renderer,
     query: &Query,

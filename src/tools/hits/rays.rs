@@ -84,7 +84,7 @@ impl<'r> RayReader<'r> {
     /// Starts to read, in a format or in the one that the first bytes show.
     ///
     /// # Errors
-    /// Where the input cannot be read, or where its head is none of the format.
+    /// Returns an error where the input cannot be read, or where its head is not one of the format.
     pub fn new(mut input: Input<'r>, format: Option<RayFormat>) -> Result<Self, BadRay> {
         let bad = |number, unit, message| BadRay { number, unit, message, is_last: true };
         let format = match format {

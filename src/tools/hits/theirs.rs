@@ -67,7 +67,7 @@ impl<'r> TheirReader<'r> {
     /// Starts to read CSV or JSON lines, which the first bytes tell apart.
     ///
     /// # Errors
-    /// Where the input cannot be read, or the first line of CSV lacks columns.
+    /// Returns an error where the input cannot be read, or where the first line of CSV lacks columns.
     pub fn new(mut input: Input<'r>) -> Result<Self, BadRay> {
         let bad = |number, message| BadRay { number, unit: "line", message, is_last: true };
         let head = input.fill_buf().map_err(|error| bad(1, reason(&error)))?;

@@ -60,7 +60,7 @@ pub fn point(model: &Model, [x, y]: [usize; 2]) -> [f64; 3] {
 /// Tells where the camera stands.
 ///
 /// # Errors
-/// Why it cannot be moved.
+/// Returns why the camera cannot be moved.
 pub fn state<'s>(registry: &Registry, shown: Shown<'s>) -> Result<CameraState<'s>, String> {
     let record = &shown.model.camera.args;
     let (name, camera, view) = (record.name(), record.args(), shown.view(registry));

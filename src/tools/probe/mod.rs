@@ -23,7 +23,7 @@ const MAX_INDENT: usize = 20;
 /// the centre of the pixel, and then gives the colour of all.
 ///
 /// # Errors
-/// Those of `out`.
+/// Returns the errors of `out`.
 pub fn pixel(plan: &Plan, x: usize, y: usize, out: &mut impl Write) -> io::Result<()> {
     let camera = &plan.camera;
     let [width, height] = camera.pixels;

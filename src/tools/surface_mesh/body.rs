@@ -40,7 +40,7 @@ impl<'m> Body<'m> {
     /// Returns the body of an object of a scene.
     ///
     /// # Errors
-    /// Why it has none.
+    /// Returns why the object has no body.
     pub fn of(model: &'m Model, name: &str) -> Result<Self, NoBody> {
         let named = |object: &&Object| object.args.name() == name;
         let objects: Vec<_> = model.objects.iter().filter(named).collect();

@@ -33,7 +33,7 @@ impl Format {
     /// Writes a mesh; `name` is that of the object.
     ///
     /// # Errors
-    /// Those of the writer.
+    /// Returns the errors of the writer.
     pub fn write(self, mesh: &SurfaceMesh, name: &str, out: &mut impl Write) -> io::Result<()> {
         match self {
             Self::Stl => stl(mesh, out),

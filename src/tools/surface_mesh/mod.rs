@@ -36,7 +36,7 @@ const MOST: u32 = 16;
 const MOST_CELLS: usize = 1 << 22;
 const CELL: u64 = 400;
 
-/// Why there is no mesh.
+/// Returns why there is no mesh.
 #[derive(Debug, PartialEq)]
 pub enum NoMesh {
     /// Inside of the object there is no corner of a cell, however small: the object may be empty.
@@ -54,7 +54,7 @@ pub enum NoMesh {
 /// if that is limited.
 ///
 /// # Errors
-/// Why there is no mesh.
+/// Returns why there is no mesh.
 pub fn mesh(body: &Body<'_>, error: f64, memory: Option<u64>) -> Result<SurfaceMesh, NoMesh> {
     let most = memory.map_or(MOST_CELLS, |bytes| MOST_CELLS.min((bytes / CELL) as usize));
     let mut cells = Cells::around(body);

@@ -13,14 +13,16 @@ use tabray_exact::roots::isolation::{self, RootPart};
 use tabray_exact::roots::range::Side;
 use tabray_exact::scalar::per_axis;
 
-/// How far bounds of a root may be apart, in ulps of its distance: it is nearly always in their middle.
+/// The largest distance between the bounds of a root, in ulps of the root's distance. The root is nearly always in
+/// their middle.
 const HIDDEN: f64 = 64.0;
 
 /// A step of Newton's method after which another one would not change the digits of a root, as a fraction of its distance: its
 /// square has twenty bits to spare.
 const SMALL: f64 = 1.0 / 137_438_953_472.0;
 
-/// By how much more a piece is searched exactly, as a fraction of the places on it: a root at its end belongs to it.
+/// The margin by which a piece is enlarged for the exact search, as a fraction of the places on it. A root at the end
+/// of a piece belongs to it.
 const BEYOND: f64 = 4.0 * f64::EPSILON;
 
 /// A formula along a ray as it is given.
@@ -95,8 +97,8 @@ impl<T: Implicit> ExactRay<'_, T> {
         if (fine.high - root).abs() * slope <= hidden { fine.high } else { root }
     }
 
-    /// Returns the first root from one place to another, exactly; `None` where the formula or the line has numbers that are no
-    /// fractions.
+    /// Returns the first root from one place to another, exactly; `None` where the formula or the line has numbers that
+    /// are not fractions.
     fn exactly(&self, low: f64, high: f64, origin_side: Option<Side>) -> Option<Option<f64>> {
         let field = self.formula.field()?;
         let [origin, dir] = exact_line(&self.frame.line(Sight::along(self.ray).line()))?;

@@ -6,7 +6,7 @@ use tabray_exact::interval::Interval;
 use tabray_exact::polynomial::{Coefficient, Polynomial};
 use tabray_exact::scalar::Scalar;
 
-/// Why a surface is not closed that the faces of its box would close: [`Implicit::why_not_closed`].
+/// Why a surface that the faces of its box would close is not closed: [`Implicit::why_not_closed`].
 pub const CUT_BY_BOX: &str = "its box may cut its surface";
 
 /// An implicit surface, in coordinates of its own.
@@ -17,8 +17,8 @@ pub trait Implicit: Send + Sync {
     /// Returns the value of the formula at a point: below 0 inside the shape, above 0 outside, and 0 on the surface.
     fn value<N: Scalar>(&self, at: [N; 3]) -> N;
 
-    /// Returns the value of a polynomial that is below 0, 0 and above 0 where the formula is: first hits are isolated faster
-    /// by one of at most the fortieth degree. By default, this is the formula itself, which may be no polynomial.
+    /// Returns the value of a polynomial that is below 0, 0 and above 0 where the formula is: a polynomial of degree 40
+    /// or less isolates first hits faster. By default, this is the formula itself, which need not be a polynomial.
     fn polynomial<N: Scalar>(&self, at: [N; 3]) -> N {
         self.value(at)
     }

@@ -18,12 +18,12 @@ use tabray_exact::roots::taylor::{self, FirstRoot, SignChange};
 use tabray_exact::roots::twice;
 use tabray_exact::scalar::Scalar;
 
-/// The number of pieces that are judged of a ray that is rounded by more than the size of the shape: `f64` can hardly tell
-/// where it is hit, however many pieces there are.
+/// The number of pieces that are judged on a ray that is rounded by more than the size of the shape: `f64` can hardly
+/// tell where it is hit, however many pieces there are.
 const FEW_PIECES: usize = 32;
 
-/// The number of pieces that are judged of a ray that stands for others, as a copy's does. A ray that takes more is
-/// proven.
+/// The number of pieces that are judged on a ray that stands for others, as a ray of a copy does. A ray that takes more
+/// pieces is left to a proof.
 const MOST_DRIFTING: usize = 256;
 
 /// A shape whose hits and normals are found by its formula.
@@ -222,7 +222,7 @@ impl<T: Implicit> taylor::FunctionOnLine for FormulaOnRay<'_, T> {
     fn pieces(&self, ends: (f64, f64), mut visit: &mut dyn FnMut(f64, f64) -> Option<f64>) -> Option<f64> {
         let ImplicitShape { formula, low, high, parts, .. } = self.shape;
         let error = self.blur + self.turn * ends.0.abs().max(ends.1.abs());
-        // So that a line is in the parts of the box that it seems to be in, with their margins.
+        // With these errors, a line is in the parts of the box in which it seems to be, given their margins.
         let is_precise = error <= 0.5 * MARGIN * (*high - *low).min_element();
         if !is_precise {
             return visit(ends.0, ends.1);

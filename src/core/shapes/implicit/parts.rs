@@ -3,8 +3,8 @@
 //! The box is halved along its longest side, again and again, and bounds of the formula tell in which halves it is not 0. A part is
 //! judged when the first ray comes to it. The judgement does not depend on the ray, so that a hit does not depend on other rays.
 //!
-//! Source: M. J. Keeter, "Massively Parallel Rendering of Complex Closed-Form Implicit Surfaces" (2020), where what is empty is
-//! found for the tiles of an image.
+//! Source: M. J. Keeter, "Massively Parallel Rendering of Complex Closed-Form Implicit Surfaces" (2020), which finds
+//! the empty parts for the tiles of an image.
 
 use super::formula::Implicit;
 use glam::DVec3;
@@ -30,8 +30,8 @@ const OPEN: u8 = 3;
 pub(super) struct Parts {
     low: DVec3,
     high: DVec3,
-    /// What is known of four parts each. The part with the index 1 is the box, and the halves of part `i` are `2 i` and `2 i + 1`.
-    /// Made when the first ray comes.
+    /// What is known about the parts, four to a byte. The part with the index 1 is the box, and the halves of part `i`
+    /// are `2 i` and `2 i + 1`. Made when the first ray comes.
     known: OnceLock<Box<[AtomicU8]>>,
 }
 

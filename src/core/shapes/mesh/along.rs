@@ -50,7 +50,7 @@ impl Surface {
         if rivals().all(|(_, other)| other == face) {
             return (first, face);
         }
-        // Of several faces at exactly the same distance, that which `face_along` chooses.
+        // If several faces are at exactly the same distance, the face that `face_along` chooses.
         if rivals().all(|(found, _)| found == first && at.low == at.high) {
             let place = |face: usize| {
                 let rank = match self.is_certainly_hidden::<A, F>(face, line, at, leaves)? {
@@ -95,7 +95,7 @@ impl Surface {
     }
 
     /// Tells whether other faces hide a face beside the point where a line meets it, as [`is_hidden`](Self::is_hidden)
-    /// does; `None` where it is open.
+    /// does; `None` where that is open.
     fn is_certainly_hidden<A: Bounded, F: Precise>(
         &self,
         face: usize,
@@ -136,7 +136,7 @@ impl Surface {
         });
     }
 
-    /// Tells whether a line hits the outside of a face, or whether that makes no difference; `None` where it is open.
+    /// Tells whether a line hits the outside of a face, or whether that makes no difference; `None` where that is open.
     fn is_certainly_outside<A: Bounded, F: Precise>(
         &self,
         face: usize,

@@ -8,11 +8,11 @@ use tabray_exact::double_double::exact::exact_sum;
 use tabray_exact::double_double::two_product;
 use tabray_exact::scalar::per_axis;
 
-/// How many times farther than its size a mesh may be, up to which plain arithmetic finds its faces quickly.
+/// The largest distance, as a multiple of a mesh's size, from which plain arithmetic finds its faces quickly.
 pub(super) const FAR: f64 = (1_u64 << 30) as f64;
 
-/// A ray that starts nearer to a mesh than the one that it stands for: plain arithmetic cannot tell faces apart that are far
-/// away for their size.
+/// A ray that starts nearer to a mesh than the one that it stands for: plain arithmetic cannot tell faces apart whose
+/// distance is large for their size.
 pub(super) struct Approach {
     pub ray: Ray,
     /// A bound on the error of its origin.
@@ -68,8 +68,8 @@ mod tests {
     use crate::world::accuracy::Exact;
     use glam::DVec3;
 
-    /// From 1e13 times the size of a mesh on, rounding hides which of its faces a ray may hit; all of them were candidates, and
-    /// each was compared with all others.
+    /// Beyond 1e13 times the size of a mesh, rounding hides which of its faces a ray may hit. All faces would be
+    /// candidates, and each would be compared with all others.
     #[test]
     fn few_faces_are_candidates_from_far_away() {
         let surface = surface(closed(&[1.0], 20), &ToWorld::new(PLAIN, Rotation::NONE, DVec3::ZERO));
@@ -96,7 +96,8 @@ mod tests {
                 assert!((distance - (far - 2.0 + from_near)).abs() <= 2.0 * f64::EPSILON * far, "from {far}");
                 let first = surface.face_along(&near, from_near);
                 assert!(candidates.contains(&first), "from {far}");
-                // Beyond, the hit point may be nearer to another face, as it is off by more than the size of one.
+                // Beyond this distance, the hit point may be nearer to another face, because its error exceeds the size
+                // of a face.
                 if far <= 1e13 {
                     assert_eq!(surface.face_along(&ray, distance), first, "from {far}");
                 }
@@ -104,7 +105,8 @@ mod tests {
         }
     }
 
-    /// A ray that passes by at a distance far larger than the mesh, and that comes from far larger ones, meets nothing.
+    /// A ray that passes at a distance far larger than the mesh, and that comes from a far larger distance, meets
+    /// nothing.
     #[test]
     fn rays_that_pass_by_from_far_away_have_no_candidates() {
         let surface = surface(closed(&[1.0], 20), &ToWorld::new(PLAIN, Rotation::NONE, DVec3::ZERO));

@@ -11,7 +11,8 @@ use std::fmt;
 /// The reason why no surface can be made of arrays.
 #[derive(Debug, PartialEq)]
 pub enum ArrayError {
-    /// The first face that has a corner which is no vertex: the index of the face, that of the corner, and what stands there.
+    /// The first face with a corner that is not a vertex: the index of the face, the index of the corner, and the
+    /// number given there.
     Corner(usize, usize, u32),
     /// The first vertex that is not finite, by its index.
     NotFinite(usize),
@@ -45,7 +46,7 @@ impl Surface {
     /// ```
     ///
     /// # Errors
-    /// Why there is none.
+    /// Returns why there is no surface.
     pub fn of_arrays(vertices: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Result<Self, ArrayError> {
         let first = |vertex: usize| !vertices[vertex].is_finite();
         if let Some(vertex) = parallel::find_first(vertices.len(), first) {
@@ -59,10 +60,11 @@ impl Surface {
         Self::of_checked(vertices, faces, Look::default())
     }
 
-    /// Returns this surface with the faces of each part turned alike, as those of files are: as most of them are turned.
+    /// Returns this surface with the faces of each part turned alike, as most of them are turned. Surfaces read from
+    /// files are turned in the same way.
     ///
     /// # Errors
-    /// Why there is none.
+    /// Returns why there is no surface.
     pub fn turned_alike(&self) -> Result<Self, ArrayError> {
         let look = Look { crease: None, is_two_sided: true };
         Self::of_checked(self.vertices.clone(), self.faces.clone(), look)

@@ -1,4 +1,5 @@
-//! The normals with which a mesh looks smooth: those of the faces around a corner, as far as edges are no creases.
+//! The normals with which a mesh looks smooth: the means of the normals of the faces around a corner, up to edges that
+//! are creases.
 
 use super::edges::Edges;
 use super::read::AtCorners;
@@ -7,7 +8,8 @@ use crate::world::accuracy::Exact;
 use glam::DVec3;
 use tabray_exact::double_double::{exponent_to_one, times_power_of_two};
 
-/// The unit normals of a mesh that looks smooth, 0 where those of the faces cancel. Each corner has one.
+/// The unit normals of a mesh that looks smooth, one for each corner. A normal is 0 where the normals of the faces
+/// cancel.
 pub(super) type Normals = AtCorners<[f32; 3]>;
 
 impl Normals {
@@ -70,7 +72,7 @@ fn angle(corners: &[DVec3; 3], side: usize) -> f64 {
     libm::atan2(to.cross(from).length(), to.dot(from))
 }
 
-/// Returns the first corner with the same normal as one, and shortens the way to it.
+/// Returns the first corner with the same normal as a corner, and shortens the path to it.
 fn first(above: &mut [u32], mut corner: u32) -> u32 {
     while above[corner as usize] != corner {
         let up = above[above[corner as usize] as usize];

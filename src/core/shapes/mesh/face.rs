@@ -59,7 +59,8 @@ impl Flat {
         let largest = largest(between);
         let (away_error, toward_error) =
             (AWAY_ERROR * edges * largest + UNDERFLOW * (1.0 + largest), TOWARD_ERROR * edges + UNDERFLOW);
-        // A normal is no longer than 3 times that product, as an edge is no longer than the root of 3 of its components.
+        // A normal is no longer than 3 times the product of the edges' largest components, as an edge is no longer than
+        // the root of 3 times its largest component.
         let (away_error, toward_error) =
             (away_error + 3.0 * edges * drift.origin, toward_error + 3.0 * edges * drift.dir);
         (self.normal.dot(between), away_error, toward_error)
@@ -135,7 +136,7 @@ pub(super) fn has_area(corners: [DVec3; 3]) -> bool {
     let [a, b, c] = corners;
     let (one, other) = (b - a, c - a);
     let edges = one.abs().max_element() * other.abs().max_element();
-    // Ten times the error of a component. The product may underflow, but not where this holds.
+    // Ten times the error of a component. The product may underflow, but not where this comparison holds.
     one.cross(other).abs().max_element() > 100.0 * f64::EPSILON * edges + f64::MIN_POSITIVE
         || Triangle::<Exact>::new(corners).is_some()
 }
@@ -159,9 +160,9 @@ impl<A> Equation for Face<A> {
 
 /// Returns the distance from a point to a triangle, in world units.
 ///
-/// Where the point's projection onto the plane is on the same side of all edges, it is that from the plane, and else that
-/// from the nearest edge. Coordinates are relative to the point, and the normal is that of the two shortest edges, so that a
-/// triangle that is far longer than it is wide costs few digits.
+/// Where the point's projection onto the plane is on the same side of all edges, the result is the distance from the
+/// plane, and otherwise the distance from the nearest edge. Coordinates are relative to the point, and the normal is
+/// computed from the two shortest edges, so that a triangle that is far longer than it is wide costs few digits.
 pub(super) fn distance_to(corners: [DVec3; 3], at: DVec3) -> f64 {
     let corners = [corners[0] - at, corners[1] - at, corners[2] - at];
     let size = larger(larger(largest(corners[0]), largest(corners[1])), largest(corners[2]));

@@ -101,7 +101,7 @@ impl Finished {
         if colours.is_empty() { Rgb::ONE } else { Rgb::splat(most.max(1.0).into()) }
     }
 
-    /// Bounds the looks of all faces, where the mesh itself is of the material `own`.
+    /// Bounds the looks of all faces, where the mesh itself has the material `own`.
     fn most(&self, own: &Material) -> Look {
         let tint = self.brightest_tint();
         let plain = Look {
@@ -121,8 +121,8 @@ impl Finished {
         })
     }
 
-    /// Returns the material of the mesh, `own`, with the shininess and the transparency of all of its faces' materials, and a
-    /// warning where these differ, or `own` is of another kind.
+    /// Returns the material of the mesh, `own`, with the shininess and the transparency of all of its faces' materials,
+    /// and a warning where these materials differ, or `own` is of another kind.
     pub fn material(&self, own: &Material) -> (Option<Material>, Option<Warning>) {
         let surface = &self.surface;
         let of = |slot: u16| surface.finish(slot).map_or([own.shininess, own.transparency], Finish::gloss);
@@ -298,7 +298,7 @@ impl Shader for Finished {
         })
     }
 
-    /// Those of all faces, if the mesh's own material has no negative diffuse colour.
+    /// Returns bounds for the looks of all faces, if the mesh's own material has no negative diffuse colour.
     fn brightest(&self, material: &Material) -> Option<Look> {
         (material.diffuse.min_element() >= 0.0).then(|| self.most(material))
     }

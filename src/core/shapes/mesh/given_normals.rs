@@ -7,9 +7,10 @@ use glam::DVec3;
 use std::sync::Arc;
 
 impl Normals {
-    /// Takes the normals that a file gives the corners of faces, and those of `others` where it gives none or where one is 0,
-    /// not finite or not within 90 degrees of the face's own. Normals of a face that point to its other side, as their sum
-    /// tells, are turned. Returns the number of corners whose normals were not taken.
+    /// Takes the normals that a file gives the corners of faces. The normals of `others` are taken where the file gives
+    /// none, or where its normal is 0, not finite or not within 90 degrees of the face's own. If the sum of a face's
+    /// normals points to the other side of the face, these normals are turned. Returns the number of corners whose
+    /// normals were not taken.
     pub(super) fn given(
         given: Self,
         vertices: &[DVec3],
@@ -57,7 +58,7 @@ impl Normals {
     }
 }
 
-/// Takes a normal to the world, where its length is 1; one that has no direction is 0.
+/// Transforms a normal to the world, where its length is 1. A normal without a direction becomes 0.
 fn placed(normal: [f32; 3], placement: &ToWorld) -> [f32; 3] {
     let placed = placement.place_normal(DVec3::from(normal.map(f64::from)));
     let unit = if placed.is_finite() { placed.normalize_or_zero() } else { DVec3::ZERO };

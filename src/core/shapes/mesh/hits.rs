@@ -165,9 +165,9 @@ impl Surface {
         first
     }
 
-    /// Returns the face that a ray hits at a distance in world units: of several that hold the point up to rounding, the
-    /// first in the file of those that are seen there; of these, those whose outside the ray hits, if there are any. At
-    /// the outline of a closed mesh, a face that others hide would show light from within.
+    /// Returns the face that a ray hits at a distance in world units. If several faces contain the point up to
+    /// rounding, faces that are seen there come before hidden ones, then faces whose outside the ray hits, and then the
+    /// first in the file. At the outline of a closed mesh, a face that others hide would show light from within.
     #[inline(always)]
     pub(super) fn face_along(&self, ray: &Ray, distance: f64) -> usize {
         let close = close(ray, distance);
@@ -240,7 +240,7 @@ impl Surface {
             None => line.clip(*low, *high).map(|(entry, _)| f256::from(entry)),
         };
         let end = Cell::new(f256::INFINITY);
-        // Behind the face that is found without a proof, if that is hit, nothing needs to be looked for.
+        // If the face that was found without a proof is hit, nothing behind it needs to be searched.
         let found = self.first(Cpu::best(), &sight.ray(), &RayRange::ALL, NOTHING, RayError::NONE, false);
         if let Some(face) = found.face()
             && let Enclosure::Hits(at) = certify::first_hit(&Face(self.triangle::<A>(face)), sight, precision)
@@ -269,7 +269,8 @@ impl Surface {
         let first = met.iter().copied().reduce(|one, other| if other.0 < one.0 { other } else { one });
         match first {
             None => Enclosure::Misses,
-            // It is hit there, or a certain hit overlaps it: then the first hit is in both together.
+            // The face is hit there, or a certain hit overlaps this one. Then the first hit lies in the union of both
+            // intervals.
             Some((low, Enclosure::Edge(at) | Enclosure::Hits(at))) if end <= at.high => {
                 Enclosure::Hits(Wide { low, high: end })
             }
@@ -307,5 +308,6 @@ impl Surface {
 /// What a ray leaves that starts on no face.
 pub(super) const NOTHING: Leaving = Leaving { least: -1.0, most: -1.0 };
 
-/// How far a point beside another one of a face lies from it, as a fraction of the way to the middle of the face.
+/// The distance between a point of a face and the point examined beside it, as a fraction of the distance to the middle
+/// of the face.
 pub(super) const BESIDE: f64 = 1.0 / (1 << 20) as f64;

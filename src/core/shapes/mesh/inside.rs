@@ -1,11 +1,12 @@
 //! What lies inside of a closed mesh: the points around which it winds.
 //!
-//! The winding number of a point tells how many bodies of the mesh hold it, where those turned inside out count as less than
-//! none. Along any way to the outside, it is how often faces are passed from their inner to their outer side, less how often
-//! the other way. A point lies inside where that is not 0: bodies that overlap or touch are one, and a cavity, turned inward
-//! in a body, is outside.
+//! The winding number of a point is the number of bodies of the mesh that contain it, where a body that is turned
+//! inside out counts as -1. Along any path to the outside, it is the number of faces that are passed from their inner
+//! to their outer side, minus the number passed the other way. A point lies inside where that is not 0: bodies that
+//! overlap or touch are one, and a cavity, turned inward in a body, is outside.
 //!
-//! Most meshes are the boundary of that as they are. Of others, it is found for each face what lies before it.
+//! The faces of most meshes are exactly the boundary of the inside. For other meshes, the space before each face is
+//! examined.
 
 use super::along::Met;
 use super::face::Face;
@@ -24,7 +25,7 @@ use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, constants, dot, per_axis};
 
 impl Surface {
-    /// Returns what lies before each face of a closed mesh, if that is not the outside.
+    /// Returns the winding numbers before the faces of a closed mesh, if any of them is not the outside's.
     pub(super) fn depths(&self) -> Option<&Arc<[Depth]>> {
         self.depths.get_or_init(|| if self.is_star() { None } else { self.find_depths() }).as_ref()
     }
@@ -32,7 +33,7 @@ impl Surface {
     /// Tells whether a point lies inside of a closed mesh: whether the mesh winds around it. `None` where 237 bits do not
     /// tell, as on the surface, or in the plane of a face and in the box around it.
     ///
-    /// Faces must be turned alike, as those of [`turned_alike`](Self::turned_alike) are.
+    /// Faces must be turned alike, as [`turned_alike`](Self::turned_alike) turns them.
     pub fn winds_around(&self, at: DVec3) -> Option<bool> {
         let mut may_be_on = false;
         self.tree.within(
@@ -71,8 +72,8 @@ impl Surface {
         Some((0..self.face_count()).map(|face| depths[first_of[face]]).collect())
     }
 
-    /// Returns the winding number beside the outer side of a face that meets others only at shared edges and corners; `None`
-    /// where no direction tells.
+    /// Returns the winding number beside the outer side of a face that meets others only at shared edges and corners;
+    /// `None` where no examined direction decides.
     fn depth<F: Precise>(&self, face: usize) -> Depth {
         let third = Interval::constant(1.0) / Interval::constant(3.0);
         let triangle = self.triangle::<Exact>(face);
@@ -148,7 +149,7 @@ fn directions() -> impl Iterator<Item = DVec3> {
     DIRECTIONS.into_iter().flat_map(|dir| [dir, -dir])
 }
 
-/// Returns the face that stands for the part that a face belongs to, and halves the way to it.
+/// Returns the face that stands for the part to which a face belongs, and halves the path to it.
 fn top(above: &mut [usize], mut face: usize) -> usize {
     while above[face] != face {
         above[face] = above[above[face]];
@@ -183,7 +184,7 @@ mod tests {
         ((0..8).map(corner).collect(), faces.to_vec())
     }
 
-    /// Returns the surface of two cubes, of which the other one may be turned inward.
+    /// Returns the surface of two cubes. The second one may be turned inward.
     fn two(one: (Vec<DVec3>, Vec<[u32; 3]>), other: (Vec<DVec3>, Vec<[u32; 3]>), inward: bool) -> Surface {
         let (vertices, mut faces) = ([one.0, other.0].concat(), one.1);
         for [a, b, c] in other.1.into_iter().map(|face| face.map(|corner| corner + 8)) {

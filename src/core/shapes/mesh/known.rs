@@ -47,7 +47,8 @@ impl Known {
     pub(super) fn within(self, crossing: f64) -> Bracket {
         match self {
             Self::Face { bracket, .. } => {
-                // A bracket that is far narrower than what coincides is taken for the distance.
+                // A bracket that is far narrower than the distance between coincident surfaces counts as a known
+                // distance.
                 let is_narrow = bracket.far - bracket.near <= 0.125 * CLOSE * bracket.near;
                 let is_known = is_narrow & (bracket.near <= crossing) & (crossing <= bracket.far);
                 if is_known { Bracket::exactly(crossing) } else { bracket }

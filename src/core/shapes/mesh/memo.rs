@@ -1,4 +1,4 @@
-//! Which faces a thread's last rays hit: what the search for a hit finds out need not be searched for again where the
+//! The faces that a thread's last rays hit. The face that a search has found need not be searched for again when the
 //! hit is shaded.
 //!
 //! A face is taken from here only for the very ray, distance and mesh for which it was found, so that no result depends
@@ -8,7 +8,7 @@ use crate::geometry::ray::Ray;
 use crate::simd::soa::LANES;
 use std::cell::Cell;
 
-/// The number of hits that are kept, the last ones: those of a packet's rays with several meshes.
+/// The number of last hits that are kept: enough for the rays of a packet with several meshes.
 const SIZE: usize = 1024;
 
 /// Faces by the rays that hit them, in the order in which they were noted.

@@ -1,4 +1,4 @@
-//! Whether faces of a mesh have other points in common than the edges and corners that they share: decided exactly, as
+//! Whether faces of a mesh have points in common other than the edges and corners that they share: decided exactly, as
 //! [`orientation`](crate::geometry::orientation) is.
 
 use super::surface::Surface;
@@ -11,7 +11,8 @@ use std::sync::atomic::AtomicBool;
 use std::sync::atomic::Ordering::Relaxed;
 
 impl Surface {
-    /// Tells for each face whether it has other points in common with another one than edges and corners that they share.
+    /// Tells for each face whether it has points in common with another face other than the edges and corners that they
+    /// share.
     pub(super) fn overlapping(&self) -> Vec<bool> {
         let found: Vec<_> = (0..self.face_count()).map(|_| AtomicBool::new(false)).collect();
         let around = |face: usize| Aabb::around(&self.corners(face));
@@ -31,14 +32,15 @@ impl Surface {
         found.into_iter().map(AtomicBool::into_inner).collect()
     }
 
-    /// Tells whether two faces have other points in common than an edge or a corner that they share.
+    /// Tells whether two faces have points in common other than an edge or a corner that they share.
     fn do_overlap(&self, face: usize, other: usize) -> bool {
         let (pair, corners) =
             ([self.faces[face], self.faces[other]], [self.corners(face), self.corners(other)]);
         let is_loose = |of: usize, corner: usize| !pair[1 - of].contains(&pair[of][corner]);
         let loose = |of: usize| (0..3).filter(move |corner| is_loose(of, *corner));
-        // Faces with one corner in common. With another point they have all between it and that corner in common, up to
-        // where it leaves one of them: through the edge across from the corner. Many faces may meet at a corner.
+        // Faces with one corner in common. If they have another point in common, they share the whole line from that
+        // corner through the point, up to where the line leaves one of them: through the edge across from the corner.
+        // Many faces may meet at a corner.
         let across =
             |of: usize| Aabb::around(&[0, 1].map(|edge| corners[of][loose(of).nth(edge).unwrap_or(0)]));
         let misses = |of: usize| !across(of).overlaps(&Aabb::around(&corners[1 - of]));

@@ -13,7 +13,7 @@ use tabray_exact::interval::Interval;
 
 /// The colours of a mesh whose faces have materials of their own.
 ///
-/// A face is chosen by the point alone: at an edge, where two materials meet, it may be that of the neighbouring face.
+/// A face is chosen by the point alone: at an edge where two materials meet, the neighbouring face may be chosen.
 pub struct Painted {
     /// The surface.
     pub surface: Arc<Surface>,
@@ -55,8 +55,8 @@ impl Painted {
         })
     }
 
-    /// Warns of materials whose shininess or transparency differs from those of the mesh itself, `own`, which are those
-    /// of all its faces.
+    /// Warns of materials whose shininess or transparency differs from those of the mesh's material, `own`, which hold
+    /// for all faces.
     pub fn unlike_materials(&self, own: &Material) -> Option<Warning> {
         let is_unlike = |material: &Material| {
             material.shininess != own.shininess || material.transparency != own.transparency

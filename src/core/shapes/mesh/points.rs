@@ -11,13 +11,13 @@ use glam::DVec3;
 use tabray_exact::interval::Interval;
 
 impl Surface {
-    /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file.
+    /// Returns the face that is nearest to a point; if several are equally near up to rounding, the first in the file.
     pub(super) fn face_at(&self, at: DVec3) -> usize {
         self.first_at(at, |_| 0)
     }
 
-    /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file of those with the
-    /// least rank.
+    /// Returns the face that is nearest to a point; if several are equally near up to rounding, the one with the least
+    /// rank, and among these the first in the file.
     pub(super) fn first_at(&self, at: DVec3, rank: impl Fn(usize) -> u8) -> usize {
         self.first_of(self.nearest(at), at, rank)
     }
@@ -64,7 +64,7 @@ impl Surface {
         self.nearest_of(at, |_| true)
     }
 
-    /// Returns the distance of the nearest to a point of those faces that are meant, in world units, and the face.
+    /// Returns the distance from a point to the nearest of the wanted faces, in world units, and the face.
     pub(super) fn nearest_of(&self, at: DVec3, is_meant: impl Fn(usize) -> bool) -> (f64, usize) {
         // Most points are on the surface: few boxes are so near.
         for within in [CLOSE * (at.abs().max_element() + self.max_coordinate()), MISS] {
@@ -94,7 +94,7 @@ impl Surface {
         self.is_on_one_of::<A>(at, error, |_| true)
     }
 
-    /// Tells whether a point is on one of those faces that are meant, up to an error in world units and to rounding.
+    /// Tells whether a point is on one of the wanted faces, up to an error in world units and to rounding.
     pub(super) fn is_on_one_of<A: Bounded>(
         &self,
         at: DVec3,

@@ -1,4 +1,5 @@
-//! What a thread proved last of lines and meshes: who has the hits of a packet's rays proven asks for their faces next.
+//! The last proofs of a thread about lines and meshes. A caller that has the hits of a packet's rays proven asks for
+//! their faces next.
 
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::geometry::sight::Line;

@@ -92,8 +92,8 @@ impl Surface {
         facet
     }
 
-    /// Returns the planes of the faces of a closed mesh that certainly is convex, a normal and a point of each; `None` for
-    /// others, and for those of many faces.
+    /// Returns the planes of the faces of a closed mesh that is certainly convex: a normal and a point of each plane.
+    /// `None` for other meshes, and for meshes with many faces.
     fn convex<A: Bounded>(&self) -> Option<Box<[[DVec3; 2]]>> {
         if self.face_count() > MOST_PLANES {
             return None;

@@ -40,7 +40,7 @@ pub struct Surface {
     pub(super) id: u64,
     /// The vertices in world coordinates, each once.
     pub(super) vertices: Vec<DVec3>,
-    /// Whether the vertices are not those of a file or of the scene, but were computed from them and rounded.
+    /// Whether the vertices were computed from those of a file or of the scene, and rounded.
     pub are_rounded: bool,
     /// The corners of each face, in the order of the tree, counterclockwise as seen from the outside.
     pub(super) faces: Vec<[u32; 3]>,
@@ -113,7 +113,7 @@ impl Surface {
     /// Makes the surface of a file's triangles.
     ///
     /// # Errors
-    /// Why there is none.
+    /// Returns why there is no surface.
     pub fn new(model: Model, placement: &ToWorld, look: Look) -> Result<Self, SurfaceError> {
         if model.faces.len() > MAX_FACES {
             return Err(SurfaceError::TooMany);

@@ -1,4 +1,5 @@
-//! The coordinates u and v on a mesh: those of its file where they are read, and else those of each face.
+//! The coordinates u and v on a mesh: the coordinates in its file where they are read, and otherwise coordinates of
+//! each face.
 
 use super::surface::Surface;
 use crate::shapes::uv;
@@ -7,7 +8,7 @@ use tabray_exact::interval::Interval;
 use tabray_exact::scalar::Scalar;
 
 impl Surface {
-    /// Returns u and v at a point of a face. Those of a file that lie beyond 0 and 1 begin again.
+    /// Returns u and v at a point of a face. Coordinates of a file repeat beyond 0 and 1.
     pub(super) fn uv_of(&self, face: usize, at: DVec3) -> DVec2 {
         let weights = uv::on_triangle(self.corners(face), at);
         if self.uv.is_empty() {

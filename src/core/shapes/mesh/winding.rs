@@ -69,9 +69,9 @@ pub(super) fn count_parts(faces: &[[u32; 3]], vertices: usize) -> usize {
     parts(faces.len(), &Edges::of(faces, vertices)).0.len()
 }
 
-/// Turns faces so that those of each part agree: as most of them are turned; where the part is closed, and lies in no other,
-/// with the outer sides outside. A body that is inside out as a whole is turned with its cavities. Returns the number of
-/// faces that were turned.
+/// Turns faces so that the faces of each part agree. They are turned as most of them are; where the part is closed, and
+/// lies in no other part, the outer sides are turned outside. A body that is inside out as a whole is turned with its
+/// cavities. Returns the number of faces that were turned.
 pub(super) fn turn(vertices: &[DVec3], faces: &mut [[u32; 3]], edges: &Edges) -> usize {
     let (mut parts, part_of) = parts(faces.len(), edges);
     measure(&mut parts, &part_of, vertices, faces);

@@ -1,8 +1,8 @@
 //! Parametric surfaces: the points P(u, v) of a rectangle of u and v.
 //!
-//! A plugin gives the formula, once for every number type. A ray's hits are the solutions of two equations in u and v, those
-//! of two planes through the ray. A tree of boxes finds the parts of the rectangle that a ray may meet; there, Krawczyk's
-//! test proves that there is no solution, or exactly one.
+//! A plugin gives the formula, once for every number type. A ray's hits are the solutions of two equations in u and v,
+//! which come from two planes through the ray. A tree of boxes finds the parts of the rectangle that a ray may meet;
+//! there, Krawczyk's test proves that there is no solution, or exactly one.
 //!
 //! Source: R. Krawczyk, "Newton-Algorithmen zur Bestimmung von Nullstellen mit Fehlerschranken", Computing 4 (1969);
 //! D. Toth, "On Ray Tracing Parametric Surfaces", SIGGRAPH 1985.
@@ -34,8 +34,8 @@ use tree::Tree;
 pub(crate) struct ByPatches;
 
 impl Body {
-    /// Makes an object of a parametric surface with the reflectivities of its material; `None` where no box contains it, or where
-    /// it turns so often that boxes around its parts tell nothing of where they are.
+    /// Makes an object of a parametric surface with the reflectivities of its material; `None` where no box contains
+    /// it, or where the surface turns so often that boxes around its parts do not help to locate them.
     pub fn parametric(formula: impl Parametric + 'static) -> Option<Self> {
         let ends = formula.ends();
         let patches: Box<dyn Patches> = Box::new(formula);

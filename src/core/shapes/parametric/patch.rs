@@ -64,8 +64,8 @@ impl<T: Parametric> Patches for T {
     }
 }
 
-/// Returns the unit normal at u and v: that to the right of which v grows where u grows ahead. At a pole, where there is none,
-/// it is that of a point beside it.
+/// Returns the unit normal at u and v: along the cross product of the directions in which u and v grow. At a pole,
+/// which has no normal, the normal of a point beside the pole is returned.
 pub(super) fn normal(patches: &dyn Patches, [u, v]: [f64; 2]) -> DVec3 {
     let beside = [0.0, 1e-7, -1e-7].into_iter().map(|step| {
         let [_, along_u, along_v] = patches.at([u + step, v + step]);

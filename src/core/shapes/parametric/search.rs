@@ -14,8 +14,8 @@ use tabray_exact::scalar::Scalar;
 /// The most parts of the rectangle that are judged for a line.
 const MOST: usize = 2048;
 
-/// By how much a part is larger where it is judged than it is, on each side, as a fraction of its width: so a solution at a
-/// side of a part is proven as others are.
+/// The margin by which a part is enlarged on each side before it is judged, as a fraction of its width. So a solution
+/// at a side of a part is proven like any other.
 const MARGIN: f64 = 0.125;
 
 /// The most steps that make the enclosure of a solution narrower.
@@ -42,7 +42,7 @@ pub(super) struct Hit<F> {
     pub place: Rectangle<F>,
     /// The index of the leaf in which it was found.
     pub leaf: usize,
-    /// Whether the ends of u and v, where the surface ends, decide whether it is there.
+    /// Whether the ends of u and v, where the surface ends, decide whether the hit exists.
     pub is_edge: bool,
 }
 
@@ -59,7 +59,7 @@ pub(super) struct Found<F> {
 /// A part that is to be judged.
 struct Part<F> {
     from: f64,
-    /// The order in which parts were made, so that equal ones are judged in one order.
+    /// The order in which parts were made, so that equal parts are judged in a fixed order.
     number: usize,
     leaf: usize,
     part: Rectangle<F>,
@@ -89,7 +89,7 @@ impl<F> Eq for Part<F> {}
 enum Judged<F> {
     /// It has no hit.
     Free,
-    /// It has one hit or none, and the only one is in this narrower place, within or beside the part.
+    /// The part has at most one hit, and that hit is in this narrower place, within or beside the part.
     One(Rectangle<F>),
     /// Hits of the part are in this place.
     In(Rectangle<F>),

@@ -11,7 +11,8 @@ const HALVINGS: u32 = 12;
 /// Boxes around the parts that halving the rectangle of u and v makes, each as often.
 pub(super) struct Tree {
     ends: Rectangle<f64>,
-    /// The box of the whole surface first; those of the halves of the part of index i are at 2 i + 1 and 2 i + 2.
+    /// The boxes of all parts, the box of the whole surface first. The boxes of the halves of the part with index i are
+    /// at 2 i + 1 and 2 i + 2.
     boxes: Vec<Aabb>,
     /// The parts of the last halving, in their order.
     leaves: Vec<Rectangle<f64>>,
@@ -19,8 +20,8 @@ pub(super) struct Tree {
     flats: Vec<Flat>,
 }
 
-/// What is around a leaf: a parallelogram, and what is beside its points by an error along each axis. Of a leaf that is nearly flat,
-/// a box holds much more.
+/// The bounds of a leaf: a parallelogram, widened by an error along each axis. A box around a nearly flat leaf would
+/// hold much more.
 pub(super) struct Flat {
     pub middle: [f64; 3],
     /// Half of each side.
@@ -54,8 +55,8 @@ impl Tree {
         (low.is_finite() && high.is_finite()).then_some(self.boxes[0])
     }
 
-    /// Tells whether the boxes of the leaves are smaller than a box around all of them: a quarter, by the mean of their longest sides.
-    /// Where halving tells where the surface is, it is near a 64th.
+    /// Tells whether the boxes of the leaves are smaller than a box around all of them: a quarter, by the mean of their
+    /// longest sides. Where halving locates the surface well, the ratio is near a 64th.
     pub fn tells_apart(&self, whole: &Aabb) -> bool {
         let leaves = &self.boxes[self.boxes.len() - self.leaves.len()..];
         let side = |of: &Aabb| (of.high - of.low).max_element();
@@ -64,7 +65,7 @@ impl Tree {
         sum < 0.25 * side(whole)
     }
 
-    /// Calls a function with the leaves in their order, each with its box, of which all boxes around them meet a condition.
+    /// Calls a function with the leaves for which all boxes around them meet a condition, in order, each with its box.
     pub fn visit(&self, meets: &dyn Fn(&Aabb) -> bool, each: &mut dyn FnMut(usize, &Rectangle<f64>, &Aabb)) {
         let mut waiting = vec![0];
         let inner = self.boxes.len() - self.leaves.len();
@@ -90,8 +91,8 @@ impl Tree {
     }
 }
 
-/// Returns a box around a part: the values of the formula, and what its slopes allow around the middle; and what these slopes
-/// tell of it.
+/// Returns a box around a part: the values of the formula, and the values that its slopes allow around the middle. Also
+/// returns what these slopes tell about the part.
 fn around(patches: &dyn Patches, part: &Rectangle<f64>) -> (Aabb, Flat) {
     let whole = PatchesIn::<f64>::patch(patches, part);
     let middle = part.map(|side| Interval::point(side.middle()));

@@ -41,7 +41,7 @@ impl<F: Precise> HitProofs<F> for Placed {
     ) -> Option<[Interval<F>; 3]> {
         let shape = F::proofs(self.body.shape.proven()?);
         let n = Interval::<F>::constant;
-        // Normals are transformed by the inverse transpose of what transforms vectors.
+        // Normals are transformed by the inverse transpose of the matrix that transforms vectors.
         let own = self.placement.vector(normal);
         let own = per_axis(|axis| own[axis] * n(self.placement.scale[axis]).powi(2));
         let length = dot(own, own).sqrt();

@@ -1,7 +1,7 @@
 //! Where copies of planes end: at the z of the world beyond which the camera cuts off planes.
 //!
-//! The object itself does not end there, as its coordinates are not the world's. A ray hits a plane at most once, so what is
-//! cut off has no other hit behind it.
+//! The object itself does not end there, because its coordinates are not the world's. A ray hits a plane at most once,
+//! so no other hit lies behind a hit that is cut off.
 
 use crate::geometry::ray::{Bracket, MISS, Ray};
 use crate::geometry::sight::{Line, Sight};

@@ -32,8 +32,8 @@ impl<const N: usize> ObjectSpaceRays<N> {
         origin_error: 0.0,
     };
 
-    /// Becomes at most `N` rays in a copy's coordinates, which end at these distances in world units. What is large is not
-    /// returned, as that may copy it.
+    /// Becomes at most `N` rays in a copy's coordinates, which end at these distances in world units. The rays are not
+    /// returned, because returning large values may copy them.
     #[inline(always)]
     pub fn set(&mut self, cpu: Cpu, placed: &Placed, rays: RayPacket, ends: &[f64]) {
         let count = ends.len();

@@ -203,7 +203,8 @@ pub(super) fn in_world(
     Bracket { near: near / length * (1.0 - error), far: far / length * (1.0 + error) }
 }
 
-/// Returns a bracket that is no nearer than a bounding box, given where the ray enters that, where a hit is in doubt.
+/// Where a hit is in doubt, returns a bracket that is no nearer than a bounding box, given where the ray enters the
+/// box.
 #[inline(always)]
 pub(super) fn entered(bracket: Bracket, entry: impl FnOnce() -> Option<f64>) -> Bracket {
     if bracket.is_doubtful() {

@@ -27,7 +27,8 @@ impl<A: AccuracyTag> Hittable for Quadric<A> {
     #[inline]
     fn facts(&self) -> Facts {
         Facts {
-            // The box only clips, and may be far larger than what is seen of the surface, so its corners do not count.
+            // The box only clips, and may be far larger than the visible part of the surface, so its corners do not
+            // count.
             max_coordinate: self.center.abs().max_element(),
             can_hit_itself: Sides::both_if(!A::IS_CLASSIC),
             is_two_sided: !A::IS_CLASSIC,

@@ -48,8 +48,8 @@ impl Quadratic {
         let turned = self.square * dir;
         let (a, a_size) = (dir.dot(turned), self.sizes.dot(dir * dir));
         let slope = 0.5 * self.linear.dot(dir);
-        // Any base will do, as the errors below are those of the one that is taken; where the chord has no midpoint, or
-        // one far away, it is the point closest to the center.
+        // Any base will do, as the errors below are computed for the base that is taken. Where the chord has no
+        // midpoint, or a distant one, the base is the point closest to the center.
         let is_bent = a.abs() > 1e-9 * a_size;
         let middle = -(high.dot(turned) + slope) / a;
         let base = if is_bent { middle } else { -high.dot(dir) };

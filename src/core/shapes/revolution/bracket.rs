@@ -67,7 +67,7 @@ impl Revolution {
         [self.height, self.slabs.widest()]
     }
 
-    /// Returns a slab. The lowest and the highest are extended to infinity, for what rounding cuts off.
+    /// Returns a slab. The lowest and the highest slab are extended to infinity, so that rounding cuts nothing off.
     pub(super) fn slab(&self, index: usize) -> Slab {
         self.slabs.extended(self.slabs.get(index), index..index + 1)
     }

@@ -50,7 +50,7 @@ impl Local {
             far = far.min(bottom.max(top));
         }
         let closest = -(origin.x * dir.x + origin.z * dir.z) / a;
-        // Of a ray within 1e-15 of the direction of the axis, rounding decides which point is closest.
+        // For a ray within 1e-15 of the direction of the axis, rounding decides which point is closest.
         let base = if a > 1e-30 { closest.min(far).max(near) } else { near };
         if !base.is_finite() {
             return None;

@@ -114,8 +114,8 @@ impl Slabs {
         self.slabs.len()
     }
 
-    /// Returns a range of heights that consists of these slabs, extended to infinity at the surface's ends, for what
-    /// rounding cuts off.
+    /// Returns a range of heights that consists of these slabs, extended to infinity at the surface's ends, so that
+    /// rounding cuts nothing off.
     #[inline(always)]
     pub fn extended(&self, slab: &Slab, slabs: Range<usize>) -> Slab {
         Slab {

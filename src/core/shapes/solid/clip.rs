@@ -8,8 +8,8 @@ use crate::world::solid::{Operation, Tree};
 use glam::DVec3;
 use std::sync::Arc;
 
-/// How much larger the box of a surface is than the object that clips it, as a fraction of its size: what the object shows of
-/// the surface lies within.
+/// The margin of a surface's box around the object that clips it, as a fraction of the object's size. The visible part
+/// of the surface lies within the box.
 const MARGIN: f64 = 1.0 / 1024.0;
 
 /// A closed object that clips a surface.
@@ -52,18 +52,18 @@ impl Clip {
         }
     }
 
-    /// Returns the low and the high corner of a box, relative to a point, that contains the object, and so what is seen of the
-    /// surface.
+    /// Returns the low and the high corner of a box, relative to a point, that contains the object, and so the visible
+    /// part of the surface.
     pub fn corners(&self, from: DVec3) -> [DVec3; 2] {
         let margin = MARGIN * 2.0 * self.bounds.half_size().max_element();
         [self.bounds.low - margin - from, self.bounds.high + margin - from]
     }
 
-    /// Clips an entity's surface, which is cut open, or with `is_capped` closed by the faces of the object. These have the
-    /// material and the look of the object. The surface must have an equation that is below 0 inside of it.
+    /// Clips an entity's surface, which is cut open, or with `is_capped` closed by the faces of the object. These faces
+    /// have the material and the look of the object. The surface must have an equation that is below 0 inside of it.
     ///
     /// # Errors
-    /// The reason why the surface cannot be capped, or the two make no solid.
+    /// Returns why the surface cannot be capped, or why the two make no solid.
     pub fn cut(self, args: &Args, mut surface: Body, is_capped: bool) -> Result<Body, Refusal> {
         if is_capped && let Some(why) = surface.shape.why_not_closed() {
             return Err(Refusal {

@@ -39,7 +39,7 @@ impl<'l, F: Precise> Crossings<'l, F> {
     /// Returns the crossing of an index, counted from the start of the line.
     ///
     /// # Errors
-    /// The t from which on nothing is known; infinity if there are no more crossings.
+    /// Returns the t beyond which nothing is known; infinity if there are no more crossings.
     pub fn get(&mut self, index: usize) -> Result<Crossing<F>, F> {
         while self.known.len() <= index {
             if let Some(end) = self.end {

@@ -34,7 +34,7 @@ impl SolidPart {
     /// Returns the first hit that is seen, and its part.
     ///
     /// # Errors
-    /// The t from which on nothing is known; infinity if there is no hit.
+    /// Returns the t beyond which nothing is known; infinity if there is no hit.
     fn proven_hit<F: Precise>(
         &self,
         line: &Line<Interval<F>>,

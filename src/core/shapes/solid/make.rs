@@ -27,7 +27,7 @@ pub type Objects = List<NamedBody, 2, 256>;
 /// Makes the solid of an entity that names its objects.
 ///
 /// # Errors
-/// The reason why the objects make no solid.
+/// Returns the reason why the objects make no solid.
 pub fn combined(args: &Args, objects: &Pparm<Objects>, operation: Operation) -> Result<Body, Refusal> {
     let List(objects) = args.get(objects);
     let objects: Vec<_> = objects.iter().filter_map(|object| object.get().cloned()).collect();
@@ -118,7 +118,7 @@ impl Body {
     /// Makes a solid of named objects, with this material or that of each.
     ///
     /// # Errors
-    /// The reason why the objects make no solid.
+    /// Returns the reason why the objects make no solid.
     fn combined(
         operation: Operation,
         objects: &[Arc<Self>],
@@ -128,10 +128,10 @@ impl Body {
         Self::of_solid(Solid::combined(operation, solids?), material)
     }
 
-    /// Makes the union of closed shapes, each with its name and its material. An object may be made of several.
+    /// Makes the union of closed shapes, each with its name and its material. An object may be made of several shapes.
     ///
     /// # Errors
-    /// The reason why the shapes make no solid.
+    /// Returns the reason why the shapes make no solid.
     pub fn union(of: impl IntoIterator<Item = (String, Self, Arc<Material>)>) -> Result<Self, Refusal> {
         let solids = of.into_iter().map(|(name, body, material)| {
             Solid::of(&Arc::new(Self { name: Some(name.into()), material: Some(material), ..body }))

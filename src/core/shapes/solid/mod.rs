@@ -7,8 +7,8 @@
 //!
 //! The equation of another shape, in interval arithmetic, tells whether a point lies in that shape. Where the surfaces
 //! of two shapes are too close to each other for that, a proof about the ray as the scene gives it decides; for rays
-//! that have no such proof, points on both sides of the surface decide. Of coincident surfaces, those that border the
-//! solid on one side only are seen, once.
+//! that have no such proof, points on both sides of the surface decide. Where surfaces coincide, those that border the
+//! solid on one side only are seen, and only once.
 
 mod clip;
 mod crossings;

@@ -26,7 +26,7 @@ const BESIDE: f64 = 256.0;
 /// is computed from.
 const SHORTLY: f64 = 1e-6;
 
-/// Marks a shape of which only a part is seen, whose hits are proven as the shape's.
+/// Marks a shape of which only a part is seen. Hits of the part are proven as hits of the shape.
 pub struct ByParts;
 
 /// The surface of a part, where it is that of the solid.
@@ -128,7 +128,7 @@ impl SolidPart {
         is_known.then(|| self.tree.owner(&outside, &inside) == Some(self.index))
     }
 
-    /// Tells whether a hit of the part is the solid's by what lies on both sides of it, at a distance that is a multiple
+    /// Tells whether a hit of the part is the solid's by examining both sides of it, at a distance that is a multiple
     /// of an error in world units: along the normal, or where another part has an edge there, along the ray.
     fn is_on_solid_by_sides(&self, ray: &Ray, at: DVec3, normal: DVec3, error: f64) -> bool {
         let step = BESIDE * (error + ROUNDING * at.abs().max_element());
@@ -149,7 +149,8 @@ impl SolidPart {
         known.or_else(|| beside(normal, true)).unwrap_or(false)
     }
 
-    /// Tells whether a hit of the part is the solid's; `None` where that is open. `size` is what the hit is computed from.
+    /// Tells whether a hit of the part is the solid's; `None` where that is open. `size` is the size of the numbers
+    /// from which the hit is computed.
     fn is_certainly_on_solid(&self, ray: &Ray, distance: f64, size: f64) -> Option<bool> {
         let at = ray.at(distance);
         // The error of any hit first, then that of this one, which takes its normal.
@@ -159,8 +160,8 @@ impl SolidPart {
         })
     }
 
-    /// Tells whether a ray is certainly in the solid shortly before a hit. If it enters the part there, what coincides
-    /// does not make it enter the solid.
+    /// Tells whether a ray is certainly in the solid shortly before a hit. If so, and if the ray enters the part there,
+    /// coincident surfaces do not make it enter the solid.
     fn is_within(&self, ray: &Ray, distance: f64, size: f64) -> bool {
         let before = ray.at(distance - SHORTLY * size);
         // What lies far from this surface is not in its tree.

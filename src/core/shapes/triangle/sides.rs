@@ -4,9 +4,9 @@ use crate::geometry::aabb::larger;
 use crate::geometry::ray::{Ray, RayError};
 use glam::DVec3;
 
-/// Far more than what products lose that are too small for all digits: the sum of a few of 5e-324. A product with such a
-/// sum loses as many times more as the other factor is. It is a normal number, as processors take a hundred times longer
-/// for products with others.
+/// Far more than the loss of products that are too small to have all digits: the sum of a few of 5e-324. A product with
+/// such a sum loses as many times more as the other factor is. It is a normal number, as processors take a hundred
+/// times longer for products with others.
 pub(crate) const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 
 /// Returns the largest magnitude of a component.

@@ -1,6 +1,6 @@
-//! Proofs of where a line passes the boundary of what lies inside of a closed mesh.
+//! Proofs of where a line passes the boundary of the inside of a closed mesh.
 //!
-//! A part of the boundary is a face: twice its index, plus 1 where what lies inside is before its outer side.
+//! A part of the boundary is a face: twice its index, plus 1 where the inside lies before the outer side of the face.
 
 use super::Boundary;
 use crate::geometry::orientation::side_of_plane;

@@ -1,8 +1,8 @@
-//! The boundary of what lies inside of a closed mesh whose bodies overlap, touch or lie in each other: for solids and glass,
-//! which pass from one side of a surface to the other.
+//! The boundary of the inside of a closed mesh whose bodies overlap, touch or lie in each other. Solids and glass need
+//! it, because they pass from one side of a surface to the other.
 //!
-//! A ray passes it where the winding number changes from 0 or to 0. Of faces in one place, those that are turned against each
-//! other cancel.
+//! A ray passes the boundary where the winding number changes from 0 or to 0. Faces in the same place that are turned
+//! against each other cancel.
 
 mod hit_proofs;
 
@@ -24,7 +24,7 @@ use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
 use tabray_exact::double_double::DoubleDouble;
 
-/// The distance from a face at which it is told what lies on its sides, as a multiple of the rounding error of a point.
+/// The distance from a face at which its two sides are examined, as a multiple of the rounding error of a point.
 const BESIDE: f64 = 256.0;
 
 /// The boundary of what lies inside of a closed mesh.
@@ -38,8 +38,8 @@ struct Boundary<A> {
 struct ByWinding;
 
 impl Surface {
-    /// Makes the shape of the boundary of what lies inside of a closed surface; `None` where that is all of the surface, and
-    /// for one that is not closed.
+    /// Makes the shape of the boundary of a closed surface's inside; `None` where the boundary is the whole surface,
+    /// and for a surface that is not closed.
     pub fn boundary(self: &Arc<Self>, accuracy: Accuracy) -> Option<AnyShape> {
         let depths = if self.is_closed() { self.depths()?.clone() } else { return None };
         Some(match accuracy {
@@ -85,8 +85,8 @@ impl<A: Bounded> Boundary<A> {
         [self.is_inside(at + step), self.is_inside(at - step)]
     }
 
-    /// Returns the face of the boundary that is nearest to a point; of several, up to rounding, the first in the file of those
-    /// that have the outside on one side only.
+    /// Returns the face of the boundary that is nearest to a point. If several are equally near up to rounding, the
+    /// first face in the file that has the outside on one side only is returned.
     fn face_at(&self, at: DVec3) -> usize {
         let nearest = self.mesh.surface.nearest_of(at, |face| !self.is_hidden(face));
         self.mesh.surface.first_of(nearest, at, |face| {
@@ -180,7 +180,8 @@ impl<A: Bounded> Hittable for Boundary<A> {
     }
 }
 
-/// A ray of the camera through an edge, as far as plain arithmetic tells, is decided as the scene gives it.
+/// A ray of the camera that goes through an edge according to plain arithmetic is decided with the numbers of the
+/// scene.
 impl<A: Bounded> Bracketed for Boundary<A> {
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         let Aabb { low, high } = self.mesh.surface.bounds;
@@ -189,7 +190,7 @@ impl<A: Bounded> Bracketed for Boundary<A> {
         let is_on_surface = || self.is_on_surface(ray.origin, range.origin_error);
         by_distance(ray, range, is_on_surface, |range| {
             let distance = self.distance(ray, range);
-            // What lies inside is counted from the end of the ray, unless the ray starts outside.
+            // The winding number is counted from the end of the ray, unless the ray starts outside.
             let far = if is_outside && distance < MISS { distance + close(ray, distance) } else { MISS };
             (!is_from_camera || self.mesh.surface.is_off_edges(ray, far)).then_some(distance)
         })

@@ -1,4 +1,4 @@
-//! What the corners of faces have beside their places: normals, texture coordinates and colours.
+//! The attributes of the corners of faces: normals, texture coordinates and colours.
 
 use std::sync::Arc;
 
@@ -22,7 +22,8 @@ impl<T> Default for AtCorners<T> {
 }
 
 impl<T: Copy> AtCorners<T> {
-    /// Makes values of vertices, each of which has one, those of the faces between them; none of no values.
+    /// Makes the values at the corners of faces from values of vertices, one for each vertex. Without values, no corner
+    /// has one.
     pub fn of_vertices(values: Vec<T>, faces: &[[u32; 3]]) -> Self {
         let faces = if values.is_empty() { Vec::new() } else { faces.to_vec() };
         Self { values, faces: faces.into() }
@@ -55,7 +56,7 @@ impl<T: Copy> AtCorners<T> {
         Self { values: in_order_of_use(&self.values, &mut faces), faces: faces.into() }
     }
 
-    /// Takes the indices of other values in the place of its own, if they are the same, so that they are held once.
+    /// Replaces the list of indices by that of other values if both are equal, so that it is held once.
     pub fn share(&mut self, other: &Arc<Vec<[u32; 3]>>) {
         if self.faces == *other {
             self.faces = other.clone();
@@ -73,13 +74,13 @@ impl<T: Copy> AtCorners<T> {
         }
     }
 
-    /// Returns the memory that they take, in bytes; indices that are [shared](Self::share) count in equal parts.
+    /// Returns the memory that the values take, in bytes; indices that are [shared](Self::share) count in equal parts.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.values[..]) + size_of_val(&self.faces[..]) / Arc::strong_count(&self.faces)
     }
 }
 
-/// All that the corners of faces have. What a file does not have, or is not asked for, is empty.
+/// All attributes of the corners of faces. An attribute that a file does not have, or that is not wanted, is empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Attributes {
     /// Normals of any length, in the file's own coordinates.
@@ -132,8 +133,8 @@ impl Attributes {
     }
 }
 
-/// Sorts what the corners of faces refer to in the order in which faces use it, so that what belongs to a node of the tree
-/// lies close together in memory. What is not used is left out.
+/// Sorts the values of corners in the order in which faces use them, so that the values for a node of the tree lie
+/// close together in memory. Unused values are left out.
 pub fn in_order_of_use<T: Copy>(all: &[T], faces: &mut [[u32; 3]]) -> Vec<T> {
     let (mut places, mut sorted) = (vec![u32::MAX; all.len()], Vec::with_capacity(all.len()));
     for corner in faces.iter_mut().flatten().filter(|corner| **corner != NO_VALUE) {

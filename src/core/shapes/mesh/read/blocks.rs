@@ -118,7 +118,7 @@ pub(super) fn words(text: &[u8]) -> Words<'_> {
     Words { rest: text }
 }
 
-/// Makes line ends of carriage returns that stand alone, as old programs write them.
+/// Turns carriage returns that stand alone, as old programs write them, into line ends.
 pub(super) fn end_lines(text: &mut [u8]) {
     let mut at = 0;
     while let Some(next) = memchr(b'\r', &text[at..]) {

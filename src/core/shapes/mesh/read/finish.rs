@@ -19,14 +19,14 @@ pub struct Map {
 /// Where a surface is not there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mask {
-    /// The image that says how far the surface is opaque; without it, it is everywhere.
+    /// The image that gives the opacity of the surface; without an image, the surface is opaque everywhere.
     map: Option<Map>,
     /// How far it must be opaque to be there.
     least: f64,
 }
 
 impl Mask {
-    /// Makes a mask of an image, which must be as opaque as that for a surface to be there; `None` where nothing is cut out.
+    /// Makes a mask from an image and the least opacity at which the surface is there; `None` where nothing is cut out.
     pub fn new(map: Option<Map>, least: f64) -> Option<Self> {
         let [width, height] = map.as_ref().map_or([1, 1], |map| map.texture.size());
         let mask = Self { map, least };
@@ -34,7 +34,7 @@ impl Mask {
         texels.any(|(column, row)| mask.opacity(column, row) < least).then_some(mask)
     }
 
-    /// Returns how far a texel is opaque: its alpha, or in an image that is opaque its brightness.
+    /// Returns the opacity of a texel: its alpha or, in an opaque image, its brightness.
     fn opacity(&self, column: u32, row: u32) -> f64 {
         let Some(Map { texture, .. }) = &self.map else { return 1.0 };
         if texture.has_alpha() {
@@ -124,8 +124,8 @@ impl Finish {
         }
     }
 
-    /// Makes a metal of the part of the colour that a metal so rough mirrors. A rough one mirrors nothing clearly, and is shown
-    /// as if it scattered the rest.
+    /// Makes a metal from the fraction of the colour that a metal of this roughness mirrors. A rough metal mirrors
+    /// nothing clearly, and is shown as if it scattered the rest.
     pub fn forge(&mut self, metal: f64, roughness: f64) {
         let smoothness = 1.0 - roughness.clamp(0.0, 1.0);
         self.metal = metal.clamp(0.0, 1.0) * smoothness * smoothness;

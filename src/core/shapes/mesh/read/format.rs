@@ -40,7 +40,8 @@ const OTHERS: [(&[u8], &str); 16] = [
 ];
 
 impl Format {
-    /// Tells the format of a file by how it begins, and where that says nothing, by the ending of its name in lower case.
+    /// Recognises the format of a file by its beginning or, where the beginning does not tell, by the ending of its
+    /// name in lower case.
     pub fn of(bytes: &[u8], ending: &str) -> Result<Self, String> {
         let first = words(&bytes[..bytes.len().min(1 << 10)]).next().unwrap_or_default();
         if first.is_empty() && bytes.len() < 1 << 10 {
@@ -111,7 +112,7 @@ fn is_gltf(bytes: &[u8]) -> bool {
     bytes.starts_with(gltf::MAGIC) || is_json && memmem::find(bytes, b"\"asset\"").is_some()
 }
 
-/// Tells whether the first line of a text that is no comment begins with a word of OBJ.
+/// Tells whether the first line of a text that is not a comment begins with a word of OBJ.
 fn is_obj(bytes: &[u8]) -> bool {
     const WORDS: [&[u8]; 9] = [b"v", b"vn", b"vt", b"f", b"o", b"g", b"s", b"mtllib", b"usemtl"];
     let mut firsts = blocks::lines(bytes).take(1000).filter_map(|line| words(line).next());

@@ -35,14 +35,14 @@ use std::path::Path;
 /// What is told of a file that has no normals, although they are wanted.
 pub const NO_NORMALS: &str = "has a file without normals";
 
-/// What is told of a file that has no materials and no colours, although they are wanted.
+/// The message about a file without materials and colours, if they are wanted.
 pub const NO_LOOKS: &str = "has a file without materials and colours";
 
-/// Reads a file by how it begins or, where that tells nothing, by the ending of its name: its triangles, and what else is
-/// wanted. Takes no more memory than so many bytes, roughly.
+/// Reads a file: its triangles, and what else is wanted. The format is recognised by the beginning of the file or,
+/// where that does not tell, by the ending of its name. Takes no more memory than this many bytes, roughly.
 ///
 /// # Errors
-/// What is wrong, and where.
+/// Returns what is wrong, and where.
 pub fn read(path: &Path, wanted: Wanted, memory: u64) -> Result<Model, ReadError> {
     let cannot = |error: io::Error| {
         let is_missing = error.kind() == io::ErrorKind::NotFound;

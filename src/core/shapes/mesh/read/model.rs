@@ -25,7 +25,7 @@ pub struct Model {
     pub slots: Vec<u16>,
     /// The index of the flat side of which each triangle is a part, rising; empty where each is a side of its own.
     pub sides: Vec<u32>,
-    /// What the file says of each of these materials, where that is wanted and known.
+    /// The look that the file gives each of these materials, where looks are wanted and known.
     pub finishes: Vec<Option<Finish>>,
     /// What the corners of faces have, as far as it is wanted.
     pub attributes: Attributes,
@@ -40,8 +40,8 @@ pub struct Model {
 pub struct Wanted {
     /// Its normals.
     pub normals: bool,
-    /// Its materials, texture coordinates and colours: how the image shows light that is rendered, as bytes stand for the light
-    /// that it shows with them.
+    /// Whether materials, texture coordinates and colours are wanted. If so, this is how the rendered image shows
+    /// light: a byte stands for the light that the image shows with it.
     pub materials: Option<Display>,
 }
 
@@ -125,16 +125,16 @@ pub struct MemoryBudget {
 /// faces, their boxes and edges.
 const TAKEN: [u64; 2] = [48, 160];
 
-/// The memory that a list of values at the corners of faces takes for a vertex and a face, in bytes: such a list is put in
-/// another order.
+/// The memory that a list of values at the corners of faces takes for a vertex and a face, in bytes: this includes the
+/// memory for reordering it.
 const TAKEN_BY_LIST: [u64; 2] = [24, 24];
 
-/// About the bytes of memory that a mesh takes, at least, for each byte of its file: those of a face in a wordy text, an
-/// STL, take 160 bytes and 48 for each corner, beside the file.
+/// About the bytes of memory that a mesh takes, at least, for each byte of its file: a face in a wordy text, an STL,
+/// takes 160 bytes and 48 for each corner, in addition to the file.
 const LEAST: u64 = 3;
 
 impl MemoryBudget {
-    /// Refuses a file whose mesh surely takes more memory than there is, before it is read.
+    /// Refuses a file before it is read if its mesh surely takes more memory than is available.
     pub fn new(memory: u64, file: u64, wanted: Wanted) -> Result<Self, String> {
         if file.saturating_mul(LEAST) > memory {
             return Err(format!(

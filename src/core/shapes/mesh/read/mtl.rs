@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// The longest material file, in bytes.
 const LONGEST: u64 = 1 << 26;
 
-/// The words of a material that are shown, or say nothing of how it looks here: ambient light is the scene's.
+/// The words of a material that are used, and those that do not affect how it looks here: ambient light is the scene's.
 const KNOWN: [&str; 21] = [
     "newmtl",
     "illum",
@@ -97,7 +97,7 @@ pub fn furnish(model: &mut Model, libraries: &[(Vec<u8>, usize)], folder: &Path,
 /// The most words of a name with blanks.
 const MOST_WORDS: usize = 16;
 
-/// Returns the names that follow `mtllib`. A name has blanks where there is such a file.
+/// Returns the names that follow `mtllib`. Words with blanks between them are one name if a file of that name exists.
 fn named(names: &[u8], folder: &Path) -> Vec<String> {
     let words = words(names)
         .take_while(|word| *word != b"#")
@@ -317,7 +317,8 @@ fn is_grey(texture: &Arc<Texture>) -> bool {
     })
 }
 
-/// Returns the name that follows `usemtl` or `newmtl`. It may have a `#`, as in `Material #25`; one between blanks begins a comment.
+/// Returns the name that follows `usemtl` or `newmtl`. The name may contain a `#`, as in `Material #25`; a `#` between
+/// blanks begins a comment.
 pub(super) fn material(line: &[u8]) -> String {
     let name = words(line).skip(1).take_while(|word| *word != b"#");
     name.map(String::from_utf8_lossy).collect::<Vec<_>>().join(" ")

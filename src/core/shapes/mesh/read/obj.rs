@@ -37,15 +37,16 @@ struct Part {
     vertices: Vec<DVec3>,
     faces: Vec<[u32; 3]>,
     polygons: Polygons,
-    /// The names of materials, each with the number of the block's triangles before it and its line; no name is that of
-    /// the mesh's own material.
+    /// The names of materials, each with the number of the block's triangles before it and its line; an empty name
+    /// stands for the mesh's own material.
     uses: Vec<(usize, String, usize)>,
     /// What follows `mtllib`, and its line.
     libraries: Vec<(Vec<u8>, usize)>,
     attributes: Attributes,
-    /// The colours of vertices, as far as the last one that has one, as they are written; NaN for one that has none.
+    /// The colours of vertices as they are written, up to the last vertex with a colour; NaN for a vertex without one.
     colours: Vec<[f32; 3]>,
-    /// The largest number of a `v`, `vt` and `vn` that comes after its face, and the line.
+    /// For each of `v`, `vt` and `vn`, the largest number of an element that comes after a face that refers to it, and
+    /// the line.
     ahead: [Option<(u32, usize)>; 3],
     lines: usize,
     /// The first fault, with its line.
@@ -128,8 +129,8 @@ pub fn read(bytes: &[u8], folder: &Path, budget: &MemoryBudget) -> Result<Model,
 /// The colour of a vertex that has none.
 const NO_COLOUR: [f32; 3] = [f32::NAN; 3];
 
-/// Returns the light that the colours of vertices stand for, as bytes of an image do: they are from 0 to 1 or, if one is above
-/// that, from 0 to 255. A vertex without one is white.
+/// Returns the light that the colours of vertices stand for, as bytes of an image do: colours are from 0 to 1 or, if
+/// any number is above 1, from 0 to 255. A vertex without a colour is white.
 fn lights(mut colours: Vec<[f32; 3]>, display: Display) -> Vec<[f32; 3]> {
     let greatest = colours.iter().flatten().fold(0.0, |most: f32, channel| most.max(*channel));
     let bytes = if greatest > 1.0 { 1.0 } else { 255.0 };
@@ -163,8 +164,8 @@ fn continues(line: &[u8]) -> bool {
     line.strip_suffix(b"\r").unwrap_or(line).ends_with(b"\\") && memchr(b'#', line).is_none()
 }
 
-/// Calls `each` with the number of every line, from 1, and the line, until that fails. Lines that are continued are one,
-/// without a comment. Returns the number of lines.
+/// Calls `each` with the number of every line, from 1, and the line, until that fails. Continued lines count as one
+/// line, without a comment. Returns the number of lines.
 fn each_line<'b, E>(
     block: &'b [u8],
     mut each: impl FnMut(usize, Cow<'b, [u8]>) -> Result<(), E>,
@@ -312,15 +313,15 @@ fn after_first_word(line: &[u8]) -> &[u8] {
     words.rest
 }
 
-/// Reads a number that may be none, as some programs write them where they divide by 0.
+/// Reads a number that may be NaN, which some programs write where they divide by 0.
 fn part(words: &mut Words) -> Result<f32, String> {
     let word = words.next().ok_or("a number is missing")?;
     let number = str::from_utf8(word).ok().and_then(|word| word.parse().ok());
     number.ok_or_else(|| format!("`{}` is not a number", shown(word)))
 }
 
-/// Reads one of the parts of a corner of a face, `vertex/texture/normal`, each of which counts from 1, or backward from -1 of
-/// those so far. What it counts may come after its faces.
+/// Reads one of the parts of a corner of a face, `vertex/texture/normal`, each of which counts from 1, or backward from
+/// -1 for the last element so far. Elements may come after the faces that refer to them.
 fn index(word: &[u8], part: &[u8], counts: &[usize; 3], of: usize) -> Result<u32, String> {
     let (count, [one, several]) = (counts[of], NAMES[of]);
     let index: Option<i64> = str::from_utf8(part).ok().and_then(|part| part.parse().ok());

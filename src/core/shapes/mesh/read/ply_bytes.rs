@@ -7,7 +7,7 @@ use super::polygons::Polygons;
 use crate::parallel;
 use glam::DVec3;
 
-/// Reads what follows the header of a file; the highest byte comes first if `BIG`.
+/// Reads the elements after the header of a file; the highest byte comes first if `BIG`.
 pub(super) fn read<const BIG: bool>(
     file: &[u8],
     mut rest: &[u8],

@@ -103,7 +103,7 @@ impl Number {
     }
 }
 
-/// What is read of a property. An element has its properties one after the other.
+/// The part of a property that is read. An element has its properties one after the other.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Field {
     /// This one of the numbers of a vertex.
@@ -163,7 +163,7 @@ pub(super) fn uv(vertex: &Vertex) -> [f32; 2] {
     [0, 1].map(|axis| vertex[UV.start + axis] as f32)
 }
 
-/// Reads the header. Lines of other words than those of PLY are comments, as some programs write them.
+/// Reads the header. Lines that begin with words unknown to PLY count as comments; some programs write such lines.
 pub(super) fn header(bytes: &[u8], wanted: Wanted) -> Result<Header<'_>, ReadError> {
     let first = &bytes[..bytes.len().min(LONGEST_HEADER)];
     // Lines end as the first one does: with a carriage return alone only if that does, since bytes may follow.
@@ -294,7 +294,7 @@ impl Section {
         [NORMAL, COLOUR, UV].map(|numbers| self.has(numbers))
     }
 
-    /// Returns the colour of a vertex. Whole numbers are those of an image, and others light.
+    /// Returns the colour of a vertex. Whole numbers are levels of an image, and other numbers are light.
     pub fn colour(&self, vertex: &Vertex) -> [f32; 3] {
         let number = self.fields.iter().find_map(|field| match field {
             Field::Vertex(place, number) if *place == COLOUR.start => Some(*number),

@@ -6,8 +6,8 @@ use crate::text;
 use earcut::Earcut;
 use glam::{DVec2, DVec3};
 
-/// How far the corners of a polygon may lie off its plane before that is told, as a fraction of its size: those of round
-/// shapes are hardly ever flat.
+/// The distance of a polygon's corners from its plane above which a warning is given, as a fraction of its size.
+/// Polygons of round shapes are hardly ever flat.
 const FLAT: f64 = 0.1;
 
 /// How far an edge may turn to the wrong side for rounding, as a fraction of the product of two edges.
@@ -62,7 +62,7 @@ impl Polygons {
         self.short += other.short;
     }
 
-    /// Cuts those polygons of a whole file anew that have dents, and tells what is odd about others.
+    /// Cuts again the polygons of a whole file that have dents, and reports what is odd about others.
     pub fn cut(self, model: &mut Model) {
         let find = |polygon: usize| {
             let corners = corners(model, self.fans[polygon]);

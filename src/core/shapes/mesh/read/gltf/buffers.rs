@@ -1,4 +1,4 @@
-//! The numbers of glTF: buffers, views of them, and accessors, which say what the bytes of a view are.
+//! The numbers of glTF: buffers, views of buffers, and accessors, which give the types of the numbers in a view.
 
 use super::json::{self, Gltf};
 use crate::files;
@@ -128,7 +128,7 @@ impl<'f> Buffers<'f> {
         bytes.ok_or_else(|| format!("buffer view {index} reaches beyond the end of buffer {}", view.buffer))
     }
 
-    /// Returns the elements of an accessor, each of one of these numbers of numbers.
+    /// Returns the elements of an accessor. The number of numbers in each element must be one of those given.
     pub fn elements(
         &self,
         index: usize,
@@ -188,7 +188,7 @@ impl<'f> Buffers<'f> {
     }
 }
 
-/// Returns the bytes to which a URI leads: those that it holds, or those of a file.
+/// Returns the bytes to which a URI leads: the bytes in the URI itself, or the contents of a file.
 pub fn contents(uri: &str, folder: &Path, most: u64) -> Result<Vec<u8>, String> {
     if let Some(bytes) = data(uri) {
         return bytes;

@@ -1,4 +1,4 @@
-//! The JSON of glTF, as far as it is read. Its names are those of the specification.
+//! The part of glTF's JSON that is read. The names of fields are those of the specification.
 
 use serde::Deserialize;
 use serde::de::IgnoredAny;

@@ -18,7 +18,7 @@ use std::sync::Arc;
 /// What begins a GLB.
 pub const MAGIC: &[u8] = b"glTF";
 
-/// The extensions without which a file is not what it shows, and which are read.
+/// The extensions that a file may require and that are read.
 const EXTENSIONS: [&str; 8] = [
     "KHR_texture_transform",
     "KHR_mesh_quantization",
@@ -168,7 +168,7 @@ struct Source<'f> {
 }
 
 impl<'f> Source<'f> {
-    /// Returns the elements of an attribute, of which there are as many as vertices, if the primitive has it.
+    /// Returns the elements of an attribute, one for each vertex, if the primitive has the attribute.
     fn attribute(
         self,
         primitive: &Primitive,
@@ -295,7 +295,7 @@ impl Reading<'_> {
     }
 }
 
-/// Adds what the vertices of faces have to the values at corners, or that they have nothing.
+/// Adds the attributes of the vertices of faces to the values at corners, or notes that there are none.
 fn add<const N: usize, T: Copy>(
     to: &mut AtCorners<T>,
     is_wanted: bool,
