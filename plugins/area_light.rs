@@ -126,7 +126,7 @@ impl Light for AreaLight {
 impl Emitter for AreaLight {
     fn sample(&self, at: DVec3, _normal: DVec3, numbers: DVec2) -> Option<LightSample> {
         let (toward, solid_angle) = self.panel.sample(at, numbers)?;
-        // The light's own surface is not in the way of its rays, however flat these meet it.
+        // The light's own surface does not block its rays, however flat the angle at which they meet it.
         let distance = toward.length() * (1.0 - 1e-9);
         let light = solid_angle / PI * self.radiance;
         Some(LightSample { toward: toward.try_normalize()?, distance, light })

@@ -77,7 +77,7 @@ inventory::submit! {
     })
 }
 
-/// A closed piece of an axis, from the origin along y, by its radius and its length.
+/// A closed piece of an axis, from the origin along y, given by its radius and its length.
 enum Piece {
     Ball(f64),
     Rod(f64, f64),

@@ -23,7 +23,7 @@ struct Blend {
 }
 
 impl Blend {
-    /// Returns the part of the other material at a point; what is no number counts as 0.
+    /// Returns the fraction of the other material at a point; NaN counts as 0.
     fn part(&self, at: &SurfacePoint) -> f64 {
         let part = self.by.at(at.variables());
         if part > 0.0 { part.min(1.0) } else { 0.0 }

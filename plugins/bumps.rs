@@ -1,4 +1,4 @@
-//! Bumps: normals bent as those of a surface that is raised by a formula. The surface itself stays smooth.
+//! Bumps: normals bent like the normals of a surface that is raised by a formula. The surface itself stays smooth.
 
 use tabray::prelude::*;
 

@@ -1,4 +1,5 @@
-//! Squares in u and v, of two materials in turn: on spheres, rectangles, triangles, whatever has such coordinates.
+//! Squares in u and v, of two materials in turn: on spheres, rectangles, triangles, and all other shapes with such
+//! coordinates.
 
 use std::sync::Arc;
 use tabray::prelude::*;
@@ -23,7 +24,8 @@ struct Checker {
 }
 
 impl Checker {
-    /// Returns the colour of the square at a point, or the mean over the patch around it; without u and v, the surface's own.
+    /// Returns the colour of the square at a point, or the mean over the patch around it; without u and v, the
+    /// surface's own colour.
     #[inline]
     fn colour(&self, own: Rgb, other: Rgb, at: &SurfacePoint) -> Rgb {
         if let Some([low, high]) = at.patch.and_then(|patch| patch.uv) {

@@ -27,7 +27,7 @@ struct Environment {
 }
 
 impl Environment {
-    /// Returns the texel of a column and a row; the left edge follows on the right one.
+    /// Returns the texel of a column and a row; the left edge continues at the right one.
     fn texel(&self, at: DVec2) -> Rgb {
         let [width, height] = self.texture.size().map(f64::from);
         self.texture.texel(at.x.rem_euclid(width) as u32, at.y.clamp(0.0, height - 1.0) as u32)

@@ -61,7 +61,8 @@ fn frame(args: &Attributes) -> DMat3 {
 /// Returns the unit vectors along a rectangle's two sides.
 ///
 /// # Errors
-/// If `xdir` is within 1e-6 radians of the normal or its opposite, and so has no direction in the plane.
+/// Returns an error if `xdir` is within 1e-6 radians of the normal or its opposite, and so has no direction in the
+/// plane.
 pub fn sides(args: &Args) -> Result<[DVec3; 2], Refusal> {
     let (normal, xdir) = (scaled(args.get(&plane::NORMAL)).normalize(), scaled(args.get(&XDIR)).normalize());
     if normal.cross(xdir).length() < 1e-6 {

@@ -96,9 +96,9 @@ fn corners([x, y, z, x2, y2, z2]: [f64; 6]) -> [DVec3; 2] {
 /// The surface where a scene's formula is 0.
 struct Surface {
     formula: Field,
-    /// A formula that is below 0 where that of the surface is not defined, if there are such places in the box.
+    /// A formula that is below 0 where the formula of the surface is not defined, if there are such places in the box.
     domain: Option<Field>,
-    /// Whether the scene's formula divides by what may be 0 or less in the box.
+    /// Whether the scene's formula divides by a value that may be 0 or less in the box.
     is_negated: bool,
     corners: [DVec3; 2],
     /// Whether an object within the box clips the surface, so that the box does not.

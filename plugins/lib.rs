@@ -1,9 +1,9 @@
-//! The entity types of tabray: one file for each, of which no other file knows.
+//! The entity types of tabray: one file for each type. No other file knows about it.
 //!
 //! Each file registers what it adds. A program that links this crate, by `use tabray_plugins as _;`, has all of them; in
 //! a program that does not, scenes have no entities.
 
-// Plugins may name the core `crate`, too: those written when it was one crate with them do.
+// Plugins may also name the core `crate`: plugins that were written when the core and they were one crate do so.
 #[allow(unused_imports, reason = "none of those here does")]
 use tabray::*;
 

@@ -61,7 +61,8 @@ impl Lines {
         (value.abs(), slope - slope.dot(at.normal) * at.normal)
     }
 
-    /// Returns the part of a line at a point, from 0 to 1: in a patch, the mean by the formula's value and slope.
+    /// Returns the coverage of a point by lines, from 0 to 1. For a patch, the coverage is the mean by the formula's
+    /// value and slope.
     fn part(&self, at: &SurfacePoint) -> f64 {
         let (value, slope) = self.along(at);
         let size = slope.length();

@@ -1,4 +1,5 @@
-//! Normals bent by an image, a normal map: red is the part along u, green that along v, and blue that along the normal.
+//! Normals bent by an image, a normal map: red is the component along u, green the component along v, and blue the
+//! component along the normal.
 
 use std::sync::Arc;
 use tabray::prelude::*;
@@ -38,7 +39,7 @@ struct Normals {
 }
 
 impl Normals {
-    /// Returns the parts of the normal at u and v: those of the four nearest texels, blended.
+    /// Returns the components of the normal at u and v, blended from the four nearest texels.
     fn parts(&self, uv: DVec2) -> DVec3 {
         let size = self.texture.size().map(f64::from);
         let place = (uv * self.repeat).map(|along| along - along.floor()) * DVec2::from(size);

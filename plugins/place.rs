@@ -19,8 +19,8 @@ static ROTATION: Pparm<Rotation> = Pparm::or(
 static TRANSLATION: Pparm<DVec3> =
     Pparm::or("translation", "where the object's origin lies", DVec3::ZERO).unit("world coordinates");
 
-/// The maximum number of copies within each other. Margins for rounding grow by a factor of up to 3.5 with each of
-/// them; from 24 copies on, spheres of radius 1 were seen with wrong pixels.
+/// The maximum number of copies within each other. Margins for rounding grow by a factor of up to 3.5 with each level
+/// of copies; from 24 copies on, spheres of radius 1 were seen with wrong pixels.
 const MAX_DEPTH: u32 = 12;
 
 const TABLE: Table = &[&OBJECT, &SCALE, &ROTATION, &TRANSLATION];

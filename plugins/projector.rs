@@ -73,8 +73,8 @@ impl<A: AccuracyTag> Light for Projector<A> {
         Some(if inside.low > zero.low { sent } else { per_axis(|channel| sent[channel].hull(zero)) })
     }
 
-    /// The lines through the light and the rectangle are a pyramid on either side of the light. The region is clear if it
-    /// lies outside of a side of each, or before the rectangle and outside of the pyramid behind the light.
+    /// The lines through the light and the rectangle are a pyramid on either side of the light. The region is clear if
+    /// it lies outside of a side of each pyramid, or before the rectangle and outside of the pyramid behind the light.
     fn is_clear_of(&self, region: &Aabb) -> bool {
         let (from, Rectangle { corner, dimensions, sides }) = (self.light.location, self.window.rectangle);
         let at = |x: f64, y: f64| corner + x * dimensions.x * sides[0] + y * dimensions.y * sides[1] - from;
@@ -89,7 +89,7 @@ impl<A: AccuracyTag> Light for Projector<A> {
             let (one, other) = (normal * low, normal * high);
             (one.min(other).element_sum() + slack, one.max(other).element_sum() - slack)
         };
-        // Inward, unless the light lies in the rectangle's plane, where nothing is clear.
+        // The normals point inward, unless the light lies in the rectangle's plane, where nothing is clear.
         let inward =
             |normal: DVec3| normal.try_normalize().map(|normal| normal * normal.dot(middle).signum());
         let pairs = [(0, 1), (1, 2), (2, 3), (3, 0)].map(|(one, other)| corners[one].cross(corners[other]));

@@ -19,7 +19,8 @@ static COLOURS: Pparm<Option<List<Rgb, 2, 256>>> = Pparm::or(
 
 const TABLE: Table = &[&BY, &FROM, &TO, &COLOURS];
 
-/// Blue, white and red: what is above the middle differs from what is below it in hue, and what is far from it is darker.
+/// Blue, white and red: values above the middle differ in hue from values below it, and values far from the middle are
+/// darker.
 const DIVERGING: [Rgb; 3] = [Rgb::new(0.03, 0.13, 0.75), Rgb::new(0.9, 0.9, 0.9), Rgb::new(0.72, 0.03, 0.03)];
 
 inventory::submit! {
@@ -52,7 +53,7 @@ impl Ramp {
         self.colours.len() - 1
     }
 
-    /// Returns the factor of the colours at a point; what is no number counts as the smallest one.
+    /// Returns the factor of the colours at a point; NaN counts as the smallest value.
     fn factor(&self, at: &SurfacePoint) -> Rgb {
         let part = (self.by.at(at.variables()) - self.from) / (self.to - self.from);
         let place = (if part > 0.0 { part.min(1.0) } else { 0.0 }) * self.last() as f64;
@@ -79,7 +80,7 @@ impl Shader for Ramp {
         let last = n(self.last() as f64);
         let part = (at.value(&self.by)? - n(self.from)) / (n(self.to) - n(self.from));
         let place = (part * last).max(n(0.0)).min(last);
-        // Of each two colours that follow each other, what is between them at these places.
+        // For each two neighbouring colours, the blend between them at these places.
         let of = |index: usize| {
             let along = (place - n(index as f64)).max(n(0.0)).min(n(1.0));
             let (one, next) = (self.colours[index], self.colours[index + 1]);

@@ -38,8 +38,8 @@ struct Sun {
 }
 
 impl Sun {
-    /// Returns `light` of each sample: its radiance, which is the emissivity divided by the square of the sine of half the
-    /// angle, times the solid angle of its disc over pi.
+    /// Returns `light` of each sample: the radiance times the solid angle of the sun's disc over pi. The radiance is
+    /// the emissivity divided by the square of the sine of half the angle.
     fn light(&self) -> Rgb {
         2.0 / (2.0 - self.height) * self.emissivity
     }

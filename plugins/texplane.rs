@@ -51,7 +51,7 @@ impl Picture {
     /// Makes the image of an entity whose table has the rows of [`TABLE`].
     ///
     /// # Errors
-    /// If texels are to be as large as pixels, and the camera has no image plane.
+    /// Returns an error if texels are to be as large as pixels and the camera has no image plane.
     pub fn new(args: &Args, rectangle: Rectangle) -> Result<Self, Refusal> {
         let camera = &args.setting.camera;
         let pixels = DVec2::from(camera.pixels.map(|side| side as f64));

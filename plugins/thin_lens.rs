@@ -1,4 +1,4 @@
-//! A camera with a lens, before and behind whose focus things are blurred.
+//! A camera with a lens. Objects nearer or farther than its focus are blurred.
 
 use super::look_at::{self, ANGLE, LookAt, frame};
 use std::sync::Arc;

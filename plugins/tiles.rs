@@ -110,8 +110,8 @@ impl Grid {
         Self { width, per_unit: 1.0 / width }
     }
 
-    /// Tells whether a point lies on an odd tile. The notes add the offset because a cast to an integer makes the tile at
-    /// 0 twice as wide; with `floor` in place of the cast, tiles are equally wide at any distance.
+    /// Tells whether a point lies on an odd tile. The notes add the offset because a cast to an integer makes the tile
+    /// at 0 twice as wide; with `floor` instead of the cast, tiles are equally wide at any distance.
     #[inline]
     pub fn is_odd(&self, along: DVec2) -> bool {
         is_odd(self.tile(along))
@@ -130,7 +130,7 @@ impl Grid {
         DVec2::new(tile(along.x), tile(along.y))
     }
 
-    /// Encloses the look of points, given those of even and of odd tiles and the two axes along which tiles lie.
+    /// Encloses the look of points, given the looks of even and of odd tiles and the two axes along which tiles lie.
     pub fn look<F: Precise>(
         &self,
         at: &PointBounds<F>,

@@ -16,7 +16,8 @@ static CENTER: Pparm<DVec3> = Pparm::or("center", "the origin of these coordinat
 
 const TABLE: Table = &[&X, &Y, &Z, &T, &RADIUS, &CENTER];
 
-/// The number of places at which the direction of the curve is looked at, and of directions that it may have to avoid.
+/// The number of places at which the direction of the curve is examined, and the number of directions to try as the one
+/// to avoid.
 const PLACES: u32 = 512;
 const DIRECTIONS: u32 = 256;
 
