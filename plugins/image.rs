@@ -36,8 +36,8 @@ impl Image {
         at.uv.unwrap_or_default() * self.size()
     }
 
-    /// Returns the texel of a column and a row among those of all repetitions. Beyond an edge, the texel at the edge is
-    /// returned.
+    /// Returns the texel of a column and a row among those of all repetitions. Beyond an edge, it is the one at the
+    /// edge.
     fn texel(&self, at: DVec2) -> Rgb {
         self.texture.texel(self.wrapped(at.x, 0), self.wrapped(at.y, 1))
     }
@@ -59,8 +59,7 @@ impl Image {
         self.blend(self.place(at), |column, row| self.texture.texel(column, row))
     }
 
-    /// Returns what `of` returns for the texel at a place or, if colours are interpolated, the blend for the four
-    /// around it.
+    /// Returns what `of` returns for the texel at a place or, if colours are interpolated, a blend of four texels.
     fn blend(&self, place: DVec2, of: impl Fn(u32, u32) -> DVec3) -> DVec3 {
         let of = |at: DVec2| of(self.wrapped(at.x, 0), self.wrapped(at.y, 1));
         if !self.smooth {
@@ -133,7 +132,7 @@ impl Shader for Image {
     }
 
     fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        // Where nothing is known about u and v, the colours may be those of any texel.
+        // Without known u and v, the colours may be those of any texel.
         let unknown = [Interval::<f64>::whole(); 2];
         let any = self.enclosed::<F>(at.uv.unwrap_or(unknown));
         let mean = at.patch.and_then(|patch| self.enclosed_mean(patch.uv?));

@@ -69,7 +69,7 @@ impl Lines {
         let (off, apart) = (value / size, self.spacing.map_or(f64::INFINITY, |spacing| spacing / size));
         let patch = at.patch.map(|patch| [patch.extent(slope / size), patch.pixel]);
         let Some([extent, pixel]) = patch.filter(|[extent, _]| *extent > 0.0) else {
-            // What is no number is a line: the formula is 0 all over the surface.
+            // A NaN counts as a line: the formula is 0 all over the surface.
             return if off > self.half { 0.0 } else { 1.0 };
         };
         let half = self.half.max(0.5 * self.pixels * pixel * extent);

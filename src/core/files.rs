@@ -64,8 +64,8 @@ pub fn refuse_outside(path: &Path) -> io::Result<()> {
 /// end.
 ///
 /// # Errors
-/// Returns the errors of the system, and an error where the path does not lead to a file, or [leads
-/// outside](refuse_outside).
+/// Returns the errors of the system, and an error where the path does not lead to a file, or leads
+/// [outside](refuse_outside).
 pub fn open(path: &Path) -> io::Result<File> {
     refuse_outside(path)?;
     // Opening a device may already have an effect. By the time of opening, the path may lead to something else.

@@ -64,7 +64,7 @@ pub struct Rule {
     /// The scopes of the capture groups of `end`, by number.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub end_captures: BTreeMap<&'static str, Scope>,
-    /// The name of the rule, behind a `#`, that is used in place of this one.
+    /// The name of the rule, behind a `#`, that is used instead of this one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub include: Option<String>,
     /// The pattern to match, within a line.

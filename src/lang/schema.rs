@@ -61,7 +61,7 @@ fn computed(mut kinds: Vec<&'static str>) -> [(&'static str, Schema); 3] {
     ]
 }
 
-/// Returns the schema of a number of this type, or a formula in place of it.
+/// Returns the schema of a number of this type, or of a formula that stands for one.
 fn number(type_name: &'static str) -> Schema {
     Schema { types: Some(TypeKeyword::Any(vec![type_name, "string"])), ..Schema::default() }
 }

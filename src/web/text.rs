@@ -6,7 +6,7 @@ use tabray_lang::registry::Registry;
 /// What messages call the scene.
 pub const NAME: &str = "scene";
 
-/// Says of files what holds here, in place of what the system says: a page has none.
+/// Replaces what the system says about files by what holds here: a page has none.
 pub fn without_files(message: &str) -> String {
     message.replace("operation not supported on this platform", "a page in a browser has no files")
 }

@@ -14,7 +14,7 @@ use std::panic::Location;
 pub trait Choice: Copy + Send + Sync + 'static {
     /// The noun for one alternative, in the singular: "profile".
     const WHAT: &'static str;
-    /// The kind of entity whose names may stand in place of an alternative's, if there is one.
+    /// The kind of entity whose names may be used instead of an alternative's, if there is one.
     const KIND: Option<Kind> = None;
     /// Returns all alternatives, in no particular order.
     fn all() -> Vec<Self>;
@@ -48,7 +48,7 @@ impl ChoiceName {
 pub struct Choices {
     /// The noun for one alternative, in the singular.
     pub what: &'static str,
-    /// The kind of entity whose names may stand in place of an alternative's, if there is one.
+    /// The kind of entity whose names may be used instead of an alternative's, if there is one.
     pub kind: Option<Kind>,
     all: fn() -> Vec<ChoiceName>,
 }

@@ -15,7 +15,7 @@ pub(super) static MATERIAL: Pparm<Arc<Material>> =
 
 pub(super) const OBJECT: Table = &[&MATERIAL];
 
-/// The attribute of an object that is made of others, in place of [`MATERIAL`].
+/// The material of an object that is made of others, used instead of [`MATERIAL`].
 pub(super) static MATERIAL_OF_ALL: Pparm<Option<Arc<Material>>> =
     Pparm::or("material", "the material of all of it; without, each object in it keeps its own", None);
 

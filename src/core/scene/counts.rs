@@ -68,7 +68,7 @@ impl Counts {
         }
     }
 
-    /// Says what an attribute was given in place of that.
+    /// Says what an attribute was given instead.
     pub fn not(self, given: &str) -> String {
         match self {
             Self::Of(_) => given.to_owned(),

@@ -129,7 +129,7 @@ impl<T: Value> Pparm<T> {
         self
     }
 
-    /// Sets what the notes' dump shows in place of the value that was read.
+    /// Sets what the notes' dump shows instead of the value that was read.
     pub const fn shown(mut self, shown: fn(T) -> T) -> Self {
         self.shown = Some(shown);
         self

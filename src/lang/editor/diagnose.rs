@@ -22,7 +22,7 @@ pub struct Diagnosis {
     pub range: [Position; 2],
     /// Further places.
     pub also: Vec<Remark>,
-    /// The word that was probably meant in place of the marked one.
+    /// The word that was probably meant instead of the marked one.
     pub meant: Option<String>,
     /// The marked text.
     pub marked: String,

@@ -30,7 +30,7 @@ impl<'v> Snippet<'v> {
         self.text += &format!("${{{}:{shown}}}", self.places);
     }
 
-    /// Adds a place with alternatives, or what is shown in place of none.
+    /// Adds a place with alternatives, or the text that is shown if there are none.
     fn one_of(&mut self, all: &[String], or: &str) {
         if all.is_empty() {
             return self.place(or);

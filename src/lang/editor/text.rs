@@ -82,7 +82,7 @@ impl Text {
         line.end
     }
 
-    /// Returns the text with another one in place of a range.
+    /// Returns the text with a range replaced by another text.
     pub fn edited(&self, place: Range<usize>, with: &str) -> Self {
         let [start, end] = [place.start, place.end.max(place.start)].map(|at| boundary(&self.text, at));
         Self::new([&self.text[..start], with, &self.text[end..]].concat())

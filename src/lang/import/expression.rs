@@ -56,7 +56,7 @@ pub trait Names {
     /// Names a formula as a function of x, y and z.
     fn function(&mut self, formula: &str) -> String;
 
-    /// Says what would be right in place of an unknown name.
+    /// Says what to write instead of an unknown name.
     fn help(&self, name: &str) -> String;
 }
 

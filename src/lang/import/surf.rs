@@ -64,7 +64,7 @@ pub fn read(text: &str, notes: &mut Notes) -> Option<Picture> {
     script.picture()
 }
 
-/// Returns a text with spaces in place of comments.
+/// Returns a text with comments replaced by spaces.
 fn without_comments(text: &str) -> String {
     let mut bytes = text.as_bytes().to_vec();
     let mut at = 0;

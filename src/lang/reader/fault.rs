@@ -57,7 +57,7 @@ pub struct Fault {
     pub also: Vec<(Place, String)>,
     /// What would be right.
     pub help: Option<String>,
-    /// The word that was probably meant in place of the marked one, without quotes.
+    /// The word that was probably meant instead of the marked one, without quotes.
     pub meant: Option<String>,
     /// The number of other faults that differ only in their places and are not listed separately, and the first of
     /// those places.
@@ -102,7 +102,7 @@ impl Fault {
         self
     }
 
-    /// Adds the word that was probably meant in place of the marked one.
+    /// Adds the word that was probably meant instead of the marked one.
     pub fn meant(mut self, word: Option<&str>) -> Self {
         self.meant = word.map(str::to_owned);
         self

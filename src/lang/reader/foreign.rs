@@ -202,7 +202,7 @@ impl Cleaned {
         }
     }
 
-    /// Puts straight quotes in the place of curly ones that begin and end words.
+    /// Replaces curly quotes that begin and end words by straight ones.
     fn quotes(&mut self) {
         let text = self.text();
         let mut start = 0;

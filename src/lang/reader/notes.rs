@@ -38,7 +38,7 @@ pub fn has_entities(registry: &Registry, text: &str) -> Option<Range<usize>> {
 pub enum Node<'a> {
     /// An entity.
     Entity,
-    /// What stands in place of an entity.
+    /// A statement other than an entity, such as `let`.
     Statement(Statement<'a>),
     /// The brace that ends what is repeated.
     Close(Token),
@@ -362,7 +362,7 @@ impl<'a, 'r> Grammar<'a, 'r> {
         entity.add(name, self.report);
     }
 
-    /// Skips an entity that is written in the place of its name, and reports it.
+    /// Skips an entity that is written where its name should be, and reports it.
     fn nested_entity(&mut self, kind: Kind, name: &Word<'a>, entity: &mut Parsed<'a>) {
         let Some(open) = self.step() else { return };
         let mut depth = 1;

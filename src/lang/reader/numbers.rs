@@ -171,7 +171,7 @@ impl<'a> Numbers<'a> {
         None
     }
 
-    /// Returns a word of an attribute's values with numbers in place of formulas and names.
+    /// Returns a word of an attribute's values with formulas and names replaced by numbers.
     pub fn word(&mut self, word: Word<'a>, value_type: Option<Type>, report: &mut Report<'_>) -> Word<'a> {
         match value_type {
             Some(value_type)

@@ -158,7 +158,7 @@ fn is_right(attribute: &dyn Attribute, datum: &Datum) -> bool {
     attribute.allows(datum) && attribute.beyond_squares(datum).is_none()
 }
 
-/// Reads numbers in place of others.
+/// Reads numbers into a list, and replaces the numbers in it.
 fn read<T>(numbers: &mut Vec<T>, words: &[Word<'_>], read: fn(&str) -> Result<T, ValueError>) -> Option<()> {
     numbers.clear();
     for word in words {

@@ -106,7 +106,7 @@ impl<'a, 'r, 't> Reader<'a, 'r, 't> {
         }
     }
 
-    /// Reads what stands in place of an entity.
+    /// Reads a statement other than an entity, such as `let`.
     fn statement(&mut self, keyword: Keyword, key: &Key<'a>, value: Value<'a>) {
         let help = keyword.usage_in_toml();
         let text = self.text;

@@ -104,7 +104,7 @@ fn all<T>(words: &[Word<'_>], read: fn(&str) -> Result<T, ValueError>) -> Result
     if faults.is_empty() { Ok(values) } else { Err(one_for_all(faults)) }
 }
 
-/// Returns one fault in place of several, if the words have the same.
+/// Returns one fault instead of several, if the words have the same fault.
 fn one_for_all(mut faults: Vec<Fault>) -> Vec<Fault> {
     let [first, .., last] = &faults[..] else { return faults };
     let parts = |fault: &Fault| {
@@ -145,7 +145,7 @@ pub fn number(word: &str) -> Result<f64, ValueError> {
     })
 }
 
-/// Says what is right in place of a word that is not a number.
+/// Says what to write instead of a word that is not a number.
 fn meant(word: &str) -> Option<Cow<'static, str>> {
     let end = word.find(|c: char| !(c.is_ascii_digit() || "+-.".contains(c))).unwrap_or(word.len());
     let (number, unit) = word.split_at(end);

@@ -21,7 +21,7 @@ pub struct CameraState<'c> {
     pub stand: CameraPose,
     /// Whether its image plane stays in its place when the viewer moves.
     is_window: bool,
-    /// Whether it is a `camera`, in place of which there may be a `look_at`.
+    /// Whether it is a `camera`, which may be replaced by a `look_at`.
     turns: bool,
 }
 

@@ -71,7 +71,7 @@ pub(super) fn shut_out(model: &Model, objects: &Objects) -> Vec<ShutOut> {
     by.collect()
 }
 
-/// Tells whether an earlier object of glass may lie in the place of some of an object's surface. There the glass is hit,
+/// Tells whether an earlier object of glass may coincide with a part of an object's surface. There the glass is hit,
 /// and the object is not.
 fn is_behind_glass(model: &Model, index: usize) -> bool {
     let object = &model.objects[index];

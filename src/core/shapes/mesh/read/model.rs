@@ -27,7 +27,7 @@ pub struct Model {
     pub sides: Vec<u32>,
     /// The look that the file gives each of these materials, where looks are wanted and known.
     pub finishes: Vec<Option<Finish>>,
-    /// What the corners of faces have, as far as it is wanted.
+    /// The wanted attributes of the corners of faces.
     pub attributes: Attributes,
     /// What was not taken as the file says it.
     pub remarks: Vec<Remark>,
