@@ -123,6 +123,9 @@ fn of_a_constructor(fault: &Fault) -> bool {
         "is a light that the notes' rules of light do not know",
         "looks along its `up`",
         "has texels as large as pixels",
+        "cannot be capped",
+        "cannot be clipped",
+        "is clipped by an object",
     ];
     found.iter().any(|words| fault.message.contains(words))
 }
