@@ -168,7 +168,7 @@ impl<'e> Selection<'e> {
                     let pixels = self.estimates.small.pixels;
                     let missed = levels(self.estimates.small.missed);
                     format!(
-                        "no promise: {pixels} pixels may show what is smaller than a sample, and what is missed in them may add {missed}"
+                        "no promise: {pixels} pixels may show things smaller than a sample, and missing these may add {missed}"
                     )
                 }
                 Goal::Error { .. } | Goal::None => {
@@ -210,7 +210,7 @@ impl<'e> Selection<'e> {
         let small = match small.pixels {
             0 => String::new(),
             pixels => format!(
-                " {pixels} pixels may show what is smaller than a sample; they were measured with more samples, and bounds \
+                " {pixels} pixels may show things smaller than a sample; they were measured with more samples, and bounds \
                  include what these may have missed."
             ),
         };

@@ -81,7 +81,7 @@ fn imported(source: &Source) -> Result<Option<String>, Failure> {
     messages::warnings(&warnings);
     if !left.is_empty() {
         let words: Vec<_> = left.iter().map(|(word, line)| format!("`{word}` (line {line})")).collect();
-        messages::note(&format!("left out, as no part of what is seen: {}", words.join(", ")));
+        messages::note(&format!("left out, as it does not affect the picture: {}", words.join(", ")));
     }
     Ok(Some(text))
 }

@@ -148,7 +148,7 @@ fn no_body(scene: &Path, name: &str, fault: NoBody) -> Failure {
         }
         NoBody::Mesh => (
             format!("`{name}` is a mesh already, or may be made of one"),
-            "no intervals tell what is inside of a mesh: leave it out of the scene".to_owned(),
+            "intervals cannot tell the inside of a mesh: leave it out of the scene".to_owned(),
         ),
     };
     Failure::Usage(message, Some(help))

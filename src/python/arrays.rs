@@ -147,7 +147,7 @@ fn indices<T: Copy + Element + Into<i128>>(
         u32::try_from(index).ok().filter(|index| (*index as usize) < vertices).ok_or_else(|| {
             let last = vertices.saturating_sub(1);
             PyIndexError::new_err(format!(
-                "corner {corner} of face {face} is {index}, which is no vertex: there are {vertices}, 0 to {last}"
+                "corner {corner} of face {face} is {index}, which is not the index of a vertex: there are {vertices}, 0 to {last}"
             ))
         })
     };

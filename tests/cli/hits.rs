@@ -139,7 +139,7 @@ fn what_is_no_ray_is_told_with_its_line_and_harms_no_answers_that_were_there() {
     let (status, out, err) = asked(&folder, &["balls.ray", "-o", "answers.csv"], rays);
     assert_eq!((status, out.as_str()), (2, ""));
     for told in [
-        "error: `<stdin>`, line 2: `three` is no number\n",
+        "error: `<stdin>`, line 2: `three` is not a number\n",
         "`<stdin>`, line 3: its direction is 0\n",
         "`<stdin>`, line 4: a ray has six numbers, its origin and its direction, and perhaps the t at which it ends; here are 3\n",
         "`--skip-bad` leaves such rays out, and counts them",
@@ -149,7 +149,7 @@ fn what_is_no_ray_is_told_with_its_line_and_harms_no_answers_that_were_there() {
     assert_eq!(fs::read_to_string(&old).expect("a file"), "old");
     let (status, out, err) = asked(&folder, &["balls.ray", "--skip-bad"], rays);
     assert_eq!((status, lines(&out).len()), (0, 1));
-    assert_eq!(err, "warning: 3 lines are no rays and were left out\n");
+    assert_eq!(err, "warning: 3 lines are not rays and were left out\n");
 }
 
 #[test]
@@ -339,7 +339,7 @@ fn answers_of_another_tracer_are_judged_each_for_what_it_is() {
     let (status, _, err) = judged(&folder, &[], "ox,oy,oz,dx,dy,dz,t\n1,2,3,0,0,0,6\n1,2,3,4,x,6,1\n");
     assert_eq!(status, 2);
     assert!(
-        err.contains("line 2: its direction is 0") && err.contains("line 3: `x` is no number for `dy`"),
+        err.contains("line 2: its direction is 0") && err.contains("line 3: `x` is not a number for `dy`"),
         "{err}"
     );
 }

@@ -12,7 +12,7 @@ fn a_surface_of_surfer_is_converted_and_says_what_it_leaves() {
     let (status, _, err) = outcome(tabray(&folder).args(["convert", "a.jsurf", "a.ray"]));
     assert_eq!(
         (status, err.as_str()),
-        (0, "left out, as no part of what is seen: `surface_title` (line 3)\nwrote a.ray\n")
+        (0, "left out, as it does not affect the picture: `surface_title` (line 3)\nwrote a.ray\n")
     );
     let text = fs::read_to_string(folder.path().join("a.ray")).expect("a scene");
     assert!(text.contains("let a 0.5\n") && text.contains("# Left out: surface_title (line 3).\n"), "{text}");

@@ -82,7 +82,7 @@ pub fn refuse(path: &Path, bad: &[BadRay], what: &str) -> Failure {
 pub fn tell_of_bad(bad: u64, what: &str) {
     if bad > 0 {
         let were =
-            if bad == 1 { format!("is no {what} and was") } else { format!("are no {what}s and were") };
+            if bad == 1 { format!("is not a {what} and was") } else { format!("are not {what}s and were") };
         messages::warning(&format!("{} {were} left out", text::count(bad as usize, "line")), None);
     }
 }

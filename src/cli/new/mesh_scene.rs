@@ -48,7 +48,10 @@ fn in_notes(file: &Path, scene: &Path) -> Result<String, Failure> {
     let [low, high] = surface.bounds();
     let own = [
         ("    normals     file\n", surface.is_smooth()),
-        ("    materials   file          # what it does not say is that of `metal`\n", surface.has_looks()),
+        (
+            "    materials   file          # anything it does not give comes from `metal`\n",
+            surface.has_looks(),
+        ),
     ];
     let own: String = own.iter().filter(|(_, has)| *has).map(|(line, _)| *line).collect();
     // What draws parts to be made writes STL, and has z upward; what models for pictures has y.

@@ -163,7 +163,7 @@ impl Texture {
         let mut decoder = reader.into_decoder().map_err(cannot)?;
         let (width, height) = decoder.dimensions();
         if width == 0 || height == 0 {
-            return Err(format!("it is {width} x {height} pixels, and has none"));
+            return Err(format!("it is {width} x {height} pixels, so it is empty"));
         }
         let (colours, orientation) =
             (decoder.color_type(), decoder.orientation().unwrap_or(Orientation::NoTransforms));

@@ -329,8 +329,8 @@ impl Reader<'_, '_> {
         let word = &rest[..end];
         let number = word.parse::<f64>().ok().filter(|number| number.is_finite());
         let number = number.ok_or_else(|| {
-            Fault::error(Some(self.at..self.at + end), "this is no number")
-                .help("a number is as `2` or `0.5e-3`")
+            Fault::error(Some(self.at..self.at + end), "this is not a number")
+                .help("write a number as `2` or `0.5e-3`")
         })?;
         self.at += end;
         // Scenes have digits on both sides of a point.

@@ -202,7 +202,7 @@ impl Script<'_, '_> {
             let place = self.at..self.at + next.map_or(0, char::len_utf8);
             return self.fault(
                 Fault::error(Some(place), "no statement goes on like this")
-                    .help("statements are as `a = 1;` or `draw_surface;`"),
+                    .help("write statements as `a = 1;` or `draw_surface;`"),
             );
         } else if word == "draw_surface" {
             self.parts = 1;
@@ -267,7 +267,7 @@ impl Script<'_, '_> {
         let value = match value.number {
             Some(number) if !number.is_finite() => {
                 let start = range.end - self.text[range.clone()].trim_start().len();
-                return self.notes.add(Fault::error(Some(start..range.end), "this is no number"));
+                return self.notes.add(Fault::error(Some(start..range.end), "this is not a number"));
             }
             Some(number) if is_setting(name) => {
                 self.settings.insert(name.to_owned(), (number, place));

@@ -75,7 +75,7 @@ fn a_fault_in_a_formula_has_its_place() {
         ("x+b", "`b` has no value at Some(2..3)"),
         ("x&y", "the formula does not go on like this at Some(1..2)"),
         ("besselj(x)", "the function `besselj` is not read at Some(0..7)"),
-        ("1e999*x", "this is no number at Some(0..5)"),
+        ("1e999*x", "this is not a number at Some(0..5)"),
     ] {
         assert_eq!(written(formula, Dialect::Surfer), fault, "{formula}");
     }

@@ -131,7 +131,7 @@ impl<'t> Report<'t> {
             *fault = Fault {
                 severity: fault.severity,
                 ..Fault::error(part.included_at.clone(), format!("`{}` {what}", part.name))
-                    .help("what is wrong there is told of files whose names end in .ray or .toml")
+                    .help("faults are shown only in files whose names end in .ray or .toml")
             };
         }
         concealed

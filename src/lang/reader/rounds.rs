@@ -122,7 +122,7 @@ impl<'a> Rounds<'a> {
         let is_too_deep = self.open.len() >= DEEPEST;
         if is_too_deep {
             let message = format!("`repeat {}` is one `repeat` too deep", name.text);
-            let help = format!("there are at most {DEEPEST} of them within each other");
+            let help = format!("a `repeat` can be nested at most {DEEPEST} deep");
             report.add(Fault::error(name.place.clone(), message).help(help));
         }
         let number = self.numbers.number(count, report);

@@ -23,7 +23,7 @@ def test_arrays_are_taken_in_each_type(integer, number):
 
 
 def test_indices_are_checked():
-    for face, told in [(8, "corner 1 of face 3 is 8, which is no vertex: there are 8, 0 to 7"), (-1, "is -1, which")]:
+    for face, told in [(8, "corner 1 of face 3 is 8, which is not the index of a vertex: there are 8, 0 to 7"), (-1, "is -1, which")]:
         wrong = CUBE.copy()
         wrong[3, 1], wrong[5, 0] = face, 99
         with pytest.raises(IndexError, match=told):

@@ -76,7 +76,7 @@ fn accuracy(chart: &Chart, panel: &Panel) -> Option<String> {
         Some(fastest) if !chart.is_doubtful() && fastest.times.least <= GAIN * default.times.least => {
             let (own, other) = (time(panel, default), time(panel, fastest));
             format!(
-                "take `--accuracy {}`: it shows the same image in {other} per pixel in place of {own}",
+                "take `--accuracy {}`: it shows the same image in {other} per pixel instead of {own}",
                 fastest.name
             )
         }
@@ -111,7 +111,7 @@ fn sampling(panel: &Panel) -> String {
         _ => (point.samples.to_string(), ""),
     };
     let own = panel.points.iter().find(|point| point.is_default);
-    let own = own.map_or(String::new(), |own| format!(", in place of {}", own.samples));
+    let own = own.map_or(String::new(), |own| format!(", instead of {}", own.samples));
     format!("take `--samples {count}{sampler}`{own}, with which 99 % of the pixels look right")
 }
 

@@ -233,7 +233,7 @@ pub(super) fn columns(names: &str) -> Result<[Option<usize>; 7], String> {
 fn of_words<'w>(words: impl Iterator<Item = &'w str>) -> Result<Numbers, String> {
     let mut numbers = Vec::with_capacity(7);
     for word in words.filter(|word| !word.is_empty()).take(8) {
-        numbers.push(word.parse().map_err(|_| format!("`{}` is no number", short(word)))?);
+        numbers.push(word.parse().map_err(|_| format!("`{}` is not a number", short(word)))?);
     }
     of_list(&numbers)
 }
@@ -259,7 +259,7 @@ pub(super) fn of_record(record: &[&str], columns: &[Option<usize>; 7]) -> Result
         let Some(column) = column else { continue };
         let word = record.get(*column).copied().unwrap_or_default();
         if !(word.is_empty() && name == "t_max") {
-            *number = word.parse().map_err(|_| format!("`{}` is no number for `{name}`", short(word)))?;
+            *number = word.parse().map_err(|_| format!("`{}` is not a number for `{name}`", short(word)))?;
         }
     }
     let [a, b, c, d, e, f, end] = numbers;

@@ -103,14 +103,15 @@ impl<'r> TheirReader<'r> {
             "0" | "false" | "miss" | "no" => Ok(false),
             _ => Err(format!("`{}` is neither `hit` nor `miss`", short(word))),
         });
-        let t = field(1)
-            .map(|word| word.parse::<f64>().map_err(|_| format!("`{}` is no number for `t`", short(word))));
+        let t = field(1).map(|word| {
+            word.parse::<f64>().map_err(|_| format!("`{}` is not a number for `t`", short(word)))
+        });
         let object = field(2).filter(|word| *word != "-1").map(|word| match word.parse() {
             Ok(number) => Object::Number(number),
             Err(_) => Object::Name(word.to_owned()),
         });
         let face = field(3).map(|word| {
-            word.parse::<i64>().map_err(|_| format!("`{}` is no number for `face`", short(word)))
+            word.parse::<i64>().map_err(|_| format!("`{}` is not a number for `face`", short(word)))
         });
         TheirAnswer::new(numbers, t_max, hit.transpose()?, t.transpose()?, object, face.transpose()?)
     }

@@ -24,7 +24,7 @@ impl fmt::Display for ArrayError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Corner(face, corner, index) => {
-                write!(f, "corner {corner} of face {face} is {index}, which is no vertex")
+                write!(f, "corner {corner} of face {face} is {index}, which is not the index of a vertex")
             }
             Self::NotFinite(vertex) => write!(f, "vertex {vertex} is not finite"),
             Self::Surface(why) => write!(f, "the mesh {why}"),
@@ -90,7 +90,7 @@ mod tests {
         };
         assert_eq!(error(&corners, &[[0, 1, 2], [1, 2, 3]]), None);
         let told = error(&corners, &[[0, 1, 2], [0, 7, 9], [8, 0, 0]]);
-        assert_eq!(told.as_deref(), Some("corner 1 of face 1 is 7, which is no vertex"));
+        assert_eq!(told.as_deref(), Some("corner 1 of face 1 is 7, which is not the index of a vertex"));
         let told = error(&[DVec3::X, DVec3::NAN], &[[0, 1, 0]]);
         assert_eq!(told.as_deref(), Some("vertex 1 is not finite"));
         let told = error(&corners, &[[0, 1, 1]]);

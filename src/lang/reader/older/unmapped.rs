@@ -27,7 +27,7 @@ impl Unmapped {
         let what = match value.as_str() {
             "1" => "shader 1 is taken for the swirl, which not all programs had under this number".to_owned(),
             "2" => "shader 2 is taken for the hues, which not all programs had under this number".to_owned(),
-            _ => format!("shader {value} was its program's own: the plain colours stand in its place"),
+            _ => format!("shader {value} was its program's own: plain colours are used instead"),
         };
         self.add(what, number.place.clone());
     }

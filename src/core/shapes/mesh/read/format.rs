@@ -70,7 +70,11 @@ impl Format {
             "obj" => Self::Obj,
             "ply" => Self::Ply,
             "stl" => Self::Stl,
-            _ => return Err("it is no OBJ, PLY, STL or glTF, by its name and by how it begins".to_owned()),
+            _ => {
+                return Err(
+                    "neither its name nor its beginning is that of an OBJ, PLY, STL or glTF".to_owned()
+                );
+            }
         })
     }
 

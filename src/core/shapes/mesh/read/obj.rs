@@ -155,7 +155,7 @@ pub fn without_faces(bytes: &[u8]) -> String {
     }
     match of(&["v"]) {
         Some(_) => "it has vertices and no faces: it is a cloud of points".to_owned(),
-        None => "no line of it begins with `v` or `f`, so it is no OBJ".to_owned(),
+        None => "no line of it begins with `v` or `f`, so it is not an OBJ".to_owned(),
     }
 }
 

@@ -137,7 +137,7 @@ fn placed(json: &Gltf) -> Result<Vec<(&Node, DMat4)>, String> {
     while let Some((index, above)) = left.pop() {
         let node = json.nodes.get(index).ok_or_else(|| format!("there is no node {index}"))?;
         if std::mem::replace(&mut is_met[index], true) {
-            return Err(format!("node {index} is reached on two ways, and nodes must make a tree"));
+            return Err(format!("node {index} can be reached in two ways, but nodes must form a tree"));
         }
         let placement = above * own(node);
         left.extend(node.children.iter().rev().map(|child| (*child, placement)));

@@ -90,7 +90,7 @@ fn files_that_are_no_gltf_or_broken_are_told() {
         (
             r#""nodes":[{"mesh":0}]"#,
             r#""nodes":[{"children":[0]}]"#,
-            "node 0 is reached on two ways, and nodes must make a tree",
+            "node 0 can be reached in two ways, but nodes must form a tree",
         ),
         (r#""nodes":[0]"#, r#""nodes":[7]"#, "there is no node 7"),
         (r#""mesh":0"#, r#""mesh":9"#, "there is no mesh 9"),

@@ -167,14 +167,14 @@ fn files_of_other_kinds_are_named() {
         (b"  \n".to_vec(), "it is empty"),
         (b"v 0 0 0\nv 1 1 1\n".to_vec(), "it has vertices and no faces: it is a cloud of points"),
         (b"v 0 0 0\nv 1 1 1\nl 1 2\n".to_vec(), "it has lines or points (`l`) and no faces"),
-        (b"one two\n".to_vec(), "no line of it begins with `v` or `f`, so it is no OBJ"),
+        (b"one two\n".to_vec(), "no line of it begins with `v` or `f`, so it is not an OBJ"),
         (b"solid x\nendsolid x\n".to_vec(), "it has no triangles"),
     ] {
         assert_eq!(named("obj", bytes), Err(ReadError::file(said)));
     }
     assert_eq!(
         named("txt", "one"),
-        Err(ReadError::file("it is no OBJ, PLY, STL or glTF, by its name and by how it begins"))
+        Err(ReadError::file("neither its name nor its beginning is that of an OBJ, PLY, STL or glTF"))
     );
 }
 
