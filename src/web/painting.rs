@@ -17,7 +17,7 @@ pub struct Painting {
     size: [usize; 2],
     /// Red, green and blue of each pixel, in rows from the top.
     bytes: Vec<u8>,
-    /// The same before they are clamped and rounded to levels.
+    /// Red, green and blue of each pixel in the same order, before they are clamped and rounded to levels: 1 is white.
     colours: Vec<f32>,
     levels: Levels,
 }
@@ -28,7 +28,7 @@ pub struct Whole<'p> {
     pub size: [usize; 2],
     /// Red, green and blue of each pixel, in rows from the top.
     pub bytes: &'p [u8],
-    /// The same before they are clamped and rounded to levels.
+    /// Red, green and blue of each pixel in the same order, before they are clamped and rounded to levels: 1 is white.
     pub colours: &'p [f32],
 }
 
