@@ -55,7 +55,7 @@ struct Tiles {
 }
 
 impl Tiles {
-    #[inline]
+    #[inline(always)]
     fn tile_at(&self, at: DVec3) -> DVec2 {
         let (at, offset) = self.origin.map_or((at, OFFSET), |origin| (at - origin, 0.0));
         let tile = |side: usize| ((self.sides[side].dot(at) + offset) / self.dimensions[side]).floor();
@@ -71,12 +71,18 @@ impl Tiles {
     }
 
     /// Returns the colour of the tile at a point, or the mean over the patch around it.
-    #[inline]
+    #[inline(always)]
     fn colour(&self, own: Rgb, other: Rgb, at: &SurfacePoint) -> Rgb {
         if let Some(patch) = &at.patch {
             return between(other, own, self.odd_part(at.position, patch));
         }
         if is_odd(self.tile_at(at.position)) { own } else { other }
+    }
+
+    /// Returns the mirror reflectivity of every other tile.
+    #[inline(always)]
+    fn other_specular(&self, material: &Material) -> Rgb {
+        if self.mirrors { self.other.specular } else { material.specular }
     }
 }
 
@@ -85,22 +91,19 @@ impl Shader for Tiles {
         ShaderInputs::PATCH
     }
 
-    #[inline]
+    #[inline(always)]
     fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
         self.colour(material.ambient, self.other.ambient, at)
     }
 
-    #[inline]
+    #[inline(always)]
     fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
         self.colour(material.diffuse, self.other.diffuse, at)
     }
 
-    #[inline]
+    #[inline(always)]
     fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        if !self.mirrors {
-            return material.specular;
-        }
-        self.colour(material.specular, self.other.specular, at)
+        self.colour(material.specular, self.other_specular(material), at)
     }
 
     fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
@@ -116,8 +119,7 @@ impl Shader for Tiles {
                 [(u + n(OFFSET)) / n(self.dimensions.x), (v + n(OFFSET)) / n(self.dimensions.y)]
             }
         };
-        let specular = if self.mirrors { self.other.specular } else { material.specular };
-        let other = Material { specular, ..(*self.other).clone() };
+        let other = Material { specular: self.other_specular(material), ..(*self.other).clone() };
         let (own, other) = (LookBounds::from(material), LookBounds::from(&other));
         Some(match (tiles(at.position).map(Interval::certain_floor), &at.patch) {
             ([Some(i), Some(j)], _) if !is_odd(DVec2::new(i, j)) => other,
@@ -127,7 +129,7 @@ impl Shader for Tiles {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn tile(&self, at: &SurfacePoint) -> DVec2 {
         self.tile_at(at.position)
     }

@@ -79,9 +79,12 @@ kernels! {
     ) => ambients, speculars -> bool {
         let (count, mut any) = (points.positions.len(), 0);
         let (mut ambients, mut speculars) = (ambients.first(count), speculars.first(count));
+        // One loop for both is compiled without vector instructions where a shader chooses among colours.
+        each!(points, lane, at, {
+            ambients.set(lane, shader.ambient(material, at));
+        });
         each!(points, lane, at, {
             let specular = shader.specular(material, at);
-            ambients.set(lane, shader.ambient(material, at));
             speculars.set(lane, specular);
             any |= is_any(specular);
         });
