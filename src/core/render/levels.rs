@@ -14,11 +14,18 @@ pub struct Levels {
 impl Levels {
     /// Adds pixels: red, green and blue of each.
     pub fn add(&mut self, bytes: &[u8]) {
-        self.brightest = bytes.iter().copied().fold(self.brightest, u8::max);
-        let (pixels, _) = bytes.as_chunks::<3>();
-        self.white +=
-            pixels.iter().map(|[red, green, blue]| usize::from(red & green & blue == u8::MAX)).sum::<usize>();
-        self.pixels += pixels.len();
+        const PIXELS: usize = 64;
+        for bytes in bytes.chunks(3 * PIXELS) {
+            let brightest = bytes.iter().copied().fold(0, u8::max);
+            self.brightest = self.brightest.max(brightest);
+            let (pixels, _) = bytes.as_chunks::<3>();
+            self.pixels += pixels.len();
+            // Few pixels are white, and counting them takes many times as long as finding out that there are none.
+            if brightest == u8::MAX {
+                self.white +=
+                    pixels.iter().filter(|[red, green, blue]| red & green & blue == u8::MAX).count();
+            }
+        }
     }
 }
 

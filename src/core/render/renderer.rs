@@ -114,12 +114,12 @@ impl Renderer {
                 let (mut strip, mut rest) = (locked(strip), &bytes[..]);
                 let from = left + TILE * tile;
                 let columns = from..band.columns.end.min(from + TILE);
-                for (run, y) in tiles::runs(columns, height - rows.end..height - top) {
+                tiles::for_each_run(columns, height - rows.end..height - top, |run, y| {
                     let (bytes, others) = rest.split_at(run.len());
                     strip.pixels[(height - 1 - y - top) * width + run.start - left..][..run.len()]
                         .copy_from_slice(bytes);
                     rest = others;
-                }
+                });
                 strip.tiles[tile] = true;
             };
             let tiles = StripTiles { columns: &band.columns, rows: &rows, indices: open };

@@ -13,24 +13,25 @@ pub const TILE: usize = 16;
 /// go on, and packets are to be full.
 pub const TOGETHER: usize = 8;
 
-/// Lists the pixels of a tile as runs of up to eight pixels, each by its columns and its row. The runs go through
-/// blocks of 8 x 8 pixels, so that pixels that follow each other are close together.
-pub(crate) fn runs(columns: Range<usize>, rows: Range<usize>) -> impl Iterator<Item = (Range<usize>, usize)> {
+/// Calls a function for each run of up to eight pixels of a tile, with its columns and its row. The runs go through blocks of
+/// 8 x 8 pixels, so that pixels that follow each other are close together.
+pub(crate) fn for_each_run(
+    columns: Range<usize>,
+    rows: Range<usize>,
+    mut each: impl FnMut(Range<usize>, usize),
+) {
     const SIDE: usize = 8;
-    rows.clone().step_by(SIDE).flat_map(move |low| {
-        let (columns, end) = (columns.clone(), rows.end.min(low + SIDE));
-        columns.clone().step_by(SIDE).flat_map(move |left| {
+    for low in rows.clone().step_by(SIDE) {
+        for left in columns.clone().step_by(SIDE) {
             let run = left..columns.end.min(left + SIDE);
-            (low..end).map(move |y| (run.clone(), y))
-        })
-    })
+            (low..rows.end.min(low + SIDE)).for_each(|y| each(run.clone(), y));
+        }
+    }
 }
 
 /// Adds the pixels of a tile to `pixels`, by column and row.
 pub fn list(columns: Range<usize>, rows: Range<usize>, pixels: &mut Vec<[usize; 2]>) {
-    for (columns, y) in runs(columns, rows) {
-        pixels.extend(columns.map(|x| [x, y]));
-    }
+    for_each_run(columns, rows, |columns, y| pixels.extend(columns.map(|x| [x, y])));
 }
 
 /// The maximum number of pixels that are in memory at one time, unless one row of tiles has more.
