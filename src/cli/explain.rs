@@ -33,7 +33,7 @@ pub struct Place<'p> {
 }
 
 impl Place<'_> {
-    /// Explains how the pixel came about: in the old image if there is an older program, and in the new one.
+    /// Explains the colour of the pixel in the new image and, if an older program is given, in the old one.
     pub fn explained(self, before: Option<&Path>) -> Vec<Explanation> {
         let Pixel { old, new, .. } = self.pixel;
         let scene = text::shown(self.scene);

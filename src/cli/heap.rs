@@ -19,7 +19,7 @@ use tabray_core::memory::{is_allowed_to_fail, may_fail};
 /// The allocator: a program makes it its own with `#[global_allocator]`.
 pub struct Heap;
 
-/// The bytes that are allocated, but for what the threads have not told yet, and the most that may be.
+/// The allocated bytes, except those that threads have not reported yet, and the greatest number that is allowed.
 static USED: AtomicIsize = AtomicIsize::new(0);
 static LIMIT: AtomicUsize = AtomicUsize::new(usize::MAX);
 
@@ -31,23 +31,24 @@ thread_local! {
     static OWN: Cell<isize> = const { Cell::new(0) };
 }
 
-/// Refuses memory beyond so many bytes, as if the system did.
+/// Refuses memory beyond a number of bytes, as if the system did.
 pub fn limit(bytes: usize) {
     LIMIT.store(bytes, Ordering::Relaxed);
 }
 
-/// Tells whether so many bytes more are beyond the limit.
+/// Tells whether this many more bytes are beyond the limit.
 fn is_full(more: usize) -> bool {
     let used = usize::try_from(USED.load(Ordering::Relaxed)).unwrap_or(0);
     used.saturating_add(more) > LIMIT.load(Ordering::Relaxed)
 }
 
-/// Tells whether the limit is a reason why so many bytes more are refused: with what one thread has not told yet.
+/// Tells whether the limit may be why this many more bytes are refused, given that a thread may not have reported all of its
+/// bytes yet.
 pub fn is_near_full(more: usize) -> bool {
     is_full(more.saturating_add(UNTOLD.unsigned_abs()))
 }
 
-/// Tells whether this thread may allocate so many bytes more.
+/// Tells whether this thread may allocate this many more bytes.
 #[inline(always)]
 fn may_add(bytes: isize) -> bool {
     let with_own = OWN.try_with(|own| own.get().saturating_add(bytes)).unwrap_or(0);
@@ -91,7 +92,7 @@ pub fn exit_at_once(status: i32) -> ! {
     std::process::exit(status)
 }
 
-/// Tells whether the system would provide so many bytes in one piece.
+/// Tells whether the system would provide this many bytes in one piece.
 pub fn has_room(bytes: usize) -> bool {
     may_fail(|| Vec::<u8>::new().try_reserve_exact(bytes).is_ok())
 }
@@ -121,7 +122,7 @@ fn signed(bytes: usize) -> isize {
     isize::try_from(bytes).unwrap_or(isize::MAX)
 }
 
-/// Allocates bytes within the limit, in place of some that are freed; what is refused is told.
+/// Allocates bytes within the limit, in place of some that are freed. A refusal is reported.
 #[inline(always)]
 fn within(bytes: usize, freed: usize, allocate: impl FnOnce() -> *mut u8) -> *mut u8 {
     let more = signed(bytes).saturating_sub(signed(freed));

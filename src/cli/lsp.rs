@@ -32,7 +32,7 @@ pub struct Args {
 }
 
 pub fn run(registry: &Registry) -> Result<(), Failure> {
-    // What is written waits for the editor on a thread of its own, so that the editor never waits for itself.
+    // Messages are written on a thread of their own, so that a slow editor does not block the reader.
     let (sender, texts) = mpsc::channel();
     let writer = thread::spawn(|| write(texts));
     let mut input = io::stdin().lock();
@@ -85,7 +85,7 @@ fn send(sender: &Sender<String>, text: String) -> Result<(), Failure> {
     sender.send(text).map_err(|_| gone())
 }
 
-/// Answers the first request of an editor, and returns what it says of itself.
+/// Answers the first request of an editor, and returns what the editor says about itself.
 fn begin(input: &mut StdinLock<'_>, sender: &Sender<String>) -> Result<Value, Failure> {
     loop {
         match next(input, sender)? {

@@ -223,7 +223,7 @@ impl Parts {
         })
     }
 
-    /// Returns the error for a part that cannot be read to its end, and for all others of which that is so.
+    /// Returns the error for a part that cannot be read to its end, and for all other such parts.
     fn damaged(&self, path: &Path, error: &io::Error) -> Failure {
         if error.kind() != io::ErrorKind::InvalidData {
             return Failure::cannot_read(path, error);

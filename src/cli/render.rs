@@ -187,7 +187,7 @@ impl Args {
         FullRange::of(path).filter(|_| self.format.is_none())
     }
 
-    /// Returns the name that those of the images beside an image are derived from: beside one of full range, they are
+    /// Returns the name from which the names of the images beside an image are derived: beside one of full range, they are
     /// PNGs.
     fn main(&self, path: &Path) -> PathBuf {
         if self.full_range(path).is_some() { path.with_extension("png") } else { path.to_owned() }
@@ -291,11 +291,11 @@ struct ImageRender<'a> {
     args: &'a Args,
     stop: &'a Stop,
     path: &'a Path,
-    /// The format of an image of bytes, and of those beside the image.
+    /// The format of an image of bytes, and of the images beside it.
     format: Format,
     full_range: Option<FullRange>,
     source: Source,
-    /// The memory that was left when the scene was read, in bytes, if there is a limit.
+    /// The memory that was left after the scene was read, in bytes, if there is a limit.
     memory: Option<u64>,
     model: Model,
     region: Region,
@@ -306,7 +306,7 @@ struct ImageRender<'a> {
 }
 
 impl ImageRender<'_> {
-    /// Renders the image into its file, with those beside it.
+    /// Renders the image and the images beside it into their files.
     fn whole(self, mut stats: Stats) -> Result<(), Failure> {
         let Self { registry, args, stop, path, format, source, memory, model, region, .. } = self;
         args.size.refuse_other_size(path, &region)?;

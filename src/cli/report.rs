@@ -127,7 +127,7 @@ struct Data<'d> {
 /// An item, as the page receives it.
 #[derive(Serialize)]
 struct Shown<'d> {
-    /// The commands that decide about the item; left out where there is nothing to decide.
+    /// The commands that decide about the item; left out if there is nothing to decide.
     #[serde(skip_serializing_if = "Option::is_none")]
     decision: Option<&'d Decision>,
     /// Explanations of the pixel that differs most: titles and texts.

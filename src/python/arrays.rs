@@ -1,4 +1,4 @@
-//! Arrays that are given: rows of three numbers, of either precision and any layout, and indices.
+//! Arrays as arguments: rows of three numbers, of either precision and any layout, and indices.
 
 use glam::DVec3;
 use numpy::ndarray::ArrayView2;
@@ -8,7 +8,7 @@ use numpy::{
 use pyo3::exceptions::{PyIndexError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-/// Returns an object as an array, itself if it is one.
+/// Returns an object as an array; an array is returned as it is.
 fn array<'py>(object: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyUntypedArray>> {
     let py = object.py();
     Ok(py.import("numpy")?.getattr("require")?.call1((object, py.None(), "A"))?.cast_into()?)
@@ -31,10 +31,10 @@ fn shaped(name: &str, array: &Bound<'_, PyUntypedArray>, right: &str) -> PyErr {
     PyValueError::new_err(format!("`{name}` has the shape ({}{comma}): give {right}", sides.join(", ")))
 }
 
-/// Points or directions that are given: an array of shape (n, 3), or (3,) for one that stands for all.
+/// Points or directions: an array of shape (n, 3), or of shape (3,) for one that stands for all.
 pub struct Vectors<'py>(Bound<'py, PyUntypedArray>);
 
-/// The rows of such an array.
+/// The rows of an array of points or directions.
 pub enum Rows<'py> {
     F64(PyReadonlyArray2<'py, f64>),
     F32(PyReadonlyArray2<'py, f32>),
@@ -48,7 +48,7 @@ pub enum View<'a> {
 }
 
 impl<'py> Vectors<'py> {
-    /// Takes an array of `float64` or `float32` as it is, and of other numbers a copy.
+    /// Takes an array of `float64` or `float32` without a copy, and converts other numbers.
     pub fn of(object: &Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         let array = array(object)?;
         let (is_float, is_native) = (array.dtype().kind() == b'f', array.dtype().is_native_byteorder());
@@ -60,12 +60,12 @@ impl<'py> Vectors<'py> {
         }
     }
 
-    /// Returns the number of rows, `None` for a single one that stands for any number.
+    /// Returns the number of rows; `None` for a single row that stands for any number.
     pub fn count(&self) -> Option<usize> {
         (self.0.ndim() == 2).then(|| self.0.shape()[0])
     }
 
-    /// Returns so many rows.
+    /// Returns `count` rows.
     pub fn rows(&self, count: usize) -> PyResult<Rows<'py>> {
         let array = if self.0.ndim() == 2 { self.0.clone() } else { repeated(&self.0, &[count, 3])? };
         Ok(match array.extract() {
@@ -96,7 +96,7 @@ impl View<'_> {
     }
 }
 
-/// Takes a number that stands for all, or an array of so many.
+/// Takes one number that stands for all rays, or an array with a number for each.
 pub fn numbers<'py>(
     object: &Bound<'py, PyAny>,
     name: &str,
@@ -110,7 +110,7 @@ pub fn numbers<'py>(
     }
 }
 
-/// Takes the corners of triangles, as indices of so many vertices: an array of integers of shape (m, 3).
+/// Takes the corners of triangles, an array of integers of shape (m, 3): indices of vertices, of which there are `vertices`.
 pub fn faces(object: &Bound<'_, PyAny>, vertices: usize) -> PyResult<Vec<[u32; 3]>> {
     let array = array(object)?;
     let dtype = array.dtype();

@@ -88,10 +88,10 @@ impl RayView<'_> {
     }
 }
 
-/// What is told of a ray.
+/// The answer to one ray.
 type Told = (Answer, Option<Surroundings>);
 
-/// Answers all rays, some at a time, and passes on what is told of them, in their order. The answers depend on the rays alone.
+/// Answers all rays, some at a time, and passes the answers on in the order of the rays. The answers depend on the rays alone.
 fn answer(
     course: &Course,
     query: &Query,
@@ -125,12 +125,12 @@ fn answer(
     Ok(())
 }
 
-/// What rays hit: an array for each thing that is known, with an entry for each ray. What there is not is -1 or NaN.
+/// What rays hit: one array for each property, with one entry for each ray. An entry without a value is -1 or NaN.
 #[pyclass(frozen, module = "tabray", get_all)]
 pub struct Hits {
-    /// What is known: a `Verdict`. uint8.
+    /// The answer: a `Verdict`. uint8.
     verdict: Py<PyArray1<u8>>,
-    /// The number of bits that proved it: 53 or 237; 0 without a proof. uint8.
+    /// The number of bits of the proof: 53 or 237; 0 without a proof. uint8.
     proof: Py<PyArray1<u8>>,
     /// The object, an index of `Scene.objects`. int32.
     object: Py<PyArray1<i32>>,
@@ -138,9 +138,9 @@ pub struct Hits {
     face: Py<PyArray1<i32>>,
     /// The hit, in lengths of the ray's direction.
     t: Py<PyArray1<f64>>,
-    /// A number that the real t is not below; without a proof -inf.
+    /// A lower bound of the real t; -inf without a proof.
     t_low: Py<PyArray1<f64>>,
-    /// A number that the real t is not above; without a proof inf.
+    /// An upper bound of the real t; inf without a proof.
     t_high: Py<PyArray1<f64>>,
     /// The distance in world units, rounded.
     distance: Py<PyArray1<f64>>,

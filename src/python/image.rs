@@ -23,15 +23,14 @@ use tabray_core::scene::model::Model;
 use tabray_core::text::{self, count};
 use tempfile::NamedTempFile;
 
-/// An image: light as an array of shape (height, width, 3), float64, red, green and blue, in rows from the top. `numpy.asarray`
-/// takes it, too.
+/// An image: its light is an array of shape (height, width, 3), float64: red, green and blue, in rows from the top.
+/// `numpy.asarray` accepts an image.
 ///
-/// Light is linear: as it is before tone, transfer curve and rounding, and after the exposure where the scene follows the notes'
-/// rules.
+/// The light is linear: it is taken before tone, transfer curve and rounding, and by the notes' rules after the exposure.
 #[pyclass(frozen, module = "tabray")]
 pub struct Image {
     size: [usize; 2],
-    /// Red, green and blue of each pixel, as files of images have them.
+    /// Red, green and blue of each pixel, the bytes of an image file.
     bytes: Vec<u8>,
     /// The light.
     #[pyo3(get)]
@@ -47,11 +46,11 @@ pub struct Image {
     normals: Option<Py<PyArray3<f64>>>,
 }
 
-/// What an image is to be.
+/// What to render.
 pub struct Wanted {
-    /// The width and the height in pixels, if it is not the scene's.
+    /// The width and the height in pixels; the scene's if not given.
     pub size: Option<[usize; 2]>,
-    /// The samples of each pixel, if they are not as many as the scene's.
+    /// The number of samples of each pixel; the scene's if not given.
     pub samples: Option<u32>,
     pub depth: bool,
     pub objects: bool,
@@ -117,7 +116,7 @@ fn seen(renderer: &Renderer, plan: &Plan, stops: &(dyn Fn() -> bool + Sync)) -> 
     renderer.pixels(plan, 0..height, &done, pixel)
 }
 
-/// Warns of pixels that are not as they should be.
+/// Warns of pixels with flaws.
 fn warn(py: Python<'_>, flaws: &Flaws) -> PyResult<()> {
     let told = [
         (flaws.cuts.pixels, "cut off at the ray budget: mirrors or glass spawn too many rays"),
@@ -131,7 +130,7 @@ fn warn(py: Python<'_>, flaws: &Flaws) -> PyResult<()> {
 }
 
 impl Image {
-    /// Encodes the image as this format has it.
+    /// Encodes the image in this format.
     fn encoded(&self, format: Format) -> io::Result<Vec<u8>> {
         let mut file = Vec::new();
         format.write(&mut file, self.size, iter::once(Ok(self.bytes.clone())))?;

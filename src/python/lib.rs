@@ -34,7 +34,7 @@ mod _native {
     #[pymodule_export]
     use crate::scene::{Scene, read, read_mesh};
 
-    /// Returns the tables of the scene language as JSON: those that `tabray list --json` prints.
+    /// Returns the tables of the scene language as JSON, as `tabray list --json` prints them.
     #[pyfunction]
     fn tables() -> PyResult<String> {
         let registry = Registry::get().map_err(PyRuntimeError::new_err)?;

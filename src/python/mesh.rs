@@ -19,10 +19,10 @@ use tabray_core::world::accuracy::{Accuracy, Exact};
 /// The number of points that are asked about between two looks at whether the work ends.
 const TOGETHER: usize = 64;
 
-/// A scene of one object. No entity type makes a mesh of arrays: the object is then given its shape.
+/// A scene of one object. No entity type makes a mesh from arrays, so the object is given its shape afterwards.
 const SCENE: &str = "material grey { }  sphere mesh { material grey  center 0 0 0  radius 1 }";
 
-/// A mesh of triangles in memory, which rays and points are asked about. `tabray.mesh` makes one.
+/// A mesh of triangles in memory, which can be asked about rays and points. `tabray.mesh` makes one.
 #[pyclass(frozen, module = "tabray")]
 pub struct Mesh {
     surface: Arc<Surface>,
@@ -31,8 +31,8 @@ pub struct Mesh {
     model: Model,
 }
 
-/// Makes a mesh of arrays: vertices of shape (n, 3), numbers of any type, and the corners of triangles, (m, 3), integers of any
-/// type. Coordinates are taken as they are. Triangles without an area are left out: no ray hits them.
+/// Makes a mesh from arrays: vertices of shape (n, 3), numbers of any type, and the corners of triangles, of shape (m, 3),
+/// integers of any type. Coordinates are not rounded. Triangles without an area are left out: no ray hits them.
 #[pyfunction]
 #[pyo3(signature = (vertices, faces, *, threads=None))]
 pub fn mesh(

@@ -10,14 +10,14 @@ use tabray_core::render::plan::Plan;
 use tabray_core::scene::model::Model;
 use tabray_tools::verify::{self, Verdict};
 
-/// What is proven of each pixel: masks of shape (height, width), in rows from the top, of which one is True at each pixel. A proof
-/// is about the ray through the middle of the pixel.
+/// What is proven about each pixel: masks of shape (height, width), in rows from the top. At each pixel, one mask is True. A
+/// proof is about the ray through the middle of the pixel.
 #[pyclass(frozen, module = "tabray")]
 pub struct Proof {
     verdicts: Array2<Verdict>,
 }
 
-/// Proves which object each pixel shows, and compares it with what the tracer finds.
+/// Proves which object each pixel shows, and compares the proof with the object that the tracer finds.
 pub fn verify(py: Python<'_>, model: &Model, how: &How) -> PyResult<Proof> {
     let [width, height] = model.camera.value.pixels;
     let verdicts = how.run(py, height, |renderer, course| {

@@ -1,4 +1,4 @@
-//! Scenes, as they are read and asked.
+//! Scenes: reading them, and asking them.
 
 use crate::errors;
 use crate::hits::{self, Asked, Hits, Rays};
@@ -32,15 +32,15 @@ pub struct Source {
     /// The folder to which its file names are relative.
     folder: PathBuf,
     bytes: Vec<u8>,
-    /// What is set beside the text, and what messages call that.
+    /// The values that are set beside the text, and what messages call them.
     sets: Vec<String>,
     set_by: Vec<String>,
-    /// Whether somebody wrote the text: only then, messages show it.
+    /// Whether a person wrote the text. Messages show only such text.
     is_written: bool,
 }
 
 impl Source {
-    /// Takes a text that nobody wrote, about what has this name.
+    /// Takes a text that the package made. `name` is what it describes.
     pub fn made(name: String, folder: PathBuf, text: &str) -> Self {
         let bytes = text.as_bytes().to_vec();
         Self { name, folder, bytes, sets: Vec::new(), set_by: Vec::new(), is_written: false }
@@ -68,12 +68,12 @@ impl Source {
     }
 }
 
-/// Makes a model that rays alone are asked about.
+/// Makes a model that is asked about rays alone.
 pub fn loaded_for_rays(py: Python<'_>, source: &Source) -> PyResult<Loaded> {
     source.load(py, Some(Accuracy::Exact), true)?.map_err(|report| errors::exception(py, &report))
 }
 
-/// A scene that is ready to be rendered and asked. `load`, `parse` and `scene` make one.
+/// A scene, ready to be rendered and to be asked about rays. `load`, `parse` and `scene` make one.
 #[pyclass(frozen, module = "tabray")]
 pub struct Scene {
     source: Source,
@@ -108,7 +108,7 @@ pub fn read(
     scene(py, source, loaded, has_camera)
 }
 
-/// Makes a scene of the mesh in a file, which rays are asked about.
+/// Makes a scene from the file of a mesh, to be asked about rays.
 #[pyfunction]
 pub fn read_mesh(py: Python<'_>, path: PathBuf) -> PyResult<Scene> {
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
@@ -141,7 +141,7 @@ impl Scene {
         if self.has_camera { Ok(()) } else { Err(PyValueError::new_err(told)) }
     }
 
-    /// Returns the size of an image of which one side or both are given.
+    /// Returns the size of an image, given one side or both.
     fn size(&self, width: Option<usize>, height: Option<usize>) -> PyResult<Option<[usize; 2]>> {
         let [own_width, own_height] = self.model.camera.value.pixels;
         let scaled = |side: usize, of: usize, to: usize| {
@@ -176,7 +176,7 @@ fn accuracy(name: &str) -> PyResult<Accuracy> {
 #[pymethods]
 impl Scene {
     /// Renders the image. Width and height in pixels, the samples of each pixel and the method ("exact", "strict", "draft" or
-    /// "classic") are by default the scene's own; of width and height, one may be given. `depth`, `objects` and `normals` add
+    /// "classic") are the scene's own by default. If only width or only height is given, the other follows. `depth`, `objects` and `normals` add
     /// arrays of these. `progress` is called with the number of rows that are done, and of all.
     #[pyo3(signature = (
         *, samples=None, width=None, height=None, method=None, depth=false, objects=false, normals=false, threads=None,
@@ -209,8 +209,8 @@ impl Scene {
     }
 
     /// Says what rays hit first, each with a proof. Origins and directions are arrays of shape (n, 3), or (3,) for one that stands
-    /// for all, and are taken as they are if they are float64 or float32; directions need not be unit vectors, and t is in
-    /// lengths of theirs. `t_max` is the t at which rays end, a number or one for each. `fast` proves nothing and says what
+    /// for all; arrays of float64 or float32 are not copied. Directions need not be unit vectors: t counts lengths of the
+    /// direction. `t_max` is the t at which rays end, a number or one for each. `fast` proves nothing and says what
     /// the tracer finds; `tight` narrows the bounds of t with 237 bits, in many times the time. `progress` is called with the number
     /// of rays that are done, and of all.
     #[pyo3(signature = (origins, directions, t_max=None, *, fast=false, tight=false, threads=None, progress=None))]

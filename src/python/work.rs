@@ -1,4 +1,4 @@
-//! Long work: without the interpreter's lock, on threads of its own, until Ctrl-C.
+//! Long work, done without the interpreter's lock, on threads of its own, until it is finished or Ctrl-C is pressed.
 
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -16,11 +16,11 @@ const POLL: Duration = Duration::from_millis(50);
 pub struct How<'py> {
     /// The number of threads; `None` for one on each core.
     pub threads: Option<usize>,
-    /// What is told of the progress: a function of what is done and of all there is.
+    /// The progress callback: it is passed how much is done, and how much there is.
     pub progress: Option<Bound<'py, PyAny>>,
 }
 
-/// What the caller and the threads of some work tell each other.
+/// What the caller and the working threads tell each other.
 #[derive(Default)]
 pub struct Course {
     stops: AtomicBool,
@@ -40,10 +40,10 @@ impl Course {
 }
 
 impl How<'_> {
-    /// Work that is done soon, or tells nothing of its progress.
+    /// Work that takes little time, or reports no progress.
     pub const PLAIN: Self = Self { threads: None, progress: None };
 
-    /// Does work of which there is so much, and returns its result. The interpreter runs other threads meanwhile. A signal
+    /// Does the work, of which there is `all`, and returns its result. The interpreter runs other threads meanwhile. A signal
     /// ends the work, and is raised: `work` asks its [`Course`] often whether it stops.
     pub fn run<T: Send>(
         &self,

@@ -77,7 +77,7 @@ impl Source {
         Self { name: text::shown(path), folder, bytes: text.into_bytes(), sets: sets.clone() }
     }
 
-    /// Returns what messages call the text, and its bytes.
+    /// Returns the name of the text in messages, and its bytes.
     pub fn named(&self) -> (&str, &[u8]) {
         (&self.name, &self.bytes)
     }
@@ -92,7 +92,7 @@ impl Source {
         self.load_by(registry, ReadOptions { above_all: accuracy, ..ReadOptions::default() })
     }
 
-    /// Makes a model of which only rays are asked, and its warnings.
+    /// Makes a model that is asked about rays alone, and its warnings.
     pub fn load_for_rays(&self, registry: &Registry, accuracy: Option<Accuracy>) -> Result<Loaded, Report> {
         let chosen = self.chosen(ReadOptions { above_all: accuracy, ..ReadOptions::default() });
         reader::read_for_rays(registry, &self.name, &self.folder, &self.bytes, chosen)

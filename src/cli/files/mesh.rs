@@ -76,7 +76,7 @@ pub fn described(path: &Path) -> Result<String, Failure> {
     Ok(text)
 }
 
-/// Describes what a file has beside its faces.
+/// Describes what a file holds beside its faces.
 fn looks(model: &Model) -> String {
     let Attributes { normals, uv, colours } = &model.attributes;
     let all = 3 * model.faces.len();

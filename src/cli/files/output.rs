@@ -150,7 +150,7 @@ pub fn refuse_source_by(path: &Path, what: &str, scene: &Path, model: &Model) ->
     source(path, scene, model).map_or(Ok(()), refused)
 }
 
-/// Says what a file is of which the model was read, whatever its name here; `None` for another file.
+/// Says what a file is to the model that was read from it, whatever path names it; `None` for another file.
 pub fn source(path: &Path, scene: &Path, model: &Model) -> Option<String> {
     if !path.exists() {
         return None;

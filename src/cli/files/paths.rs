@@ -29,7 +29,8 @@ pub fn open_sink(path: &Path) -> io::Result<File> {
     patiently(path, "reads", OpenOptions::new().write(true))
 }
 
-/// Opens a path, at a pipe no longer than [`PATIENCE`]; `does` is what the program at its other end does with it.
+/// Opens a path. At a pipe, this takes no longer than [`PATIENCE`]; `does` says what the program at the other end does with
+/// the pipe.
 fn patiently(path: &Path, does: &str, options: &OpenOptions) -> io::Result<File> {
     if !is_pipe(path) {
         return options.open(path);

@@ -1,4 +1,4 @@
-//! Several scenes for one command: the names of their images, what is said about all of them, and the exit status.
+//! Several scenes for one command: the names of their images, the summary, and the exit status.
 
 use crate::files::{input, output};
 use crate::process::failure::{Failure, report, status};

@@ -71,7 +71,7 @@ pub fn open<'r>(path: &Path, what: &str) -> Result<Input<'r>, Failure> {
     Ok(BufReader::with_capacity(BUFFER, input))
 }
 
-/// Refuses what holds something else than rays or answers, which `what` says, with its first bad lines.
+/// Refuses a file that does not hold rays or answers, as `what` says, and shows its first bad lines.
 pub fn refuse(path: &Path, bad: &[BadRay], what: &str) -> Failure {
     let lines: Vec<_> = bad.iter().map(|bad| format!("`{}`, {bad}", name(path))).collect();
     let help = format!("`--skip-bad` leaves such {what} out, and counts them");

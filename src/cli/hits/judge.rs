@@ -166,7 +166,7 @@ fn command(judged: &Judged, scene: &Path) -> String {
     format!("echo '{numbers}{end}' | tabray hits {}", name(scene))
 }
 
-/// Returns in words what they say, and what is proven.
+/// Returns the findings and the proofs in words.
 fn words(judged: &Judged, model: &Model) -> [String; 2] {
     let theirs = match (judged.theirs.hits, judged.theirs.t) {
         (false, _) => "miss".to_owned(),
@@ -233,7 +233,7 @@ struct Numbers {
     worst: Vec<Wrong>,
 }
 
-/// A wrong answer as JSON has it.
+/// A wrong answer, for JSON.
 #[derive(Serialize)]
 struct Wrong {
     number: u64,

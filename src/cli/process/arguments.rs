@@ -1,4 +1,4 @@
-//! Parses the command line; if that fails, says what the user probably meant.
+//! Parses the command line. If that fails, the message says what the user probably meant.
 
 use crate::process::failure::Failure;
 use crate::process::{color, program};
@@ -55,7 +55,7 @@ pub fn matches(mut command: Command) -> Result<ArgMatches, Failure> {
         error.remove(ContextKind::Usage);
     }
     if !error.use_stderr() {
-        // Of what standard output does not take, clap says nothing.
+        // clap does not report a failure to write to standard output.
         match error.print().and_then(|()| io::stdout().flush()) {
             Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
                 return Err(Failure::cannot_write(Path::new("-"), &error));

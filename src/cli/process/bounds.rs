@@ -1,4 +1,4 @@
-//! `--root` and `--max-memory`: what a scene may reach, and how much memory it may take, for every command.
+//! `--root` and `--max-memory`, for every command: the files that a scene may use, and the memory that it may take.
 
 use super::failure::Failure;
 use super::memory;

@@ -1,4 +1,4 @@
-//! Panics: faults of the program itself. They are reported as messages, and servers keep running.
+//! Panics, which are faults of the program itself. Each is reported as a message, and a server keeps running.
 
 use crate::process::failure::{self, Failure};
 use crate::process::program;

@@ -12,11 +12,11 @@ use tabray_lang::reader::Report;
 /// The time in which a program that ends must have said why.
 const SAYING: Duration = Duration::from_millis(500);
 
-/// The reason why a command did not do what it was asked to do.
+/// The reason why a command failed.
 pub enum Failure {
     /// The scene has faults.
     Scene(Report),
-    /// The request makes no sense; with what would, where that can be said.
+    /// The request makes no sense. The cure is given where there is one.
     Usage(String, Option<String>),
     /// The system or another program caused the failure.
     Failed(String),
@@ -80,7 +80,7 @@ pub fn end(failure: &Failure) -> ! {
 /// thread can say any more why it ends.
 pub fn end_even_if_blocked(failure: &Failure) {
     let status = status(failure);
-    // Without the thread the program ends too, once somebody reads.
+    // Without the thread, the program still ends once somebody reads.
     let _ = thread::Builder::new().spawn(move || {
         thread::sleep(SAYING);
         temporary::remove_all();
@@ -97,7 +97,7 @@ pub fn end_keeping_bar(failure: &Failure) -> ! {
     process::exit(status.into())
 }
 
-/// Ends the program, which has done what it was asked to do, whatever its other threads are doing.
+/// Ends the program after it has finished its work, without waiting for other threads.
 pub fn exit() -> ! {
     progress::clear();
     temporary::remove_all();
@@ -130,7 +130,7 @@ pub fn status(failure: &Failure) -> u8 {
     }
 }
 
-/// Prints to standard output what people read. A reader that closes the pipe is no failure.
+/// Prints text for people to standard output. A reader that closes the pipe is no failure.
 pub fn print(text: &str) -> Result<(), Failure> {
     print_bytes(text::visible_lines(text).as_bytes())
 }

@@ -55,7 +55,7 @@ mod tests {
         assert_eq!(grouped, known);
     }
 
-    /// Appends a command and those below it.
+    /// Appends a command and its subcommands.
     fn collect<'c>(command: &'c Command, all: &mut Vec<&'c Command>) {
         all.push(command);
         command.get_subcommands().for_each(|command| collect(command, all));

@@ -108,7 +108,7 @@ fn handle(mut then: impl FnMut() + Send + 'static) -> Result<(), Failure> {
     .map_err(|error| Failure::Failed(format!("cannot catch interruptions: {error}")))
 }
 
-/// If an interruption would end the program, calls `tell` with what it would say and ends the program.
+/// If an interruption would end the program, calls `tell` with the message and ends the program.
 pub fn exit_if_interrupt_would(tell: impl FnOnce(&'static str)) {
     if let InterruptAction::Exit(said) = *action() {
         failure::end_even_if_blocked(&Failure::Stopped);

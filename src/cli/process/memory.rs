@@ -1,4 +1,4 @@
-//! The memory of the program: what the system provides, and, on systems that report it, what is used: Linux.
+//! The memory of the program: how much the system provides and, on Linux, how much is used.
 
 use crate::heap;
 use crate::process::crash;
@@ -12,7 +12,7 @@ use std::thread;
 use std::time::Duration;
 use tabray_core::memory::may_fail;
 
-/// The memory that is kept for telling the user that there is no more, in bytes. It is more than what the system's
+/// The memory in reserve for the message that there is no more, in bytes. It is more than what the system's
 /// allocator takes from the system piece by piece, so that giving it up helps every thread.
 const KEPT: usize = 1 << 20;
 
@@ -44,18 +44,18 @@ pub fn chosen() -> Option<ByteSize> {
 /// The minimum memory of a render beside the image, in bytes.
 pub const ASIDE: u64 = 2 << 20;
 
-/// Returns what the limit that was chosen leaves, in bytes, if there is one.
+/// Returns how many bytes the chosen limit leaves, if there is a limit.
 pub fn left() -> Option<u64> {
     let taken = now().unwrap_or(0) + ASIDE;
     chosen().map(|limit| limit.as_u64().saturating_sub(taken))
 }
 
-/// Says what limit was chosen, in a message about what takes too much.
+/// Names the chosen limit, in a message about something that takes too much.
 pub fn beyond_chosen() -> String {
     chosen().map_or(String::new(), |limit| format!(" for `--max-memory {limit}`"))
 }
 
-/// Lets a render take more than the limit that was chosen for a moment: it stops soon, and keeps what is done.
+/// Lets a render exceed the chosen limit for a moment: it stops soon, and keeps what is done.
 pub fn stops_at_limit() {
     if chosen().is_some() {
         heap::limit(usize::MAX);

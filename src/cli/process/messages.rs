@@ -66,7 +66,7 @@ pub fn report(report: &Report) {
     });
 }
 
-/// Prints an error that is no fault of a scene, and what would be right where that can be said.
+/// Prints an error that is no fault of a scene, with a cure where there is one.
 pub fn error(message: &str, help: Option<&str>) {
     titled("error", Level::ERROR, message, help);
 }
@@ -78,7 +78,7 @@ pub fn warning(message: &str, help: Option<&str>) {
     }
 }
 
-/// Prints what is to be said of an image, if anything.
+/// Prints the remarks on an image, if there are any.
 pub fn remark(remark: Option<Remark>) {
     if let Some(Remark { message, help }) = remark.filter(|_| !is_quiet()) {
         warning(&message, Some(&help));

@@ -16,7 +16,7 @@ pub enum Form {
     Json,
 }
 
-/// How progress is shown, by what was asked for.
+/// How progress is shown.
 static CHOSEN: OnceLock<Form> = OnceLock::new();
 
 /// Sets how all later progress is shown.
@@ -27,13 +27,13 @@ pub fn choose(form: Form) {
 /// The least time between two lines of progress.
 const BETWEEN: Duration = Duration::from_millis(100);
 
-/// The bar that is shown, if there is one.
+/// The progress bar, if one is shown.
 static SHOWN: Mutex<Option<ProgressBar>> = Mutex::new(None);
 
 /// The index of the scene under way, and the number of scenes.
 static OVERALL: Mutex<Option<[usize; 2]>> = Mutex::new(None);
 
-/// Says that a scene begins, after so many others, of so many.
+/// Reports that a scene begins: how many were before it, and how many there are.
 pub fn begin(done: usize, all: usize) {
     *OVERALL.lock().unwrap_or_else(PoisonError::into_inner) = Some([done, all]);
 }
@@ -48,7 +48,7 @@ pub fn overall() -> Option<[usize; 2]> {
     *OVERALL.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Returns which of several scenes is under way, for the beginning of a message; nothing where there is one.
+/// Returns which of several scenes is under way, for the beginning of a message; nothing if there is only one scene.
 pub fn count() -> String {
     overall().map_or(String::new(), |[done, all]| format!("[{}/{all}] ", done + 1))
 }

@@ -131,7 +131,7 @@ mod left {
     use super::{BTreeSet, File, Mutex, PREFIX, Path, PathBuf, PoisonError, fs, io};
     use std::fs::{DirEntry, TryLockError};
 
-    /// Removes those in a folder, the first time that it is asked to.
+    /// Removes those in a folder, the first time that it is called.
     pub fn remove(folder: &Path) {
         static DONE: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
         if !DONE.lock().unwrap_or_else(PoisonError::into_inner).insert(folder.to_owned()) {

@@ -1,4 +1,4 @@
-//! Output that shows what is not seen as escapes.
+//! Output in which invisible characters are written as escapes.
 
 use std::io::{self, Write};
 use tabray_core::text;

@@ -120,7 +120,7 @@ const TRUE_LEAST: u32 = 64;
 /// The maximum number of samples per pixel of the reference where pixels take different numbers.
 const TRUE_MOST: u32 = 1024;
 
-/// Calls `work` with the plan of the reference for errors, if that is `requested`, and else with the plan itself. `exact`
+/// Calls `work` with the plan of the reference for errors if that is `requested`, otherwise with the plan itself. `exact`
 /// makes the model of the reference.
 pub fn with_truth<T>(
     plan: &Plan,
@@ -184,7 +184,7 @@ fn all(
     Ok(())
 }
 
-/// Tells what is remarkable about an image.
+/// Adds the remarks on an image.
 pub fn print_remarks(layer: &Layer) {
     if let Some((most, [x, y])) = layer.most {
         messages::note(&format!("the most expensive pixel is {x} {y}, with {most} rays"));

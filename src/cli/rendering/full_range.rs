@@ -15,13 +15,13 @@ use tabray_core::render::ray_stats::RayStats;
 use tabray_core::render::renderer::{RenderCallbacks, Renderer};
 use tabray_core::text;
 
-/// The memory for a pixel, in bytes: its colour, and what encodes it.
+/// The memory for a pixel, in bytes: its colour and its encoding.
 pub const PIXEL: usize = 12 * 4;
 
 /// The message if a render is stopped.
 const UNKEPT: &str = "an EXR or a PFM is written only when it is complete: nothing is written";
 
-/// Renders a part of an image, and writes it once it is whole: its formats have no place for what is not rendered.
+/// Renders a part of an image, and writes it once it is whole: its formats cannot mark pixels that are not rendered.
 pub fn render(
     (plan, region): (&Plan, &Region),
     (renderer, stop): (&Renderer, &Stop),

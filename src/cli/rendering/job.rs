@@ -1,4 +1,4 @@
-//! Renders an image and writes it, or stops and leaves what a later render can continue from.
+//! Renders an image and writes it, or stops and leaves a checkpoint for a later render.
 
 use crate::files::output::{Output, finished};
 use crate::options::size::Region;

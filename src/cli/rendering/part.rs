@@ -29,7 +29,7 @@ use tabray_core::text;
 use tabray_tools::checkpoint::Identity;
 use tabray_tools::part::{self, Label, MOST_PARTS, PixelFormat, Reader, Writer};
 
-/// The message if a part is stopped of which nothing is kept.
+/// The message for a stopped part, of which nothing is kept.
 const UNKEPT: &str = "the part was not finished, and nothing is written";
 
 #[derive(clap::Args)]
@@ -164,7 +164,7 @@ impl PartRender<'_> {
         [self.region.columns.len(), self.grid().rows(tiles).len()]
     }
 
-    /// Renders bytes, or stops and leaves what is done.
+    /// Renders bytes, or stops and keeps the finished part.
     fn bytes(&self, file: &(PathBuf, Label), resumes: bool) -> Result<(), Failure> {
         let (path, label) = file;
         let mut begun = if resumes { self.begun(file)? } else { None };
@@ -205,7 +205,7 @@ impl PartRender<'_> {
                 return Ok::<_, Failure>(());
             }
             self.stop.report();
-            // Threads may be at work on tiles of which nothing is kept.
+            // Threads may still be at work on tiles that are discarded.
             failure::end(&match self.leave(file, &rendered, &mut writer) {
                 Ok(()) => Failure::Stopped,
                 Err(failure) => failure,
@@ -245,7 +245,7 @@ impl PartRender<'_> {
         }
     }
 
-    /// Writes a checkpoint of what is done of a part, from what was written of it so far.
+    /// Writes a checkpoint of the finished pixels of a part, taken from the part's unfinished file.
     fn leave(
         &self,
         (path, label): &(PathBuf, Label),

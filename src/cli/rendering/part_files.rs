@@ -24,7 +24,7 @@ pub struct Parts {
     pub paths: Vec<PathBuf>,
 }
 
-/// The label of a part that was found, without what all parts have in common.
+/// The label of a part, without what all labels have in common.
 struct PartFile {
     path: PathBuf,
     tiles: Range<usize>,
@@ -107,7 +107,7 @@ impl Parts {
     }
 }
 
-/// Refuses parts, all that there are by their numbers, whose tiles are not those of the image, each once.
+/// Refuses parts, which are complete by their numbers, if their tiles are not the tiles of the image, each once.
 fn refuse_gaps(found: &BTreeMap<usize, PartFile>, label: &Label, image: &Path) -> Result<(), Failure> {
     let refuse_part = |message| Err(refuse(message, "render the parts anew with one build of the program"));
     let mut next = 0;

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use tabray_core::text;
 use tabray_lang::registry::Registry;
 
-/// Serves the page and does what the user decides there.
+/// Serves the page, and carries out the user's decisions.
 pub fn serve(
     registry: &'static Registry,
     folder: PathBuf,

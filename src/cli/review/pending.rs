@@ -1,4 +1,4 @@
-//! Pending snapshots: what a failing test leaves beside the accepted snapshot, by insta's conventions.
+//! Pending snapshots: the files that a failing test leaves beside the accepted snapshots, by insta's conventions.
 //!
 //! `ball.snap.new` comes beside `ball.snap`: a header between two lines of dashes, then a text. If the header says that
 //! the snapshot is binary, its content is in a separate file, `ball.snap.png` for `ball.snap` and `ball.snap.new.png`

@@ -1,4 +1,4 @@
-//! Connections: how many are allowed, how long they may take, and what happens to the request of each.
+//! Connections: the limits of their number and duration, and the handling of each request.
 //!
 //! Any client can open a thousand connections and send nothing. A connection is idle until it has sent the head of a
 //! request that is let in; where there are too many idle connections, the oldest is closed. So a client that sends its

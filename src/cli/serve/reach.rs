@@ -54,7 +54,7 @@ impl Reach {
         own.iter().any(|own| asked.eq_ignore_ascii_case(own.as_bytes())) || self.allows(asked)
     }
 
-    /// Tells whether a host is one of those that are allowed by name, at any port or none.
+    /// Tells whether a host is allowed by name, at any port or none.
     pub fn allows(&self, asked: &[u8]) -> bool {
         let Ok(asked) = str::from_utf8(asked) else { return false };
         let name = match asked.rsplit_once(':') {

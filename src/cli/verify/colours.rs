@@ -82,7 +82,7 @@ pub fn prove(
     Ok(Prover::new(&plan).picture(renderer, &|| progress.step(), &stops))
 }
 
-/// Reports what was found, and writes the image of it.
+/// Reports the findings, and writes the image of them.
 pub fn report(args: &Args, pixels: Proof, form: &Form, picture: Option<PictureFile>) -> Result<(), Failure> {
     let verdicts: Vec<_> = pixels.iter().map(|pixel| pixel.map(|pixel| pixel.verdict())).collect();
     let bytes = pixels.iter().flat_map(|pixel| match pixel {

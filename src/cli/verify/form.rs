@@ -1,4 +1,4 @@
-//! What `tabray verify` reports beside its verdicts: what the proofs start from, and the first pixels of each kind.
+//! What `tabray verify` reports beside its verdicts: the assumptions of the proofs, and the first pixels of each kind.
 
 use crate::files::output::{self, Output};
 use crate::process::failure::Failure;

@@ -52,7 +52,7 @@ struct Numbers<'a> {
     premises: &'a Premises,
 }
 
-/// Reports what is known of all pixels, in rows from the top, and writes the image of it.
+/// Reports the verdicts on all pixels, in rows from the top, and writes the image of verdicts.
 pub fn report(
     model: &Model,
     pixels: &[Pixel],
@@ -98,7 +98,7 @@ pub fn report(
     Ok(())
 }
 
-/// Counts the pixels of each object that is found in any, and then those in which nothing is found.
+/// Counts the pixels of each object that any pixel shows, and then the pixels that show nothing.
 fn of_objects<'m>(model: &'m Model, pixels: &[Pixel]) -> Vec<ObjectCounts<'m>> {
     let objects = &model.objects;
     let mut verdicts = vec![Vec::new(); objects.len() + 1];

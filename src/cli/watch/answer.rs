@@ -1,4 +1,4 @@
-//! Answers the requests of the page: for itself, for its events, and for details of the image that it shows.
+//! Answers requests for the page, for its events, and for details of the image on the page.
 
 use super::alternative::{self, Override};
 use super::camera;

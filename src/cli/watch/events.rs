@@ -77,7 +77,7 @@ pub fn remark(frame: &Frame, Remark { message, help }: &Remark) -> Bytes {
 struct ImageRemark<'w> {
     /// The version of the scene.
     version: u64,
-    /// The message: what is likely not meant, its reason, and its cure.
+    /// The message: the likely fault, its reason, and its cure.
     words: &'w str,
 }
 
@@ -99,7 +99,7 @@ pub struct Fault<'f> {
     pub text: Option<&'f str>,
 }
 
-/// Tells which values differ from those in the scene's file.
+/// Tells which values differ from the scene's file.
 pub fn tried(differences: &[Difference]) -> Bytes {
     event("tried", &differences)
 }

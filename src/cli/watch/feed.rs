@@ -30,7 +30,7 @@ pub enum News {
     Scenes,
     /// Whether the system tells of changes.
     Watching,
-    /// The values that differ from those in the scene's file.
+    /// The values that differ from the scene's file.
     Tried,
     /// The error in the text since the last valid scene.
     Fault,
@@ -92,7 +92,7 @@ impl EventFeed {
         self.state.borrow().news[kind as usize].0.is_some()
     }
 
-    /// Forgets the scene, whose image nobody needs any more.
+    /// Forgets the scene. Its image is no longer needed.
     pub fn clear(&self) {
         self.state.send_modify(|state| {
             if let Some(last) = state.frame.take() {

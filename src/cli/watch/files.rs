@@ -122,7 +122,7 @@ impl Files {
         self.arm();
     }
 
-    /// Looks at all files and folders, watches those that were not there before, and tells whether one has changed since
+    /// Looks at all files and folders, watches new ones, and tells whether one has changed since
     /// the last look.
     pub fn look(&mut self) -> bool {
         let mut is_other = false;

@@ -58,7 +58,7 @@ impl Frame {
         if self.stale.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
-    /// Returns what a page asks about.
+    /// Returns what a page asks for.
     pub fn shown(&self) -> Shown<'_> {
         Shown { model: &self.model, name: &self.name, text: &self.text }
     }

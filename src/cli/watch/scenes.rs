@@ -1,4 +1,4 @@
-//! All scenes that are watched: those that were named, and those in folders.
+//! The watched scenes: those named on the command line, and those in watched folders.
 
 use super::answer;
 use super::events::{self, SceneEntry};
@@ -40,7 +40,7 @@ struct KnownScenes {
 }
 
 impl Scenes {
-    /// Finds the scenes that a command names, all of which can be read, and watches their files and folders.
+    /// Finds the scenes that a command names, checks that all can be read, and watches their files and folders.
     pub fn new(
         registry: &'static Registry,
         named: &[PathBuf],

@@ -1,4 +1,4 @@
-//! What the page of a scene shows, and what it may change: the values that it tries out, and the scene's text.
+//! What the page of a scene shows, and what it can change: values that are tried out, and the scene's text.
 
 use super::events;
 use super::feed::{EventFeed, News};

@@ -90,7 +90,7 @@ pub struct Watched {
     last: Option<SourceFiles>,
     /// The number of times that the scene was valid.
     version: u64,
-    /// Takes what is to be rendered; `None` while nobody looks at the scene.
+    /// Takes the next part to render; `None` while nobody looks at the scene.
     painter: Option<Sender<Arc<Frame>>>,
 }
 

@@ -60,11 +60,11 @@ class Verdict(IntEnum):
 
 
 def load(path: str | PathLike[str], *, set: Mapping[str, Value] | None = None) -> Scene:
-    """Read a scene from a file, or make one of the file of a mesh, which has no camera and is asked about rays.
+    """Read a scene from a file. The file of a mesh becomes a scene without a camera, which can be asked about rays.
 
-    `set` changes values of the scene: `set={"ball.radius": 3, "n": 5}` those of an attribute and of a `let`.
+    `set` changes attributes and the values of `let`: `set={"ball.radius": 3, "n": 5}`.
 
-    Raises SceneError with all faults of the scene, and FileNotFoundError where there is no such file.
+    Raises SceneError with all faults of the scene, and FileNotFoundError if the file does not exist.
     """
     path = Path(path)
     if path.suffix.lower() in _MESHES:
@@ -84,7 +84,7 @@ def parse(
 ) -> Scene:
     """Read a scene from its text, in the syntax of `.ray` files or in TOML; by default, its first line tells which.
 
-    The names of files in it are relative to `folder`. `syntax` is "ray" or "toml".
+    File names in the text are relative to `folder`. `syntax` is "ray" or "toml".
     """
     if syntax not in (None, "ray", "toml"):
         raise ValueError(f'there is no syntax "{syntax}": give "ray" or "toml"')
@@ -93,10 +93,10 @@ def parse(
 
 
 def scene(entities: Entities, *, folder: str | PathLike[str] = "", set: Mapping[str, Value] | None = None) -> Scene:
-    """Make a scene of dicts, as TOML has them: `{"sphere": {"ball": {"radius": 2, ...}}}`; or of a list of such dicts.
+    """Make a scene from dicts, laid out as in TOML: `{"sphere": {"ball": {"radius": 2, ...}}}`; or of a list of such dicts.
 
-    `tabray.entities.sphere("ball", radius=2, ...)` makes a dict of one entity. Entities are checked by the same tables as
-    those of a text, and messages name the part of the dicts, as `scene["sphere"]["ball"]["radius"]`.
+    `tabray.entities.sphere("ball", radius=2, ...)` makes a dict of one entity. The same tables check entities in dicts
+    and in text, and messages name the faulty part of the dicts: `scene["sphere"]["ball"]["radius"]`.
     """
     return _of_dicts(entities, {}, Path(folder), set)
 
@@ -116,7 +116,7 @@ def surface(
     height: int = 360,
     **parameters: float,
 ) -> Scene:
-    """Make a scene of the surface on which a formula in x, y and z is 0, with a camera and lights that fit its box.
+    """Make a scene that shows the surface where a formula in x, y and z is 0, with a camera and lights that fit its box.
 
     `box` clips the surface: half the side of a cube around the origin, or six numbers, the low and the high corner. Other
     names are parameters of the formula: `surface("x^2 + y^2 + z^2 - r^2", r=1.5)`.

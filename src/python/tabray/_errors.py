@@ -31,7 +31,7 @@ class Fault(NamedTuple):
 
 
 class SceneError(ValueError):
-    """A scene that cannot be made. Its text is the message of the command line, and `faults` are what is wrong."""
+    """A scene has faults. The text is what the command line prints, and `faults` lists the faults."""
 
     def __init__(self, message: str, report: str) -> None:
         faults = _faults(report)

@@ -1,4 +1,4 @@
-//! The parts of an image that may show something bright, by bounds on the colours of all rays through them.
+//! The parts of an image that may show something bright, found by bounds on the colours of all rays through them.
 
 use glam::DVec2;
 use tabray_core::geometry::aabb::Aabb;

@@ -68,7 +68,7 @@ fn looks(pixels: usize) -> usize {
         + 1
 }
 
-/// What is known before a choice is confirmed.
+/// The measurements made before a choice is confirmed.
 pub(super) struct Known<'k> {
     /// The errors of the scene's own accuracy on some pixels, for each number of samples.
     pub errors: &'k Errors,

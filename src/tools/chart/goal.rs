@@ -60,7 +60,7 @@ pub struct Small {
     pub missed: f64,
 }
 
-/// Estimates, and what they rest on.
+/// Estimates, and the measurements behind them.
 pub struct Estimates {
     /// The choices: those of the scene's own accuracy first, by ascending samples; those where pixels take different
     /// numbers follow the others of their accuracy.

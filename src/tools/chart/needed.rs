@@ -10,7 +10,7 @@ use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::Sampler;
 use tabray_core::world::sensor::Adaptive;
 
-/// About how many rays all choices take of a pixel that is measured alone, with the probes around it.
+/// About how many rays all choices together take for a pixel that is measured alone, with the probes around it.
 pub(super) const RAYS: u32 = 120;
 
 /// The measured cost and colours of a choice.
@@ -60,7 +60,7 @@ pub(super) fn plan(model: &Model) -> Plan<'_> {
     plan
 }
 
-/// Lets pixels take these numbers of samples.
+/// Sets the least and the greatest number of samples of a pixel.
 pub(super) fn set(plan: &mut Plan, [least, most]: [u32; 2]) {
     plan.camera.samples = least;
     plan.set_adaptive(Some(Adaptive { most, error: None }));

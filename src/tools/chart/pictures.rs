@@ -51,12 +51,12 @@ const TIMED_TILES: usize = 16;
 /// The maximum number of tests for an image by another method.
 const METHOD_TESTS: usize = 500_000;
 
-/// The parts of an image that samples smooth.
+/// The parts of an image that more samples make smooth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SampledEffect {
     /// Edges, and shadows where they are soft.
     Picture,
-    /// Soft shadows alone: all samples of a pixel go through its centre.
+    /// Soft shadows alone: every sample of a pixel goes through its centre.
     Shadows,
 }
 
@@ -173,8 +173,8 @@ pub fn bounces(study: &Study, progress: &mut dyn Progress) -> ControlFlow<(), Op
     }))
 }
 
-/// Compares numbers of samples against so many samples that more make no difference; returns `None` where one sample is
-/// already right.
+/// Compares numbers of samples with an image of so many samples that more make no difference. Returns `None` where one
+/// sample is already right.
 pub fn samples(
     study: &Study,
     seen: SampledEffect,

@@ -38,7 +38,7 @@ impl Drawing {
     /// Returns the pixel of an index below the number of pixels.
     fn at(&self, index: usize) -> [usize; 2] {
         let mut index = self.mixed(index);
-        // What is beyond the image is mixed again, until it is not: that leaves a permutation of the pixels.
+        // A place beyond the image is mixed again until it is a pixel. The result is still a permutation of the pixels.
         while index >= self.size[0] * self.size[1] {
             index = self.mixed(index);
         }

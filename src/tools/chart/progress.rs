@@ -1,4 +1,4 @@
-//! How far a measurement is.
+//! The progress of a measurement.
 
 use super::data::Panel;
 use std::ops::ControlFlow;
@@ -9,8 +9,7 @@ pub trait Progress: Send {
     fn more(&mut self, units: usize);
     /// Counts work as done, in the same units; breaks if no more is to be done.
     fn done(&mut self, units: usize) -> ControlFlow<()>;
-    /// Says that what is left is to take the time that is left, and consists of this many panels: then the one that
-    /// begins may take its share.
+    /// Says how many panels share the time that is left. The panel that begins may take its share.
     fn share(&mut self, _panels: usize) {}
     /// Tells whether half of the panel's share of time is used. Then the part of the truth that is known must do.
     fn is_late(&self) -> bool {

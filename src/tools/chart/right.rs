@@ -9,7 +9,7 @@ use tabray_core::render::renderer::Renderer;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::SCRAMBLE;
 
-/// What scrambles the samples of the two images whose mean counts as right: they share none with a render, nor with each
+/// The seeds of the samples of the two images whose mean counts as right. They share no samples with a render or with each
 /// other.
 pub(super) const SCRAMBLES: [u32; 2] = [SCRAMBLE ^ 0x2545_f491, SCRAMBLE ^ 0x9e6c_63d0];
 

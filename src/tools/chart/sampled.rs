@@ -43,7 +43,7 @@ impl PixelError {
     fn new(colour: Rgb, [one, other]: Right) -> Self {
         let (off, apart) = (colour - 0.5 * (one + other), one - other);
         let spread = 0.25 * apart * apart;
-        // What is clamped to white is less bright in the mean than it should be, in all images.
+        // Clamping to white darkens the mean, in all images alike.
         let square = |channel: usize| {
             let is_white = colour[channel].max(one[channel]).max(other[channel]) >= 1.0;
             off[channel] * off[channel] - if is_white { 0.0 } else { spread[channel] }
@@ -64,14 +64,14 @@ pub(super) struct Errors {
     choices: Vec<Vec<PixelError>>,
 }
 
-/// The pixels of an image that the errors of some of them are about.
+/// The pixels of an image, of which some are measured.
 #[derive(Clone, Copy)]
 pub(super) struct Image<'i> {
     /// The number of its pixels.
     pub all: usize,
     /// The errors of the pixels that may show what is smaller than a sample, all of them, for the same choices.
     pub small: &'i Errors,
-    /// What may be missed in these.
+    /// What may be missed in the pixels that may show something small.
     pub missed: &'i Missed,
 }
 
@@ -136,7 +136,7 @@ impl Errors {
         };
         let of_small: f64 = small.iter().map(|error| error.square).sum();
         let noise = errors.iter().chain(small).map(|error| error.noise).sum::<f64>().sqrt();
-        // Where all pixels are known, nothing but this makes up for right colours that are not.
+        // Where all pixels are known, this alone accounts for the noise of the right colours.
         let known = if errors.len() >= rest { &errors[..] } else { &[] };
         let spread: f64 = known.iter().chain(small).map(|error| error.spread).sum();
         let root = |square: f64| square.max(0.0).sqrt();
@@ -163,7 +163,7 @@ impl Errors {
             sorted(&mut small.iter().zip(&image.missed.pixels).map(|(error, missed)| error.worst + missed))
         };
         let rest = image.all - image.missed.pixels.len();
-        // If `above` of the small pixels exceed the percentile, so large a part of the others does.
+        // If `above` of the small pixels exceed the percentile, this part of the others does.
         let allowed = (WORST * image.all as f64) as usize;
         let percentile = |small: &[f64], of_rest: &dyn Fn(f64) -> f64| {
             let least = |above: usize| {

@@ -21,7 +21,7 @@ use tabray_core::world::sample::Sampler;
 const COMPARED: [u32; 2] = [1, 4];
 const GROUPS: usize = 5;
 
-/// The most that another accuracy than the scene's may take of its time, in each group, to be a choice.
+/// The greatest part of the time of the scene's own accuracy that another accuracy may take, in each group, to be a choice.
 const GAIN: f64 = 0.8;
 
 /// The cost of the render of an image.
@@ -33,11 +33,11 @@ pub struct Cost {
     pub tracing: Estimated,
     /// The CPU time of the render, in seconds.
     pub cpu: Estimated,
-    /// The time of the render on all cores, if these have nothing else to do, in seconds.
+    /// The time of the render on all cores, in seconds, if the cores have nothing else to do.
     pub time: Estimated,
 }
 
-/// What has been timed of the images of a scene. Accuracies have indices, and that of the scene's own is 0.
+/// The times measured so far of the images of a scene. Each accuracy has an index; the scene's own has 0.
 pub(super) struct Timings {
     packets: BTreeMap<(usize, u32), Timing>,
     counted: BTreeMap<usize, Option<Counted>>,

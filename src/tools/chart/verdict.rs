@@ -10,7 +10,7 @@ const VISIBLE: f64 = 2.0;
 /// The ratio of times from which on another accuracy than the default is worth taking.
 const GAIN: f64 = 0.8;
 
-/// Returns what to do, and the verdict on each panel: the front, the position of the default, and what to choose.
+/// Returns the advice, and the verdict on each panel: the front, the position of the default, and what to choose.
 pub fn words(chart: &Chart) -> String {
     let mut text = String::new();
     let todo = advice(chart);
@@ -51,7 +51,7 @@ pub fn words(chart: &Chart) -> String {
     text
 }
 
-/// Says what to do, in the order of importance: what rests on errors and counts first, and what rests on times last.
+/// Gives advice in the order of importance: first what rests on errors and counts, then what rests on times.
 fn advice(chart: &Chart) -> Vec<String> {
     let of = |subject: Subject| chart.panels.iter().find(|panel| panel.subject == subject);
     let again = chart
@@ -285,7 +285,7 @@ fn time(panel: &Panel, point: &Point) -> String {
     let (_, scale) = panel.unit();
     let unit = if panel.subject == Subject::Distances { "ns" } else { "µs" };
     let time = point.times.least * scale;
-    // Two digits, as times vary from run to run.
+    // Two digits, since times vary from run to run.
     let digits = (1 - time.abs().log10().floor() as i32).clamp(0, 6) as usize;
     format!("{time:.digits$} {unit}")
 }

@@ -41,7 +41,7 @@ const NAMED: usize = 3;
 /// The number of reflections and transmissions of the rays with which an image is tried.
 const BOUNCES: usize = 4;
 
-/// Something about an image that is likely not to be meant.
+/// Something about an image that its author hardly meant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Remark {
     /// The fault and its reason, in lower case.
@@ -50,7 +50,7 @@ pub struct Remark {
     pub help: String,
 }
 
-/// Returns what is to be said of a part of an image with these levels: at most one thing. Columns count from the left and
+/// Returns the remark on a part of an image with these levels, at most one. Columns count from the left and
 /// rows from the top.
 pub fn remark(plan: &Plan, part: [&Range<usize>; 2], levels: &Levels) -> Option<Remark> {
     if levels.pixels == 0 || plan.model.objects.is_empty() {
@@ -73,7 +73,7 @@ fn is_burnt(levels: &Levels) -> bool {
     levels.white as f64 > BURNT * levels.pixels as f64
 }
 
-/// Says that a background lights the scene from one direction, or that what is rough is smooth, where pixels have one sample.
+/// Says that with one sample for each pixel, a background lights the scene from one direction, or rough surfaces look smooth.
 fn flat(model: &Model) -> Option<Remark> {
     let Sensor { samples, adaptive, .. } = &model.camera.value;
     if *samples != 1 || adaptive.is_some() {
@@ -92,7 +92,7 @@ fn flat(model: &Model) -> Option<Remark> {
     of_sky.or_else(|| model.objects.iter().find(is_rough).map(|object| said(object.args.name(), rough)))
 }
 
-/// Returns what is to be said of a model's image, of which a few pixels are tried.
+/// Returns the remarks on a model's image, of which a few pixels are tried.
 pub fn tried(model: &Model) -> Option<Remark> {
     // The deepest reflections need more of a stack than the program's own thread has.
     renderer_with(1).ok()?.run(|| tried_here(model))
@@ -121,7 +121,7 @@ fn tried_here(model: &Model) -> Option<Remark> {
     remark(&plan, part, &found)
 }
 
-/// Returns pixels of a part of an image that are spread over all of it, by column and row from the bottom.
+/// Returns pixels spread over a part of an image, by column and row from the bottom.
 fn places(camera: &Sensor, [columns, rows]: [&Range<usize>; 2]) -> Vec<[usize; 2]> {
     let spread = |range: &Range<usize>, most: usize| -> Vec<usize> {
         let count = range.len().min(most);

@@ -9,7 +9,7 @@ use tabray_core::world::rules::Rules;
 /// The maximum number of tests of objects that looking takes: it tests each object for each ray.
 const MOST_TESTS: usize = 1 << 23;
 
-/// What a light does at the places that are looked at.
+/// The effect of a light at the places that are looked at.
 #[derive(Clone, Debug)]
 pub struct Lamp {
     /// The least distance of a place on which it shines, in world units.

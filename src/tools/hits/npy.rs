@@ -70,15 +70,16 @@ impl<'r> Rows<'r> {
             return Some(Err((why, true)));
         }
         let mut ray = [f64::INFINITY; 7];
-        for (number, bytes) in ray.iter_mut().zip(bytes.chunks_exact_mut(self.size)) {
-            if !self.is_little {
-                bytes.reverse();
+        if self.size == 4 {
+            let read = if self.is_little { f32::from_le_bytes } else { f32::from_be_bytes };
+            for (number, bytes) in ray.iter_mut().zip(bytes.as_chunks().0) {
+                *number = f64::from(read(*bytes));
             }
-            *number = match *bytes {
-                [a, b, c, d] => f64::from(f32::from_le_bytes([a, b, c, d])),
-                [a, b, c, d, e, f, g, h] => f64::from_le_bytes([a, b, c, d, e, f, g, h]),
-                _ => f64::NAN,
-            };
+        } else {
+            let read = if self.is_little { f64::from_le_bytes } else { f64::from_be_bytes };
+            for (number, bytes) in ray.iter_mut().zip(bytes.as_chunks().0) {
+                *number = read(*bytes);
+            }
         }
         let [a, b, c, d, e, f, end] = ray;
         Some(Ok(([a, b, c, d, e, f], (end != f64::INFINITY).then_some(end))))
@@ -141,8 +142,9 @@ impl Record {
         bytes[2..6].copy_from_slice(&self.object.to_le_bytes());
         bytes[6..10].copy_from_slice(&self.face.to_le_bytes());
         let numbers = [t, low, high, distance, x, y, z, nx, ny, nz, u, v];
-        for (place, number) in bytes[10..].chunks_exact_mut(8).zip(numbers) {
-            place.copy_from_slice(&number.to_le_bytes());
+        let (places, _) = bytes[10..].as_chunks_mut();
+        for (place, number) in places.iter_mut().zip(&numbers) {
+            *place = number.to_le_bytes();
         }
         out.extend_from_slice(&bytes);
     }
