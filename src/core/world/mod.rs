@@ -15,6 +15,7 @@ pub mod directions;
 pub mod display;
 pub mod emitter;
 pub mod hittable;
+mod image_file;
 pub mod interface;
 pub mod lamp;
 pub mod light;

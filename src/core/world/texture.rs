@@ -1,28 +1,18 @@
 //! Textures: images that colour surfaces and light.
 
-use crate::files::{self, ImageBytes};
-use crate::text;
 use crate::world::display::Display;
+use crate::world::image_file;
 use crate::world::material::Rgb;
 use crate::world::sensor::Sensor;
 use crate::world::sums::Sums;
 use crate::world::texels::Texels;
-use bytesize::ByteSize;
 use glam::{DVec2, DVec3};
-use image::metadata::Orientation;
-use image::{
-    ColorType, DynamicImage, GrayImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, Luma,
-    Rgb as Texel, Rgb32FImage, RgbImage,
-};
 use std::fs;
-use std::io::{self, BufReader, Cursor, Read, Seek};
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{Scalar, constants, per_axis};
-
-/// The memory that a decoder may take beside the image, in bytes.
-const ASIDE: u64 = 1 << 20;
 
 /// The least opacity of a place of an image at which the surface is there, by default.
 pub const CUTOFF: f64 = 0.5;
@@ -51,24 +41,6 @@ struct Picture {
     /// The sums over texels, made when the first mean is asked for.
     sums: OnceLock<Sums>,
     remarks: Vec<&'static str>,
-}
-
-/// Types of files that cannot be read and that the reader of images does not recognise, and the bytes with which they
-/// begin.
-const OTHERS: [(&[u8], usize, &str); 7] = [
-    (b"<", 0, "XML, as SVG is"),
-    (b"8BPS", 0, "a file of Photoshop"),
-    (b"ftyp", 4, "a HEIC, an AVIF or a film"),
-    (b"JXL ", 4, "a JPEG XL"),
-    (b"\xff\x0a", 0, "a JPEG XL"),
-    (b"jP  ", 4, "a JPEG 2000"),
-    (b"%PDF", 0, "a PDF"),
-];
-
-/// Returns the greatest length of a row of a PNG that begins so, in bytes; `None` for another image.
-fn row_of_png(head: &[u8]) -> Option<u64> {
-    let width = head.strip_prefix(b"\x89PNG\r\n\x1a\n")?.get(8..12)?;
-    Some(8 * u64::from(u32::from_be_bytes(width.try_into().ok()?)))
 }
 
 /// Textures are equal if their paths are, and both cut surfaces out or none does.
@@ -128,88 +100,11 @@ impl Texture {
     }
 
     fn read(&self, most: u64) -> Result<Picture, String> {
-        let file = match &self.contents {
-            None => Some(files::open(&self.path).map_err(|error| text::reason(&error))?),
-            Some(_) => None,
-        };
-        let too_much = || format!("it takes more than {} of memory", ByteSize(most));
-        let cannot = |error: ImageError| match error {
-            ImageError::Limits(_) => too_much(),
-            _ => text::picture_reason(&error),
-        };
-        let contents = self.contents.as_deref().unwrap_or_default();
-        let length = match &file {
-            Some(file) => file.metadata().map_err(|error| text::reason(&error))?.len(),
-            None => contents.len() as u64,
-        };
-        // Some decoders hold the whole file.
-        if length > most {
-            return Err(too_much());
-        }
-        let (mut of_file, mut held) = (file.map(BufReader::new), Cursor::new(contents));
-        let bytes: &mut dyn ImageBytes = match &mut of_file {
-            Some(file) => file,
-            None => &mut held,
-        };
-        // A colour profile, which is not used, may be a thousand times as long as its compressed form in a PNG.
-        let row = row_of_png(bytes.fill_buf().map_err(|error| text::reason(&error))?);
-        let beside = row.map_or(most, |row| most.min(row + length));
-        let mut limits = Limits::no_limits();
-        limits.max_alloc = Some(beside.saturating_add(ASIDE));
-        let reader = ImageReader::new(bytes).with_guessed_format();
-        let mut reader = reader.map_err(|error| text::reason(&error))?;
-        reader.limits(limits);
-        let Some(format) = reader.format() else { return Err(other(reader.into_inner())) };
-        let mut decoder = reader.into_decoder().map_err(cannot)?;
-        let (width, height) = decoder.dimensions();
-        if width == 0 || height == 0 {
-            return Err(format!("it is {width} x {height} pixels, so it is empty"));
-        }
-        let (colours, orientation) =
-            (decoder.color_type(), decoder.orientation().unwrap_or(Orientation::NoTransforms));
-        let pixels = u64::from(width) * u64::from(height);
         let display = self.display.get_or_init(|| Sensor::default().display());
-        let is_light =
-            matches!(colours, ColorType::Rgb32F | ColorType::Rgba32F) && display.truncates().is_none();
-        let each = if is_light { 4 } else { 1 };
-        // As it is decoded, as red, green and blue, and turned.
-        let copies = match colours {
-            ColorType::Rgb8 => 0,
-            colours if colours.has_alpha() => each * (4 + 3) + 3,
-            _ => each * 3,
-        };
-        let turned = if orientation == Orientation::NoTransforms { 0 } else { each * 3 };
-        // What decoders take beside, which have no limits of their own.
-        let aside = match format {
-            ImageFormat::Jpeg => length + 6 * pixels,
-            ImageFormat::WebP => length + 6 * pixels,
-            _ => 0,
-        };
-        if decoder.total_bytes().saturating_add((copies + turned) * pixels).saturating_add(aside) > most {
-            return Err(too_much());
-        }
-        let picture = DynamicImage::from_decoder(decoder).map_err(cannot)?;
-        let mut remarks = Vec::new();
-        if is_bright(&picture) && !is_light {
-            remarks.push("has colours above 1, which are cut to 1");
-        }
-        let alpha = (self.is_opaque && colours.has_alpha()).then(|| alpha_of(&picture)).flatten();
-        let mut image = match (is_light, colours.has_alpha() && !self.is_opaque) {
-            (true, true) => DynamicImage::ImageRgb32F(light_over_white(picture, &mut remarks)),
-            (true, false) => DynamicImage::ImageRgb32F(picture.into_rgb32f()),
-            (false, true) => DynamicImage::ImageRgb8(over_white(picture, &mut remarks)),
-            (false, false) => DynamicImage::ImageRgb8(picture.into_rgb8()),
-        };
-        image.apply_orientation(orientation);
-        let alpha = alpha.map(|alpha| {
-            let mut alpha = DynamicImage::ImageLuma8(alpha);
-            alpha.apply_orientation(orientation);
-            alpha.into_luma8()
-        });
-        let texels = match is_light {
-            true => Texels::of_light(image.into_rgb32f(), alpha),
-            false => Texels::of_bytes(image.into_rgb8(), alpha, display),
-        };
+        let (texels, remarks) = match &self.contents {
+            None => image_file::read(&self.path, self.is_opaque, display, most),
+            Some(contents) => image_file::decode(contents, self.is_opaque, display, most),
+        }?;
         Ok(Picture { texels, sums: OnceLock::new(), remarks })
     }
 
@@ -297,69 +192,13 @@ impl Texture {
     }
 }
 
-/// Says what a file is that is no image known to the reader.
-fn other(mut file: impl Read + Seek) -> String {
-    let mut start = [0; 16];
-    let read = file.rewind().and_then(|()| file.read(&mut start));
-    let known = |(begins, at, _): &&(&[u8], usize, &str)| start[*at..].starts_with(begins);
-    match OTHERS.iter().find(known) {
-        Some((_, _, what)) if read.is_ok() => format!("it is {what}: save it as PNG"),
-        _ => text::NO_IMAGE.to_owned(),
-    }
-}
-
-/// Tells whether colours of an image are brighter than white.
-fn is_bright(picture: &DynamicImage) -> bool {
-    match picture {
-        DynamicImage::ImageRgb32F(image) => image.iter().any(|channel| *channel > 1.0),
-        DynamicImage::ImageRgba32F(image) => image.iter().any(|channel| *channel > 1.0),
-        _ => false,
-    }
-}
-
-/// Returns how far the pixels of an image are opaque, if any of them is not.
-fn alpha_of(picture: &DynamicImage) -> Option<GrayImage> {
-    let picture = picture.to_luma_alpha8();
-    let is_opaque = picture.pixels().all(|pixel| pixel.0[1] == u8::MAX);
-    let alpha = |x, y| Luma([picture.get_pixel(x, y).0[1]]);
-    (!is_opaque).then(|| GrayImage::from_fn(picture.width(), picture.height(), alpha))
-}
-
-const SEES_THROUGH: &str =
-    "has transparent texels, which do not show what is behind an object but its own colour";
-
-/// Lays an image over white, so that an object shows its own colours where a texel is transparent.
-fn over_white(picture: DynamicImage, remarks: &mut Vec<&'static str>) -> RgbImage {
-    let picture = picture.into_rgba8();
-    if picture.pixels().any(|texel| texel.0[3] < u8::MAX) {
-        remarks.push(SEES_THROUGH);
-    }
-    let over = |[red, green, blue, alpha]: [u8; 4]| {
-        let alpha = u16::from(alpha);
-        [red, green, blue]
-            .map(|channel| ((u16::from(channel) * alpha + 255 * (255 - alpha) + 127) / 255) as u8)
-    };
-    RgbImage::from_fn(picture.width(), picture.height(), |x, y| Texel(over(picture.get_pixel(x, y).0)))
-}
-
-/// Lays light over white as [`over_white`] does.
-fn light_over_white(picture: DynamicImage, remarks: &mut Vec<&'static str>) -> Rgb32FImage {
-    let picture = picture.into_rgba32f();
-    if picture.pixels().any(|texel| texel.0[3] < 1.0) {
-        remarks.push(SEES_THROUGH);
-    }
-    let over = |[red, green, blue, alpha]: [f32; 4]| {
-        [red, green, blue].map(|channel| channel * alpha + (1.0 - alpha))
-    };
-    Rgb32FImage::from_fn(picture.width(), picture.height(), |x, y| Texel(over(picture.get_pixel(x, y).0)))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::text;
     use crate::world::display::{Tone, Transfer};
     use crate::world::rules::Rules;
-    use image::{ImageEncoder, RgbaImage};
+    use image::{DynamicImage, ImageEncoder, ImageFormat, Rgb as Texel, Rgb32FImage, RgbImage, RgbaImage};
     use tempfile::TempDir;
 
     fn texture(folder: &TempDir, name: &str, bytes: &[u8]) -> Texture {
