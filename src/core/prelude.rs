@@ -31,10 +31,9 @@ pub use crate::world::pinhole::Pinhole;
 pub use crate::world::rules::Rules;
 pub use crate::world::sample::Sampler;
 pub use crate::world::sensor::AnyCamera;
-pub use crate::world::shader::{
-    Anchor, EnclosedShader, LookBounds, PointBounds, Shader, ShaderInputs, SurfacePoint, enclosed,
-};
+pub use crate::world::shader::{Anchor, EnclosedShader, LookBounds, Shader, enclosed};
 pub use crate::world::surface_formula;
+pub use crate::world::surface_point::{PointBounds, ShaderInputs, SurfacePoint};
 pub use crate::world::texture::{CUTOFF, Texture};
 
 // What a scene selects by name: shaders, profiles and other alternatives.

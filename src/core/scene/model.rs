@@ -10,7 +10,7 @@ use crate::world::body::{AnyShader, NamedBody, ShaderFactory};
 use crate::world::lamp::Lamp;
 use crate::world::material::{Material, Rgb};
 use crate::world::sensor::Sensor;
-use crate::world::shader::SurfacePoint;
+use crate::world::surface_point::SurfacePoint;
 use crate::world::texture::Texture;
 use glam::DVec3;
 use std::path::PathBuf;

@@ -3,7 +3,8 @@
 use crate::world::body::AnyShader;
 use crate::world::certify::Precise;
 use crate::world::material::{Look, Material, Rgb};
-use crate::world::shader::{EnclosedShader, PointBounds, Shader, ShaderInputs, SurfacePoint};
+use crate::world::shader::{EnclosedShader, Shader};
+use crate::world::surface_point::{PointBounds, ShaderInputs, SurfacePoint};
 use glam::{DVec2, DVec3};
 use tabray_exact::interval::Interval;
 

@@ -9,7 +9,7 @@ use crate::world::coincidence::ROUNDING;
 use crate::world::hittable::{ByDistance, Curvature, Facts, Hittable, Shape, TieBreaking};
 use crate::world::packets::shader::PacketShader;
 use crate::world::packets::shape::HitQueries;
-use crate::world::shader::SurfacePoint;
+use crate::world::surface_point::SurfacePoint;
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
 use tabray_exact::double_double::DoubleDouble;

@@ -34,6 +34,7 @@ pub mod sky_map;
 pub mod solid;
 mod sums;
 pub mod surface_formula;
+pub mod surface_point;
 pub mod texels;
 pub mod texture;
 
@@ -53,4 +54,5 @@ pub use panel::Panel;
 pub use patch::Patch;
 pub use rules::Rules;
 pub use sensor::{AnyCamera, Sensor};
-pub use shader::{Anchor, PointBounds, Shader, ShaderInputs, SurfacePoint};
+pub use shader::{Anchor, Shader};
+pub use surface_point::{PointBounds, ShaderInputs, SurfacePoint};

@@ -1,7 +1,7 @@
 //! What formulas of a surface read of its points.
 
 use crate::world::certify::Precise;
-use crate::world::shader::{PointBounds, ShaderInputs, SurfacePoint};
+use crate::world::surface_point::{PointBounds, ShaderInputs, SurfacePoint};
 use std::ops::Range;
 use tabray_exact::formula::field::SurfaceField;
 use tabray_exact::interval::Interval;

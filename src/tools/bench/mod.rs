@@ -25,7 +25,8 @@ use tabray_core::scene::model::{Model, Object};
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::world::body::AnyShader;
 use tabray_core::world::material::{Look, Material, Rgb};
-use tabray_core::world::shader::{Shader, ShaderInputs, SurfacePoint};
+use tabray_core::world::shader::Shader;
+use tabray_core::world::surface_point::{ShaderInputs, SurfacePoint};
 
 /// The speed at which a scene is traced.
 #[derive(Clone, Debug)]

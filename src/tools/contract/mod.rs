@@ -197,7 +197,8 @@ mod tests {
     use tabray_core::world::body::ShaderFactory;
     use tabray_core::world::light::Light;
     use tabray_core::world::material::{Look, Material, Rgb};
-    use tabray_core::world::shader::{Anchor, Plain, Shader, ShaderInputs, SurfacePoint};
+    use tabray_core::world::shader::{Anchor, Plain, Shader};
+    use tabray_core::world::surface_point::{ShaderInputs, SurfacePoint};
 
     static SOUND: Profile = Profile::new("sound", "a cone", "4 - y");
     static UNBOUNDED: Profile = Profile::new("unbounded", "a horn", "1 / y");

@@ -6,7 +6,8 @@ use crate::world::certify::{
     FootprintHit, HitEnclosure, Precise, ProofMethods, gradient, gradient_over, shading_normals,
 };
 use crate::world::packets::light::{EncloseLight, PacketLight};
-use crate::world::shader::{EncloseLook, EnclosedShader, LookBounds, PointBounds};
+use crate::world::shader::{EncloseLook, EnclosedShader, LookBounds};
+use crate::world::surface_point::PointBounds;
 use tabray_exact::affine::Affine;
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{Scalar, per_axis};

@@ -5,7 +5,7 @@ use super::number::{Endpoint, Hit, Number, coarse, ranges};
 use super::scene::{Colour, EnclosedScene, Path, Place};
 use super::surface::tint;
 use crate::geometry::sight::Line;
-use crate::world::shader::PointBounds;
+use crate::world::surface_point::PointBounds;
 use std::ptr;
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{dot, per_axis};

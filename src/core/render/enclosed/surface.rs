@@ -8,7 +8,7 @@ use crate::scene::model::Object;
 use crate::world::certify::Precise;
 use crate::world::patch::{LEAST_COSINE, MEAN_ROUNDING, PatchBounds, Window};
 use crate::world::rules;
-use crate::world::shader::PointBounds;
+use crate::world::surface_point::PointBounds;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{dot, per_axis};
 

@@ -3,7 +3,7 @@
 use super::directions::orthonormal_pair;
 use super::number::Endpoint;
 use crate::world::any_shape::AnyShape;
-use crate::world::shader::{NEAR, size_of};
+use crate::world::surface_point::{NEAR, size_of};
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, cross, dot, per_axis};
 

@@ -12,7 +12,7 @@ use crate::world::material::{Look, Rgb};
 use crate::world::packets::shader::SurfacePoints;
 use crate::world::patch::{Patch, Window};
 use crate::world::rules;
-use crate::world::shader::SurfacePoint;
+use crate::world::surface_point::SurfacePoint;
 use glam::DVec3;
 
 /// The points where the rays of a packet hit one object.

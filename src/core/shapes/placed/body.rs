@@ -8,7 +8,8 @@ use crate::world::hittable::{ByPackets, Shape};
 use crate::world::material::{Look, Material, Rgb};
 use crate::world::packets::shader::PacketShader;
 use crate::world::patch::{Patch, PatchBounds};
-use crate::world::shader::{self, LookBounds, Plain, PointBounds, Shader, ShaderInputs, SurfacePoint};
+use crate::world::shader::{self, LookBounds, Plain, Shader};
+use crate::world::surface_point::{PointBounds, ShaderInputs, SurfacePoint};
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
 

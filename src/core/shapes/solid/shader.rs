@@ -3,7 +3,8 @@
 use crate::world::body::Body;
 use crate::world::certify::Precise;
 use crate::world::material::{Look, Material, Rgb};
-use crate::world::shader::{self, LookBounds, PointBounds, Shader, ShaderInputs, SurfacePoint};
+use crate::world::shader::{self, LookBounds, Shader};
+use crate::world::surface_point::{PointBounds, ShaderInputs, SurfacePoint};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 

@@ -3,7 +3,8 @@
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::{View, ViewMut};
 use crate::world::material::{Material, Rgb};
-use crate::world::shader::{EnclosedShader, Shader, SurfacePoint};
+use crate::world::shader::{EnclosedShader, Shader};
+use crate::world::surface_point::SurfacePoint;
 
 /// Points of a surface, as a shader sees them.
 #[derive(Clone, Copy)]

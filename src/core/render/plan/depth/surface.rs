@@ -6,7 +6,7 @@ use crate::geometry::aabb;
 use crate::scene::model::{Model, Object};
 use crate::world::material::{Look, Rgb};
 use crate::world::rules::Rules;
-use crate::world::shader::SurfacePoint;
+use crate::world::surface_point::SurfacePoint;
 use glam::DVec3;
 
 /// A factor larger than the rounding error of a bound: that of the products along a branch, fewer than 2^15 with a
