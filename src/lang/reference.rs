@@ -12,7 +12,11 @@ use tabray_core::scene::value::Datum;
 use tabray_core::text;
 
 /// The part of the reference that is the same whatever entity types there are.
-const LANGUAGE: &str = include_str!("../../docs/language.md");
+const LANGUAGE: &str = include_str!("language.md");
+
+// The page is in `docs/`, and a link to it in this folder, which packages of this crate resolve.
+const _: () =
+    assert!(LANGUAGE.len() > 1000, "language.md is no link: clone with `git -c core.symlinks=true clone`");
 
 /// Returns the whole reference as one Markdown text.
 pub fn markdown(registry: &Registry) -> String {
