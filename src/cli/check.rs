@@ -1,6 +1,6 @@
 //! `tabray check`: reports the faults of scenes.
 
-use crate::files::input;
+use crate::files::{folders, input};
 use crate::options::set;
 use crate::process::failure::{Failure, report, status};
 use crate::process::messages;
@@ -16,7 +16,7 @@ use tabray_tools::diagnosis;
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
-    /// The scenes; `-` reads one from standard input
+    /// The scenes, or folders of scenes; `-` reads one from standard input
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<PathBuf>,
     #[command(flatten)]
@@ -28,7 +28,8 @@ Examples:
   tabray check ball.ray
   tabray check *.ray --message-format short";
 
-pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
+    folders::open(&mut args.scenes)?;
     let mut worst = 0;
     for scene in &args.scenes {
         match input::load(registry, scene, &args.set, None) {

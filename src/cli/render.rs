@@ -3,7 +3,7 @@
 use super::course::Differences;
 use crate::files::input::Source;
 use crate::files::output::{Output, format_of};
-use crate::files::{input, output, provenance, several};
+use crate::files::{folders, input, output, provenance, several};
 use crate::options::frames::Frame;
 use crate::options::named::by_name;
 use crate::options::size::Region;
@@ -35,7 +35,7 @@ use tabray_tools::part::PixelFormat;
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
-    /// The scenes; `-` reads one from standard input
+    /// The scenes, or folders of scenes; `-` reads one from standard input
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<PathBuf>,
     #[command(flatten)]
@@ -88,14 +88,18 @@ Examples:
   tabray render ball.ray -o big.png --size 1600 --samples 16
   tabray render ball.ray --quick --set ball.radius=3
   tabray render *.ray -o images/
+  tabray render scenes/ -o images/                         # all scenes of a folder
   tabray render ball.ray --max-error 2 --stats             # levels of 255
   tabray render ball.ray -o film.png --frames 1..100 --sweep ball.radius=1..2
   tabray render ball.ray -o big.png --part 1/4             # then 2/4 to 4/4, and `merge`";
 
 pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
     args.samples.tell_max_error();
+    // The images of a folder's scenes go to a folder, however many there are.
+    let is_folder = folders::open(&mut args.scenes)?;
     let output = args.output.as_deref();
-    if let ([scene], false) = (&args.scenes[..], several::is_folder(output, args.scenes.len())) {
+    let goes_to_folder = is_folder || several::is_folder(output, args.scenes.len());
+    if let ([scene], false) = (&args.scenes[..], goes_to_folder) {
         let (scene, path) = (scene.clone(), several::target(output, scene, args.extension())?);
         let frames = args.frames.of(&path, &mut args.part.part)?;
         let stop = args.stop.watch()?;

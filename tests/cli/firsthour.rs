@@ -56,6 +56,29 @@ fn a_scene_in_the_place_of_a_command_is_told_from_a_misspelt_command() {
 }
 
 #[test]
+fn a_folder_stands_for_the_scenes_in_it() {
+    let folder = workplace();
+    fs::write(folder.path().join("notes.txt"), "no scene").expect("a file");
+    fs::create_dir(folder.path().join("alone")).expect("a folder");
+    fs::copy(scene("sphere/in-front.ray"), folder.path().join("alone/one.ray")).expect("a copy");
+
+    let (status, _, err) = outcome(tabray(&folder).args(["render", ".", "-o", "images", "--size", "8"]));
+    assert_eq!(status, 2, "{err}");
+    assert!(err.contains("1 of 3 scenes could not be rendered: ./faulty.ray"), "{err}");
+    assert_eq!(names_in(&folder.path().join("images")), ["a.png", "b.png"]);
+
+    // Its only scene has its image in a folder, too.
+    let (status, _, err) = outcome(tabray(&folder).args(["render", "alone", "-o", "other", "--size", "8"]));
+    assert_eq!(status, 0, "{err}");
+    assert_eq!(names_in(&folder.path().join("other")), ["one.png"]);
+
+    let (status, _, err) = outcome(tabray(&folder).args(["check", "alone", "a.ray"]));
+    assert!(status == 0 && err.contains("one.ray: no errors") && err.contains("a.ray: no errors"), "{err}");
+    let (status, _, err) = outcome(tabray(&folder).args(["check", "images"]));
+    assert!(status == 1 && err.contains("there is no scene in the folder `images`"), "{err}");
+}
+
+#[test]
 fn several_scenes_are_rendered_beside_each_other_and_counted() {
     let folder = workplace();
     let (status, out, err) = outcome(tabray(&folder).args(["render", "a.ray", "b.ray"]));

@@ -1,5 +1,6 @@
 //! Scenes and images as files: how they are named, read and written.
 
+pub mod folders;
 #[cfg(unix)]
 mod in_place;
 pub mod input;

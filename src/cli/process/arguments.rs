@@ -4,7 +4,6 @@ use crate::process::failure::Failure;
 use crate::process::{color, program};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, ArgMatches, Command};
-use std::env;
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::path::Path;
@@ -15,7 +14,7 @@ use tabray_lang::syntax::Syntax;
 /// Parses the program's arguments. What is wrong with them is printed, and ends the program; so do `--help` and
 /// `--version`.
 pub fn matches(mut command: Command) -> Result<ArgMatches, Failure> {
-    let words = joined(&command, env::args_os().collect());
+    let words = joined(&command, wild::args_os().collect());
     color::choose_early(&words);
     let mut error = match command.try_get_matches_from_mut(&words) {
         Ok(matches) => return Ok(matches),

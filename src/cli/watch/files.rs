@@ -1,9 +1,9 @@
 //! Watches the files that a scene is read from.
 
+use crate::files::folders::is_scene;
 use notify::event::{AccessKind, AccessMode, EventKind, ModifyKind};
 use notify::{ErrorKind, Event, RecommendedWatcher, RecursiveMode, Watcher};
 use std::collections::{BTreeMap, BTreeSet};
-use std::ffi::OsStr;
 use std::fs;
 use std::io;
 #[cfg(unix)]
@@ -74,13 +74,6 @@ fn identity(folder: &Path) -> Option<Identity> {
     #[cfg(not(unix))]
     let more = [0; 2];
     Some((meta.created().ok(), more))
-}
-
-/// Tells whether a file in a folder is a scene, by its name.
-pub fn is_scene(path: &Path) -> bool {
-    let is_hidden = path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b"."));
-    let extension = path.extension().and_then(OsStr::to_str).unwrap_or_default();
-    !is_hidden && ["ray", "toml"].iter().any(|known| extension.eq_ignore_ascii_case(known))
 }
 
 impl Files {

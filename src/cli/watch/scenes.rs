@@ -3,16 +3,14 @@
 use super::answer;
 use super::events::{self, SceneEntry};
 use super::feed::News;
-use super::files::{Files, is_scene};
+use super::files::Files;
 use super::session::{ChangeListener, Session};
-use crate::files::input;
+use crate::files::{folders, input};
 use crate::process::failure::Failure;
 use crate::serve::{self, Body, Work};
 use hyper::body::Bytes;
 use hyper::{Request, Response, StatusCode};
 use std::collections::{BTreeMap, HashSet};
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tabray_core::text;
@@ -55,13 +53,7 @@ impl Scenes {
         };
         let (folders, alone) = (of_kind(true), of_kind(false));
         for folder in &folders {
-            if found(folder)?.is_empty() {
-                let message = format!("there is no scene in the folder `{}`", text::shown(folder));
-                return Err(Failure::Unread(
-                    message,
-                    Some("the names of scenes end in .ray or .toml".to_owned()),
-                ));
-            }
+            folders::some_scenes(folder)?;
         }
         files.watch_folders(&folders);
         let scenes = Self { registry, named, sets, changed, known: Mutex::default() };
@@ -100,7 +92,8 @@ impl Scenes {
         let known = &mut *known;
         let mut list = Vec::new();
         for (named, is_folder) in &self.named {
-            let paths = if *is_folder { found(named).unwrap_or_default() } else { vec![named.clone()] };
+            let paths =
+                if *is_folder { folders::scenes(named).unwrap_or_default() } else { vec![named.clone()] };
             for path in paths {
                 let next = known.sessions.len();
                 let number = *known.numbers.entry(path.clone()).or_insert(next);
@@ -160,23 +153,4 @@ impl Scenes {
             None => serve::text(StatusCode::NOT_FOUND, "there is no such scene\n"),
         }
     }
-}
-
-/// Returns the scenes in a folder, sorted.
-fn found(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let list = || -> io::Result<Vec<PathBuf>> {
-        let mut scenes = Vec::new();
-        for file in fs::read_dir(folder)? {
-            let path = file?.path();
-            if is_scene(&path) && path.is_file() {
-                scenes.push(path);
-            }
-        }
-        scenes.sort();
-        Ok(scenes)
-    };
-    list().map_err(|error| {
-        let reason = text::reason(&error);
-        Failure::Unread(format!("cannot read the folder `{}`: {reason}", text::shown(folder)), None)
-    })
 }
