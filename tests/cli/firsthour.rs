@@ -64,7 +64,7 @@ fn a_folder_stands_for_the_scenes_in_it() {
 
     let (status, _, err) = outcome(tabray(&folder).args(["render", ".", "-o", "images", "--size", "8"]));
     assert_eq!(status, 2, "{err}");
-    assert!(err.contains("1 of 3 scenes could not be rendered: ./faulty.ray"), "{err}");
+    assert!(err.contains("1 of 3 scenes could not be rendered: `./faulty.ray`"), "{err}");
     assert_eq!(names_in(&folder.path().join("images")), ["a.png", "b.png"]);
 
     // Its only scene has its image in a folder, too.
