@@ -1,18 +1,13 @@
-//! The formula of a scene's surface, and the numbers that it names.
+//! The formula of a scene's surface.
 
 use crate::surfaces;
 use crate::text::view as read;
 use serde::Deserialize;
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::ops::Range;
-use tabray_core::scene::model::Model;
 use tabray_lang::editor::{self, View};
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
-use tabray_tools::page::fields;
-
-/// What a page calls the numbers of a scene where it lists entities.
-pub const NUMBERS: &str = "numbers";
 
 /// A formula, and the text in which it is to stand.
 #[derive(Deserialize)]
@@ -84,48 +79,4 @@ fn with_unknown(registry: &Registry, text: String) -> String {
     let lines = text.split_inclusive('\n').take_while(|line| line.starts_with('#') || line.trim().is_empty());
     let at = lines.map(str::len).sum::<usize>();
     view.text.edited(at..at, &lets).as_str().to_owned()
-}
-
-/// Returns the places of the numbers that a text names by a `let`, with their names.
-fn lets(view: &View) -> Vec<(String, Range<usize>)> {
-    let mut found = Vec::new();
-    for item in &view.items {
-        if let editor::Item::Let(number) = item
-            && let (Some(name), Some(value)) = (number.name, number.value)
-            && view.word(value).parse::<f64>().is_ok()
-        {
-            found.push((view.word(name).into_owned(), value.place()));
-        }
-    }
-    found
-}
-
-/// Returns the numbers that a text names, in the form of an entity.
-pub fn numbers(registry: &Registry, text: &str) -> Value {
-    let view = read(registry, text);
-    let attribute = |(name, place): (String, Range<usize>)| {
-        let values = [view.slice(place).trim_matches(['"', '\'']).to_owned()];
-        json!({ "name": name, "about": "a number of the scene", "each": [""], "values": values, "range": null, "whole": false, "fixed": null })
-    };
-    let attributes: Vec<_> = lets(&view).into_iter().map(attribute).collect();
-    json!({ "order": NUMBERS, "kind": "let", "name": NUMBERS, "attributes": attributes })
-}
-
-/// Lists the entities of a scene that have numbers; first, if there are any, the numbers themselves.
-pub fn entities(registry: &Registry, model: &Model, text: &str) -> Vec<Value> {
-    let numbers = json!({ "order": NUMBERS, "kind": "let", "name": NUMBERS });
-    let has_numbers = !lets(&read(registry, text)).is_empty();
-    let all = fields::all(model).into_iter().filter_map(|named| serde_json::to_value(named).ok());
-    has_numbers.then_some(numbers).into_iter().chain(all).collect()
-}
-
-/// Returns a text with another value of a number that it names.
-///
-/// # Errors
-/// Returns a message if the text names no such number.
-pub fn with_number(registry: &Registry, text: &str, name: &str, value: &str) -> Result<String, String> {
-    let view = read(registry, text);
-    let found = lets(&view).into_iter().find(|(known, _)| known == name);
-    let (_, place) = found.ok_or_else(|| format!("the text has no number `{name}`"))?;
-    Ok(view.text.edited(place, value).as_str().to_owned())
 }

@@ -1,6 +1,5 @@
 //! A scene as a page has it: a text alone, without files around it.
 
-use crate::formula;
 use crate::text::{NAME, view, without_files};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -91,7 +90,7 @@ impl Scene {
 
     /// Returns what a page asks about.
     pub fn shown(&self) -> Shown<'_> {
-        Shown { model: &self.model, name: NAME, text: &self.text }
+        Shown { model: &self.model, name: NAME, text: &self.text, sets: &[] }
     }
 
     /// Returns the text with the camera moved.
@@ -117,13 +116,8 @@ impl Scene {
     /// Tells whether the text gives an attribute these numbers already.
     fn says(&self, registry: &Registry, name: &str, attribute: &str, numbers: &[f64]) -> bool {
         let view = self.shown().view(registry);
-        let is_meant =
-            |given: &&editor::Attribute| given.known.is_some_and(|known| known.name() == attribute);
-        let given = view.entity(name).and_then(|entity| entity.attributes.iter().find(is_meant));
-        given.is_some_and(|given| {
-            let there = given.values.iter().map(|word| view.word(*word).parse::<f64>().ok());
-            there.eq(numbers.iter().copied().map(Some))
-        })
+        let given = trial_values::given(&view, name, attribute);
+        given.iter().map(|word| view.word(*word).parse().ok()).eq(numbers.iter().copied().map(Some))
     }
 
     /// Returns the text with a `look_at` instead of its `camera`.
@@ -148,9 +142,6 @@ impl Scene {
         let are_numbers = |values: &[String]| values.iter().all(|value| value.parse::<f64>().is_ok());
         let Try { name, attribute, values } =
             wanted.filter(|wanted| are_numbers(&wanted.values)).ok_or("these are not numbers")?;
-        if name == formula::NUMBERS {
-            return formula::with_number(registry, &self.text, &attribute, &values.concat());
-        }
         written(registry, &self.text, &name, &attribute, &values)
     }
 

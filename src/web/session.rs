@@ -160,12 +160,8 @@ impl Session {
             ("object", _) => at_pixel(&|at| Answer::json(&fields::of_pixel(registry, scene.shown(), at))),
             ("point", _) => at_pixel(&|at| Answer::json(&camera::point(model, at))),
             ("layer", [name]) => layer(&Plan::new(model), name),
-            ("entities", []) => Answer::json(&formula::entities(registry, model, &scene.text)),
-            ("entity", ["numbers"]) => Answer::json(&formula::numbers(registry, &scene.text)),
-            ("entity", [order]) => order.parse().map_or_else(
-                |_| Answer::missing(),
-                |order| Answer::json(&fields::of_entity(registry, scene.shown(), order)),
-            ),
+            ("entities", []) => Answer::json(&fields::all(registry, scene.shown())),
+            ("entity", [order]) => Answer::json(&fields::of_entity(registry, scene.shown(), order)),
             ("camera", []) => match camera::state(registry, scene.shown()) {
                 Ok(state) => Answer::json(&state),
                 Err(reason) => Answer::new(409, reason),

@@ -112,7 +112,7 @@ fn a_formula_takes_the_place_of_the_one_before_and_unknown_names_become_numbers(
     asked(&mut session, "scene/1", &changed);
     let numbers = asked(&mut session, "entity/1/numbers", "");
     assert_eq!(numbers["attributes"][0]["name"], "k");
-    let slid = r#"{"name":"numbers","attribute":"k","values":["2.5"]}"#;
+    let slid = r#"{"name":"","attribute":"k","values":["2.5"]}"#;
     let slid = asked(&mut session, "try/1", slid)["text"].as_str().expect("a text").to_owned();
     assert_eq!(slid, changed.replace("let k 1", "let k 2.5"));
     // A text without a formula is replaced.

@@ -105,9 +105,11 @@ pub async fn answer(request: &Request<Bytes>, session: &Session, work: &Work) ->
         ["camera"] => camera::state(session),
         ["point", version, x, y] => about(feed, work, version, |frame| point(frame, x, y)).await,
         ["entities", version] => {
+            let registry = session.registry;
             let all = |frame: Arc<Frame>| -> Option<Job> {
                 Some(Box::new(move |_| {
-                    Ok(("application/json", text::json(&fields::all(&frame.model)).into_bytes()))
+                    let all = fields::all(registry, frame.shown());
+                    Ok(("application/json", text::json(&all).into_bytes()))
                 }))
             };
             about(feed, work, version, all).await
@@ -218,11 +220,11 @@ fn place(frame: &Frame, x: &str, y: &str) -> Option<[usize; 2]> {
     Some([x.parse().ok().filter(|x| *x < width)?, y.parse().ok().filter(|y| *y < height)?])
 }
 
-/// Finds the attributes of an entity by its index.
+/// Finds the attributes of an entity by its index, or the scene's own numbers.
 fn entity(registry: &'static Registry, frame: Arc<Frame>, order: &str) -> Option<Job> {
-    let order = order.parse().ok()?;
+    let order = order.to_owned();
     Some(Box::new(move |_| {
-        let fields = fields::of_entity(registry, frame.shown(), order);
+        let fields = fields::of_entity(registry, frame.shown(), &order);
         Ok(("application/json", text::json(&fields).into_bytes()))
     }))
 }

@@ -60,7 +60,7 @@ impl Frame {
 
     /// Returns what a page asks for.
     pub fn shown(&self) -> Shown<'_> {
-        Shown { model: &self.model, name: &self.name, text: &self.text }
+        Shown { model: &self.model, name: &self.name, text: &self.text, sets: &self.sets }
     }
 }
 

@@ -41,4 +41,4 @@ pub use project::{Files, Group, Location, definitions, group, renamed, usages};
 pub use read::read;
 pub use signature::signature;
 pub use text::{Position, Text};
-pub use view::{Attribute, Item, View};
+pub use view::{Attribute, Item, View, Word};

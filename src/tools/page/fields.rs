@@ -1,7 +1,8 @@
 //! The numbers of a scene's entities, as a page offers them to be changed.
 
-use super::Shown;
+use super::{Shown, numbers};
 use serde::Serialize;
+use std::borrow::Cow;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::trace;
 use tabray_core::scene::attribute::Attribute;
@@ -12,43 +13,43 @@ use tabray_lang::editor::View;
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
 
-/// An entity of a scene.
+/// An entity of a scene, or its named numbers.
 #[derive(Serialize)]
 pub struct Named {
-    /// Its index among the scene's entities, from 0.
-    order: usize,
+    /// What a page asks for: its index among the scene's entities, from 0, or the word for numbers.
+    pub(super) order: String,
     /// Its entity type.
-    kind: &'static str,
+    pub(super) kind: &'static str,
     /// Its name.
-    name: String,
+    pub(super) name: String,
 }
 
 /// An entity and those of its attributes that are numbers.
 #[derive(Serialize)]
 pub struct Fields {
     #[serde(flatten)]
-    entity: Named,
+    pub(super) entity: Named,
     /// Its attributes.
-    attributes: Vec<Field>,
+    pub(super) attributes: Vec<Field>,
 }
 
-/// An attribute of numbers.
+/// An attribute of numbers, or a named number.
 #[derive(Serialize)]
-struct Field {
+pub(super) struct Field {
     /// The name in the scene language.
-    name: &'static str,
+    pub name: Cow<'static, str>,
     /// The meaning, the unit and the rule, as people read them.
-    about: String,
+    pub about: String,
     /// The name of each value, where the table has names.
-    each: &'static [&'static str],
+    pub each: &'static [&'static str],
     /// The values, as a scene writes them.
-    values: Vec<String>,
+    pub values: Vec<String>,
     /// The least and the greatest number that each value may be; null where the table does not say.
-    range: Option<[f64; 2]>,
+    pub range: Option<[f64; 2]>,
     /// Whether the values are whole numbers.
-    whole: bool,
+    pub whole: bool,
     /// Why the values cannot be changed here; null where they can be.
-    fixed: Option<&'static str>,
+    pub fixed: Option<&'static str>,
 }
 
 /// The maximum number of entities that a page lists.
@@ -64,13 +65,14 @@ fn records(model: &Model) -> impl Iterator<Item = &Record> {
 }
 
 fn named(record: &Record) -> Named {
-    Named { order: record.order(), kind: record.entity().name, name: record.name().to_owned() }
+    Named { order: record.order().to_string(), kind: record.entity().name, name: record.name().to_owned() }
 }
 
-/// Lists the entities of a scene that have numbers, or the first of them.
-pub fn all(model: &Model) -> Vec<Named> {
+/// Lists the entities of a scene that have numbers, or the first of them; the scene's own numbers come before.
+pub fn all(registry: &Registry, shown: Shown) -> Vec<Named> {
     let has_numbers = |record: &&Record| record.entity().attributes().any(is_number);
-    records(model).filter(has_numbers).take(MOST).map(named).collect()
+    let entities = records(shown.model).filter(has_numbers).take(MOST).map(named);
+    numbers::of(registry, shown).map(|numbers| numbers.entity).into_iter().chain(entities).collect()
 }
 
 /// Returns the attributes of the object that the centre of a pixel shows; `None` where it shows none.
@@ -80,8 +82,12 @@ pub fn of_pixel(registry: &Registry, shown: Shown, [x, y]: [usize; 2]) -> Option
     Some(of(registry, shown, &hit.object.args))
 }
 
-/// Returns the attributes of an entity by its index; `None` if the scene has none.
-pub fn of_entity(registry: &Registry, shown: Shown, order: usize) -> Option<Fields> {
+/// Returns the attributes of an entity by its index, or the scene's own numbers; `None` if the scene has none.
+pub fn of_entity(registry: &Registry, shown: Shown, order: &str) -> Option<Fields> {
+    if order == numbers::ORDER {
+        return numbers::of(registry, shown);
+    }
+    let order: usize = order.parse().ok()?;
     let record = records(shown.model).find(|record| record.order() == order)?;
     Some(of(registry, shown, record))
 }
@@ -106,7 +112,7 @@ fn of(registry: &Registry, shown: Shown, record: &Record) -> Fields {
         let parts = [attribute.meaning(), attribute.unit(), &attribute.rule()];
         let about: Vec<_> = parts.into_iter().filter(|part| !part.is_empty()).collect();
         Field {
-            name: attribute.name(),
+            name: attribute.name().into(),
             about: about.join("; "),
             each: attribute.each(),
             values,

@@ -4,6 +4,7 @@
 pub mod camera;
 pub mod display;
 pub mod fields;
+pub mod numbers;
 pub mod trial_values;
 
 use std::ops::Range;
@@ -23,6 +24,8 @@ pub struct Shown<'s> {
     pub name: &'s str,
     /// The text of the scene.
     pub text: &'s str,
+    /// The values that are set beside the text.
+    pub sets: &'s [String],
 }
 
 impl Shown<'_> {

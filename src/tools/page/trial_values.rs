@@ -1,10 +1,11 @@
 //! The values that a page tries out beside a scene's text, and how they are written into it.
 
+use super::numbers;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tabray_core::scene::value::Datum;
-use tabray_lang::editor::{self, Text, View};
+use tabray_lang::editor::{self, Text, View, Word};
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
 
@@ -78,9 +79,8 @@ impl TrialValues {
     /// Lists the values that are others than those in the text.
     pub fn differences(&self, view: &View) -> Vec<Difference> {
         let difference = |((name, attribute), values): (&(String, String), &Vec<String>)| {
-            let given = given(view, name, attribute);
-            let words = given.iter().flat_map(|given| &given.values);
-            let text: Vec<_> = words.map(|word| view.word(*word).into_owned()).collect();
+            let text: Vec<_> =
+                given(view, name, attribute).iter().map(|word| view.word(*word).into_owned()).collect();
             let numbers =
                 |all: &[String]| all.iter().map(|value| value.parse::<f64>().ok()).collect::<Vec<_>>();
             let is_same = numbers(&text) == numbers(values);
@@ -103,7 +103,8 @@ impl TrialValues {
     /// Returns the values as `--set` takes them.
     pub fn sets(&self) -> Vec<String> {
         let set = |((name, attribute), values): (&(String, String), &Vec<String>)| {
-            format!("{}.{attribute}={}", Syntax::Notes.key(name), values.join(" "))
+            let of = if name == numbers::NAME { String::new() } else { Syntax::Notes.key(name) + "." };
+            format!("{of}{attribute}={}", values.join(" "))
         };
         self.all().iter().map(set).collect()
     }
@@ -111,7 +112,7 @@ impl TrialValues {
     /// Writes the values of one attribute, or of all, into a scene's text, and changes nothing else in it.
     ///
     /// # Errors
-    /// The name of an object that the text does not define in one place.
+    /// The name of an object or a number that the text does not define in one place.
     pub fn written(
         &self,
         registry: &Registry,
@@ -124,7 +125,8 @@ impl TrialValues {
         for (key, values) in all.iter().filter(|(key, _)| only.is_none_or(|only| is(key, only))) {
             let (name, attribute) = key;
             let view = editor::read(registry, file, text);
-            text = write(&view, name, attribute, values).ok_or_else(|| name.clone())?;
+            let what = if name == numbers::NAME { attribute } else { name };
+            text = write(&view, name, attribute, values).ok_or_else(|| what.clone())?;
         }
         Ok(text.as_str().to_owned())
     }
@@ -134,32 +136,35 @@ fn is((name, attribute): &(String, String), which: &Which) -> bool {
     (name, attribute) == (&which.name, &which.attribute)
 }
 
-/// Returns an attribute as the text gives it.
-fn given<'v>(view: &'v View, name: &str, attribute: &str) -> Option<&'v editor::Attribute> {
+/// Returns the values of an attribute or of a number as the text gives them; none where it does not.
+pub fn given(view: &View, name: &str, attribute: &str) -> Vec<Word> {
+    if name == numbers::NAME {
+        return numbers::value(view, attribute).into_iter().collect();
+    }
     let is_meant = |given: &&editor::Attribute| given.known.is_some_and(|known| known.name() == attribute);
-    view.entity(name)?.attributes.iter().find(is_meant)
+    let given = view.entity(name).and_then(|entity| entity.attributes.iter().find(is_meant));
+    given.map_or_else(Vec::new, |given| given.values.clone())
 }
 
-/// Writes the values of one attribute into a text, and changes nothing else in it; `None` where the text does not define its
-/// entity in one place.
+/// Writes the values of one attribute, or of a number, into a text, and changes nothing else in it; `None` where the text
+/// does not define it in one place.
 pub fn write(view: &View, name: &str, attribute: &str, values: &[String]) -> Option<Text> {
-    let entity = view.entity(name)?;
-    let Some(given) = given(view, name, attribute) else {
-        let (at, between) = view.room(entity);
+    let given = given(view, name, attribute);
+    let (Some(first), Some(last)) = (given.first(), given.last()) else {
+        let (at, between) = view.room(view.entity(name)?);
         let usage = view.syntax.pair(attribute, values);
         return Some(view.text.edited(at..at, &format!("{between}{usage}")));
     };
-    let (first, last) = (given.values.first()?, given.values.last()?);
-    if given.values.len() == values.len() {
+    if given.len() == values.len() {
         let mut text = view.text.clone();
-        for (word, value) in given.values.iter().zip(values).rev() {
+        for (word, value) in given.iter().zip(values).rev() {
             text = text.edited(word.place(), value);
         }
         return Some(text);
     }
     let joined = match view.syntax {
         Syntax::Notes => values.join(" "),
-        Syntax::Toml if given.values.len() == 1 => format!("[{}]", values.join(", ")),
+        Syntax::Toml if given.len() == 1 => format!("[{}]", values.join(", ")),
         Syntax::Toml => values.join(", "),
     };
     Some(view.text.edited(first.start..last.end, &joined))
@@ -200,6 +205,26 @@ mod tests {
         assert_eq!(on_lines, Ok("material t\n{\n    diffuse 1 1 1\n    shininess 9\n}\n".to_owned()));
         let toml = written("a.toml", "[material.t]\ndiffuse = [1, 1, 1]\n", trial_values);
         assert_eq!(toml, Ok("[material.t]\ndiffuse = [1, 1, 1]\nshininess = 9\n".to_owned()));
+    }
+
+    #[test]
+    fn a_named_number_is_set_and_written() {
+        let trial_values: &[(&str, &str, &[&str])] = &[("", "k", &["2.5"])];
+        for (file, text) in [
+            ("a.ray", "let k 0.5 # here\nlet f(u) \"k*u\"\nsphere ball { radius \"k\" }"),
+            ("a.ray", "let k = \"0.5\"\nrepeat i 2 { let k 7 sphere ball { radius \"k\" } }"),
+            ("a.toml", "[let]\nk = 0.5 # here\n[sphere.ball]\nradius = \"k\"\n"),
+        ] {
+            let after = text.replace("\"0.5\"", "2.5").replace("0.5", "2.5");
+            assert_eq!(written(file, text, trial_values), Ok(after));
+        }
+        let unknown = written("a.ray", "let k \"1 + 1\"", trial_values);
+        assert_eq!(unknown, Err("k".to_owned()), "a formula stays");
+        let all = TrialValues::default();
+        all.put("", "k", &[2.5]);
+        assert_eq!(all.sets(), ["k=2.5"]);
+        let view = editor::read(Registry::get().expect("plugins"), "a.ray", Text::new("let k 0.5"));
+        assert_eq!(all.differences(&view)[0].text, ["0.5"]);
     }
 
     #[test]

@@ -42,6 +42,24 @@ fn a_page_that_comes_later_says_what_differs_from_the_file() {
 }
 
 #[test]
+fn a_named_number_has_a_slider_and_is_written_into_the_scene() {
+    let scene = |size: &str| format!("let size {size} # of the ball\n{}", ball("9 0 0")).replace("radius 2", "radius \"size\"");
+    let Some((watching, browser)) = opened(&scene("2")) else { return };
+    browser.press('v');
+    browser.wait("document.querySelector('#field-size-0')");
+    browser.run("const slider = document.querySelector('#fields input[type=range]'); slider.value = 1.25; slider.dispatchEvent(new Event('input'))");
+    shown(&browser, 2);
+    assert!(canvas(&browser) == render(&model(&scene("1.25"))));
+    browser.wait(&format!("{SAID} === '1 value differs from the file'"));
+    let row = "document.querySelector('#differs li span').textContent";
+    assert_eq!(browser.text(&format!("return {row}")), "size 2 → 1.25");
+    browser.run("document.querySelector('#write').click()");
+    browser.wait("document.querySelector('#fields p span').textContent === 'written'");
+    assert_eq!(text(&watching), scene("1.25"));
+    browser.wait("document.querySelector('#differs').hidden && document.querySelector('#field-size-0').value === '1.25'");
+}
+
+#[test]
 fn what_check_refuses_is_not_written() {
     let watching = Watching::text(&ball("9 0 0"));
     let mut events = watching.events();

@@ -11,12 +11,13 @@ const differ = (all) => {
   $('#differs span').textContent = all.length === 1 ? '1 value differs from the file' : `${all.length} values differ from the file`
   if (!all.length) $('#differs pre').hidden = true
   $('#differs ul').replaceChildren(...all.map(({ name, attribute, values, text }) => {
-    const row = document.createElement('li'), words = document.createElement('span')
-    words.textContent = `${name} ${attribute} ${text.join(' ') || '(not given)'} → ${values.join(' ')}`
+    // A named number has no object.
+    const of = `${name} ${attribute}`.trim(), row = document.createElement('li'), words = document.createElement('span')
+    words.textContent = `${of} ${text.join(' ') || '(not given)'} → ${values.join(' ')}`
     const buttons = ['write', 'discard'].map((verb) => {
       const button = document.createElement('button')
       button.textContent = verb
-      button.setAttribute('aria-label', `${verb} ${attribute} of ${name}`)
+      button.setAttribute('aria-label', `${verb} ${of}`)
       button.addEventListener('click', () => settle(verb, { name, attribute }))
       return button
     })
