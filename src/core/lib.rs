@@ -37,6 +37,7 @@ pub use glam;
 pub use tabray_exact as exact;
 
 pub mod files;
+pub mod held;
 pub mod geometry;
 pub mod memory;
 pub mod output;

@@ -1,6 +1,7 @@
 //! Image files of any format, decoded to texels within a limit of memory.
 
-use crate::files::{self, ImageBytes};
+use crate::files::ImageBytes;
+use crate::held::SceneFile;
 use crate::text;
 use crate::world::display::Display;
 use crate::world::texels::Texels;
@@ -53,8 +54,8 @@ pub(super) fn decode(
 /// # Errors
 /// Returns the reason why the image cannot be read.
 pub(super) fn read(path: &Path, is_opaque: bool, display: &Display, most: u64) -> Result<Decoded, String> {
-    let file = files::open(path).map_err(|error| text::reason(&error))?;
-    let length = file.metadata().map_err(|error| text::reason(&error))?.len();
+    let file = SceneFile::open(path).map_err(|error| text::reason(&error))?;
+    let length = file.length().map_err(|error| text::reason(&error))?;
     decode_from(&mut BufReader::new(file), length, is_opaque, display, most)
 }
 

@@ -17,6 +17,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use tabray_core::files;
+use tabray_core::held::SceneFile;
 use tabray_core::text::{self, nearest_file};
 use toml::de::{DeTable, DeValue};
 
@@ -229,7 +230,7 @@ fn read(file: &str, path: &Path, open: &[(PathBuf, Arc<str>)], room: u64) -> Res
         return Ok(text.as_bytes().to_vec());
     }
     let mut bytes = Vec::new();
-    let read = files::open(path).and_then(|opened| opened.take(room + 1).read_to_end(&mut bytes));
+    let read = SceneFile::open(path).and_then(|opened| opened.take(room + 1).read_to_end(&mut bytes));
     let Err(error) = read else { return Ok(bytes) };
     let near = nearest_file(path).filter(|_| error.kind() == io::ErrorKind::NotFound);
     let near = near.map(|near| Path::new(file).with_file_name(near));

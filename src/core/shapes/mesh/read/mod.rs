@@ -25,7 +25,7 @@ use format::Format;
 use model::MemoryBudget;
 pub use model::{FilePosition, Model, ReadError, Remark, Wanted};
 
-use crate::files;
+use crate::held::SceneFile;
 use crate::memory;
 use crate::text;
 use bytesize::ByteSize;
@@ -54,8 +54,8 @@ pub fn read(path: &Path, wanted: Wanted, memory: u64) -> Result<Model, ReadError
             near.map_or(text::reason(&error), |near| format!("it does not exist, but `{near}` does"));
         ReadError::file(reason)
     };
-    let mut file = files::open(path).map_err(cannot)?;
-    let size = file.metadata().map_err(cannot)?.len();
+    let mut file = SceneFile::open(path).map_err(cannot)?;
+    let size = file.length().map_err(cannot)?;
     let budget = MemoryBudget::new(memory, size, wanted).map_err(ReadError::file)?;
     let mut bytes = Vec::new();
     let is_held =

@@ -4,7 +4,7 @@ use super::blocks::{self, Words, words};
 use super::finish::{Finish, Map, Mask};
 use super::model::{MemoryBudget, Model, Remark};
 use super::textures::{Textures, first_of};
-use crate::files;
+use crate::held::SceneFile;
 use crate::text;
 use crate::world::material::Rgb;
 use crate::world::texture::{CUTOFF, Texture};
@@ -116,7 +116,7 @@ fn named(names: &[u8], folder: &Path) -> Vec<String> {
 
 fn text_of(path: &Path) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
-    let file = files::open(path);
+    let file = SceneFile::open(path);
     let read = file.and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes));
     match read {
         Ok(_) if bytes.len() as u64 > LONGEST => Err("it is longer than 64 MiB".to_owned()),

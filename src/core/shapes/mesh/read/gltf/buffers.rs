@@ -1,7 +1,7 @@
 //! The numbers of glTF: buffers, views of buffers, and accessors, which give the types of the numbers in a view.
 
 use super::json::{self, Gltf};
-use crate::files;
+use crate::held::SceneFile;
 use crate::shapes::mesh::read::model::{MemoryBudget, shown};
 use crate::text;
 use base64::Engine;
@@ -195,7 +195,7 @@ pub fn contents(uri: &str, folder: &Path, most: u64) -> Result<Vec<u8>, String> 
     }
     let path = folder.join(&*unescaped(uri));
     let cannot = |reason: String| format!("its buffer `{}` cannot be read: {reason}", text::abridged(uri));
-    let file = files::open(&path).map_err(|error| {
+    let file = SceneFile::open(&path).map_err(|error| {
         let near = if path.exists() { None } else { text::nearest_file(&path) };
         cannot(near.map_or(text::reason(&error), |near| format!("it does not exist, but `{near}` does")))
     })?;

@@ -1,0 +1,109 @@
+//! Files that a scene names: those of the system, and those that a program holds in memory, as in a browser, which has no
+//! files.
+
+use crate::files;
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, Cursor, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, PoisonError, RwLock};
+
+/// The files that are held.
+static ALL: RwLock<BTreeMap<PathBuf, Arc<[u8]>>> = RwLock::new(BTreeMap::new());
+
+/// Holds a file, which is then found at this path in place of one of the system.
+pub fn hold(path: &Path, bytes: Vec<u8>) {
+    let mut all = ALL.write().unwrap_or_else(PoisonError::into_inner);
+    all.insert(files::plain(path), bytes.into());
+}
+
+/// Finds a file that is held: at this path, or else one of the same name in another folder.
+fn find(path: &Path) -> Option<Arc<[u8]>> {
+    let all = ALL.read().unwrap_or_else(PoisonError::into_inner);
+    if all.is_empty() {
+        return None;
+    }
+    let path = files::plain(path);
+    let is_namesake = |known: &Path| known.file_name() == path.file_name();
+    let namesake = || all.iter().find(|(known, _)| is_namesake(known)).map(|(_, bytes)| bytes);
+    all.get(&path).or_else(namesake).cloned()
+}
+
+/// Tells whether a file is held for this path.
+pub fn has(path: &Path) -> bool {
+    find(path).is_some()
+}
+
+/// A file that a scene names, opened to be read.
+pub enum SceneFile {
+    /// One of the system.
+    Stored(File),
+    /// One that is held.
+    Held(Cursor<Arc<[u8]>>),
+}
+
+impl SceneFile {
+    /// Opens the file at a path.
+    ///
+    /// # Errors
+    /// Returns those of [`files::open`].
+    pub fn open(path: &Path) -> io::Result<Self> {
+        match find(path) {
+            Some(bytes) => Ok(Self::Held(Cursor::new(bytes))),
+            None => files::open(path).map(Self::Stored),
+        }
+    }
+
+    /// Returns the length in bytes.
+    ///
+    /// # Errors
+    /// Returns those of the system.
+    pub fn length(&self) -> io::Result<u64> {
+        match self {
+            Self::Stored(file) => Ok(file.metadata()?.len()),
+            Self::Held(bytes) => Ok(bytes.get_ref().len() as u64),
+        }
+    }
+}
+
+impl Read for SceneFile {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        match self {
+            Self::Stored(file) => file.read(buffer),
+            Self::Held(bytes) => bytes.read(buffer),
+        }
+    }
+}
+
+impl Seek for SceneFile {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        match self {
+            Self::Stored(file) => file.seek(to),
+            Self::Held(bytes) => bytes.seek(to),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_held_file_is_found_at_its_path_and_by_its_name() {
+        for (path, bytes) in [("held/a/wood.test", "a"), ("held/b/wood.test", "b")] {
+            hold(Path::new(path), bytes.into());
+        }
+        for (path, found) in [
+            ("held/b/wood.test", Some("b")),
+            ("held/x/../b/./wood.test", Some("b")),
+            ("wood.test", Some("a")),
+            ("held/other.test", None),
+        ] {
+            let text = SceneFile::open(Path::new(path)).and_then(io::read_to_string).ok();
+            assert_eq!(text.as_deref(), found, "{path}");
+            assert_eq!(has(Path::new(path)), found.is_some(), "{path}");
+        }
+        let file = SceneFile::open(Path::new("held/a/wood.test")).expect("it is held");
+        assert_eq!(file.length().expect("a length"), 1);
+    }
+}
