@@ -3,6 +3,7 @@
 use crate::text::{NAME, view, without_files};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
+use tabray_core::held;
 use tabray_core::render::plan::Plan;
 use tabray_core::scene::model::Model;
 use tabray_core::scene::value::Datum;
@@ -28,6 +29,7 @@ pub struct Scene {
     pub model: Model,
     pub places: Places,
     warnings: String,
+    lacking: Vec<String>,
 }
 
 /// A scene, as the page hears of it.
@@ -36,6 +38,8 @@ pub struct Told {
     display: Display,
     size: [usize; 2],
     warnings: String,
+    /// The files that the scene names and the page does not have.
+    lacking: Vec<String>,
 }
 
 /// Why there is no scene.
@@ -45,6 +49,8 @@ pub struct Unread {
     lines: Vec<usize>,
     /// The errors, as people read them.
     report: String,
+    /// The files that the scene names and the page does not have.
+    lacking: Vec<String>,
 }
 
 /// Values to be written into the text.
@@ -70,22 +76,24 @@ impl Scene {
                 "error: an image of {width} x {height} pixels is too large for a page\n\
                  help: the maximum is {MAX_PIXELS} pixels, such as 2048 x 2048"
             );
-            return Err(Unread { lines: Vec::new(), report });
+            return Err(Unread { lines: Vec::new(), report, lacking: Vec::new() });
         }
-        let warnings = loaded.warnings.to_string();
+        let (warnings, lacking) = (loaded.warnings.to_string(), lacking(&loaded.warnings));
         Ok(Self {
             version: version.to_owned(),
             text: text.to_owned(),
             model: loaded.model,
             places: loaded.places,
             warnings,
+            lacking,
         })
     }
 
     /// Returns what the page hears of the scene.
     pub fn told(&self) -> Told {
         let camera = &self.model.camera.value;
-        Told { display: Display::of(camera), size: camera.pixels, warnings: self.warnings.clone() }
+        let (warnings, lacking) = (self.warnings.clone(), self.lacking.clone());
+        Told { display: Display::of(camera), size: camera.pixels, warnings, lacking }
     }
 
     /// Returns what a page asks about.
@@ -155,8 +163,14 @@ impl Unread {
     fn of(report: &Report, text: &str) -> Self {
         let places = report.faults().iter().filter_map(|fault| fault.place.as_ref());
         let lines = places.filter_map(|place| lines(text, place)).map(|[first, _]| first).collect();
-        Self { lines, report: without_files(&report.to_string()) }
+        Self { lines, report: without_files(&report.to_string()), lacking: lacking(report) }
     }
+}
+
+/// Returns the files that a scene names and that are not held.
+fn lacking(report: &Report) -> Vec<String> {
+    let files = report.files().iter().filter(|file| !held::has(file));
+    files.map(|file| file.to_string_lossy().into_owned()).collect()
 }
 
 /// Writes values of an attribute into a text.

@@ -8,6 +8,8 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use std::io;
 use std::ops::ControlFlow;
+use std::path::Path;
+use tabray_core::held;
 use tabray_core::output::aov::Aov;
 use tabray_core::render::decisions;
 use tabray_core::render::plan::Plan;
@@ -82,6 +84,10 @@ impl Session {
         let parts: Vec<&str> = path.split('/').collect();
         match parts[..] {
             ["scene", version] => self.read(version, text),
+            ["file", name] => {
+                held::hold(Path::new(&*files::decoded(name)), body.to_owned());
+                Answer::new(200, "")
+            }
             ["surfaces"] => Answer::json(&surfaces::all()),
             ["surface", name] => {
                 surfaces::scene(name).map_or_else(Answer::missing, |text| Answer::new(200, text))

@@ -68,6 +68,25 @@ fn every_named_surface_is_a_sound_scene_with_a_picture_that_is_not_blank() {
 }
 
 #[test]
+fn a_file_that_the_scene_names_is_told_of_and_can_be_given() {
+    let mut session = Session::new();
+    let cloth = "texture cloth { filename \"of a page/cloth 1.png\" }
+        texplane picture { material red  normal 0 0 1  point 1 1 -1  xdir 1 0 0  dimensions 4 4  texname cloth }\n";
+    let text = BALL.to_owned() + cloth;
+    let answer = session.answer("scene/1", text.as_bytes());
+    assert_eq!(answer.status, 422);
+    let told: Value = serde_json::from_slice(&answer.bytes).expect("JSON");
+    assert_eq!(told["lacking"], serde_json::json!(["of a page/cloth 1.png"]));
+    asked(&mut session, "scene/2", BALL);
+    while !session.answer("paint/2/50", b"").bytes.is_empty() {}
+    let image = session.answer("png/2", b"").bytes;
+    assert_eq!(session.answer("file/cloth%201.png", &image).status, 200);
+    let told = asked(&mut session, "scene/1", &text);
+    assert_eq!(told["lacking"], serde_json::json!([]));
+    assert!(painted(&mut session, 50).iter().any(|byte| *byte > 0));
+}
+
+#[test]
 fn errors_have_places_in_the_text() {
     let mut session = Session::new();
     let text = BALL.replace("center", "centre\u{1f600}");

@@ -6,9 +6,12 @@ use tabray_lang::registry::Registry;
 /// What messages call the scene.
 pub const NAME: &str = "scene";
 
-/// Replaces what the system says about files by what holds here: a page has none.
+/// Replaces what the system says about a file by what helps here: a page has the files that it was given.
 pub fn without_files(message: &str) -> String {
-    message.replace("operation not supported on this platform", "a page in a browser has no files")
+    message.replace(
+        "operation not supported on this platform",
+        "it is not on the page: drop it there, or choose it by `open`",
+    )
 }
 
 /// Reads a text as an editor does.

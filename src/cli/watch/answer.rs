@@ -17,46 +17,30 @@ use hyper::{Method, Request, Response, StatusCode};
 use serde::Serialize;
 use std::io::{self, Write};
 use std::ops::ControlFlow;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 use std::time::Duration;
 use tabray_core::output::aov::Aov;
 use tabray_core::render::plan::Plan;
 use tabray_core::text;
 use tabray_core::text::Named;
 use tabray_lang::registry::Registry;
-use tabray_tools::page::{self, fields};
+use tabray_tools::page::{self, fields, html};
 use tabray_tools::probe;
 use tabray_tools::threads::renderer_with;
 use tokio::time::timeout;
 
-/// The page is one file, so that nothing of it can be missing.
-const PAGE: &str = concat!(
-    include_str!("page/head.html"),
-    "<style>\n",
-    include_str!("page/style.css"),
-    "</style>\n",
-    include_str!("page/body.html"),
-    "<script>\n",
-    include_str!("page/state.js"),
-    include_str!("page/scenes.js"),
-    include_str!("page/server.js"),
-    include_str!("page/scene.js"),
-    include_str!("page/display.js"),
-    include_str!("page/image.js"),
-    include_str!("page/zoom.js"),
-    include_str!("page/camera.js"),
-    include_str!("page/compare.js"),
-    include_str!("page/tabs.js"),
-    include_str!("page/chart.js"),
-    include_str!("page/explain.js"),
-    include_str!("page/fields.js"),
-    include_str!("page/trial.js"),
-    include_str!("page/text.js"),
-    include_str!("page/edit.js"),
-    include_str!("page/pointer.js"),
-    include_str!("page/keys.js"),
-    "</script>\n",
-);
+/// The page, once it is asked for.
+static PAGE: LazyLock<Bytes> = LazyLock::new(|| {
+    let scripts = concat!(
+        include_str!("page/scenes.js"),
+        include_str!("page/chart.js"),
+        include_str!("page/trial.js"),
+        include_str!("page/text.js"),
+        include_str!("page/edit.js"),
+    );
+    let (html, link) = (include_str!("page/own.html"), include_str!("page/server.js"));
+    html::page(&html::Own { html, style: "", link, scripts }).into()
+});
 
 /// The maximum number of pixels and layers that are computed at the same time, for all pages.
 pub const JOBS: usize = 4;
@@ -96,7 +80,7 @@ pub async fn answer(request: &Request<Bytes>, session: &Session, work: &Work) ->
         return serve::text(StatusCode::METHOD_NOT_ALLOWED, "there is nothing of that kind to do\n");
     }
     match path[..] {
-        [""] => serve::content(StatusCode::OK, "text/html; charset=utf-8", PAGE),
+        [""] => serve::content(StatusCode::OK, "text/html; charset=utf-8", PAGE.clone()),
         ["events"] => serve::stream("text/event-stream", events(session)),
         ["probe", version, x, y] => about(feed, work, version, |frame| pixel(frame, x, y)).await,
         ["object", version, x, y] => {

@@ -4,6 +4,7 @@
 pub mod camera;
 pub mod display;
 pub mod fields;
+pub mod html;
 pub mod numbers;
 pub mod trial_values;
 

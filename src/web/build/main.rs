@@ -4,10 +4,14 @@
 //! anywhere. The module is compiled by the cargo and the rustc that compiled this program, for wasm32-unknown-unknown; nothing
 //! is downloaded but crates.
 
+#[path = "../../tools/page/html.rs"]
+mod html;
+
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
 use flate2::write::GzEncoder;
+use html::Own;
 use sha2::{Digest, Sha256};
 use std::env;
 use std::error::Error;
@@ -19,26 +23,16 @@ use std::process::{Command, ExitCode, Stdio};
 /// The target of the module.
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// The scripts of the page, in the order in which they run: those of `watch`'s page, and its own.
-const SCRIPTS: [&str; 17] = [
-    "cli/watch/page/state.js",
-    "web/page/link.js",
-    "cli/watch/page/scene.js",
-    "cli/watch/page/display.js",
-    "cli/watch/page/image.js",
-    "cli/watch/page/zoom.js",
-    "cli/watch/page/camera.js",
-    "cli/watch/page/tabs.js",
-    "cli/watch/page/explain.js",
-    "cli/watch/page/fields.js",
-    "web/page/editor.js",
-    "web/page/proof.js",
-    "web/page/formula.js",
-    "web/page/save.js",
-    "web/page/share.js",
-    "cli/watch/page/pointer.js",
-    "cli/watch/page/keys.js",
-];
+/// The scripts of this page; those of all pages are around them.
+const SCRIPTS: &str = concat!(
+    include_str!("../page/editor.js"),
+    include_str!("../page/proof.js"),
+    include_str!("../page/formula.js"),
+    include_str!("../page/files.js"),
+    include_str!("../page/save.js"),
+    include_str!("../page/share.js"),
+    include_str!("../page/host.js"),
+);
 
 fn main() -> ExitCode {
     match made() {
@@ -62,37 +56,26 @@ fn made() -> Result<String, Box<dyn Error>> {
     let folder = target.join("web");
     fs::create_dir_all(&folder)?;
 
-    let read =
-        |path: &str| fs::read_to_string(sources.join(path)).map_err(|error| format!("{path}: {error}"));
-    let scripts = SCRIPTS.iter().map(|path| read(path)).collect::<Result<String, _>>()?;
-    let page = |more_head: &str, more_body: &str| -> Result<String, Box<dyn Error>> {
-        let style = read("cli/watch/page/style.css")? + &read("web/page/web.css")?;
-        let (head, body, worker) =
-            (read("web/page/head.html")?, read("web/page/body.html")?, read("web/page/worker.js")?);
-        Ok(format!(
-            "{head}{more_head}<style>\n{style}</style>\n{body}{more_body}\
-             <script type=\"text/plain\" id=\"worker\">\n{worker}</script>\n<script>\n{scripts}</script>\n"
-        ))
-    };
     let served = page(
         "<link rel=\"icon\" href=\"icon.svg\">\n<link rel=\"manifest\" href=\"tabray.webmanifest\">\n",
         "",
-    )?;
+    );
     let packed = gzipped(&module)?;
     let inline =
         format!("<script type=\"application/gzip\" id=\"module\">{}</script>\n", STANDARD.encode(&packed));
-    let alone = page("<link rel=\"icon\" href=\"data:,\">\n", &inline)?;
+    let alone = page("<link rel=\"icon\" href=\"data:,\">\n", &inline);
 
     let mut hash = Sha256::new();
     hash.update(&served);
     hash.update(&module);
     let version: String = hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect();
+    let offline = include_str!("../page/offline.js").replace("VERSION", &version);
     let files: [(&str, &[u8]); 6] = [
         ("index.html", served.as_bytes()),
         ("tabray.wasm", &module),
-        ("offline.js", &read("web/page/offline.js")?.replace("VERSION", &version).into_bytes()),
-        ("tabray.webmanifest", &read("web/page/tabray.webmanifest")?.into_bytes()),
-        ("icon.svg", &read("web/page/icon.svg")?.into_bytes()),
+        ("offline.js", offline.as_bytes()),
+        ("tabray.webmanifest", include_bytes!("../page/tabray.webmanifest")),
+        ("icon.svg", include_bytes!("../page/icon.svg")),
         ("tabray.html", alone.as_bytes()),
     ];
     let mut said = String::new();
@@ -110,6 +93,22 @@ fn made() -> Result<String, Box<dyn Error>> {
     }
     said += &format!("the page as it is served:{}\n", compressed(downloaded).replacen(',', "", 1));
     Ok(said)
+}
+
+/// Puts the page together, with more in its head and at its end.
+fn page(head: &str, end: &str) -> String {
+    let own = include_str!("../page/own.html").replacen('\n', &format!("\n{head}"), 1);
+    let worker = concat!(
+        "<script type=\"text/plain\" id=\"worker\">\n",
+        include_str!("../page/worker.js"),
+        "</script>\n"
+    );
+    html::page(&Own {
+        html: &format!("{own}<!-- slot: end -->\n{end}{worker}"),
+        style: include_str!("../page/web.css"),
+        link: include_str!("../page/link.js"),
+        scripts: SCRIPTS,
+    })
 }
 
 fn bytes_of(count: usize) -> String {

@@ -33,6 +33,7 @@ const start = (module, hears) => new Promise((ready) => {
     waiting.set(last, { request, done, timer: paints ? setTimeout(anew, PATIENCE) : 0 })
     worker.postMessage(request)
   })
+  ask.give = (name, bytes) => worker.postMessage({ file: name, bytes })
   const begin = () => {
     worker?.terminate()
     worker = new Worker(source)
@@ -44,6 +45,7 @@ const start = (module, hears) => new Promise((ready) => {
       waiting.delete(data.id)
     }
     worker.postMessage({ module })
+    for (const [name, bytes] of kept) ask.give(name, bytes)
   }
   const anew = () => {
     const asked = [...waiting.values()]
@@ -62,7 +64,18 @@ const start = (module, hears) => new Promise((ready) => {
   begin()
 })
 
+// The files that the scene may name, by their names as parts of a path.
+const kept = new Map()
+
 let painter = null, helper = null
+
+/// Gives a file to the program.
+const give = (name, bytes) => {
+  const part = encodeURIComponent(name)
+  kept.set(part, bytes)
+  for (const ask of [painter, helper]) ask.give(part, bytes)
+}
+
 // The scene of the picture, and the version of the one that the helper has.
 let painted = { version: 0, text: '' }, helped = 0
 
@@ -72,14 +85,17 @@ const read = async (text) => {
   const of = ++reads, answer = await painter(`scene/${of}`, text, true)
   if (!answer.ok) {
     if (of !== reads) return
-    const { lines, report: words } = await answer.json()
+    const { lines, report: words, lacking: names } = await answer.json()
+    lack(names ?? [])
     refuse({ lines, report: words, name: nameOf(text), text: null })
     // The editor tells what has a place in the text.
     if (lines.length) report('', false)
     return
   }
   painted = { version: of, text }
-  begin({ ...await answer.json(), warnings: '', version: of, text, name: nameOf(text) })
+  const told = await answer.json()
+  lack(told.lacking)
+  begin({ ...told, warnings: '', version: of, text, name: nameOf(text) })
 }
 
 /// What a scene calls itself: the first words of a comment at its beginning.
@@ -150,7 +166,7 @@ const follow = async () => {
   }
   root.dataset.loaded = Math.round(performance.now())
   await listSurfaces()
-  await setText(await textOfAddress() ?? await (await helper('surface/barth-6')).text())
+  await setText(await (hosted ? hosted.first : textOfAddress()) ?? await (await helper('surface/barth-6')).text())
   // Here, dragging is for the camera from the beginning.
   toggleSteering()
   stage.blur()

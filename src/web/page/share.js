@@ -37,6 +37,7 @@ const writeAddress = async () => {
 }
 let waitsToShare = 0
 const shareSoon = () => {
+  if (hosted) return
   clearTimeout(waitsToShare)
   waitsToShare = setTimeout(async () => {
     await writeAddress()

@@ -10,14 +10,18 @@ let job = null
 
 const coder = new TextEncoder(), decoder = new TextDecoder()
 
+// The files that the scene may name, by their names as parts of a path.
+const held = new Map()
+
 const begin = () => {
   program = new WebAssembly.Instance(module, {}).exports
   program.start()
+  for (const [name, bytes] of held) ask(`file/${name}`, bytes)
 }
 
 /// Asks the program, and returns its status and its bytes.
 const ask = (path, body = '') => {
-  const [head, tail] = [path, body].map((part) => coder.encode(part))
+  const [head, tail] = [path, body].map((part) => typeof part === 'string' ? coder.encode(part) : part)
   const length = head.length + tail.length, at = program.room(length)
   const request = new Uint8Array(program.memory.buffer, at, length)
   request.set(head)
@@ -41,7 +45,7 @@ const askSafely = (path, body) => {
       ? 'its reflections are deeper than a browser allows: use the program itself'
       : 'it may need more memory than a browser gives; if not, please report it'}`
     return path.startsWith('scene/')
-      ? { status: 422, bytes: coder.encode(JSON.stringify({ lines: [], report })).buffer }
+      ? { status: 422, bytes: coder.encode(JSON.stringify({ lines: [], report, lacking: [] })).buffer }
       : { status: 500, bytes: coder.encode(report).buffer }
   }
 }
@@ -81,6 +85,10 @@ onmessage = ({ data }) => {
     module = data.module
     begin()
     return postMessage({ ready: true })
+  }
+  if (data.file) {
+    if (askSafely(`file/${data.file}`, data.bytes).status === 200) held.set(data.file, data.bytes)
+    return
   }
   const { id, path, body, paints } = data
   postMessage({ heard: id })

@@ -1,0 +1,43 @@
+// Files that the scene names: dropped onto the page or chosen, and kept in memory.
+
+// The most bytes of all files together: what a page takes beside pictures.
+const MOST_BYTES = 2 ** 28
+
+// The files that the scene names and the page does not have.
+let lacking = []
+const lack = (names) => {
+  lacking = names
+  root.dataset.lacking = names.join(' ')
+  hosted?.lacks(names)
+}
+
+const lastOf = (path) => path.split(/[\\/]/).at(-1)
+
+/// Takes files: a scene becomes the text, unless the scene that is there includes it; the others are kept.
+const take = async (list) => {
+  let text = null, bytes = [...kept.values()].reduce((sum, one) => sum + one.length, 0)
+  for (const file of list) {
+    bytes += file.size
+    if (bytes > MOST_BYTES) return report(`error: the files are larger than ${MOST_BYTES >> 20} MiB in all, which is too much for a page`, false)
+    const isScene = /\.(ray|toml)$/i.test(file.name) && !lacking.some((path) => lastOf(path) === file.name)
+    if (isScene) text = await file.text()
+    else give(file.name, new Uint8Array(await file.arrayBuffer()))
+  }
+  if (text === null) await changed()
+  else await setText(text)
+  root.dataset.kept = kept.size
+  announce(`${list.length} ${list.length === 1 ? 'file is' : 'files are'} on the page`)
+}
+
+const isOfFiles = (event) => event.dataTransfer?.types.includes('Files')
+document.addEventListener('dragover', (event) => { if (isOfFiles(event)) event.preventDefault() })
+document.addEventListener('drop', (event) => {
+  if (!isOfFiles(event)) return
+  event.preventDefault()
+  take([...event.dataTransfer.files])
+})
+$('#open').addEventListener('click', () => $('#chosen').click())
+$('#chosen').addEventListener('change', async ({ target }) => {
+  await take([...target.files])
+  target.value = ''
+})
