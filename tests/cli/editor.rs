@@ -21,6 +21,7 @@ struct Client {
     output: BufReader<ChildStdout>,
     asked: i32,
     told: VecDeque<Notification>,
+    capabilities: Value,
 }
 
 impl Client {
@@ -34,12 +35,13 @@ impl Client {
             .expect("the program starts");
         let input = program.stdin.take().expect("a pipe");
         let output = BufReader::new(program.stdout.take().expect("a pipe"));
-        let mut client = Self { program, input, output, asked: 0, told: VecDeque::new() };
+        let mut client = Self { program, input, output, asked: 0, told: VecDeque::new(), capabilities: Value::Null };
         let item = json!({ "completionItem": { "snippetSupport": true } });
         let action = json!({ "disabledSupport": true });
         let capabilities = json!({ "textDocument": { "completion": item, "codeAction": action } });
         let begun = client.ask("initialize", json!({ "capabilities": capabilities })).expect("capabilities");
         assert_eq!(begun["serverInfo"]["name"], "tabray");
+        client.capabilities = begun["capabilities"].clone();
         client.note("initialized", json!({}));
         client
     }
@@ -255,6 +257,30 @@ fn a_session_has_answers_to_all_that_an_editor_asks() {
         settings.set_omit_expression(true);
         settings.bind(|| insta::assert_snapshot!(syntax, told.replace(&place, "FOLDER")));
     }
+}
+
+#[test]
+fn words_are_told_apart_by_the_legend() {
+    let folder = folder();
+    let mut client = Client::start(&folder);
+    let begun = client.capabilities.clone();
+    let legend = &begun["semanticTokensProvider"]["legend"]["tokenTypes"];
+    let (uri, text) = (uri(folder.path(), "scene.ray"), "material \"😀\" { ambient 1 0 0 }\nlet r \"2 +\n k\"\n");
+    client.open(&uri, text);
+    let answer = client.ask("textDocument/semanticTokens/full", json!({ "textDocument": { "uri": uri } }));
+    let data: Vec<usize> = serde_json::from_value(answer.expect("tokens")["data"].clone()).expect("numbers");
+    let (mut line, mut column, mut told) = (0, 0, String::new());
+    for token in data.chunks(5) {
+        column = if token[0] == 0 { column } else { 0 } + token[1];
+        line += token[0];
+        let units: Vec<_> = text.lines().nth(line).expect("a line").encode_utf16().collect();
+        let word = String::from_utf16(&units[column..column + token[2]]).expect("whole letters");
+        told += &format!("{word}:{} ", legend[token[3]].as_str().expect("a kind"));
+    }
+    let want = "material:type \"😀\":variable ambient:property 1:number 0:number 0:number let:keyword r:variable 2:number \
+                +:operator k:variable ";
+    assert_eq!(told, want);
+    client.end();
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::documents::{Document, Documents, LARGEST};
 use super::faults::{Faults, diagnostic};
 use super::protocol::{
-    ColorInformation, DocumentSymbol, FoldingRange, InlayHint, RequestParams, Span, markdown, path, range,
+    ColorInformation, DocumentSymbol, FoldingRange, InlayHint, RequestParams, SemanticTokens, Span, markdown, path, range,
     span, text_of,
 };
 use serde_json::{Value, json};
@@ -113,6 +113,7 @@ impl<'r> Server<'r> {
             "textDocument/foldingRange" => Some(Self::folds),
             "textDocument/documentColor" => Some(Self::colours),
             "textDocument/inlayHint" => Some(Self::hints),
+            "textDocument/semanticTokens/full" => Some(Self::tokens),
             _ => None,
         };
         if let Some(answer) = large {
@@ -312,6 +313,11 @@ impl<'r> Server<'r> {
     fn hints(request: &TextRequest) -> String {
         let hints = editor::hints(&request.view, &request.range());
         text_of(&hints.iter().map(|hint| InlayHint::of(&request.view.text, hint)).collect::<Vec<_>>())
+    }
+
+    fn tokens(request: &TextRequest) -> String {
+        let (text, tokens) = (&request.view.text, editor::semantic_tokens(&request.view));
+        text_of(&SemanticTokens::of(text, &tokens))
     }
 
     /// Returns the corrections of the errors in a range.

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use tabray_core::scene::kind::Kind;
-use tabray_lang::editor::{self, Fold, Hint, Position, Symbol, Text};
+use tabray_lang::editor::{self, Fold, Hint, Position, SemanticToken, Symbol, Text, TokenKind};
 
 /// The parameters of a request of any kind; those that a request does not have get a default.
 #[derive(Default, Deserialize)]
@@ -74,6 +74,13 @@ pub fn capabilities() -> Value {
         "foldingRangeProvider": true,
         "renameProvider": { "prepareProvider": true },
         "inlayHintProvider": true,
+        "semanticTokensProvider": {
+            "legend": {
+                "tokenTypes": TokenKind::ALL.map(TokenKind::name),
+                "tokenModifiers": ["definition"],
+            },
+            "full": true,
+        },
     })
 }
 
@@ -165,6 +172,39 @@ impl InlayHint {
     pub fn of(text: &Text, hint: &Hint) -> Self {
         let label = format!("{}:", hint.name);
         Self { position: text.position(hint.at), label, kind: 2, padding_right: true }
+    }
+}
+
+/// What words of a text are: of each, five numbers.
+#[derive(Default, Serialize)]
+pub struct SemanticTokens {
+    data: Vec<u32>,
+}
+
+impl SemanticTokens {
+    /// Writes each word beside the one before: lines between, units between on one line, its length, its kind, and 1 in a
+    /// definition. A word on several lines is written as one on each.
+    pub fn of(text: &Text, tokens: &[SemanticToken]) -> Self {
+        let (mut all, mut before) = (Self::default(), Position::default());
+        for token in tokens {
+            let mut start = token.place.start;
+            for line in text.as_str()[token.place.clone()].split_inclusive('\n') {
+                let here = text.position(start);
+                let length = line.trim_end_matches(['\n', '\r']).chars().map(char::len_utf16).sum::<usize>();
+                start += line.len();
+                if length == 0 {
+                    continue;
+                }
+                let is_same_line = here.line == before.line;
+                let units = here.character - if is_same_line { before.character } else { 0 };
+                let kind = TokenKind::ALL.iter().position(|kind| *kind == token.kind).unwrap_or(0);
+                let (length, kind) = (length as u32, kind as u32);
+                let definition = u32::from(token.is_definition);
+                all.data.extend([here.line - before.line, units, length, kind, definition]);
+                before = here;
+            }
+        }
+        all
     }
 }
 

@@ -17,6 +17,7 @@ mod notes;
 mod outline;
 mod project;
 mod read;
+mod semantic;
 mod signature;
 mod snippet;
 #[cfg(test)]
@@ -39,6 +40,7 @@ pub use names::{name_at_cursor, unknown_numbers};
 pub use outline::{Fold, Symbol, folds, outline};
 pub use project::{Files, Group, Location, definitions, group, renamed, usages};
 pub use read::read;
+pub use semantic::{SemanticToken, TokenKind, semantic_tokens};
 pub use signature::signature;
 pub use text::{Position, Text};
 pub use view::{Attribute, Item, View, Word};

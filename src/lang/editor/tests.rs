@@ -302,6 +302,9 @@ fn ask(path: &Path, text: &Text, at: usize) {
     }
     name_at_cursor(&view, at).iter().for_each(|meant| check(&meant.place));
     hints(&view, &(0..length)).iter().for_each(|hint| check(&(hint.at..hint.at)));
+    let tokens = semantic_tokens(&view);
+    tokens.iter().for_each(|token| check(&token.place));
+    assert!(tokens.is_sorted_by(|one, next| one.place.end <= next.place.start), "{tokens:?}");
     for swatch in colours(&view) {
         check(&swatch.place);
         presented(&view, &swatch.place, swatch.colour);
