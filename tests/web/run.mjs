@@ -1,7 +1,7 @@
 // The page for browsers, in Chromium: node tests/web/run.mjs WEB PROGRAM [AXE]
 //
 // WEB is what `cargo run -p tabray-web-build` made, PROGRAM is tabray itself, and AXE the script of axe-core. Screenshots are
-// written to WEB/shots. TABRAY_EDITS is the number of random edits, by default 10,000.
+// written to WEB/shots. TABRAY_EDITS is the number of random edits, by default 600.
 
 import assert from 'node:assert/strict'
 import { execFileSync, spawn } from 'node:child_process'
@@ -13,7 +13,7 @@ import { fileURLToPath, pathToFileURL } from 'node:url'
 
 const [web, program, axe] = process.argv.slice(2).map((path) => resolve(path))
 const sources = join(dirname(fileURLToPath(import.meta.url)), '../..')
-const edits = +(process.env.TABRAY_EDITS ?? 10000)
+const edits = +(process.env.TABRAY_EDITS ?? 600)
 const shots = join(web, 'shots'), work = mkdtempSync(join(tmpdir(), 'tabray-web-'))
 mkdirSync(shots, { recursive: true })
 
@@ -22,7 +22,9 @@ const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'applic
 const server = createServer((request, answer) => {
   const path = new URL(request.url, 'http://x').pathname, file = join(web, path === '/' ? 'index.html' : path)
   if (!existsSync(file)) return answer.writeHead(404).end()
-  answer.writeHead(200, { 'content-type': TYPES[extname(file)] ?? 'application/octet-stream' }).end(readFileSync(file))
+  // Such a page may measure its memory, that of its workers included.
+  const alone = { 'cross-origin-opener-policy': 'same-origin', 'cross-origin-embedder-policy': 'require-corp' }
+  answer.writeHead(200, { 'content-type': TYPES[extname(file)] ?? 'application/octet-stream', ...alone }).end(readFileSync(file))
 })
 await new Promise((done) => server.listen(0, '127.0.0.1', done))
 const served = `http://127.0.0.1:${server.address().port}/`
@@ -44,7 +46,7 @@ const send = async (path, body, method = 'POST') => {
   assert(answer.ok, JSON.stringify(value))
   return value
 }
-const args = ['--headless=new', '--no-sandbox', '--disable-dev-shm-usage', '--window-size=1360,850', '--allow-file-access-from-files=false']
+const args = ['--headless=new', '--no-sandbox', '--disable-dev-shm-usage', '--window-size=1360,850', '--allow-file-access-from-files=false', '--enable-blink-features=ForceEagerMeasureMemory']
 const capabilities = { alwaysMatch: { browserName: 'chrome', timeouts: { script: 3600000 }, 'goog:chromeOptions': { args, binary: process.env.CHROMIUM ?? '/usr/bin/chromium' }, 'goog:loggingPrefs': { browser: 'ALL' } } }
 session += `/${(await send('', { capabilities })).sessionId}`
 
@@ -200,6 +202,62 @@ try {
     return said
   })
 
+  await step('files that a scene names are dropped onto the page, or chosen', async () => {
+    for (const [scene, names] of [['entities/texplane', ['textures/bricks.png']], ['entities/mesh', ['models/knot.obj', 'models/icosahedron.ply', 'models/bowl.stl']]]) {
+      const file = join(sources, 'scenes', `${scene}.ray`), text = readFileSync(file, 'utf8').replace(/samples +\d+/, '')
+      await until('setText(arguments[0]).then(done)', text)
+      assert(names.every((name) => text.includes(name)) && (await data('lacking')).split(' ').length > 0)
+      const before = await run('return version'), paths = names.map((name) => join(sources, 'scenes', name))
+      if (names.length > 1) {
+        const box = Object.values(await send('/element', { using: 'css selector', value: '#chosen' }))[0]
+        await send(`/element/${box}/value`, { text: paths.join('\n') })
+      } else {
+        await run(`
+          const bytes = Uint8Array.from(atob(arguments[1]), (letter) => letter.charCodeAt(0)), given = new DataTransfer()
+          given.items.add(new File([bytes], arguments[0]))
+          document.dispatchEvent(new DragEvent('drop', { dataTransfer: given, cancelable: true }))`, names[0].split('/')[1], readFileSync(paths[0]).toString('base64'))
+      }
+      await wait(`version > ${before} && ${isShown}`)
+      assert.equal(await data('lacking'), '')
+      assert((await canvas()).equals(native(text.replaceAll('../', `${join(sources, 'scenes')}/`))), scene)
+    }
+    await run(`
+      const given = new DataTransfer()
+      given.items.add(new File(['# dropped\\n' + arguments[0]], 'a.ray'))
+      document.dispatchEvent(new DragEvent('drop', { dataTransfer: given, cancelable: true }))`, await until("helper('surface/torus').then((answer) => answer.text()).then(done)"))
+    await wait(`editor.value.startsWith('# dropped') && ${isShown}`)
+  })
+
+  await step('a worker that is busy with an older scene is given up', async () => {
+    const busy = "look_at eye { pixeldim 64 64  position 3 2 4  target 0 0 0  angle 36  samples 65536 }"
+    const heavy = (await until("helper('surface/barth-10').then((answer) => answer.text()).then(done)")).replace(/look_at eye [^\n]*/, busy)
+    const late = +(await data('late') ?? 0)
+    await until('setText(arguments[0]).then(done)', heavy)
+    await wait("document.documentElement.dataset.begun === String(version)")
+    // It paints coarsely first.
+    await pause(1500)
+    const start = Date.now(), text = await until("helper('surface/heart').then((answer) => answer.text()).then(done)")
+    await show(text)
+    const took = Date.now() - start
+    assert.equal(+await data('late'), late + 1)
+    assert((await canvas()).equals(native(text)))
+    // The worker that took its place has the files, too.
+    await show(readFileSync(join(sources, 'scenes/entities/texplane.ray'), 'utf8').replace(/samples +\d+/, ''))
+    return `the next picture is there after ${took} ms`
+  })
+
+  await step('the image is pinned, and compared with the next', async () => {
+    await show(await until("helper('surface/heart').then((answer) => answer.text()).then(done)"))
+    await run("document.querySelector('#compare').click()")
+    await wait("document.querySelector('#comparing span').textContent.startsWith('none of')")
+    await show(await until("helper('surface/cayley').then((answer) => answer.text()).then(done)"))
+    await wait("document.querySelector('#comparing span').textContent.includes('differ')")
+    const said = await run("return document.querySelector('#comparing span').textContent")
+    await shot('compared')
+    await run("document.querySelector('#compare').click()")
+    return said
+  })
+
   await step('the address has the scene', async () => {
     await show(await until("helper('surface/cayley').then((answer) => answer.text()).then(done)"))
     await wait("location.hash.startsWith('#scene=') && location.hash === own")
@@ -264,23 +322,34 @@ try {
         }
         return text
       }
+      const together = (text, at) => Promise.all([read(text), helper('diagnose', text), helper('complete/' + at, text), helper('hover/' + at, text), helper('format', text)])
+      let longest = 0
       window.goOnEditing = async (count) => {
         for (let done = 0; done < count; done++) {
-          const text = edit(original), at = below(text.length + 1)
-          await Promise.all([read(text), helper('diagnose', text), helper('complete/' + at, text), helper('hover/' + at, text), helper('format', text)])
+          const text = edit(original), begun = performance.now()
+          let timer = 0
+          const hangs = new Promise((done) => { timer = setTimeout(done, 60000, text) })
+          if (await Promise.race([together(text, below(text.length + 1)), hangs]) === text) return { hangs: text }
+          clearTimeout(timer)
+          longest = Math.max(longest, performance.now() - begun)
         }
-        return Promise.all([painter, helper].map(async (ask) => +await (await ask('memory')).text()))
+        const memory = await Promise.all([painter, helper].map(async (ask) => +await (await ask('memory')).text()))
+        return { memory, all: (await performance.measureUserAgentSpecificMemory()).bytes, longest: Math.round(longest) }
       }`)
     // Some at a time: no answer of the driver may take minutes.
     let before, after
+    const late = +(await data('late') ?? 0)
     for (let done = 0; done < edits; done += 300) {
       after = await until('goOnEditing(arguments[0]).then(done)', Math.min(300, edits - done))
+      assert(!after.hangs, `no answer for a minute: ${after.hangs}`)
       before ??= after
     }
-    const restarts = +(await data('restarts') ?? 0)
-    assert.equal(restarts, 0, 'the program ended')
-    after.forEach((bytes, index) => assert(bytes <= before[index] + (64 << 20), `${before} bytes became ${after}`))
-    return `memory of the two workers ${before.map((bytes) => bytes >> 20)} MiB after 300, ${after.map((bytes) => bytes >> 20)} MiB at the end`
+    assert.equal(+(await data('restarts') ?? 0), 0, 'the program ended')
+    const most = (bytes) => bytes + (32 << 20)
+    after.memory.forEach((bytes, index) => assert(bytes <= most(before.memory[index]), `${before.memory} bytes became ${after.memory}`))
+    assert(after.all <= most(before.all), `${before.all} bytes became ${after.all}`)
+    const told = ({ memory, all }) => `${[...memory, all].map((bytes) => (bytes / (1 << 20)).toFixed(1)).join(' + ')} MiB`
+    return `the longest took ${after.longest} ms, ${+(await data('late') ?? 0) - late} workers were given up; module of the painter, of the helper, and all: ${told(before)} after 300, ${told(after)} at the end`
   })
 
   await step('the page is there without a network', async () => {
@@ -297,6 +366,30 @@ try {
     await wait(`document.documentElement.dataset.ready && ${isShown}`)
     const text = await run('return editor.value')
     assert((await canvas()).equals(native(text)))
+  })
+
+  await step('within an editor, the page shows its text, and tells it what changes', async () => {
+    const { identifier } = await command('Page.addScriptToEvaluateOnNewDocument', { source: 'window.sent = []; window.acquireVsCodeApi = () => ({ postMessage: (message) => sent.push(message) })' })
+    await go('about:blank')
+    await go(pathToFileURL(join(web, 'tabray.html')).href)
+    await wait('sent[0]?.ready')
+    const type = (text) => run("postMessage({ text: arguments[0] }, '*')", text)
+    const torus = readFileSync(join(sources, 'scenes/entities/texplane.ray'), 'utf8').replace('../', '').replace(/samples +\d+/, 'samples 1')
+    await type(torus)
+    await wait("sent.at(-1).lacks?.join() === 'textures/bricks.png'")
+    await run("postMessage({ files: [{ name: 'textures/bricks.png', bytes: Uint8Array.from(arguments[0]) }] }, '*')", [...readFileSync(join(sources, 'scenes/textures/bricks.png'))])
+    await wait(isShown)
+    assert((await canvas()).equals(native(torus.replace('textures/', `${join(sources, 'scenes/textures')}/`))))
+    const heart = `let k 1\n${torus}`
+    await type(heart)
+    await wait(`editor.value.startsWith('let k 1') && ${isShown}`)
+    await run('refresh()')
+    await wait("document.querySelector('#field-k-0')")
+    await run("const box = document.querySelector('#field-k-0'); box.value = 2; box.dispatchEvent(new Event('input'))")
+    await wait("sent.at(-1).text?.startsWith('let k 2')")
+    assert.equal((await run('return sent.at(-1)')).before, heart)
+    await shot('hosted')
+    await command('Page.removeScriptToEvaluateOnNewDocument', { identifier })
   })
 } finally {
   await send('', null, 'DELETE').catch(() => {})
