@@ -35,7 +35,10 @@ test("an editor has answers while a scene is written", async () => {
         timed(method, connection.sendRequest(`textDocument/${method}`, { textDocument: { uri }, ...more }));
     const at = (line, character) => ({ position: { line, character } });
 
-    await timed("initialize", connection.sendRequest("initialize", { processId: null, rootUri: null, capabilities: {} }));
+    const { capabilities } = await timed(
+        "initialize",
+        connection.sendRequest("initialize", { processId: null, rootUri: null, capabilities: {} }),
+    );
     await connection.sendNotification("initialized", {});
 
     let told = faults();
@@ -58,6 +61,9 @@ test("an editor has answers while a scene is written", async () => {
 
     const names = (await ask("completion", at(2, 25))).map((item) => item.label);
     assert.deepStrictEqual(names, ["red"]);
+    const { data } = await ask("semanticTokens/full");
+    const kinds = capabilities.semanticTokensProvider.legend.tokenTypes;
+    assert.deepStrictEqual([0, 1, 2, 3].map((word) => kinds[data[5 * word + 3]]), ["type", "variable", "property", "number"]);
     const hover = await ask("hover", at(2, 45));
     assert.match(hover.contents.value, /\*\*radius\*\* of sphere/);
     const renamed = await ask("rename", { ...at(1, 10), newName: "crimson" });
