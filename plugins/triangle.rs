@@ -1,7 +1,7 @@
 //! A triangle.
 
 use tabray::prelude::*;
-use tabray::shapes::Triangle;
+use tabray::shapes::LooseTriangle;
 
 static VERTEX1: Pparm<DVec3> = Pparm::required("vertex1", "the first vertex").unit("world coordinates");
 static VERTEX2: Pparm<DVec3> =
@@ -28,17 +28,12 @@ inventory::submit! {
 }
 
 fn shape(args: &Args) -> Option<AnyShape> {
-    let corners = [args.get(&VERTEX1), args.get(&VERTEX2), args.get(&VERTEX3)];
+    let (corners, end) = ([args.get(&VERTEX1), args.get(&VERTEX2), args.get(&VERTEX3)], args.planes_end_at());
     Some(match args.accuracy() {
-        Accuracy::Classic => {
-            Shape::new(Triangle::classic(corners)?.up_to(args.planes_end_at())).classic().into()
-        }
+        Accuracy::Classic => Shape::new(LooseTriangle::classic(corners, end)?).classic().into(),
         Accuracy::Draft | Accuracy::Exact => {
-            Shape::new(Triangle::<Exact>::new(corners)?.up_to(args.planes_end_at())).flat().certified().into()
+            Shape::new(LooseTriangle::<Exact>::new(corners, end)?).flat().certified().into()
         }
-        Accuracy::Strict => Shape::new(Triangle::<Strict>::new(corners)?.up_to(args.planes_end_at()))
-            .flat()
-            .certified()
-            .into(),
+        Accuracy::Strict => Shape::new(LooseTriangle::<Strict>::new(corners, end)?).flat().certified().into(),
     })
 }

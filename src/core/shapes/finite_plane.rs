@@ -60,8 +60,8 @@ impl<A: Bounded> Flat for FinitePlane<A> {
     type Accuracy = A;
 
     #[inline(always)]
-    fn flat(&self) -> &Plane<A> {
-        &self.plane
+    fn flat(&self) -> Plane<A> {
+        self.plane
     }
 }
 

@@ -1,10 +1,11 @@
 //! The tests of a ray against the edges of a triangle: the arithmetic behind triangles.
 
 mod hits;
+mod loose;
 mod sides;
 
 use crate::geometry::aabb::larger;
-use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange};
+use crate::geometry::ray::{Ray, RayError};
 use crate::geometry::ray_packet::RayPacket;
 use crate::shapes::plane::Plane;
 use crate::simd::soa::{LANES, Vectors};
@@ -16,7 +17,8 @@ use tabray_exact::double_double::vectors::{
 use tabray_exact::double_double::{DoubleDouble, two_sum};
 use tabray_exact::scalar::{Scalar, constants, cross, dot, per_axis};
 
-pub(crate) use sides::{UNDERFLOW, largest, passed, side_error};
+pub use loose::LooseTriangle;
+pub(crate) use sides::{UNDERFLOW, largest, passed, passed_by_eight};
 
 /// A triangle.
 #[derive(Clone, Copy, Debug)]
@@ -48,26 +50,7 @@ impl<A: Bounded> Triangle<A> {
     }
 }
 
-impl<A: Bounded> Triangle<A> {
-    /// Returns a bracket of the distance at which a ray crosses the triangle.
-    #[inline(always)]
-    pub fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
-        let rough = self.plane.rough_crossing(ray, range.origin_error);
-        let Bracket { near, far } = self.plane.t_bounds(&rough, ray, range);
-        let passed = passed(self.corners, ray, ray.drift);
-        Bracket {
-            near: if passed == Some(false) { MISS } else { near },
-            far: if passed == Some(true) { far } else { MISS },
-        }
-    }
-}
-
 impl<A> Triangle<A> {
-    /// Returns the triangle without what lies beyond a z, in world units, if one is given.
-    pub fn up_to(self, max_z: Option<f64>) -> Self {
-        Self { plane: self.plane.up_to(max_z), ..self }
-    }
-
     /// Returns a normal whose length is twice the triangle's area.
     pub(crate) fn area_normal<N: Scalar>(&self) -> [N; 3] {
         let [a, b, c] = self.given_corners();

@@ -4,9 +4,9 @@ use super::face::{Flat, Leaving, t_bounds};
 use super::known::Eight;
 use super::surface::Surface;
 use crate::geometry::bvh::{self, Order, PacketVisitor, Stack};
-use crate::geometry::ray::{Bracket, MISS, Ray, RayError};
+use crate::geometry::ray::{Bracket, MISS, RayError};
 use crate::geometry::ray_packet::RayPacket;
-use crate::shapes::triangle::{UNDERFLOW, largest, side_error};
+use crate::shapes::triangle::passed_by_eight;
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::LANES;
 use glam::DVec3;
@@ -119,7 +119,7 @@ kernels! {
         for first in lanes.step_by(LANES) {
             let of = first..first + LANES;
             let rays = rays.part(of.clone()).first(LANES);
-            let (missed, inside) = passed(corners, rays, aims.drift);
+            let (missed, inside) = passed_by_eight(corners, rays, aims.drift);
             if missed != [1; LANES] {
                 let left = if aims.leaving.most >= 0.0 { left(&flat, rays, aims, &missed) } else { None };
                 let (ends, t_max) = (&ends[of.clone()][..LANES], &mut t_max[of][..LANES]);
@@ -127,33 +127,6 @@ kernels! {
             }
         }
     }
-}
-
-/// Tells which of eight rays certainly miss a face, and which certainly pass through it, as [`passed`] does; 1 for
-/// those.
-///
-/// [`passed`]: crate::shapes::triangle::passed
-#[inline(always)]
-fn passed(corners: [DVec3; 3], rays: RayPacket, drift: RayError) -> ([u64; LANES], [u64; LANES]) {
-    let (error, more) = side_error(drift);
-    let (mut missed, mut inside) = ([0; LANES], [0; LANES]);
-    for lane in 0..LANES {
-        let Ray { origin, dir } = rays.get(lane);
-        let [a, b, c] = [corners[0] - origin, corners[1] - origin, corners[2] - origin];
-        let [one, two, three] = [largest(a) + more, largest(b) + more, largest(c) + more];
-        let sides = [a.cross(b).dot(dir), b.cross(c).dot(dir), c.cross(a).dot(dir)];
-        let errors =
-            [error * one * two + UNDERFLOW, error * two * three + UNDERFLOW, error * three * one + UNDERFLOW];
-        // Signs of differences, not comparisons, which the compiler would take one by one. Nothing is NaN, as
-        // coordinates are at most 1e152.
-        let plus = |side: usize| (errors[side] - sides[side]).to_bits();
-        let minus = |side: usize| (errors[side] + sides[side]).to_bits();
-        let any = (plus(0) | plus(1) | plus(2)) & (minus(0) | minus(1) | minus(2));
-        let all = (plus(0) & plus(1) & plus(2)) | (minus(0) & minus(1) & minus(2));
-        missed[lane] = any >> 63;
-        inside[lane] = all >> 63;
-    }
-    (missed, inside)
 }
 
 /// The brackets of eight rays with a face that they leave or may leave; `None` for other rays.

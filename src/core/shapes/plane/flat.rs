@@ -13,7 +13,13 @@ pub trait Flat: Bracketed {
     type Accuracy: Bounded;
 
     /// Returns the plane.
-    fn flat(&self) -> &Plane<Self::Accuracy>;
+    fn flat(&self) -> Plane<Self::Accuracy>;
+
+    /// Tells whether eight rays certainly miss the shape, where that is known in less time than their brackets.
+    #[inline(always)]
+    fn is_missed_by(&self, _rays: RayPacket) -> bool {
+        false
+    }
 }
 
 /// The strategy of shapes that are found by their brackets and refined by their plane, eight rays at a time.
@@ -44,10 +50,15 @@ impl<T: Flat, P> ScalarIntersect for Shape<T, ByPlane, P> {
         self.shape.refine(ray, origin_side)
     }
 
+    #[inline(always)]
+    fn is_missed_by(&self, rays: RayPacket) -> bool {
+        self.shape.is_missed_by(rays)
+    }
+
     /// Refines by the plane alone: a hit that is certain is in the plane, whatever is cut out of it.
     #[inline(always)]
     fn refine_each(&self, rays: RayPacket, out: &mut [f64]) {
-        let plane = *self.shape.flat();
+        let plane = self.shape.flat();
         match T::Accuracy::ACCURACY {
             // With a normal along an axis, dot products have one term, and nothing cancels.
             Accuracy::Draft | Accuracy::Exact if plane.is_upright => plane.refine_plain(rays, out),

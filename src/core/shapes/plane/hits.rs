@@ -59,8 +59,8 @@ impl<A: Bounded> Flat for Plane<A> {
     type Accuracy = A;
 
     #[inline(always)]
-    fn flat(&self) -> &Plane<A> {
-        self
+    fn flat(&self) -> Self {
+        *self
     }
 }
 

@@ -1,8 +1,9 @@
 //! Hits of triangles, and what is certain about them.
 
-use super::Triangle;
+use super::LooseTriangle;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
+use crate::geometry::ray_packet::RayPacket;
 use crate::shapes::plane::{Flat, Plane};
 use crate::shapes::uv;
 use crate::world::accuracy::{AccuracyTag, Bounded};
@@ -13,23 +14,24 @@ use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, dot, per_axis};
 
-impl<A: AccuracyTag> Hittable for Triangle<A> {
+impl<A: AccuracyTag> Hittable for LooseTriangle<A> {
     #[inline(always)]
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
-        let distance = self.plane.distance(ray, range);
-        let is_hit = if A::IS_CLASSIC { self.contains(ray.at(distance)) } else { self.is_passed_by(ray) };
+        let whole = self.whole();
+        let distance = whole.plane.distance(ray, range);
+        let is_hit = if A::IS_CLASSIC { whole.contains(ray.at(distance)) } else { whole.is_passed_by(ray) };
         if is_hit { distance } else { MISS }
     }
 
     #[inline]
     fn normal(&self, _at: DVec3) -> DVec3 {
-        self.plane.normal
+        self.normal
     }
 
     #[inline]
     fn facts(&self) -> Facts {
         let Facts { bounds, max_coordinate, .. } = Facts::within(Aabb::around(&self.corners));
-        Facts { bounds, max_coordinate, ..self.plane.facts() }
+        Facts { bounds, max_coordinate, ..self.rough_plane().facts() }
     }
 
     fn uv(&self, at: DVec3) -> Option<DVec2> {
@@ -37,56 +39,61 @@ impl<A: AccuracyTag> Hittable for Triangle<A> {
     }
 
     fn is_clear_of(&self, region: &Aabb) -> bool {
-        self.plane.is_clear_of(region) || !Aabb::around(&self.corners).overlaps(region)
+        self.rough_plane().is_clear_of(region) || !Aabb::around(&self.corners).overlaps(region)
     }
 
     fn method(&self) -> String {
-        self.plane.method().to_owned()
+        self.rough_plane().method().to_owned()
     }
 }
 
-impl<A: Bounded> Bracketed for Triangle<A> {
+impl<A: Bounded> Bracketed for LooseTriangle<A> {
     #[inline(always)]
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
-        Triangle::t_bounds(self, ray, range)
+        LooseTriangle::t_bounds(self, ray, range)
     }
 
     #[inline(always)]
     fn refine(&self, ray: &Ray, _origin_side: Option<Side>) -> f64 {
         // A certain hit lies inside the triangle.
-        self.plane.quick_crossing(ray)
+        self.whole().plane.quick_crossing(ray)
     }
 }
 
-impl<A: Bounded> Flat for Triangle<A> {
+impl<A: Bounded> Flat for LooseTriangle<A> {
     type Accuracy = A;
 
     #[inline(always)]
-    fn flat(&self) -> &Plane<A> {
-        &self.plane
+    fn flat(&self) -> Plane<A> {
+        self.whole().plane
+    }
+
+    #[inline(always)]
+    fn is_missed_by(&self, rays: RayPacket) -> bool {
+        LooseTriangle::is_missed_by(self, rays)
     }
 }
 
-impl<A: Bounded> Certified for Triangle<A> {
+impl<A: Bounded> Certified for LooseTriangle<A> {
     fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
-        self.plane.is_on_surface(at, error)
+        self.rough_plane().is_on_surface(at, error)
     }
 
     fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
-        Some(self.plane.exact_crossing(ray))
+        Some(self.whole().plane.exact_crossing(ray))
     }
 }
 
-impl<A> Equation for Triangle<A> {
+impl<A: AccuracyTag> Equation for LooseTriangle<A> {
     const IS_QUADRATIC: bool = true;
 
     fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         let corner = self.corners[0].to_array();
-        dot(self.area_normal(), per_axis(|axis| at[axis] - N::constant(corner[axis])))
+        dot(self.whole().area_normal(), per_axis(|axis| at[axis] - N::constant(corner[axis])))
     }
 
     fn inside_trim<N: Scalar>(&self, at: [N; 3]) -> N {
-        self.plane.inside_trim(at).min(self.inside(at))
+        self.rough_plane().inside_trim(at).min(self.whole().inside(at))
     }
     fn uv_bounds(&self, at: [Interval; 3]) -> Option<[Interval; 2]> {
         Some(uv::bounds_on_triangle(self.corners, at))

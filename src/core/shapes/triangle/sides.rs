@@ -2,6 +2,8 @@
 
 use crate::geometry::aabb::larger;
 use crate::geometry::ray::{Ray, RayError};
+use crate::geometry::ray_packet::RayPacket;
+use crate::simd::soa::LANES;
 use glam::DVec3;
 
 /// Far more than the loss of products that are too small to have all digits: the sum of a few of 5e-324. A product with
@@ -54,4 +56,33 @@ pub(crate) fn passed(corners: [DVec3; 3], ray: &Ray, drift: RayError) -> Option<
     let is_inside = (plus[0] & plus[1] & plus[2]) | (minus[0] & minus[1] & minus[2]);
     let is_outside = (plus[0] | plus[1] | plus[2]) & (minus[0] | minus[1] | minus[2]);
     if is_inside | is_outside { Some(is_inside) } else { None }
+}
+
+/// Tells which of eight rays certainly miss a triangle, and which certainly pass through it, as [`passed`] does; 1 for
+/// those.
+#[inline(always)]
+pub(crate) fn passed_by_eight(
+    corners: [DVec3; 3],
+    rays: RayPacket,
+    drift: RayError,
+) -> ([u64; LANES], [u64; LANES]) {
+    let (error, more) = side_error(drift);
+    let (mut missed, mut inside) = ([0; LANES], [0; LANES]);
+    for lane in 0..LANES {
+        let Ray { origin, dir } = rays.get(lane);
+        let [a, b, c] = [corners[0] - origin, corners[1] - origin, corners[2] - origin];
+        let [one, two, three] = [largest(a) + more, largest(b) + more, largest(c) + more];
+        let sides = [a.cross(b).dot(dir), b.cross(c).dot(dir), c.cross(a).dot(dir)];
+        let errors =
+            [error * one * two + UNDERFLOW, error * two * three + UNDERFLOW, error * three * one + UNDERFLOW];
+        // Signs of differences, not comparisons, which the compiler would take one by one. Nothing is NaN, as
+        // coordinates are at most 1e152.
+        let plus = |side: usize| (errors[side] - sides[side]).to_bits();
+        let minus = |side: usize| (errors[side] + sides[side]).to_bits();
+        let any = (plus(0) | plus(1) | plus(2)) & (minus(0) | minus(1) | minus(2));
+        let all = (plus(0) & plus(1) & plus(2)) | (minus(0) & minus(1) & minus(2));
+        missed[lane] = any >> 63;
+        inside[lane] = all >> 63;
+    }
+    (missed, inside)
 }
