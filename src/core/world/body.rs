@@ -10,7 +10,7 @@ use crate::world::solid::{Operation, Tree};
 use glam::DVec3;
 use std::fmt;
 use std::path::PathBuf;
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, LazyLock, OnceLock};
 
 /// Any [`Shader`]: `Arc::new(shader)` makes one.
 pub type AnyShader = Arc<dyn PacketShader>;
@@ -176,14 +176,20 @@ pub struct Warning {
 impl Body {
     /// Makes an object whose reflectivities are its material's.
     pub fn plain(shape: impl Into<AnyShape>) -> Self {
-        Self::shaded(shape, Plain)
+        // A scene may have millions of such objects.
+        static PLAIN: LazyLock<AnyShader> = LazyLock::new(|| Arc::new(Plain));
+        Self::with_shader(shape.into(), PLAIN.clone())
     }
 
     /// Makes an object with a shader of its own.
     pub fn shaded(shape: impl Into<AnyShape>, shader: impl Shader + 'static) -> Self {
+        Self::with_shader(shape.into(), Arc::new(shader))
+    }
+
+    fn with_shader(shape: AnyShape, shader: AnyShader) -> Self {
         Self {
-            shape: shape.into(),
-            shader: Arc::new(shader),
+            shape,
+            shader,
             anchor: None,
             to_object_space: None,
             boundary: None,

@@ -33,6 +33,7 @@ pub fn half_area([a, b, c, d, e, f]: Limits) -> f64 {
 }
 
 /// An object to be put into a tree.
+#[derive(Clone, Default)]
 pub struct Item {
     /// The limits of its box, in world units.
     pub limits: Limits,

@@ -31,8 +31,9 @@ pub struct Parts {
 
 /// Builds the nodes of a hierarchy of objects, whose boxes `bounds` returns.
 pub fn build(count: usize, bounds: impl Fn(usize) -> Aabb + Sync) -> Parts {
-    let item = |index| Item::new(index, &bounds(index));
-    let mut items = parallel::map_ranges(count, LARGE, &|range| range.map(item).collect());
+    let mut items = parallel::filled(count, LARGE, |index| Item::new(index, &bounds(index)));
+    // What the boxes are taken from may be as large as the items.
+    drop(bounds);
     let mut parts = Parts::default();
     if !items.is_empty() {
         parts.nodes.push(Node::EMPTY);
