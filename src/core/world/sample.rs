@@ -2,13 +2,15 @@
 
 use crate::named;
 use crate::simd::cpu::{Cpu, kernels};
+use crate::simd::soa::LANES;
 use glam::DVec2;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 use sobol_burley::parts;
-use std::array;
 use std::f64::consts::TAU;
-use std::sync::LazyLock;
+use std::ops::Range;
+use tabray_exact::f64x8::F64x8;
+use tabray_exact::scalar::Scalar;
 
 /// The distribution of a pixel's samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -83,10 +85,73 @@ impl Sample {
         }
     }
 
-    /// Returns the seed that scrambles the pixel's sequence. Purposes differ in their seed, not in their dimension, so
-    /// that any number of lights has a sequence.
+    /// Returns the seed that scrambles the pixel's sequence.
     fn seed(&self, purpose: u32) -> u32 {
-        self.pixel ^ purpose.wrapping_mul(0x9e37_79b9)
+        self.pixel ^ salt(purpose)
+    }
+}
+
+/// Returns the number by which the seeds of a purpose differ from those of others. Purposes differ in their seed, not in
+/// their dimension, so that any number of lights has a sequence.
+fn salt(purpose: u32) -> u32 {
+    purpose.wrapping_mul(0x9e37_79b9)
+}
+
+/// Samples of one sampler, as an array for each number of a [`Sample`].
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Samples {
+    sampler: Sampler,
+    index: Vec<u32>,
+    pixel: Vec<u32>,
+}
+
+impl Samples {
+    /// Starts a list of samples of this sampler.
+    pub fn begin(&mut self, sampler: Sampler) {
+        self.sampler = sampler;
+        self.index.clear();
+        self.pixel.clear();
+    }
+
+    /// Adds a sample, which has the sampler of the list.
+    pub fn push(&mut self, Sample { index, pixel, .. }: Sample) {
+        self.index.push(index);
+        self.pixel.push(pixel);
+    }
+
+    /// Adds samples of one pixel.
+    #[inline]
+    pub fn extend(&mut self, pixel: u32, indices: Range<u32>) {
+        self.pixel.resize(self.pixel.len() + indices.len(), pixel);
+        self.index.extend(indices);
+    }
+
+    /// Returns the number of samples.
+    pub fn len(&self) -> usize {
+        self.index.len()
+    }
+
+    /// Tells whether there are no samples.
+    pub fn is_empty(&self) -> bool {
+        self.index.is_empty()
+    }
+
+    /// Returns the sample of this place in the list, if there is one.
+    pub fn get(&self, place: usize) -> Option<Sample> {
+        let (index, pixel) = (*self.index.get(place)?, *self.pixel.get(place)?);
+        Some(Sample { sampler: self.sampler, index, pixel })
+    }
+
+    /// Returns the numbers of the samples' pixels.
+    pub fn pixels(&self) -> &[u32] {
+        &self.pixel
+    }
+
+    /// Becomes the samples of some places of another list.
+    pub fn gather(&mut self, from: &Self, places: &[u8]) {
+        self.begin(from.sampler);
+        self.index.extend(places.iter().map(|place| from.index[usize::from(*place)]));
+        self.pixel.extend(places.iter().map(|place| from.pixel[usize::from(*place)]));
     }
 }
 
@@ -111,7 +176,7 @@ pub(crate) fn on_disc(numbers: DVec2) -> DVec2 {
 }
 
 /// Writes the [`jitter`](Sample::jitter) of each sample, in pixels, to `x` and `y`.
-pub(crate) fn jitters(cpu: Cpu, samples: &[Sample], x: &mut [f64], y: &mut [f64]) {
+pub(crate) fn jitters(cpu: Cpu, samples: &Samples, x: &mut [f64], y: &mut [f64]) {
     draw(cpu, samples, JITTER, x, y);
     for (x, y) in x.iter_mut().zip(y) {
         *x -= 0.5;
@@ -120,16 +185,14 @@ pub(crate) fn jitters(cpu: Cpu, samples: &[Sample], x: &mut [f64], y: &mut [f64]
 }
 
 /// Writes what [`on_light`](Sample::on_light) returns for each sample to `x` and `y`.
-pub(crate) fn on_lights(cpu: Cpu, samples: &[Sample], light: usize, x: &mut [f64], y: &mut [f64]) {
+pub(crate) fn on_lights(cpu: Cpu, samples: &Samples, light: usize, x: &mut [f64], y: &mut [f64]) {
     draw(cpu, samples, on_light(light), x, y);
 }
 
 /// Writes what [`on_lens`](Sample::on_lens) returns for each sample to `x` and `y`.
-pub(crate) fn on_lenses(cpu: Cpu, samples: &[Sample], x: &mut [f64], y: &mut [f64]) {
+pub(crate) fn on_lenses(cpu: Cpu, samples: &Samples, x: &mut [f64], y: &mut [f64]) {
     draw(cpu, samples, ON_LENS, x, y);
-    for (x, y) in x.iter_mut().zip(y) {
-        DVec2 { x: *x, y: *y } = on_disc(DVec2::new(*x, *y));
-    }
+    on_discs(cpu, x, y);
 }
 
 /// Writes the point of the lens's rim at a fraction of a turn, for each.
@@ -139,53 +202,95 @@ pub(crate) fn on_rim(turns: impl Iterator<Item = f64>, x: &mut [f64], y: &mut [f
     }
 }
 
-/// Writes the numbers that [`Sample::draw`] returns for each sample. All samples have the sampler of the first.
-// Its arrays stay off the stacks of deep reflections.
+/// Writes the numbers that [`Sample::draw`] returns for each sample.
+// It stays off the stacks of deep reflections.
 #[inline(never)]
-fn draw(cpu: Cpu, samples: &[Sample], purpose: u32, x: &mut [f64], y: &mut [f64]) {
-    const CHUNK: usize = 64;
-    let (mut index, mut seed) = ([0; CHUNK], [0; CHUNK]);
-    for ((samples, x), y) in samples.chunks(CHUNK).zip(x.chunks_mut(CHUNK)).zip(y.chunks_mut(CHUNK)) {
-        if samples[0].sampler != Sampler::Sobol {
-            for ((sample, x), y) in samples.iter().zip(x).zip(y) {
-                DVec2 { x: *x, y: *y } = sample.draw(purpose);
-            }
-            continue;
-        }
-        for ((sample, index), seed) in samples.iter().zip(&mut index).zip(&mut seed) {
-            (*index, *seed) = (sample.index, sample.seed(purpose));
-        }
-        let count = samples.len();
-        sobol(cpu, &DIRECTIONS, &index[..count], &seed[..count], x, y);
+fn draw(cpu: Cpu, samples: &Samples, purpose: u32, x: &mut [f64], y: &mut [f64]) {
+    let Samples { sampler, index, pixel } = samples;
+    if *sampler == Sampler::Sobol {
+        sobol(cpu, index, pixel, salt(purpose), x, y);
+        return;
+    }
+    for (place, (x, y)) in x.iter_mut().zip(y).enumerate() {
+        let sample = Sample { sampler: *sampler, index: index[place], pixel: pixel[place] };
+        DVec2 { x: *x, y: *y } = sample.draw(purpose);
     }
 }
 
-/// The direction numbers of dimension 1, with reversed bits, for the bits of an index from the highest of 16 down; those
-/// of dimension 0 are the powers of 2.
-static DIRECTIONS: LazyLock<[u32; 16]> =
-    LazyLock::new(|| array::from_fn(|bit| parts::sobol_rev(1 << (31 - bit), 1)));
-
 kernels! {
-    /// Computes dimensions 0 and 1 of `sobol_burley::sample` with the same operations, in lanes.
-    fn sobol(directions: &[u32; 16], index: &[u32], seed: &[u32], x: &mut [f64], y: &mut [f64]) {
+    /// Computes dimensions 0 and 1 of `sobol_burley::sample` with the same results, in lanes. `salt` makes seeds of the
+    /// numbers of pixels.
+    fn sobol(index: &[u32], pixel: &[u32], salt: u32, x: &mut [f64], y: &mut [f64]) {
         let count = index.len();
-        let (seed, x, y) = (&seed[..count], &mut x[..count], &mut y[..count]);
+        let (pixel, x, y) = (&pixel[..count], &mut x[..count], &mut y[..count]);
         for lane in 0..count {
-            let shuffled =
-                parts::owen_scramble_rev(index[lane].reverse_bits(), parts::hash(seed[lane] ^ 0x79c6_8e4a));
-            let mut second = 0;
-            for (bit, direction) in directions.iter().enumerate() {
-                second ^= direction & 0_u32.wrapping_sub(shuffled >> (31 - bit) & 1);
-            }
+            let seed = pixel[lane] ^ salt;
+            let shuffled = parts::owen_scramble_rev(index[lane].reverse_bits(), parts::hash(seed ^ 0x79c6_8e4a));
             let first = (shuffled & 0xffff_0000).reverse_bits();
-            let scramble = seed[lane].wrapping_mul(0x9c8f_2d3b);
+            let scramble = seed.wrapping_mul(0x9c8f_2d3b);
             let number = |sobol, salt: u32| {
                 let scrambled = parts::owen_scramble_rev(sobol, parts::hash(scramble ^ salt));
                 f64::from(parts::u32_to_f32_norm(scrambled.reverse_bits()))
             };
-            (x[lane], y[lane]) = (number(first, 0x912f_69ba), number(second, 0x174f_18ab));
+            (x[lane], y[lane]) = (number(first, 0x912f_69ba), number(second_dimension(first), 0x174f_18ab));
         }
     }
+
+    /// Moves pairs of numbers from 0 to 1 to the points of the unit disc that they choose, as [`on_disc`] does.
+    fn on_discs(x: &mut [f64], y: &mut [f64]) {
+        let y = &mut y[..x.len()];
+        for first in (0..x.len()).step_by(LANES) {
+            let count = LANES.min(x.len() - first);
+            let (x, y) = (&mut x[first..][..count], &mut y[first..][..count]);
+            let mut turns = [0.0; LANES];
+            turns[..count].copy_from_slice(y);
+            let (sin, cos) = sin_cos_of_turns(turns);
+            for lane in 0..count {
+                let radius = x[lane].sqrt();
+                (x[lane], y[lane]) = (radius * cos[lane], radius * sin[lane]);
+            }
+        }
+    }
+
+    /// Replaces pairs of numbers from 0 to 1 by the distance from the middle of the unit disc at which the point lies
+    /// that they choose, and by the cosine of its angle. Writes the sine of that to `sin`.
+    pub(crate) fn to_polar(x: &mut [f64], y: &mut [f64], sin: &mut [f64]) {
+        let count = x.len();
+        let (y, sin) = (&mut y[..count], &mut sin[..count]);
+        for first in (0..count / LANES * LANES).step_by(LANES) {
+            let (x, y) = (&mut x[first..][..LANES], &mut y[first..][..LANES]);
+            let mut turns = [0.0; LANES];
+            turns.copy_from_slice(y);
+            let (sines, cosines) = sin_cos_of_turns(turns);
+            y.copy_from_slice(&cosines);
+            sin[first..][..LANES].copy_from_slice(&sines);
+            for lane in 0..LANES {
+                x[lane] = x[lane].sqrt();
+            }
+        }
+    }
+}
+
+/// Returns the sines and the cosines of angles, given in turns.
+#[inline(always)]
+fn sin_cos_of_turns(mut turns: [f64; LANES]) -> ([f64; LANES], [f64; LANES]) {
+    for lane in 0..LANES {
+        turns[lane] *= TAU;
+    }
+    let (F64x8(sin), F64x8(cos)) = F64x8(turns).sin_cos();
+    (sin, cos)
+}
+
+/// Returns the second dimension of a Sobol point, with reversed bits, given its index, which has 16 bits.
+///
+/// The direction numbers are the rows of Pascal's triangle modulo 2: bit `j` is the sum of the bits of the index whose
+/// numbers have all bits of the number `j`. So four steps, one for each bit of these numbers, add them up.
+#[inline(always)]
+fn second_dimension(index: u32) -> u32 {
+    let once = index ^ (index >> 1 & 0x5555);
+    let twice = once ^ (once >> 2 & 0x3333);
+    let thrice = twice ^ (twice >> 4 & 0x0f0f);
+    thrice ^ (thrice >> 8 & 0x00ff)
 }
 
 #[cfg(test)]
@@ -206,19 +311,33 @@ mod tests {
             let single = |draw: &dyn Fn(&Sample) -> DVec2| samples.iter().map(draw).collect::<Vec<_>>();
             let (places, light) = (single(&Sample::jitter), single(&|sample| sample.on_light(3)));
             let lens = single(&Sample::on_lens);
+            let mut list = Samples::default();
             for cpu in Cpu::all() {
                 // Other counts than whole chunks, too.
                 for count in [samples.len(), 1, 67] {
+                    list.begin(sampler);
+                    samples[..count].iter().for_each(|sample| list.push(*sample));
                     let [mut x, mut y] = [vec![2.0; count], vec![2.0; count]];
                     let pairs = |x: &[f64], y: &[f64]| -> Vec<_> {
                         x.iter().zip(y).map(|(x, y)| DVec2::new(*x, *y)).collect()
                     };
-                    jitters(cpu, &samples[..count], &mut x, &mut y);
+                    jitters(cpu, &list, &mut x, &mut y);
                     assert!(pairs(&x, &y) == places[..count], "{sampler:?}, {cpu}");
-                    on_lights(cpu, &samples[..count], 3, &mut x, &mut y);
+                    on_lights(cpu, &list, 3, &mut x, &mut y);
                     assert!(pairs(&x, &y) == light[..count], "{sampler:?}, {cpu}");
-                    on_lenses(cpu, &samples[..count], &mut x, &mut y);
+                    on_lenses(cpu, &list, &mut x, &mut y);
                     assert!(pairs(&x, &y) == lens[..count], "{sampler:?}, {cpu}");
+                    let mut sin = vec![2.0; count];
+                    on_lights(cpu, &list, 3, &mut x, &mut y);
+                    to_polar(cpu, &mut x, &mut y, &mut sin);
+                    for (lane, drawn) in light[..count / LANES * LANES].iter().enumerate() {
+                        let (angle, found) = (TAU * drawn.y, [x[lane], y[lane], sin[lane]]);
+                        assert_eq!(
+                            found,
+                            [drawn.x.sqrt(), libm::cos(angle), libm::sin(angle)],
+                            "{drawn}, {cpu}"
+                        );
+                    }
                 }
             }
         }

@@ -10,7 +10,7 @@ use crate::world::display::{Display, Tone, Transfer};
 use crate::world::patch::Window;
 use crate::world::pinhole::Pinhole;
 use crate::world::rules::Rules;
-use crate::world::sample::{self, Sample, Sampler};
+use crate::world::sample::{self, Sample, Sampler, Samples};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
 use std::sync::Arc;
@@ -149,19 +149,19 @@ impl Sensor {
         cpu: Cpu,
         pixels: &[[usize; 2]],
         range: Range<usize>,
-        list: &mut Vec<Sample>,
+        list: &mut Samples,
         [x, y]: [&mut [f64]; 2],
     ) {
-        let (sampler, samples) = (self.sampler, self.samples as usize);
+        let samples = self.samples as usize;
         // Each pixel of the range, with its part of the range.
         let runs = (range.start / samples..range.end.div_ceil(samples)).map(|pixel| {
             let all = pixel * samples..(pixel + 1) * samples;
             (pixels[pixel], range.start.max(all.start)..range.end.min(all.end), all.start)
         });
-        list.clear();
+        list.begin(self.sampler);
         for ([column, row], run, first) in runs.clone() {
-            let pixel = self.seed(column as i64, row as i64);
-            list.extend(run.map(|at| Sample { sampler, index: (at - first) as u32, pixel }));
+            let indices = (run.start - first) as u32..(run.end - first) as u32;
+            list.extend(self.seed(column as i64, row as i64), indices);
         }
         sample::jitters(cpu, list, x, y);
         for ([column, row], run, _) in runs {
@@ -177,15 +177,13 @@ impl Sensor {
         cpu: Cpu,
         pixels: &[[usize; 2]],
         index: u32,
-        list: &mut Vec<Sample>,
+        list: &mut Samples,
         [x, y]: [&mut [f64]; 2],
     ) {
-        let sample = |[column, row]: &[usize; 2]| {
-            let pixel = self.seed(*column as i64, *row as i64);
-            Sample { sampler: self.sampler, index, pixel }
-        };
-        list.clear();
-        list.extend(pixels.iter().map(sample));
+        list.begin(self.sampler);
+        for [column, row] in pixels {
+            list.extend(self.seed(*column as i64, *row as i64), index..index + 1);
+        }
         sample::jitters(cpu, list, x, y);
         for (([column, row], x), y) in pixels.iter().zip(x).zip(y) {
             *x += *column as f64;

@@ -20,7 +20,7 @@ use super::trail::PathHashes;
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::render::features::FEATURE_SAMPLES;
 use crate::render::observer::{Count, TraceObserver};
-use crate::world::sample::{self, Sample};
+use crate::world::sample;
 use crate::world::sensor::Adaptive;
 use std::mem::take;
 use std::ops::Range;
@@ -191,10 +191,10 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
         let Self { tracer, group, seen, is_unbounded, .. } = self;
         let (len, camera) = (corners.len(), &tracer.plan.camera);
         let Scratch { places: [x, y], samples, are_probes, .. } = &mut *tracer.scratch;
-        samples.clear();
+        samples.begin(camera.sampler);
         for (lane, [column, row]) in corners.iter().enumerate() {
             (x[lane], y[lane]) = (*column as f64 - 1.5, *row as f64 - 1.5);
-            samples.push(Sample { sampler: camera.sampler, index: 0, pixel: rim_point(*column, *row) });
+            samples.extend(rim_point(*column, *row), 0..1);
         }
         *are_probes = true;
         tracer.look(group, len);
@@ -285,11 +285,9 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
         let Self { tracer, group, seen, runs, .. } = self;
         let camera = &tracer.plan.camera;
         let Scratch { places, samples: drawn, .. } = &mut *tracer.scratch;
-        let sampler = camera.sampler;
-        drawn.clear();
+        drawn.begin(camera.sampler);
         for SampleRun { pixel: [x, y], samples, .. } in &*runs {
-            let pixel = camera.seed(*x as i64, *y as i64);
-            drawn.extend(samples.clone().map(|index| Sample { sampler, index, pixel }));
+            drawn.extend(camera.seed(*x as i64, *y as i64), samples.clone());
         }
         let [x, y] = &mut *places;
         sample::jitters(tracer.cpu, drawn, &mut x[..len], &mut y[..len]);

@@ -1,6 +1,7 @@
 //! The tracer: its plan, its observer, and its scratch space, which is reused from one packet to the next.
 
 use super::arrays::{NARROW, VectorList};
+use super::draws::LightDraws;
 use super::estimate::AdaptiveScratch;
 use super::ray_group::{HitGroups, HitRecord, RayGroup};
 use super::round::TreeScratch;
@@ -18,7 +19,7 @@ use crate::world::accuracy::Accuracy;
 use crate::world::certify::Doubt;
 use crate::world::coincidence;
 use crate::world::hittable::Hittable;
-use crate::world::sample::Sample;
+use crate::world::sample::Samples;
 use f256::f256;
 
 /// The number of reflections and transmissions after which packets are narrow: with wide packets, facing mirrors would
@@ -79,7 +80,7 @@ pub struct Scratch {
     /// go through its centre.
     pub(super) lens: [Vec<f64>; 2],
     /// The samples of the current primary rays, where pixels have more than one.
-    pub(super) samples: Vec<Sample>,
+    pub(super) samples: Samples,
     /// Whether the current primary rays are probes, whose rays go to the rims of lights and come through the rim of
     /// the lens: the point whose number is the pixel of their sample.
     pub(super) are_probes: bool,
@@ -197,8 +198,6 @@ pub(super) struct ShadingScratch {
 pub(super) struct LightScratch {
     /// The diffuse reflectivities at the shading points.
     pub diffuse: VectorList,
-    /// The point of the light that each shading point sees, if the light has a size.
-    pub lights: VectorList,
     pub draws: LightDraws,
     /// The unit vectors toward the light.
     pub toward: VectorList,
@@ -213,15 +212,6 @@ pub(super) struct LightScratch {
     /// 1 where the light is blocked.
     pub blocked: Vec<u64>,
     pub shadows: ShadowScratch,
-}
-
-/// The random numbers that choose the points of a light that shading points see.
-#[derive(Default)]
-pub(super) struct LightDraws {
-    /// The sample of each point's primary ray.
-    pub samples: Vec<Sample>,
-    /// The two numbers from 0 to 1 of each sample.
-    pub places: [Vec<f64>; 2],
 }
 
 /// The scratch space of the shadow rays of a packet.

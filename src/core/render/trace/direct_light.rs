@@ -1,7 +1,8 @@
 //! Direct light: what a scene's lights contribute at the points of a surface.
 
 use super::arrays::{VectorList, resized};
-use super::context::{LightDraws, LightScratch, Tracer};
+use super::context::{LightScratch, Tracer};
+use super::draws::LightDraws;
 use super::light::{self, Colours, LitPoints};
 use super::occlusion::LightPaths;
 use super::ray_group::RayGroup;
@@ -14,13 +15,9 @@ use crate::scene::model::Object;
 use crate::world::emitter::{Emitter, LightSample};
 use crate::world::lamp::Lamp;
 use crate::world::material::{Look, Rgb};
-use crate::world::packets::light::{AnyLit, LightSamples, PacketLight, ShadingPoints};
+use crate::world::packets::light::{AnyLit, LightSamples, ShadingPoints};
 use crate::world::rules::{Falloff, Rules};
-use crate::world::sample;
 use glam::{DVec2, DVec3};
-
-/// The number of points on the rim of a light, or of a lens, that probes go through.
-pub(super) const RIM_POINTS: f64 = 16.0;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Adds the contributions of all lights.
@@ -164,15 +161,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     ) -> (AnyLit, Aabb) {
         let (cpu, count) = (self.cpu, group.padded());
         let light = &self.model.lights[index].value;
-        let LightScratch { lights, draws, toward, strengths, t_max, emissivity, shines, .. } = lighting;
-        let emitter = light.emitter();
-        let is_ball = emitter.is_none() && light.size() != 0.0;
+        let LightScratch { draws, toward, strengths, t_max, emissivity, shines, .. } = lighting;
         let mut source = Aabb { low: light.location(), high: light.location() };
-        if is_ball {
-            self.sample_ball(&**light, index, group, surface, (lights, draws));
-            source = aabb::around(cpu, lights.view(count));
-        }
-        let lights = is_ball.then(|| lights.view(count));
         let (t_max, shines) = (resized(t_max, count), resized(shines, count));
         let samples = LightSamples {
             toward: toward.resized(count),
@@ -182,12 +172,22 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             shines,
         };
         let (points, normals) = (surface.points.view(count), surface.normals.view(count));
-        let rules = self.plan.camera.rules;
-        let shading = ShadingPoints { points, normals, lights, rules, slack: self.slack() };
-        let mut faced = match emitter {
-            None => light.sample(cpu, &shading, samples),
+        let (rules, slack) = (self.plan.camera.rules, self.slack());
+        let shading = ShadingPoints { points, normals, lights: None, rules, slack };
+        let (mut faced, lights) = match light.emitter() {
             Some(emitter) => {
-                self.sample_emitter((emitter, index), group, &shading, draws, samples, &mut source)
+                let index = (emitter, index);
+                (self.sample_emitter(index, group, &shading, draws, samples, &mut source), None)
+            }
+            None => {
+                let lights = match light.size() {
+                    0.0 => None,
+                    _ => self.draw_on_ball(&**light, index, group, surface, draws),
+                };
+                if let Some(lights) = lights {
+                    source = aabb::around(cpu, lights);
+                }
+                (light.sample(cpu, &ShadingPoints { lights, ..shading }, samples), lights)
             }
         };
         if surface.is_bent {
@@ -211,30 +211,6 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.plan.camera.rules == Rules::Free && light.fading.falloff != Falloff::None
     }
 
-    /// Samples the point of a ball of light that each point of a surface sees: on the disc around its centre that faces the
-    /// point, where the primary ray's sample chooses.
-    fn sample_ball(
-        &self,
-        light: &dyn PacketLight,
-        index: usize,
-        group: &RayGroup,
-        surface: &Surface,
-        (lights, draws): (&mut VectorList, &mut LightDraws),
-    ) {
-        let (middle, size) = (light.location(), light.size());
-        lights.fill(group.padded(), middle);
-        if self.scratch.samples.is_empty() {
-            return;
-        }
-        let [x, y] = self.draw(index, group, draws);
-        for lane in 0..x.len() {
-            let Some(axis) = (middle - surface.points.get(lane)).try_normalize() else { continue };
-            let (across, up) = axis.any_orthonormal_pair();
-            let (radius, angle) = (size * x[lane].sqrt(), std::f64::consts::TAU * y[lane]);
-            lights.set(lane, middle + radius * (libm::cos(angle) * across + libm::sin(angle) * up));
-        }
-    }
-
     /// Samples the point of a light that each point of a surface sees: where the primary ray's sample chooses, or by the
     /// middle of the numbers where pixels have one sample. Sets `source` to a box around the ends of the shadow rays.
     pub(super) fn sample_emitter(
@@ -246,14 +222,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         mut samples: LightSamples,
         source: &mut Aabb,
     ) -> AnyLit {
-        let drawn = (!self.scratch.samples.is_empty()).then(|| self.draw(index, group, draws));
-        let numbers = |lane: usize| match &drawn {
-            None => DVec2::splat(0.5),
-            Some([x, y]) => {
-                let lane = lane.min(x.len() - 1);
-                if self.scratch.are_probes { on_edge(y[lane]) } else { DVec2::new(x[lane], y[lane]) }
-            }
-        };
+        let drawn = self.draw(index, group, draws);
+        let numbers = |lane: usize| drawn.as_ref().map_or(DVec2::splat(0.5), |numbers| numbers(lane));
         let mut any_shines = false;
         *source = Aabb::EMPTY;
         for lane in 0..shading.points.len() {
@@ -278,28 +248,6 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
         AnyLit { any_faces: any_shines, any_shines }
     }
-
-    /// Returns the two numbers from 0 to 1 by which the primary ray's sample chooses a point of a light, for each ray of a
-    /// packet; for probes, 1 and a part of a turn.
-    pub(super) fn draw<'d>(
-        &self,
-        index: usize,
-        group: &RayGroup,
-        draws: &'d mut LightDraws,
-    ) -> [&'d mut [f64]; 2] {
-        let count = group.camera.len().min(group.padded());
-        let LightDraws { samples, places: [x, y] } = draws;
-        samples.clear();
-        samples.extend(group.camera[..count].iter().map(|camera| self.scratch.samples[usize::from(*camera)]));
-        let (x, y) = (resized(x, count), resized(y, count));
-        if self.scratch.are_probes {
-            x.fill(1.0);
-            y.iter_mut().zip(samples).for_each(|(turn, sample)| *turn = f64::from(sample.pixel) / RIM_POINTS);
-        } else {
-            sample::on_lights(self.cpu, samples, index, x, y);
-        }
-        [x, y]
-    }
 }
 
 /// Returns the end of a ray, which may be infinitely far away.
@@ -307,16 +255,4 @@ fn end(from: DVec3, dir: DVec3, distance: f64) -> DVec3 {
     // 0 times infinity is no number.
     let along = |axis: usize| if dir[axis] == 0.0 { 0.0 } else { distance * dir[axis] };
     from + DVec3::new(along(0), along(1), along(2))
-}
-
-/// Returns a point on the edge of the unit square, by a part of a turn around it.
-fn on_edge(turn: f64) -> DVec2 {
-    let side = 4.0 * turn.rem_euclid(1.0);
-    let along = side.fract();
-    match side as u32 {
-        0 => DVec2::new(along, 0.0),
-        1 => DVec2::new(1.0, along),
-        2 => DVec2::new(1.0 - along, 1.0),
-        _ => DVec2::new(0.0, 1.0 - along),
-    }
 }

@@ -6,6 +6,7 @@
 //! ones keep, and the bounds of what those return hold for them.
 
 use super::context::Tracer;
+use super::draws::RIM_POINTS;
 use super::ray_group::RayGroup;
 use super::surface::{Surface, facing};
 use crate::render::observer::TraceObserver;
@@ -29,13 +30,13 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
         for lane in 0..count {
             let camera = group.camera[lane.min(group.len - 1)];
-            let sample = &self.scratch.samples[usize::from(camera)];
+            let Some(sample) = self.scratch.samples.get(usize::from(camera)) else { continue };
             let depth = match (group.places.get(lane), &self.scratch.trees) {
                 (Some(place), Some(trees)) => trees.round[*place as usize].depth,
                 _ => self.depth as u32,
             };
             let draw = if self.scratch.are_probes {
-                DVec2::new(PROBED, f64::from(sample.pixel) / super::direct_light::RIM_POINTS)
+                DVec2::new(PROBED, f64::from(sample.pixel) / RIM_POINTS)
             } else {
                 sample.on_facet(depth)
             };

@@ -12,6 +12,7 @@ mod certain;
 mod closest_hit;
 mod context;
 mod direct_light;
+mod draws;
 mod estimate;
 mod exact;
 mod facets;
@@ -40,11 +41,11 @@ use crate::simd::cpu::Cpu;
 use crate::simd::soa::View;
 use crate::world::material::Rgb;
 use crate::world::rules::Rules;
-use crate::world::sample::{self, Sample};
+use crate::world::sample::{self, Sample, Samples};
 use crate::world::sensor;
 use arrays::{VectorList, gather};
 use context::{HitScratch, PrimaryScratch};
-use direct_light::RIM_POINTS;
+use draws::RIM_POINTS;
 use glam::DVec2;
 use ray_group::RayGroup;
 use std::slice;
@@ -177,7 +178,10 @@ fn traced(
     observer: &mut impl TraceObserver,
 ) -> (Rgb, f64) {
     let (mut scratch, mut colours) = (Scratch::default(), VectorList::default());
-    scratch.samples.extend(sample);
+    if let Some(sample) = sample {
+        scratch.samples.begin(sample.sampler);
+        scratch.samples.push(sample);
+    }
     let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, observer);
     let mut group = RayGroup::primary(sight, plan.depth.as_ref());
     if let Some(budget) = budget {
@@ -251,8 +255,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let mut all = Vec::with_capacity(places.len());
         for part in places.chunks(PACKET_SIZE) {
             let Scratch { places: [x, y], samples, .. } = &mut *self.scratch;
-            samples.clear();
-            samples.extend(part.iter().map(|(_, sample)| *sample));
+            samples.begin(part[0].1.sampler);
+            part.iter().for_each(|(_, sample)| samples.push(*sample));
             for ((place, _), (x, y)) in part.iter().zip(x.iter_mut().zip(y)) {
                 (*x, *y) = (place.x, place.y);
             }
@@ -268,7 +272,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     fn middles(&mut self, pixels: &[[usize; 2]], primary: &mut PrimaryScratch) {
         let PrimaryScratch { group, seen, colours, .. } = primary;
         let mut colours = colours.resized(pixels.len());
-        self.scratch.samples.clear();
+        self.scratch.samples = Samples::default();
         for (pixels, first) in pixels.chunks(PACKET_SIZE).zip((0..).step_by(PACKET_SIZE)) {
             let [x, y] = &mut self.scratch.places;
             sensor::middles(self.cpu, pixels, x, y);
@@ -324,9 +328,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             lens.iter_mut().for_each(|each| each.resize(PACKET_SIZE, 0.0));
             let [x, y] = lens.each_mut().map(|each| &mut each[..len]);
             if *are_probes {
-                sample::on_rim(samples.iter().map(|sample| f64::from(sample.pixel) / RIM_POINTS), x, y);
+                sample::on_rim(samples.pixels().iter().map(|point| f64::from(*point) / RIM_POINTS), x, y);
             } else {
-                sample::on_lenses(cpu, &samples[..len], x, y);
+                sample::on_lenses(cpu, samples, x, y);
             }
         }
         group.look(cpu, &plan.camera, plan.depth.as_ref(), places, lens, len);
@@ -349,6 +353,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.observer.count(Count::Rays(RayKind::Primary, group.len));
         self.viewer = self.plan.camera.max_coordinate();
         self.begin_missing(&group.ray_budget[..group.len]);
+        if let Some(lighting) = &mut self.scratch.lighting {
+            lighting.draws.begin();
+        }
         if self.scratch.trails.is_on {
             self.scratch.trails.begin(group.len);
         }
