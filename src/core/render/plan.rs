@@ -1,9 +1,11 @@
 //! What a scene needs, decided once before any ray is traced, so that rendering can leave out everything else.
 
+mod alike;
 pub mod depth;
 pub mod needs;
 mod shut_out;
 
+use alike::Alike;
 use depth::{ContinuationBounds, Depth};
 use needs::{Needs, UnlitReason};
 pub(crate) use shut_out::ShutOut;
@@ -36,6 +38,8 @@ pub struct Plan<'m> {
     pub(crate) bounded: Vec<(usize, Aabb)>,
     /// The objects with bounds, if there are at least [`TREE`].
     pub(crate) tree: Option<Bvh>,
+    /// The objects that look the same, where there are many and no ray continues.
+    pub(crate) alike: Option<Alike>,
     /// Whether any object that is needed is transparent, so that shadows may be partial.
     pub(crate) has_glass: bool,
     /// Whether any object absorbs light inside.
@@ -95,14 +99,15 @@ impl<'m> Plan<'m> {
         let mut unreached = needs.unreached.iter().peekable();
         let met = (0..objects.len()).filter(|index| unreached.next_if_eq(&index).is_none());
         let (boxed, unbounded): (Vec<_>, Vec<_>) = met.partition(|index| bounds[*index].is_some());
-        let box_of = |index: usize| bounds[index].unwrap_or(Aabb::EMPTY);
-        let tree = (boxed.len() >= TREE).then(|| {
-            let mut tree = Bvh::of(boxed.len(), |place| box_of(boxed[place]));
+        let box_of = move |index: usize| bounds[index].unwrap_or(Aabb::EMPTY);
+        let (tree, bounded): (_, Vec<_>) = if boxed.len() >= TREE {
+            let of = &boxed;
+            let mut tree = Bvh::of(of.len(), move |place| box_of(of[place]));
             tree.rename(|place| boxed[place as usize] as u32);
-            tree
-        });
-        let bounded = if tree.is_some() { &[] } else { &boxed[..] };
-        let bounded: Vec<_> = bounded.iter().map(|index| (*index, box_of(*index))).collect();
+            (Some(tree), Vec::new())
+        } else {
+            (None, boxed.iter().map(|index| (*index, box_of(*index))).collect())
+        };
         let searched = Objects { unbounded: &unbounded, bounded: &bounded, tree: tree.as_ref() };
         let shut_out = shut_out(model, &searched);
         for ShutOut { light, .. } in &shut_out {
@@ -117,12 +122,15 @@ impl<'m> Plan<'m> {
         let has_media = objects.iter().any(|object| object.material.medium().is_some());
         let costly = depth.as_ref().and_then(|_| CostlyObjects::of(objects));
         let bounces = usize::MAX;
+        let is_simple = tree.is_some() && depth.is_none() && !has_glass && !has_media;
+        let alike = if is_simple { Alike::of(model) } else { None };
         Self {
             model,
             camera,
             unbounded,
             bounded,
             tree,
+            alike,
             has_glass,
             has_media,
             features,

@@ -168,7 +168,7 @@ kernels! {
 
     /// Clamps distances to their brackets, which have width 0 where the distance is known. Returns whether any distance
     /// is NaN.
-    fn clamp_to_brackets(near: &[f64], far: &[f64], distances: &mut [f64]) -> bool {
+    pub(super) fn clamp_to_brackets(near: &[f64], far: &[f64], distances: &mut [f64]) -> bool {
         let count = distances.len();
         let (near, far) = (&near[..count], &far[..count]);
         let mut any = 0;

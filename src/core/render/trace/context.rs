@@ -162,6 +162,8 @@ pub(super) struct HitScratch {
     pub parts: HitGroups,
     /// The rays that hit the same object.
     pub part: RayGroup,
+    /// For each ray, the first object that looks like the one that it hits, by its index plus 1; 0 for a miss.
+    pub looks: Vec<u64>,
     /// The lower bounds of the distances of their hits, in world units.
     pub near: Vec<f64>,
     /// The upper bounds of the distances of their hits, in world units.

@@ -19,6 +19,7 @@ mod facets;
 mod grow;
 mod light;
 mod media;
+mod mixed;
 mod occlusion;
 mod ray_group;
 mod round;

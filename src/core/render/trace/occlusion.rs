@@ -8,7 +8,7 @@ use super::surface::Surface;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::{self, Order, PacketVisitor, Stack};
 use crate::geometry::ray::{RayError, Side};
-use crate::geometry::ray_packet::RayPacket;
+use crate::geometry::ray_packet::{PACKET_SIZE, RayPacket};
 use crate::render::observer::{Count, RayKind, TraceObserver};
 use crate::simd::cpu::kernels;
 use crate::simd::soa::LANES;
@@ -42,10 +42,15 @@ impl ShadowRays<'_> {
         self.t_max[part].iter().filter(|t_max| **t_max > 0.0).count()
     }
 
-    /// Returns a bound on the error of one ray's origin, in world units.
-    fn error(&self, lane: usize) -> f64 {
+    /// Returns the lane of the surface's point from which a ray starts.
+    fn start(&self, lane: usize) -> usize {
         let lane = lane.min(self.len - 1);
-        self.surface.error(self.lanes.map_or(lane, |lanes| usize::from(lanes[lane])))
+        self.lanes.map_or(lane, |lanes| usize::from(lanes[lane]))
+    }
+
+    /// Tells whether a ray leaves an object, where rays of several objects are cast together.
+    fn leaves(&self, lane: usize, object: usize) -> bool {
+        self.surface.objects.get(self.start(lane)).is_some_and(|left| *left as usize == object)
     }
 }
 
@@ -115,24 +120,58 @@ impl<W: TraceObserver> Occlusion<'_, '_, '_, W> {
         }
     }
 
-    /// Returns the index of the object that the rays leave, and the sides that they leave.
+    /// Returns the index of the object that the rays leave, and the sides that they leave; `None` where they leave several.
     fn left(&self) -> Option<(usize, &[Side])> {
-        Some((self.shadow_rays.surface.index, self.shadow_rays.sides))
+        let ShadowRays { surface, sides, .. } = self.shadow_rays;
+        surface.objects.is_empty().then_some((surface.index, *sides))
     }
 
     /// Tests the current sub-packet against an object.
     fn test_part(&mut self, index: usize) {
-        let ShadowRays { rays, t_max, surface, sides, .. } = *self.shadow_rays;
-        let (rays, t_max) = (rays.part(self.part.clone()), &t_max[self.part.clone()]);
+        let ShadowRays { t_max, surface, sides, .. } = *self.shadow_rays;
+        let part = self.part.clone();
+        if surface.objects.is_empty() {
+            let left = (index == surface.index).then(|| &sides[part.clone()]);
+            let count = self.shadow_rays.count(&part);
+            self.test_leaving(index, count, &t_max[part], left);
+            return;
+        }
+        let own = part.clone().filter(|lane| self.shadow_rays.leaves(*lane, index)).count();
+        if own == 0 {
+            self.test_leaving(index, self.shadow_rays.count(&part), &t_max[part], None);
+            return;
+        }
+        // Those that leave the object, and the others.
+        let mut ends = [0.0; PACKET_SIZE];
+        for leaves in [false, true] {
+            let shape = &self.tracer.model.objects[index].shape;
+            let mut count = 0;
+            for (lane, end) in part.clone().zip(&mut ends) {
+                let is_its = self.shadow_rays.leaves(lane, index) == leaves;
+                let is_tested = is_its && (!leaves || shape.can_hit_itself(sides[lane]));
+                *end = if is_tested { t_max[lane] } else { 0.0 };
+                count += usize::from(*end > 0.0 && lane < self.shadow_rays.len);
+            }
+            if count > 0 {
+                let left = leaves.then(|| &sides[part.clone()]);
+                self.test_leaving(index, count, &ends[..part.len()], left);
+            }
+        }
+    }
+
+    /// Tests the current sub-packet, of which `count` rays are cast, which end at `t_max`, against an object. `left` has the
+    /// sides of it that they leave, if they do.
+    fn test_leaving(&mut self, index: usize, count: usize, t_max: &[f64], left: Option<&[Side]>) {
+        let rays = self.shadow_rays.rays.part(self.part.clone()).leaving(left);
         let shape = &self.tracer.model.objects[index].shape;
-        let rays = rays.leaving((index == surface.index).then(|| &sides[self.part.clone()]));
-        self.tracer.observer.count(Count::Tested(index, self.shadow_rays.count(&self.part)));
+        self.tracer.observer.count(Count::Tested(index, count));
         let (blocked, doubt) = (&mut self.blocked[self.part.clone()], &mut self.doubt[self.part.clone()]);
         if shape.packets().occluded(self.tracer.cpu, rays, t_max, blocked, doubt) {
             for lane in 0..t_max.len() {
                 if doubt[lane] != 0 {
                     let origin_side = rays.side(lane);
-                    let error = self.shadow_rays.error(self.part.start + lane);
+                    let start = self.shadow_rays.start(self.part.start + lane);
+                    let error = self.tracer.point_error(self.shadow_rays.surface, start);
                     let distance = exact(
                         shape,
                         &RoundedRay { ray: rays.get(lane), error, sight: None },

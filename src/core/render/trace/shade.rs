@@ -4,6 +4,7 @@ use super::arrays::{VectorList, compact, gather, resized};
 use super::closest_hit;
 use super::context::{HitScratch, ShadingScratch, Tracer};
 use super::light;
+use super::mixed;
 use super::ray_group::RayGroup;
 use super::surface::{Errors, SeenPatches, Surface};
 use crate::geometry::ray_packet::SurfaceInteraction;
@@ -22,16 +23,26 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Computes the light that returns along the rays of a packet.
     pub(super) fn trace(&mut self, group: &mut RayGroup, colours: &mut VectorList) {
         let mut level = self.scratch.levels.pop().unwrap_or_default();
-        let HitScratch { hits, parts, part, near, far, shading, seen } = &mut *level;
+        let HitScratch { hits, parts, part, looks, near, far, shading, seen } = &mut *level;
         self.closest(group, None, hits);
         let met = &hits.hit_ids[..group.len];
+        shading.surface.objects.clear();
         if met[0] != 0 && closest_hit::is_one(self.cpu, met) {
             self.shade(group, (&hits.near, &hits.far), met[0] as usize - 1, shading, colours);
         } else {
             colours.resized(group.padded());
-            parts.begin(met);
+            let alike = self.plan.alike.as_ref();
+            let alike = alike.filter(|_| !self.scratch.trails.is_on && mixed::are_short(met));
+            match alike {
+                Some(alike) => {
+                    looks.clear();
+                    looks.extend(met.iter().map(|id| alike.look(*id)));
+                    parts.begin(looks);
+                }
+                None => parts.begin(met),
+            }
             while let Some((id, lanes)) = parts.next() {
-                let Some(object) = (id as usize).checked_sub(1) else {
+                if id == 0 {
                     match &self.model.background {
                         None => lanes.iter().for_each(|lane| colours.set(usize::from(*lane), Rgb::ZERO)),
                         Some(background) => {
@@ -40,7 +51,11 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                         }
                     }
                     continue;
-                };
+                }
+                let object = met[usize::from(lanes[0])] as usize - 1;
+                if alike.is_some() {
+                    mixed::list(met, lanes, &mut shading.surface.objects);
+                }
                 part.gather(group, lanes);
                 gather(near, &hits.near, lanes, part.padded());
                 gather(far, &hits.far, lanes, part.padded());
@@ -65,7 +80,11 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         colours: &mut VectorList,
     ) {
         let (cpu, count) = (self.cpu, group.padded());
-        self.refine(group, brackets, index, &mut shading.distances);
+        if shading.surface.objects.is_empty() {
+            self.refine(group, brackets, index, &mut shading.distances);
+        } else {
+            self.refine_mixed(group, brackets, &shading.surface.objects, &mut shading.distances);
+        }
         let (distances, surface) = (&shading.distances[..count], &mut shading.surface);
         let object = &self.model.objects[index];
         let material = &object.material;
@@ -129,15 +148,20 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         surface.index = index;
         let travelled = resized(&mut surface.travelled, count);
         travelled.copy_from_slice(&group.travelled[..count]);
-        let interaction = SurfaceInteraction {
-            points: surface.points.resized(count),
-            normals: surface.normals.resized(count),
-            geometric_normals: surface.unbent.resized(count),
-            sides: resized(&mut surface.sides, count),
-            cosines: resized(&mut surface.cosines, count),
-            travelled,
+        let mixed_errors = if surface.objects.is_empty() {
+            let interaction = SurfaceInteraction {
+                points: surface.points.resized(count),
+                normals: surface.normals.resized(count),
+                geometric_normals: surface.unbent.resized(count),
+                sides: resized(&mut surface.sides, count),
+                cosines: resized(&mut surface.cosines, count),
+                travelled,
+            };
+            shape.packets().interact(cpu, group.rays(), distances, interaction);
+            None
+        } else {
+            Some(self.interact_mixed(group, distances, surface))
         };
-        shape.packets().interact(cpu, group.rays(), distances, interaction);
         self.pass_media(group, distances, surface);
         let window = if shader.sees().patch { self.plan.camera.window() } else { None };
         // Rays that continue from others are those of a round.
@@ -168,7 +192,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             self.scratch.trails.meet(cpu, &group.camera[..group.len], index, nearest, shader);
         }
         let goes_on = !self.plan.needs.lights.is_empty() || surface.is_mirror || material.transparency != 0.0;
-        surface.errors = if goes_on {
+        surface.errors = if let Some(errors) = mixed_errors {
+            errors
+        } else if goes_on {
             self.errors(&**shape, &surface.travelled[..count], &surface.cosines[..count])
         } else {
             Errors::NONE

@@ -18,8 +18,10 @@ use glam::DVec3;
 /// The points where the rays of a packet hit one object.
 #[derive(Default)]
 pub(super) struct Surface {
-    /// The object's index.
+    /// The object's index; of several objects, that of one of them.
     pub index: usize,
+    /// The index of the object that each ray hits, where rays of several objects are shaded together; else empty.
+    pub objects: Vec<u32>,
     pub points: VectorList,
     /// The unit normals with which the points are shaded, flipped to face the rays where both sides are lit.
     pub normals: VectorList,
