@@ -47,16 +47,16 @@ fn a_named_number_has_a_slider_and_is_written_into_the_scene() {
     let Some((watching, browser)) = opened(&scene("2")) else { return };
     browser.press('v');
     browser.wait("document.querySelector('#field-size-0')");
-    browser.run("const slider = document.querySelector('#fields input[type=range]'); slider.value = 1.25; slider.dispatchEvent(new Event('input'))");
+    browser.run("const slider = document.querySelector('#fields input[type=range]'); slider.value = 1.2; slider.dispatchEvent(new Event('input'))");
     shown(&browser, 2);
-    assert!(canvas(&browser) == render(&model(&scene("1.25"))));
+    assert!(canvas(&browser) == render(&model(&scene("1.2"))));
     browser.wait(&format!("{SAID} === '1 value differs from the file'"));
     let row = "document.querySelector('#differs li span').textContent";
-    assert_eq!(browser.text(&format!("return {row}")), "size 2 → 1.25");
+    assert_eq!(browser.text(&format!("return {row}")), "size 2 → 1.2");
     browser.run("document.querySelector('#write').click()");
     browser.wait("document.querySelector('#fields p span').textContent === 'written'");
-    assert_eq!(text(&watching), scene("1.25"));
-    browser.wait("document.querySelector('#differs').hidden && document.querySelector('#field-size-0').value === '1.25'");
+    assert_eq!(text(&watching), scene("1.2"));
+    browser.wait("document.querySelector('#differs').hidden && document.querySelector('#field-size-0').value === '1.2'");
 }
 
 #[test]
