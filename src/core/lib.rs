@@ -37,7 +37,6 @@ pub use glam;
 pub use tabray_exact as exact;
 
 pub mod files;
-pub mod held;
 pub mod geometry;
 pub mod memory;
 pub mod output;

@@ -3,7 +3,7 @@
 use crate::text::{NAME, view, without_files};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
-use tabray_core::held;
+use tabray_core::files::held;
 use tabray_core::render::plan::Plan;
 use tabray_core::scene::model::Model;
 use tabray_core::scene::value::Datum;

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use std::io;
 use std::ops::ControlFlow;
 use std::path::Path;
-use tabray_core::held;
+use tabray_core::files::held;
 use tabray_core::output::aov::Aov;
 use tabray_core::render::decisions;
 use tabray_core::render::plan::Plan;
@@ -17,7 +17,7 @@ use tabray_core::render::renderer::Renderer;
 use tabray_core::text;
 use tabray_core::text::Named;
 use tabray_lang::registry::Registry;
-use tabray_tools::page::{camera, fields};
+use tabray_tools::page::{camera, entities, fields};
 use tabray_tools::probe;
 
 /// The answer to a request, with a status as in HTTP.
@@ -166,8 +166,8 @@ impl Session {
             ("object", _) => at_pixel(&|at| Answer::json(&fields::of_pixel(registry, scene.shown(), at))),
             ("point", _) => at_pixel(&|at| Answer::json(&camera::point(model, at))),
             ("layer", [name]) => layer(&Plan::new(model), name),
-            ("entities", []) => Answer::json(&fields::all(registry, scene.shown())),
-            ("entity", [order]) => Answer::json(&fields::of_entity(registry, scene.shown(), order)),
+            ("entities", []) => Answer::json(&entities::all(registry, scene.shown())),
+            ("entity", [order]) => Answer::json(&entities::fields(registry, scene.shown(), order)),
             ("camera", []) => match camera::state(registry, scene.shown()) {
                 Ok(state) => Answer::json(&state),
                 Err(reason) => Answer::new(409, reason),

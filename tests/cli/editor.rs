@@ -35,7 +35,8 @@ impl Client {
             .expect("the program starts");
         let input = program.stdin.take().expect("a pipe");
         let output = BufReader::new(program.stdout.take().expect("a pipe"));
-        let mut client = Self { program, input, output, asked: 0, told: VecDeque::new(), capabilities: Value::Null };
+        let mut client =
+            Self { program, input, output, asked: 0, told: VecDeque::new(), capabilities: Value::Null };
         let item = json!({ "completionItem": { "snippetSupport": true } });
         let action = json!({ "disabledSupport": true });
         let capabilities = json!({ "textDocument": { "completion": item, "codeAction": action } });
@@ -265,7 +266,8 @@ fn words_are_told_apart_by_the_legend() {
     let mut client = Client::start(&folder);
     let begun = client.capabilities.clone();
     let legend = &begun["semanticTokensProvider"]["legend"]["tokenTypes"];
-    let (uri, text) = (uri(folder.path(), "scene.ray"), "material \"😀\" { ambient 1 0 0 }\nlet r \"2 +\n k\"\n");
+    let (uri, text) =
+        (uri(folder.path(), "scene.ray"), "material \"😀\" { ambient 1 0 0 }\nlet r \"2 +\n k\"\n");
     client.open(&uri, text);
     let answer = client.ask("textDocument/semanticTokens/full", json!({ "textDocument": { "uri": uri } }));
     let data: Vec<usize> = serde_json::from_value(answer.expect("tokens")["data"].clone()).expect("numbers");

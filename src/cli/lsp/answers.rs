@@ -3,8 +3,8 @@
 use super::documents::{Document, Documents, LARGEST};
 use super::faults::{Faults, diagnostic};
 use super::protocol::{
-    ColorInformation, DocumentSymbol, FoldingRange, InlayHint, RequestParams, SemanticTokens, Span, markdown, path, range,
-    span, text_of,
+    ColorInformation, DocumentSymbol, FoldingRange, InlayHint, RequestParams, SemanticTokens, Span, markdown,
+    path, range, span, text_of,
 };
 use serde_json::{Value, json};
 use std::collections::BTreeMap;

@@ -24,7 +24,7 @@ use tabray_core::render::plan::Plan;
 use tabray_core::text;
 use tabray_core::text::Named;
 use tabray_lang::registry::Registry;
-use tabray_tools::page::{self, fields, html};
+use tabray_tools::page::{self, entities, fields, html};
 use tabray_tools::probe;
 use tabray_tools::threads::renderer_with;
 use tokio::time::timeout;
@@ -92,7 +92,7 @@ pub async fn answer(request: &Request<Bytes>, session: &Session, work: &Work) ->
             let registry = session.registry;
             let all = |frame: Arc<Frame>| -> Option<Job> {
                 Some(Box::new(move |_| {
-                    let all = fields::all(registry, frame.shown());
+                    let all = entities::all(registry, frame.shown());
                     Ok(("application/json", text::json(&all).into_bytes()))
                 }))
             };
@@ -208,7 +208,7 @@ fn place(frame: &Frame, x: &str, y: &str) -> Option<[usize; 2]> {
 fn entity(registry: &'static Registry, frame: Arc<Frame>, order: &str) -> Option<Job> {
     let order = order.to_owned();
     Some(Box::new(move |_| {
-        let fields = fields::of_entity(registry, frame.shown(), &order);
+        let fields = entities::fields(registry, frame.shown(), &order);
         Ok(("application/json", text::json(&fields).into_bytes()))
     }))
 }

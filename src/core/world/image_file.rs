@@ -1,7 +1,7 @@
 //! Image files of any format, decoded to texels within a limit of memory.
 
 use crate::files::ImageBytes;
-use crate::held::SceneFile;
+use crate::files::held::SceneFile;
 use crate::text;
 use crate::world::display::Display;
 use crate::world::texels::Texels;

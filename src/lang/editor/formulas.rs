@@ -26,7 +26,8 @@ pub fn words(formula: &str) -> Vec<(Range<usize>, WordKind)> {
             let is_exponent = rest[digits..].starts_with(['e', 'E'])
                 && exponent.next().is_some_and(|next| next.is_ascii_digit() || "+-".contains(next));
             let more = &rest[digits + 2 * usize::from(is_exponent)..];
-            let more = if is_exponent { more.find(|c: char| !c.is_ascii_digit()).unwrap_or(more.len()) } else { 0 };
+            let more =
+                if is_exponent { more.find(|c: char| !c.is_ascii_digit()).unwrap_or(more.len()) } else { 0 };
             (digits + 2 * usize::from(is_exponent) + more, WordKind::Number)
         } else if is_in_name(first) {
             (rest.find(|c: char| !is_in_name(c)).unwrap_or(rest.len()), WordKind::Name)
@@ -43,7 +44,8 @@ pub fn words(formula: &str) -> Vec<(Range<usize>, WordKind)> {
 
 /// Returns the places, in bytes, of the names in a formula other than its variables, its functions and `pi`.
 pub fn names(formula: &str) -> Vec<Range<usize>> {
-    let names = words(formula).into_iter().filter(|(_, kind)| *kind == WordKind::Name).map(|(place, _)| place);
+    let names =
+        words(formula).into_iter().filter(|(_, kind)| *kind == WordKind::Name).map(|(place, _)| place);
     names.filter(|place| is_name(&formula[place.clone()])).collect()
 }
 

@@ -17,7 +17,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use tabray_core::files;
-use tabray_core::held::SceneFile;
+use tabray_core::files::held::SceneFile;
 use tabray_core::text::{self, nearest_file};
 use toml::de::{DeTable, DeValue};
 

@@ -1,6 +1,6 @@
 //! The numbers of a scene's entities, as a page offers them to be changed.
 
-use super::{Shown, numbers};
+use super::Shown;
 use serde::Serialize;
 use std::borrow::Cow;
 use tabray_core::render::plan::Plan;
@@ -68,11 +68,10 @@ fn named(record: &Record) -> Named {
     Named { order: record.order().to_string(), kind: record.entity().name, name: record.name().to_owned() }
 }
 
-/// Lists the entities of a scene that have numbers, or the first of them; the scene's own numbers come before.
-pub fn all(registry: &Registry, shown: Shown) -> Vec<Named> {
+/// Lists the entities of a scene that have numbers, or the first of them.
+pub fn all(model: &Model) -> impl Iterator<Item = Named> {
     let has_numbers = |record: &&Record| record.entity().attributes().any(is_number);
-    let entities = records(shown.model).filter(has_numbers).take(MOST).map(named);
-    numbers::of(registry, shown).map(|numbers| numbers.entity).into_iter().chain(entities).collect()
+    records(model).filter(has_numbers).take(MOST).map(named)
 }
 
 /// Returns the attributes of the object that the centre of a pixel shows; `None` where it shows none.
@@ -82,12 +81,8 @@ pub fn of_pixel(registry: &Registry, shown: Shown, [x, y]: [usize; 2]) -> Option
     Some(of(registry, shown, &hit.object.args))
 }
 
-/// Returns the attributes of an entity by its index, or the scene's own numbers; `None` if the scene has none.
-pub fn of_entity(registry: &Registry, shown: Shown, order: &str) -> Option<Fields> {
-    if order == numbers::ORDER {
-        return numbers::of(registry, shown);
-    }
-    let order: usize = order.parse().ok()?;
+/// Returns the attributes of an entity by its index; `None` if the scene has none.
+pub fn of_entity(registry: &Registry, shown: Shown, order: usize) -> Option<Fields> {
     let record = records(shown.model).find(|record| record.order() == order)?;
     Some(of(registry, shown, record))
 }

@@ -3,6 +3,7 @@
 
 pub mod camera;
 pub mod display;
+pub mod entities;
 pub mod fields;
 pub mod html;
 pub mod numbers;

@@ -212,7 +212,7 @@ mod tests {
         let trial_values: &[(&str, &str, &[&str])] = &[("", "k", &["2.5"])];
         for (file, text) in [
             ("a.ray", "let k 0.5 # here\nlet f(u) \"k*u\"\nsphere ball { radius \"k\" }"),
-            ("a.ray", "let k = \"0.5\"\nrepeat i 2 { let k 7 sphere ball { radius \"k\" } }"),
+            ("a.ray", "let k \"0.5\"\nrepeat i 2 { let k 7 sphere ball { radius \"k\" } }"),
             ("a.toml", "[let]\nk = 0.5 # here\n[sphere.ball]\nradius = \"k\"\n"),
         ] {
             let after = text.replace("\"0.5\"", "2.5").replace("0.5", "2.5");

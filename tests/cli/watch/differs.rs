@@ -43,7 +43,9 @@ fn a_page_that_comes_later_says_what_differs_from_the_file() {
 
 #[test]
 fn a_named_number_has_a_slider_and_is_written_into_the_scene() {
-    let scene = |size: &str| format!("let size {size} # of the ball\n{}", ball("9 0 0")).replace("radius 2", "radius \"size\"");
+    let scene = |size: &str| {
+        format!("let size {size} # of the ball\n{}", ball("9 0 0")).replace("radius 2", "radius \"size\"")
+    };
     let Some((watching, browser)) = opened(&scene("2")) else { return };
     browser.press('v');
     browser.wait("document.querySelector('#field-size-0')");

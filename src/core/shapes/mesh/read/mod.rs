@@ -25,7 +25,7 @@ use format::Format;
 use model::MemoryBudget;
 pub use model::{FilePosition, Model, ReadError, Remark, Wanted};
 
-use crate::held::SceneFile;
+use crate::files::held::SceneFile;
 use crate::memory;
 use crate::text;
 use bytesize::ByteSize;

@@ -4,7 +4,7 @@ use super::blocks::{self, Words, words};
 use super::finish::{Finish, Map, Mask};
 use super::model::{MemoryBudget, Model, Remark};
 use super::textures::{Textures, first_of};
-use crate::held::SceneFile;
+use crate::files::held::SceneFile;
 use crate::text;
 use crate::world::material::Rgb;
 use crate::world::texture::{CUTOFF, Texture};

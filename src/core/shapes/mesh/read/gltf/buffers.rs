@@ -1,7 +1,7 @@
 //! The numbers of glTF: buffers, views of buffers, and accessors, which give the types of the numbers in a view.
 
 use super::json::{self, Gltf};
-use crate::held::SceneFile;
+use crate::files::held::SceneFile;
 use crate::shapes::mesh::read::model::{MemoryBudget, shown};
 use crate::text;
 use base64::Engine;

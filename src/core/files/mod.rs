@@ -1,6 +1,8 @@
 //! Opens files that a scene or a command names; the path may lead to something other than a file, or out of a folder
 //! that the program is confined to.
 
+pub mod held;
+
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, BufRead, Seek};
 use std::path::{Component, Path, PathBuf};

@@ -1,7 +1,7 @@
 //! Files that a scene names: those of the system, and those that a program holds in memory, as in a browser, which has no
 //! files.
 
-use crate::files;
+use super::{open, plain};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, Cursor, Read, Seek, SeekFrom};
@@ -14,7 +14,7 @@ static ALL: RwLock<BTreeMap<PathBuf, Arc<[u8]>>> = RwLock::new(BTreeMap::new());
 /// Holds a file, which is then found at this path in place of one of the system.
 pub fn hold(path: &Path, bytes: Vec<u8>) {
     let mut all = ALL.write().unwrap_or_else(PoisonError::into_inner);
-    all.insert(files::plain(path), bytes.into());
+    all.insert(plain(path), bytes.into());
 }
 
 /// Finds a file that is held: at this path, or else one of the same name in another folder.
@@ -23,7 +23,7 @@ fn find(path: &Path) -> Option<Arc<[u8]>> {
     if all.is_empty() {
         return None;
     }
-    let path = files::plain(path);
+    let path = plain(path);
     let is_namesake = |known: &Path| known.file_name() == path.file_name();
     let namesake = || all.iter().find(|(known, _)| is_namesake(known)).map(|(_, bytes)| bytes);
     all.get(&path).or_else(namesake).cloned()
@@ -46,11 +46,11 @@ impl SceneFile {
     /// Opens the file at a path.
     ///
     /// # Errors
-    /// Returns those of [`files::open`].
+    /// Returns those of [`open`](super::open).
     pub fn open(path: &Path) -> io::Result<Self> {
         match find(path) {
             Some(bytes) => Ok(Self::Held(Cursor::new(bytes))),
-            None => files::open(path).map(Self::Stored),
+            None => open(path).map(Self::Stored),
         }
     }
 
