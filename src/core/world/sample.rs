@@ -211,8 +211,8 @@ fn draw(cpu: Cpu, samples: &Samples, purpose: u32, x: &mut [f64], y: &mut [f64])
         sobol(cpu, index, pixel, salt(purpose), x, y);
         return;
     }
-    for (place, (x, y)) in x.iter_mut().zip(y).enumerate() {
-        let sample = Sample { sampler: *sampler, index: index[place], pixel: pixel[place] };
+    for ((index, pixel), (x, y)) in index.iter().zip(pixel).zip(x.iter_mut().zip(y)) {
+        let sample = Sample { sampler: *sampler, index: *index, pixel: *pixel };
         DVec2 { x: *x, y: *y } = sample.draw(purpose);
     }
 }

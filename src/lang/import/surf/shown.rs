@@ -1,6 +1,6 @@
 //! The picture that the settings and the surfaces of a script describe.
 
-use super::{CLIPS, SURFACES, Script};
+use super::script::{CLIPS, SURFACES, Script};
 use crate::import::expression::{Names, turn};
 use crate::import::picture::{Clip, Light, Look, Picture, Surface};
 use crate::reader::Fault;
