@@ -74,20 +74,21 @@ archive() {
     rm -r "${out:?}/$1"
 }
 
-# Makes the archive of a target: `bundle TARGET NAME PROGRAM`.
+# Makes the archive of a target: `bundle TARGET NAME PROGRAM STRIP`.
 bundle() {
     local folder=tabray-$version-$2
     compiled "$1" || return 0
     files
     mkdir "$out/$folder"
     cp "target/$1/dist/$3" README.md CHANGELOG.md LICENSE "$out/$folder/"
+    ! command -v "$4" > /dev/null || "$4" "$out/$folder/$3"
     cp -r "$out/files"/{completions,man1,scenes} "$out/$folder/"
     archive "$folder"
 }
 
-linux() { bundle x86_64-unknown-linux-musl x86_64-linux tabray; }
-aarch64() { bundle aarch64-unknown-linux-musl aarch64-linux tabray; }
-windows() { ! has zip "apt-get install zip" || bundle x86_64-pc-windows-gnu x86_64-windows tabray.exe; }
+linux() { bundle x86_64-unknown-linux-musl x86_64-linux tabray strip; }
+aarch64() { bundle aarch64-unknown-linux-musl aarch64-linux tabray aarch64-linux-gnu-strip; }
+windows() { ! has zip "apt-get install zip" || bundle x86_64-pc-windows-gnu x86_64-windows tabray.exe x86_64-w64-mingw32-strip; }
 
 deb() {
     local target
@@ -152,7 +153,8 @@ sbom() {
     # It writes beside each manifest.
     git archive --prefix=source/ HEAD | tar -x -C "$work"
     cargo cyclonedx --quiet --manifest-path "$work/source/Cargo.toml" --format json --spec-version 1.5 --target all
-    cp "$work/source/tabray.cdx.json" "$out/tabray-$version.cdx.json"
+    # Without the folder's own name.
+    sed "s|file://$work/source|file:///tabray|g" "$work/source/tabray.cdx.json" > "$out/tabray-$version.cdx.json"
 }
 
 for package in "${@:-linux aarch64 windows deb wheel web vscode container sbom}"; do
