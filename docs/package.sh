@@ -18,6 +18,7 @@ version=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -1)
 # The time of all files: with the order and the owner, the same commit makes the same archives.
 time=$(git log -1 --format=%ct 2> /dev/null || echo 0)
 export SOURCE_DATE_EPOCH=$time
+export CARGO_PROFILE_DIST_STRIP=true
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 rm -rf "$out"
@@ -74,21 +75,20 @@ archive() {
     rm -r "${out:?}/$1"
 }
 
-# Makes the archive of a target: `bundle TARGET NAME PROGRAM STRIP`.
+# Makes the archive of a target: `bundle TARGET NAME PROGRAM`.
 bundle() {
     local folder=tabray-$version-$2
     compiled "$1" || return 0
     files
     mkdir "$out/$folder"
     cp "target/$1/dist/$3" README.md CHANGELOG.md LICENSE "$out/$folder/"
-    ! command -v "$4" > /dev/null || "$4" "$out/$folder/$3"
     cp -r "$out/files"/{completions,man1,scenes} "$out/$folder/"
     archive "$folder"
 }
 
-linux() { bundle x86_64-unknown-linux-musl x86_64-linux tabray strip; }
-aarch64() { bundle aarch64-unknown-linux-musl aarch64-linux tabray aarch64-linux-gnu-strip; }
-windows() { ! has zip "apt-get install zip" || bundle x86_64-pc-windows-gnu x86_64-windows tabray.exe x86_64-w64-mingw32-strip; }
+linux() { bundle x86_64-unknown-linux-musl x86_64-linux tabray; }
+aarch64() { bundle aarch64-unknown-linux-musl aarch64-linux tabray; }
+windows() { ! has zip "apt-get install zip" || bundle x86_64-pc-windows-gnu x86_64-windows tabray.exe; }
 
 deb() {
     local target
