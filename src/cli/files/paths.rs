@@ -1,6 +1,6 @@
 //! Paths that lead to pipes and devices, or to the same file as others.
 
-use std::fs::{self, File, OpenOptions};
+use std::fs::{File, OpenOptions};
 use std::io;
 use std::path::Path;
 use std::sync::mpsc;
@@ -47,7 +47,7 @@ fn patiently(path: &Path, does: &str, options: &OpenOptions) -> io::Result<File>
 #[cfg(unix)]
 fn is_pipe(path: &Path) -> bool {
     use std::os::unix::fs::FileTypeExt;
-    fs::metadata(path).is_ok_and(|kind| kind.file_type().is_fifo())
+    std::fs::metadata(path).is_ok_and(|kind| kind.file_type().is_fifo())
 }
 
 #[cfg(not(unix))]

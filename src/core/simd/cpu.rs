@@ -14,7 +14,7 @@ pub struct Cpu(Level);
 /// Levels of instructions; each includes those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// What every machine has: SSE2 on x86-64.
+    /// What every machine has: SSE2 on x86-64 and NEON on aarch64, two numbers at a time.
     Baseline,
     /// AVX2: four numbers at a time.
     Avx2,
