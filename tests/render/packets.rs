@@ -30,3 +30,48 @@ fn what_a_ray_sees_does_not_depend_on_what_others_may_cost() {
     }
     assert!(seen(&plan, &[0], &[1])[0] != Rgb::ZERO, "without a ray to the light it shines");
 }
+
+/// Writes small spheres and triangles, of which many touch or cross each other, of one look but for each tenth.
+fn many_small_objects() -> String {
+    let part = |index: usize, step: f64| (index as f64 * step).fract();
+    let mut text = "camera eye { pixeldim 16 12 worlddim 8 6 viewpoint 4 3 7 }
+        material matt { ambient 0.1 0.1 0.1 diffuse 3 2 1 }
+        material other { diffuse 1 2 3 shininess 9 }
+        light left { location 1 5 2 emissivity 4 4 4 }
+        light right { location 7 5 -3 emissivity 2 2 2 }
+        plane floor { material matt normal 0 1 0 point 0 0 0 }\n"
+        .to_owned();
+    for index in 0..400 {
+        let material = if index % 10 == 0 { "other" } else { "matt" };
+        let [x, y, z] = [8.0 * part(index, 0.819), 6.0 * part(index, 0.671), -4.0 * part(index, 0.5497)];
+        text += &match index % 4 {
+            0 => format!("sphere s{index} {{ material {material} center {x} {y} {z} radius 0.4 }}\n"),
+            // Two triangles with an edge in common.
+            1 => format!(
+                "triangle a{index} {{ material {material} vertex1 {x} {y} {z} vertex2 {} {y} {z} vertex3 {x} {} {z} }}
+                triangle b{index} {{ material matt vertex1 {0} {y} {z} vertex2 {0} {1} {z} vertex3 {x} {1} {z} }}\n",
+                x + 0.7,
+                y + 0.6
+            ),
+            2 => format!("ellipsoid e{index} {{ material {material} center {x} 0 {z} scale 0.3 0.2 0.4 }}\n"),
+            _ => format!(
+                "triangle t{index} {{ material {material} vertex1 {x} {y} {z} vertex2 {} 0 {z} vertex3 {x} {} {} }}\n",
+                x + 0.5,
+                y + 0.9,
+                z - 0.5
+            ),
+        };
+    }
+    text
+}
+
+#[test]
+fn objects_of_one_look_are_shaded_as_each_alone() {
+    let model = model(&many_small_objects());
+    let plan = Plan::for_picture(&model);
+    let pixels: Vec<_> = (0..16 * 12).map(|index| [index % 16, index / 16]).collect();
+    let together = trace::within_budgets(&plan, &pixels, &vec![u32::MAX; pixels.len()], &mut ());
+    for ([x, y], (colour, _)) in pixels.into_iter().zip(together) {
+        assert_eq!(colour, trace::pixel(&plan, x, y), "{x}, {y}");
+    }
+}

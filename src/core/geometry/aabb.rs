@@ -1,7 +1,7 @@
 //! Axis-aligned bounding boxes.
 
 use crate::simd::cpu::kernels;
-use crate::simd::soa::{LANES, View};
+use crate::simd::soa::View;
 use glam::DVec3;
 use tabray_exact::double_double::power_of_two;
 
@@ -97,29 +97,15 @@ pub(crate) fn from_order(place: i64) -> f64 {
     f64::from_bits((place ^ (((place >> 63) as u64) >> 1) as i64) as u64)
 }
 
-/// Returns the smallest and the largest of some numbers. NaN is passed over.
+/// Returns the smallest and the largest of some numbers.
 #[inline(always)]
 pub(crate) fn range(of: &[f64]) -> (f64, f64) {
-    // A minimum for each lane: the compiler keeps the order of comparisons of numbers.
-    let (mut low, mut high) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
-    let whole = of.len() / LANES * LANES;
-    for first in (0..whole).step_by(LANES) {
-        let of = &of[first..][..LANES];
-        for lane in 0..LANES {
-            low[lane] = smaller(of[lane], low[lane]);
-            high[lane] = larger(of[lane], high[lane]);
-        }
+    let (mut low, mut high) = (i64::MAX, i64::MIN);
+    for number in of {
+        low = low.min(order(*number));
+        high = high.max(order(*number));
     }
-    for lane in whole..of.len() {
-        low[0] = smaller(of[lane], low[0]);
-        high[0] = larger(of[lane], high[0]);
-    }
-    let (mut least, mut greatest) = (low[0], high[0]);
-    for lane in 1..LANES {
-        least = smaller(low[lane], least);
-        greatest = larger(high[lane], greatest);
-    }
-    (least, greatest)
+    (from_order(low), from_order(high))
 }
 
 /// Returns the smaller of two numbers; the second one where either is NaN.
