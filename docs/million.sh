@@ -27,23 +27,8 @@ cp "$peers/course.inc" "$out"
 
 write() { awk -v name="$1" -v count=1000000 -v ply="$out/scene.ply" -f docs/objects.awk >"$out/$1.ray"; }
 
-# Writes the POV-Ray scene of a scene of spheres or triangles. Objects are parts of one, a union or a mesh, if `whole`
-# names that: else each has its texture.
-translate() {
-    awk -v whole="${2:-}" '
-        BEGIN {
-            print "#version 3.7;\n#include \"course.inc\"\nCourseCamera(<4,3,7>, 8, 6)"
-            print "CourseLight(<2,4,0>, <3,3,3>)\nCourseLight(<6,4,0>, <3,3,3>)"
-            print "#declare White = texture { pigment { rgb 0.4 } finish { ambient 0.25 diffuse 1 } }"
-            if (whole) print whole " {"
-            look = whole ? "" : "texture { White } "
-        }
-        /^sphere/ { printf "sphere { <%s,%s,%s>, %s %s}\n", $7, $8, $9, $11, look }
-        /^triangle/ {
-            printf "triangle { <%s,%s,%s>, <%s,%s,%s>, <%s,%s,%s> %s}\n", $7, $8, $9, $11, $12, $13, $15, $16, $17, look
-        }
-        END { if (whole) print "texture { White } }" }' "$out/$1.ray" >"$out/pov.pov"
-}
+# Writes the POV-Ray scene of a scene, whose objects are parts of one if `$2` names that.
+translate() { awk -v whole="${2:-}" -f docs/povray.awk "$out/$1.ray" >"$out/pov.pov"; }
 
 # Adds the CPU seconds and the MiB that a command takes to a file.
 measure() {

@@ -53,7 +53,7 @@ fn many_small_objects() -> String {
                 x + 0.7,
                 y + 0.6
             ),
-            2 => format!("ellipsoid e{index} {{ material {material} center {x} 0 {z} scale 0.3 0.2 0.4 }}\n"),
+            2 => format!("ellipsoid e{index} {{ material {material} center {x} 0 {z} radius 0.3 scale 1 0.7 1.3 }}\n"),
             _ => format!(
                 "triangle t{index} {{ material {material} vertex1 {x} {y} {z} vertex2 {} 0 {z} vertex3 {x} {} {} }}\n",
                 x + 0.5,

@@ -14,9 +14,9 @@ use crate::simd::soa::{LANES, Vectors};
 use crate::world::coincidence;
 use std::ops::Range;
 
-/// The number of lanes per run of one object up to which rays of several objects are shaded together: where runs are long,
-/// each object by itself takes no longer.
-const SHORT: usize = 16;
+/// The mean length of runs of neighbouring lanes that hit one object up to which several objects are shaded together. Runs
+/// are parts of rows of eight pixels; where they are longer, each object by itself takes no longer.
+const SHORT: usize = 4;
 
 /// Up to eight rays of a group that hit one object, the last of them repeated.
 struct Run {
