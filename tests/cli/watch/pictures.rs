@@ -17,6 +17,8 @@ fn the_screenshots_of_the_docs() {
     let browser = Browser::open(&watching.url("")).expect("a browser");
     let write = |name: &str| fs::write(root().join("docs").join(name), browser.screenshot()).expect("a file");
     shown(&browser, 1);
+    // How long it took says something about this machine alone.
+    browser.run("state('done', `${width} × ${height}`)");
 
     browser.emulate([1360, 850], false, "dark");
     click(&browser, [300, 150]);
