@@ -334,7 +334,7 @@ try {
           longest = Math.max(longest, performance.now() - begun)
         }
         const memory = await Promise.all([painter, helper].map(async (ask) => +await (await ask('memory')).text()))
-        return { memory, all: (await performance.measureUserAgentSpecificMemory()).bytes, longest: Math.round(longest) }
+        return { memory, scripts: (await performance.measureUserAgentSpecificMemory()).bytes, longest: Math.round(longest) }
       }`)
     // Some at a time: no answer of the driver may take minutes.
     let before, after
@@ -347,9 +347,9 @@ try {
     assert.equal(+(await data('restarts') ?? 0), 0, 'the program ended')
     const most = (bytes) => bytes + (32 << 20)
     after.memory.forEach((bytes, index) => assert(bytes <= most(before.memory[index]), `${before.memory} bytes became ${after.memory}`))
-    assert(after.all <= most(before.all), `${before.all} bytes became ${after.all}`)
-    const told = ({ memory, all }) => `${[...memory, all].map((bytes) => (bytes / (1 << 20)).toFixed(1)).join(' + ')} MiB`
-    return `the longest took ${after.longest} ms, ${+(await data('late') ?? 0) - late} workers were given up; module of the painter, of the helper, and all: ${told(before)} after 300, ${told(after)} at the end`
+    assert(after.scripts <= most(before.scripts), `${before.scripts} bytes became ${after.scripts}`)
+    const told = ({ memory, scripts }) => `${[...memory, scripts].map((bytes) => (bytes / (1 << 20)).toFixed(1)).join(' + ')} MiB`
+    return `the longest took ${after.longest} ms, ${+(await data('late') ?? 0) - late} workers were given up; memory of the painter, of the helper, and of all scripts: ${told(before)} after 300, ${told(after)} at the end`
   })
 
   await step('the page is there without a network', async () => {
