@@ -20,6 +20,9 @@ exports.watch = function (panel, scene, program) {
     };
     running.on("error", (error) => fail(error.message));
     running.on("close", () => fail(`\`tabray watch\` has ended: ${said.trim()}`));
+    // An editor that ends disposes of no panel.
+    const end = () => running.kill();
+    process.on("exit", end);
     running.stderr.setEncoding("utf8").on("data", (more) => {
         said = (said + more).slice(-4000);
         const found = !server && said.match(/ at (http:\/\/\S+)\/\?token=(\w+)/);
@@ -55,7 +58,8 @@ exports.watch = function (panel, scene, program) {
         dispose() {
             isOver = true;
             heard.dispose();
-            running.kill();
+            process.off("exit", end);
+            end();
         },
     };
 };

@@ -1,6 +1,7 @@
 // The panels beside a scene, without a window: what they are told, and what they write.
 
 const assert = require("node:assert");
+const { execFileSync } = require("node:child_process");
 const fs = require("node:fs");
 const os = require("node:os");
 const path = require("node:path");
@@ -89,6 +90,29 @@ test("a panel is the page of a watch of its own, which it asks through the exten
     await panel.dispose();
     await until(() => events().at(-1).lost);
     assert.deepStrictEqual(state.errors, []);
+});
+
+test("a watch ends with the editor", async () => {
+    const file = path.join(folder, "left.ray");
+    fs.writeFileSync(file, SCENE);
+    const session = `
+        const process_ = require("node:child_process"), { spawn } = process_;
+        process_.spawn = (...how) => { const child = spawn(...how); console.log(child.pid); return child; };
+        const { state, Uri } = require("./vscode");
+        state.settings.preview = "saved";
+        const panel = require("../preview").show(state.open(new Uri(${JSON.stringify(file)}), ""), "", ${JSON.stringify(program)});
+        setInterval(() => { if (panel.webview.html) process.exit(0); }, 10);`;
+    const pid = +execFileSync(process.execPath, ["-e", session], { cwd: __dirname, encoding: "utf8", timeout: 60000 });
+    const runs = () => {
+        try {
+            // One that has ended may wait for its parent.
+            return !fs.readFileSync(`/proc/${pid}/stat`, "utf8").includes(") Z ");
+        } catch {
+            return false;
+        }
+    };
+    assert.ok(pid > 0);
+    await until(() => !runs());
 });
 
 test("why there is no image is told", async () => {
