@@ -71,7 +71,7 @@ fn every_named_surface_is_a_sound_scene_with_a_picture_that_is_not_blank() {
 fn a_file_that_the_scene_names_is_told_of_and_can_be_given() {
     let mut session = Session::new();
     let cloth = "texture cloth { filename \"of a page/cloth 1.png\" }
-        texplane picture { material red  normal 0 0 1  point 1 1 -1  xdir 1 0 0  dimensions 4 4  texname cloth }\n";
+        texplane picture { material red  normal 0 0 1  point 1 1 -1  xdir 1 0 0  dimensions 4 4  texname cloth  mode 0 }\n";
     let text = BALL.to_owned() + cloth;
     let answer = session.answer("scene/1", text.as_bytes());
     assert_eq!(answer.status, 422);
