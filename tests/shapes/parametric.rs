@@ -1,13 +1,14 @@
 //! Parametric surfaces: rays hit them where surfaces of the same points are hit, and the hits are proven.
 
-use crate::common::model;
+use crate::common::{model, registry};
 use glam::DVec3;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 use std::f64::consts::TAU;
+use std::path::Path;
 use tabray::exact::interval::Interval;
 use tabray::geometry::{MISS, Ray, RayRange, Sight};
-use tabray::scene::Model;
+use tabray::scene::{self, Model};
 use tabray::world::certify::{Enclosure, Precision};
 
 struct Dice(Pcg64);
@@ -48,6 +49,21 @@ const BOTTLE: [&str; 3] = [
     "0.5*sin(u/2)*sin(v) + 0.5*cos(u/2)*sin(2*v)",
     "(1 + 0.5*cos(u/2)*sin(v) - 0.5*sin(u/2)*sin(2*v))*sin(u)",
 ];
+
+/// The middle of a torus, of which the warnings ask, is not on the torus.
+#[test]
+fn a_shader_of_u_and_v_may_be_on_a_parametric_surface() {
+    let [x, y, z] = TORUS;
+    let text = format!(
+        "camera eye {{ pixeldim 4 3 worlddim 8 6 viewpoint 4 3 6 }} material m {{ ambient 1 1 1 }}
+         formula bands {{ ambient \"v\" }}
+         parametric p {{ material m x \"{x}\" y \"{y}\" z \"{z}\" u 0 {TAU} v 0 {TAU} shader bands }}
+         place copy {{ object p translation 5 0 0 shader bands }}"
+    );
+    let loaded = scene::read(registry(), "scene", Path::new(""), text.as_bytes(), None);
+    let warnings = loaded.unwrap_or_else(|report| panic!("{report}")).warnings.to_string();
+    assert!(!warnings.contains("u and v"), "{warnings}");
+}
 
 #[test]
 fn a_torus_of_u_and_v_is_hit_where_a_torus_is() {

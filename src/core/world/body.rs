@@ -255,7 +255,7 @@ impl Body {
     fn warn_of_what_it_lacks(&mut self) {
         let (sees, at) = (self.shader.sees(), self.anchor().origin);
         let lacks = [
-            (sees.uv && self.shape.uv(at).is_none()).then_some("u and v"),
+            (sees.uv && !self.shape.facts().has_uv && self.shape.uv(at).is_none()).then_some("u and v"),
             (sees.face && self.shape.face(at).is_none()).then_some("faces"),
             (sees.curvature && self.shape.curvature(at).is_none()).then_some("gradient and curvature"),
         ];

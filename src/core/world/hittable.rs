@@ -213,6 +213,8 @@ pub struct Facts {
     /// Whether the search for a ray's hit may take as long as several plain rays
     /// ([`search_cost`](Hittable::search_cost)). Shapes without bounds are not asked.
     pub may_be_costly: bool,
+    /// Whether the surface has u and v although [`uv`](Hittable::uv) may know none of points off the surface.
+    pub has_uv: bool,
 }
 
 impl Facts {
@@ -228,6 +230,7 @@ impl Facts {
             plane: None,
             ends_as_planes: false,
             may_be_costly: false,
+            has_uv: false,
         }
     }
 

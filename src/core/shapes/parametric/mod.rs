@@ -94,7 +94,7 @@ impl Hittable for ParametricShape {
     }
 
     fn facts(&self) -> Facts {
-        Facts { is_two_sided: true, may_be_costly: true, ..Facts::within(self.bounds) }
+        Facts { is_two_sided: true, may_be_costly: true, has_uv: true, ..Facts::within(self.bounds) }
     }
 
     fn method(&self) -> String {
