@@ -5,7 +5,7 @@
 //! instructions ([`cpu`](crate::simd::cpu)). Arrays are as long as a multiple of [`LANES`](crate::simd::soa::LANES);
 //! the lanes beyond the last ray are copies of it, whose results are ignored.
 
-use crate::geometry::ray::{Bracket, MISS, Ray, RayError, Side};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayError, RayRange, Side};
 use crate::simd::cpu::kernels;
 use crate::simd::soa::{View, ViewMut};
 use glam::DVec3;
@@ -51,6 +51,13 @@ impl<'r> RayPacket<'r> {
     #[inline(always)]
     pub fn side(&self, index: usize) -> Option<Side> {
         self.leaving.map(|sides| sides[index])
+    }
+
+    /// Returns the range of a ray that ends at a distance.
+    #[inline(always)]
+    pub fn range(&self, index: usize, far: f64) -> RayRange {
+        let (origin_side, origin_error) = (self.side(index), self.origin_error);
+        RayRange { far, origin_side, origin_error, ..RayRange::ALL }
     }
 
     /// Returns the number of rays.

@@ -22,6 +22,14 @@ impl SolidPart {
 impl PacketIntersect for Shape<SolidPart, ByPackets, ByParts> {
     fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {
         let (part, count) = (&self.shape, near.len());
+        if part.is_within_others() && rays.drift.is_none() {
+            for lane in 0..count {
+                let ray = RayBall::from(rays.get(lane));
+                let bracket = part.t_bounds_from(&ray, &rays.range(lane, ends[lane]), None);
+                (near[lane], far[lane]) = (bracket.near, bracket.far);
+            }
+            return;
+        }
         part.with_own_sides(rays, |own| {
             part.own().packets().brackets(cpu, own, ends, (&mut *near, &mut *far))
         });
@@ -43,12 +51,7 @@ impl PacketIntersect for Shape<SolidPart, ByPackets, ByParts> {
         }
         for lane in 0..count {
             let bracket = Bracket { near: near[lane], far: far[lane] };
-            let range = RayRange {
-                near: 0.0,
-                far: ends[lane],
-                origin_side: rays.side(lane),
-                origin_error: rays.origin_error,
-            };
+            let range = rays.range(lane, ends[lane]);
             let first = if bracket.near == bracket.far { bracket.near } else { distances[lane] };
             let first = (!bracket.is_doubtful() && !first.is_nan()).then_some(first);
             let bracket = if bracket.near < ends[lane] {

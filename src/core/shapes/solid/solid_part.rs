@@ -45,6 +45,8 @@ pub struct SolidPart {
     /// The way to the part through the tree.
     path: Vec<usize>,
     facts: Facts,
+    /// Whether the part is a clipped surface of which nothing is seen outside of all other parts.
+    is_within_others: bool,
 }
 
 impl SolidPart {
@@ -61,7 +63,17 @@ impl SolidPart {
         let can_hit_itself = if is_outer { own.can_hit_itself.opposite() } else { own.can_hit_itself };
         let facts =
             Facts { bounds, can_hit_itself, is_two_sided: true, plane: None, ends_as_planes: false, ..own };
-        Self { parts, around, index, is_outer, tree, whole, path, facts }
+        let is_within_others = parts[index].is_clipped && {
+            let outside = vec![false; parts.len()];
+            let inside: Vec<bool> = (0..parts.len()).map(|part| part == index).collect();
+            tree.owner(&outside, &inside) != Some(index)
+        };
+        Self { parts, around, index, is_outer, tree, whole, path, facts, is_within_others }
+    }
+
+    /// Tells whether single rays are searched between the places where they enter and leave other parts.
+    pub(super) fn is_within_others(&self) -> bool {
+        self.is_within_others
     }
 
     /// Returns the shape of the part.
@@ -174,6 +186,32 @@ impl SolidPart {
             && self.tree.holds(&mut |part| self.contains(part, before, ROUNDING * size)) == Some(true)
     }
 
+    /// Returns bounds of the distances, in world units, at which a ray is in another part; `None` if it certainly passes
+    /// all of them by.
+    fn within_others(&self, ray: &Ray) -> Option<Bracket> {
+        let mut within: Option<Bracket> = None;
+        for part in (0..self.parts.len()).filter(|part| *part != self.index) {
+            let Some(around) = &self.around[part] else { return Some(Bracket { near: 0.0, far: MISS }) };
+            let shape = self.parts[part].body.shape.packets();
+            let ahead = shape.t_bounds(&ray.into(), &RayRange::ALL);
+            if ahead.near == MISS {
+                continue;
+            }
+            // The ray that comes back from beyond the part first hits it where this one leaves it.
+            let beyond = (around.middle() - ray.origin).length() + 2.0 * around.half_size().length();
+            let back = Ray { origin: ray.at(beyond), dir: -ray.dir };
+            let behind = shape.t_bounds(&back.into(), &RayRange::ALL);
+            // A surface that meets the part's surface is seen there.
+            let slack = CLOSE * (ray.origin.abs().max_element() + beyond);
+            let is_outside = self.contains(part, ray.origin, slack) == Some(false);
+            let near = if is_outside { (ahead.near - slack).max(0.0) } else { 0.0 };
+            let far = beyond - if behind.near < MISS { behind.near } else { 0.0 } + slack;
+            let (other_near, other_far) = within.map_or((MISS, 0.0), |other| (other.near, other.far));
+            within = Some(Bracket { near: near.min(other_near), far: far.max(other_far) });
+        }
+        within
+    }
+
     /// Returns the distance of the first hit that is seen, and whether it is certain. `first` is the distance of the
     /// part's own first hit, if that is known.
     pub(super) fn first_hit(&self, ray: &Ray, range: &RayRange, mut first: Option<f64>) -> (f64, bool) {
@@ -185,6 +223,11 @@ impl SolidPart {
         let is_clipped = self.parts[self.index].is_clipped;
         let is_apart =
             !is_clipped && self.around[self.index].is_some_and(|own| !own.overlaps(&Aabb { low, high }));
+        let within = match self.is_within_others {
+            true => self.within_others(ray),
+            false => Some(Bracket { near: 0.0, far: MISS }),
+        };
+        let Some(within) = within else { return (MISS, true) };
         // The side from which the next hit comes: inside and outside alternate.
         let mut from = leaves.or(is_apart.then_some(Side::Outside));
         for _ in 0..MOST_HITS {
@@ -192,7 +235,11 @@ impl SolidPart {
                 break;
             }
             let far = if range.far < MISS { (1.0 + CLOSE) * range.far - gone } else { MISS };
-            let left = RayRange { near: 0.0, far, origin_side: leaves, origin_error: error };
+            let (near, end) = ((within.near - gone).max(0.0), far.min(within.far - gone));
+            if end <= near {
+                break;
+            }
+            let left = RayRange { near, far: end, origin_side: leaves, origin_error: error };
             let bracket = first.take().map_or_else(|| shape.t_bounds(&start, &left), Bracket::exactly);
             let is_exact = bracket.near == bracket.far;
             let onward = if is_exact { bracket.near } else { shape.distance(&start, &left) };
@@ -203,13 +250,18 @@ impl SolidPart {
             }
             let distance = gone + onward;
             let at = ray.at(distance);
+            let size = ray.origin.abs().max_element() + distance + max_coordinate;
+            let sure = self.is_certainly_on_solid(ray, distance, size);
+            // Which side is seen does not matter then, and takes a normal.
+            if sure == Some(true) && !bracket.is_doubtful() {
+                return (range.keep(distance), is_certain);
+            }
             let side = match from {
                 Some(from) if !bracket.is_doubtful() => from,
                 _ => Side::seen_along(ray.dir, shape.normal(at)),
             };
             is_certain &= !bracket.is_doubtful() || leaves == Some(side);
-            let size = ray.origin.abs().max_element() + distance + max_coordinate;
-            let sure = self.is_certainly_on_solid(ray, distance, size).or_else(|| {
+            let sure = sure.or_else(|| {
                 let is_hidden = self.side(side) == Side::Outside && self.is_within(ray, distance, size);
                 is_hidden.then_some(false)
             });
