@@ -25,6 +25,7 @@ pub mod double_double;
 pub mod dual;
 pub mod f64x8;
 pub mod formula;
+pub mod gradient;
 pub mod interval;
 pub mod jet;
 mod noise;

@@ -283,6 +283,10 @@ impl Scalar for f64 {
     /// Computes the power by repeated squaring, which gives the same bits on every machine.
     #[inline(always)]
     fn powi(self, exponent: i32) -> Self {
+        // The same bits.
+        if exponent == 2 {
+            return self * self;
+        }
         let (mut result, mut square, mut left) = (1.0, self, exponent.unsigned_abs());
         while left > 0 {
             if left & 1 == 1 {

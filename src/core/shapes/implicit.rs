@@ -26,6 +26,8 @@ use on_ray::{FormulaOnRay, ImplicitShape, shortest};
 use parts::Parts;
 use tabray_exact::dual::Dual;
 use tabray_exact::formula::field::Field;
+use tabray_exact::formula::nodes::Nodes;
+use tabray_exact::gradient::Gradient;
 use tabray_exact::interval::Interval;
 use tabray_exact::polynomial::{Coefficient, MOST, Polynomial};
 use tabray_exact::roots::Method;
@@ -45,7 +47,10 @@ impl Body {
         let [low, high] = formula.bounds();
         let diagonal = Polynomial::<f64, MOST>::along(Interval { low: -1.0, high: 1.0 });
         let degree = formula.along([diagonal; 3]).degree();
-        let shape = ImplicitShape { formula, degree, frame, low, high, parts: Parts::new(low, high) };
+        let ends = [low.to_array(), high.to_array()];
+        let nodes = formula.field().zip(degree).and_then(|(field, degree)| Nodes::new(field, degree, ends));
+        let parts = Parts::new(low, high);
+        let shape = ImplicitShape { formula, degree, frame, low, high, parts, nodes };
         Self::plain(Shape::new(shape).bracketed().searched())
     }
 }
@@ -68,13 +73,8 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
     /// a cone, the normal points away from the shape's origin, and at the origin along its y axis.
     fn normal(&self, at: DVec3) -> DVec3 {
         let at = self.frame.point(at);
-        let slope = |axis: usize| {
-            let along =
-                |own: usize| if own == axis { Dual::variable(at[own]) } else { Dual::constant(at[own]) };
-            self.formula.value([along(0), along(1), along(2)]).slope
-        };
-        let normal =
-            direction(DVec3::new(slope(0), slope(1), slope(2))).or(direction(at)).unwrap_or(DVec3::Y);
+        let Gradient { slopes, .. } = self.formula.value(Gradient::point(at.to_array()));
+        let normal = direction(DVec3::from(slopes)).or(direction(at)).unwrap_or(DVec3::Y);
         self.frame.axes * normal
     }
 

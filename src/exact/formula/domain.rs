@@ -70,6 +70,9 @@ impl Field {
 
     /// Tells whether the formula jumps or has a pole in a box, and is certainly not 0 on any side of it there.
     pub fn jumps_past_0<F: Float>(&self, at: [Interval<F>; 3]) -> bool {
+        if !self.program().instructions.iter().any(|instruction| may_jump(instruction.step)) {
+            return false;
+        }
         let mut jumps = 0;
         let first = self.beside(at, 0, &mut jumps);
         if jumps == 0 || jumps > MOST_JUMPS || first.has_zero() {
@@ -142,6 +145,17 @@ impl Field {
             registers[usize::from(result)] = value;
         }
         registers[usize::from(program.result)]
+    }
+}
+
+/// Tells whether an operation jumps or has a pole anywhere.
+fn may_jump(step: Step) -> bool {
+    use Function::{Atan2, Floor, Heaviside, If, Ln, Pow, Tan};
+    match step {
+        Step::Div => true,
+        Step::Powi(exponent) => exponent < 0,
+        Step::Call(function) => matches!(function, Floor | Heaviside | If | Ln | Pow | Tan | Atan2),
+        _ => false,
     }
 }
 

@@ -206,6 +206,11 @@ fn with_constants(steps: &[Step]) -> Vec<Step> {
                 starts.pop();
             }
             Step::Call(Function::Noise | Function::If) => starts.truncate(starts.len().saturating_sub(2)),
+            Step::Powi(0) => {
+                out.truncate(starts.last().copied().unwrap_or(0));
+                out.push(Step::Number(1.0));
+                continue;
+            }
             _ => {}
         }
         out.push(*step);

@@ -6,6 +6,7 @@ mod domain;
 mod factors;
 pub mod field;
 mod function;
+pub mod nodes;
 mod own;
 mod parser;
 mod program;

@@ -15,6 +15,9 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// takes 128 bytes; compilers do not copy larger values inline.
 pub const FEW: usize = 13;
 
+/// The number of coefficients that suffices for degrees up to 21.
+pub const SOME: usize = 22;
+
 /// The largest number of coefficients: the highest degree is 40. A product of a higher degree is unknown.
 pub const MOST: usize = 41;
 

@@ -3,13 +3,16 @@
 //! Source: G. Farin, Curves and Surfaces for CAGD, fifth edition, 2002, sections 5.1 and 6.4: the convex hull property,
 //! subdivision at the middle, and variation diminution.
 
+use super::newton;
+use crate::dual::Dual;
 use crate::polynomial::{Coefficient, FEW, MOST, Polynomial};
+use crate::scalar::Scalar;
 
 /// Coefficients that are not above this many times their error are taken to be hidden by rounding.
 const HIDDEN: f64 = 2.0;
 
 /// The binomial coefficients "n over k", by n and then by k.
-pub(super) static BINOMIALS: [[f64; MOST]; MOST] = {
+pub(crate) static BINOMIALS: [[f64; MOST]; MOST] = {
     let mut of = [[0.0; MOST]; MOST];
     let mut n = 0;
     while n < MOST {
@@ -89,7 +92,13 @@ impl<C: Coefficient, const N: usize> Bernstein<C, N> {
         is_known.then_some(Self { coefficients, degree, error })
     }
 
-    fn coefficients(&self) -> &[C] {
+    /// Makes the form of these coefficients, which may be off by `error`; `None` where nothing is known of them.
+    pub(crate) fn known(coefficients: [C; N], degree: usize, error: f64) -> Option<Self> {
+        (error < f64::INFINITY).then_some(Self { coefficients, degree, error })
+    }
+
+    /// Returns the coefficients.
+    pub(crate) fn coefficients(&self) -> &[C] {
         &self.coefficients[..=self.degree]
     }
 
@@ -168,11 +177,65 @@ impl<C: Coefficient, const N: usize> Bernstein<C, N> {
     }
 }
 
+/// The error of the place near a root, as a fraction of the piece.
+const NEAR: f64 = 1e-9;
+
+/// The largest error of a known slope, as a fraction of it.
+const STEEP: f64 = 1.0 / 262_144.0;
+
+/// A place near a root.
+#[derive(Clone, Copy, Debug)]
+pub struct NearRoot {
+    /// The place, from 0 to 1 on the piece, or on the line.
+    pub place: f64,
+    /// The slope there, as it is computed.
+    pub slope: f64,
+    /// Whether that is certainly about the right slope.
+    pub is_known: bool,
+}
+
+impl<const N: usize> Bernstein<f64, N> {
+    /// Returns a place near the only root, from a guess.
+    pub fn near_root(&self, rises: bool, guess: f64) -> NearRoot {
+        let (n, binomials) = (self.degree, &BINOMIALS[self.degree]);
+        let mut scaled = [0.0; N];
+        for index in 0..=n {
+            scaled[index] = self.coefficients[index] * binomials[index];
+        }
+        // The polynomial is y^n q(x/y) with y = 1 - x, and so is x^n q(y/x) from the other end; a step of Newton's method
+        // does not need the power.
+        let at = |x: f64| {
+            let (y, is_low) = (1.0 - x, x <= 0.5);
+            let (own, other) = if is_low { (x, y) } else { (y, x) };
+            let (part, mut value, mut slope) = (own / other, 0.0, 0.0);
+            for index in (0..=n).rev() {
+                (value, slope) =
+                    (value * part + scaled[if is_low { index } else { n - index }], slope * part + value);
+            }
+            let slope = (slope - n as f64 * other * value) / (other * other);
+            (Dual { value, slope: if is_low { slope } else { -slope } }, other)
+        };
+        let place = newton::root(|x| at(x).0, (0.0, 1.0), !rises, guess, NEAR);
+        let (Dual { slope, .. }, other) = at(place);
+        let slope = slope * Scalar::powi(other, n as i32);
+        // The slope is a mean of the differences of coefficients, times n.
+        let is_known = 2.0 * n as f64 * self.error <= STEEP * slope.abs();
+        NearRoot { place, slope, is_known }
+    }
+
+    /// Tells whether the polynomial is certainly not 0 on this part of the piece at either end.
+    pub fn has_clear_ends(&self, part: f64) -> bool {
+        let [start, end] = self.ends();
+        // The slope is a mean of the differences of coefficients, times n.
+        let falls_by = 2.0 * self.degree as f64 * self.largest() * part;
+        start.abs().min(end.abs()) > self.error + 1.001 * falls_by
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::interval::Interval;
-    use crate::scalar::Scalar;
 
     /// Returns the form, from 0 to 1, of the polynomial with these roots that is above 0 far to the right.
     fn with_roots(roots: &[f64]) -> Bernstein {
@@ -193,6 +256,15 @@ mod tests {
         assert!(
             (lower.coefficients[4] - middle).abs() < 1e-14 && (upper.coefficients[0] - middle).abs() < 1e-14
         );
+    }
+
+    #[test]
+    fn a_root_and_its_slope_are_found_from_either_end() {
+        for root in [0.01, 0.3, 0.5, 0.8, 0.999] {
+            let NearRoot { place: near, slope, .. } = with_roots(&[root, 2.0, -1.0]).near_root(false, 0.5);
+            let expected = (root - 2.0) * (root + 1.0);
+            assert!((near - root).abs() < 1e-9 && (slope - expected).abs() < 1e-7, "{near}");
+        }
     }
 
     #[test]

@@ -17,7 +17,7 @@ pub use function::FunctionOnLine;
 
 use crate::dual::Dual;
 use crate::interval::Interval;
-use crate::polynomial::{FEW, MOST};
+use crate::polynomial::{FEW, MOST, SOME};
 use crate::roots::range::{RayRange, Side};
 use crate::roots::{newton, stretch::Stretch};
 use crate::scalar::Scalar;
@@ -38,6 +38,9 @@ pub const MAX_PIECES: usize = 16_384;
 
 /// After this many pieces, a piece on which the function has no value is not cut any more.
 const MANY_PIECES: usize = 512;
+
+/// After this many pieces, a piece on which plain values are beyond all `f64` numbers is not cut any more.
+const SOME_PIECES: usize = 16;
 
 /// The largest number of pieces that are left to [`undecided`](FunctionOnLine::undecided) in one search, which takes up
 /// to 0.1 ms for each. Only a line that is rounded by more than the size of a shape has more such pieces; it has no
@@ -104,11 +107,14 @@ pub fn first_root_within(
     };
     let root = match line.degree() {
         Some(degree) if degree < FEW => search.expand::<FEW>(start, end),
+        Some(degree) if degree < SOME => search.expand::<SOME>(start, end),
         Some(_) => search.expand::<MOST>(start, end),
         None if inner.start < inner.end || start == end => {
             let before = search.at_an_end(start, inner.start);
             let root = before.or_else(|| {
-                line.pieces((inner.start, inner.end), &mut |low, high| search.on_a_piece(low, high))
+                line.pieces((inner.start, inner.end), range.far - base, &mut |low, high| {
+                    search.on_a_piece(low, high)
+                })
             });
             root.or_else(|| search.at_an_end(inner.end, end))
         }
@@ -239,16 +245,28 @@ impl<L: FunctionOnLine> Search<'_, L> {
         if self.line.is_left_out(piece) {
             return Judgement::Free;
         }
-        let Some(curvature) = self.line.curvature(piece) else { return Judgement::Free };
+        let Some([slopes, curvature]) = self.line.slopes(piece) else { return Judgement::Free };
+        // Where these bounds suffice, those around the midpoint are not needed.
+        if L::VALUES_FIRST && curvature.is_bounded() && !slopes.has_zero() {
+            return self.judge_monotone(low, high, slopes.low > 0.0, f64::NAN);
+        }
         let middle = low + 0.5 * (high - low);
         let half = (middle - low).max(high - middle).next_up();
         let around = Interval { low: -half, high: half };
         let Dual { value, slope } = self.line.at(Dual::variable(Interval::constant(middle)));
         // Where values are beyond all f64 numbers, shorter pieces would not help; at a pole, they are not beside it.
-        let is_beyond =
-            |part: f64| !self.line.at(Interval::<f64>::constant(low + part * (high - low))).is_bounded();
-        let has_taken_many = *self.pieces < MAX_PIECES - MANY_PIECES;
-        if has_taken_many && value.has_zero() && [0.25, 0.5, 0.75].into_iter().all(is_beyond) {
+        let place = |part: f64| low + part * (high - low);
+        let is_beyond = |part: f64| !self.line.at(Interval::<f64>::constant(place(part))).is_bounded();
+        let is_infinite = |part: f64| {
+            let at = place(part);
+            !self.line.at(at).is_finite() && !self.line.is_left_out(Interval::constant(at))
+        };
+        let (quarters, judged) = ([0.25, 0.5, 0.75], MAX_PIECES.saturating_sub(*self.pieces));
+        let has_no_value = || {
+            judged > SOME_PIECES && quarters.into_iter().all(is_infinite)
+                || judged > MANY_PIECES && quarters.into_iter().all(is_beyond)
+        };
+        if value.has_zero() && has_no_value() {
             return self.undecided(low, high);
         }
         // Taylor's theorem of the second order, or of the first where the curvature has no bound.
@@ -299,7 +317,7 @@ impl<L: FunctionOnLine> Search<'_, L> {
         }
     }
 
-    /// Judges a piece on which the function is monotone.
+    /// Judges a piece on which the function is monotone. The guess may be any number.
     fn judge_monotone(&mut self, low: f64, high: f64, rises: bool, guess: f64) -> Judgement {
         if !self.counts(rises) {
             return Judgement::Free;
@@ -311,6 +329,8 @@ impl<L: FunctionOnLine> Search<'_, L> {
         if at_low.low > 0.0 || at_high.high < 0.0 || starts {
             Judgement::Free
         } else if at_low.high < 0.0 && at_high.low > 0.0 {
+            let part = at_low.high / (at_low.high - at_high.low);
+            let guess = if guess.is_nan() { low + part * (high - low) } else { guess };
             Judgement::Root(self.newton(low, high, rises, guess))
         } else {
             self.undecided(low, high)

@@ -9,6 +9,7 @@ use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::dual::Dual;
 use tabray_exact::interval::Interval;
 use tabray_exact::polynomial::{Coefficient, FEW, MOST, Polynomial};
+use tabray_exact::roots::bernstein::NearRoot;
 use tabray_exact::roots::isolation::{self, RootPart};
 use tabray_exact::roots::range::Side;
 use tabray_exact::scalar::per_axis;
@@ -20,6 +21,9 @@ const HIDDEN: f64 = 64.0;
 /// A step of Newton's method after which another one would not change the digits of a root, as a fraction of its distance: its
 /// square has twenty bits to spare.
 const SMALL: f64 = 1.0 / 137_438_953_472.0;
+
+/// The most steps of the secant method.
+const STEPS: usize = 5;
 
 /// The margin by which a piece is enlarged for the exact search, as a fraction of the places on it. A root at the end
 /// of a piece belongs to it.
@@ -74,6 +78,31 @@ impl<T: Implicit> ExactRay<'_, T> {
             }
         });
         root.map(|root| root.clamp(piece.low, piece.high))
+    }
+
+    /// Returns the root near a place, by steps of the secant method with twice the digits, of which the first takes a slope that is
+    /// about right; `None` where the root is farther than a polynomial that is known within `hidden` may be off.
+    pub fn finished(&self, near: &NearRoot, hidden: f64) -> Option<f64> {
+        let &NearRoot { place: near, slope, is_known } = near;
+        let exact = self.frame.exactly(self.ray, self.closest);
+        let start = DoubleDouble::from(near);
+        let (mut fine, mut before, mut steep) = (start, None, slope);
+        for _ in 0..STEPS {
+            let value = self.formula.polynomial(exact.at(fine));
+            if let Some((place, other)) = before {
+                steep = ((value - other) / (fine - place)).high;
+            }
+            let step = value / DoubleDouble::from(steep);
+            before = Some((fine, value));
+            fine = fine - step;
+            // Each step leaves the error of the slope, as a fraction, of the error before it.
+            let is_last = step.high.abs() <= SMALL * (self.closest + near).abs();
+            if is_last && (is_known || steep != slope) && (steep - slope).abs() <= 0.5 * slope.abs() {
+                let off = (fine - start).high.abs() * slope.abs();
+                return (off <= 2.0 * hidden).then_some(fine.high);
+            }
+        }
+        None
     }
 
     /// Returns a simple root that may be off by the rounding of `f64`, with twice the digits where that would be more than the

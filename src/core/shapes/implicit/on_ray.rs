@@ -11,8 +11,10 @@ use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::dual::Dual;
 use tabray_exact::formula::cells::MARGIN;
 use tabray_exact::formula::field::Field;
+use tabray_exact::formula::nodes::{NearLine, Nodes};
 use tabray_exact::interval::Interval;
 use tabray_exact::polynomial::Polynomial;
+use tabray_exact::roots::bernstein::{Bernstein, NearRoot};
 use tabray_exact::roots::stretch::Stretch;
 use tabray_exact::roots::taylor::{self, FirstRoot, SignChange};
 use tabray_exact::roots::twice;
@@ -35,6 +37,8 @@ pub(super) struct ImplicitShape<T> {
     pub low: DVec3,
     pub high: DVec3,
     pub parts: Parts,
+    /// How the formula of a scene is evaluated along lines, if it is a polynomial.
+    pub nodes: Option<Nodes>,
 }
 
 /// Whether a surface is kept at a root, and whether that is certain in `f64`.
@@ -214,12 +218,30 @@ impl<T: Implicit> taylor::FunctionOnLine for FormulaOnRay<'_, T> {
         self.shape.formula.along(self.on_line(Polynomial::along(piece)))
     }
 
+    fn form<const N: usize>(&self, piece: Interval) -> Option<Bernstein<f64, N>> {
+        let by_nodes = || {
+            let (nodes, field) = (self.shape.nodes.as_ref()?, self.shape.formula.field()?);
+            let (base, dir) = (self.base.to_array(), self.dir.to_array());
+            nodes.form(field, &NearLine { base, dir, blur: self.blur, turn: self.turn }, piece)
+        };
+        by_nodes().or_else(|| Bernstein::of(&self.polynomial(piece)))
+    }
+
+    fn finished(&self, near: &NearRoot, hidden: f64) -> Option<f64> {
+        self.exactly().finished(near, hidden)
+    }
+
     fn polished(&self, root: f64) -> f64 {
         let hidden = self.at(Interval::constant(root)).width();
         self.exactly().polished(root, hidden, self.at(Dual::variable(root)).slope.abs())
     }
 
-    fn pieces(&self, ends: (f64, f64), mut visit: &mut dyn FnMut(f64, f64) -> Option<f64>) -> Option<f64> {
+    fn pieces(
+        &self,
+        ends: (f64, f64),
+        far: f64,
+        mut visit: &mut dyn FnMut(f64, f64) -> Option<f64>,
+    ) -> Option<f64> {
         let ImplicitShape { formula, low, high, parts, .. } = self.shape;
         let error = self.blur + self.turn * ends.0.abs().max(ends.1.abs());
         // With these errors, a line is in the parts of the box in which it seems to be, given their margins.
@@ -229,7 +251,7 @@ impl<T: Implicit> taylor::FunctionOnLine for FormulaOnRay<'_, T> {
         }
         match formula.field().and_then(Field::cells) {
             Some(cells) => cells.visit(self.base.to_array(), self.dir.to_array(), ends, &mut visit),
-            None => parts.visit(formula, (self.base, self.dir), ends, &mut visit),
+            None => parts.visit(formula, (self.base, self.dir), (ends, far), &mut visit),
         }
     }
 

@@ -26,12 +26,13 @@ impl FunctionOnLine for ProfileOnRay<'_> {
         !self.local.ray.is_single()
     }
 
-    /// Returns bounds of the second derivative; that of the squared distance from the axis is constant.
-    fn curvature(&self, piece: Interval) -> Option<Interval> {
+    /// The second derivative of the squared distance from the axis is constant; the first one is not needed.
+    fn slopes(&self, piece: Interval) -> Option<[Interval; 2]> {
         let dir = self.local.dir.to_array().map(|part| Interval::about(part, self.local.turn));
         let height = self.local.place(1, piece);
         let of_square = self.surface.square.at(Jet::variable(height)).second;
-        Some(Interval::constant(2.0) * (dir[0].powi(2) + dir[2].powi(2)) - of_square * dir[1].powi(2))
+        let second = Interval::constant(2.0) * (dir[0].powi(2) + dir[2].powi(2)) - of_square * dir[1].powi(2);
+        Some([Interval::whole(), second])
     }
 
     /// Decides a piece in double-double arithmetic from the ray in the world and the axis as the scene gives it, which

@@ -3,6 +3,7 @@
 use crate::interval::Interval;
 use crate::jet::Jet;
 use crate::polynomial::Polynomial;
+use crate::roots::bernstein::{Bernstein, NearRoot};
 use crate::roots::range::Side;
 use crate::roots::twice;
 use crate::scalar::Scalar;
@@ -22,10 +23,10 @@ pub trait FunctionOnLine {
         false
     }
 
-    /// Returns bounds of the second derivative on a piece; `None` where the value is seen to have no root there.
-    fn curvature(&self, piece: Interval) -> Option<Interval> {
-        let Jet { value, second, .. } = self.at(Jet::variable(piece));
-        value.has_zero().then_some(second)
+    /// Returns bounds of the first and the second derivative on a piece; `None` where the value is seen to have no root there.
+    fn slopes(&self, piece: Interval) -> Option<[Interval; 2]> {
+        let Jet { value, first, second } = self.at(Jet::variable(piece));
+        value.has_zero().then_some([first, second])
     }
 
     /// Tells whether no root on a piece counts: where the function is not defined, or the surface is cut off.
@@ -50,13 +51,30 @@ pub trait FunctionOnLine {
         Polynomial::unknown()
     }
 
+    /// Returns the function's Bernstein form on a piece, if it is a polynomial of less than `N` coefficients.
+    fn form<const N: usize>(&self, piece: Interval) -> Option<Bernstein<f64, N>> {
+        Bernstein::of(&self.polynomial(piece))
+    }
+
+    /// Returns the root of a polynomial near a place, where it is known within `hidden`, with correct last digits; `None` where
+    /// that takes more steps.
+    fn finished(&self, _near: &NearRoot, _hidden: f64) -> Option<f64> {
+        None
+    }
+
     /// Returns a simple root of a polynomial with correct last digits. The given root may be off by rounding.
     fn polished(&self, root: f64) -> f64 {
         root
     }
 
     /// Calls a function with the pieces between two places on which there may be a root, in their order, until it returns one.
-    fn pieces(&self, (low, high): (f64, f64), visit: &mut dyn FnMut(f64, f64) -> Option<f64>) -> Option<f64> {
+    /// Pieces that begin after `far` may be left out.
+    fn pieces(
+        &self,
+        (low, high): (f64, f64),
+        _far: f64,
+        visit: &mut dyn FnMut(f64, f64) -> Option<f64>,
+    ) -> Option<f64> {
         visit(low, high)
     }
 

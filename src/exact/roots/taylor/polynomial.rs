@@ -2,49 +2,21 @@
 //! shorter pieces.
 
 use super::{FunctionOnLine, Judgement, Search};
-use crate::dual::Dual;
 use crate::interval::Interval;
-use crate::polynomial::Polynomial;
-use crate::roots::bernstein::{Bernstein, Roots};
-use crate::roots::newton;
+use crate::roots::bernstein::{Bernstein, NearRoot, Roots};
 use std::ops::Range;
 
-/// The error of a root's guess, as a fraction of the piece.
-const NEAR: f64 = 1e-9;
+/// The part of a piece on either side of a place near a root in which the root certainly is.
+const BESIDE: f64 = 1e-6;
 
 /// A polynomial is expanded once more on a piece where that makes its error smaller than this fraction.
 const SMALLER: f64 = 0.25;
 
-/// A polynomial, and the piece that it is expanded on.
-struct Expansion<'p, const N: usize> {
-    polynomial: &'p Polynomial<f64, N>,
-    low: f64,
-    high: f64,
-}
-
-impl<const N: usize> Expansion<'_, N> {
-    /// Returns a place near the only root on a part of the piece, from a guess: evaluating the polynomial is quicker than the
-    /// function.
-    fn near_root(&self, (low, high): (f64, f64), rises: bool, guess: f64) -> f64 {
-        let (middle, half) = (0.5 * self.low + 0.5 * self.high, 0.5 * (self.high - self.low));
-        let at = |t: f64| (t - middle) / half;
-        let line = |s: f64| {
-            let [value, slope] = self.polynomial.at(s);
-            Dual { value, slope }
-        };
-        middle + half * newton::root(line, (at(low), at(high)), !rises, at(guess), NEAR)
-    }
-}
-
 impl<L: FunctionOnLine> Search<'_, L> {
     /// Returns the first root on a piece on which the function is a polynomial.
     pub(super) fn expand<const N: usize>(&mut self, low: f64, high: f64) -> Option<f64> {
-        let polynomial = self.line.polynomial::<N>(Interval { low, high });
-        match Bernstein::of(&polynomial) {
-            Some(form) => {
-                let expansion = Expansion { polynomial: &polynomial, low, high };
-                self.on_a_polynomial(low, high, &form, &expansion).or_else(|| self.reveal())
-            }
+        match self.line.form::<N>(Interval { low, high }) {
+            Some(form) => self.on_a_polynomial(low, high, &form).or_else(|| self.reveal()),
             None => self.on_a_piece(low, high),
         }
     }
@@ -55,7 +27,6 @@ impl<L: FunctionOnLine> Search<'_, L> {
         low: f64,
         high: f64,
         form: &Bernstein<f64, N>,
-        expansion: &Expansion<'_, N>,
     ) -> Option<f64> {
         let is_given_up = self.line.wants_proof() && !self.is_certain;
         // A hidden piece is judged together with all hidden pieces next to it, wherever the range begins or ends, so
@@ -65,41 +36,54 @@ impl<L: FunctionOnLine> Search<'_, L> {
             return None;
         }
         let middle = low + 0.5 * (high - low);
+        // Rounded sums keep their order.
+        let is_before = self.base + high <= self.range.near;
         let judgement = match form.roots() {
             Roots::None => return self.reveal(),
             Roots::Unknown if *self.pieces > 0 && high - low > self.shortest => {
                 *self.pieces -= 1;
                 let [left, right] = form.halves();
-                let root = self.on_a_polynomial(low, middle, &left, expansion);
-                return root.or_else(|| self.on_a_polynomial(middle, high, &right, expansion));
+                let root = self.on_a_polynomial(low, middle, &left);
+                return root.or_else(|| self.on_a_polynomial(middle, high, &right));
             }
             Roots::Unknown | Roots::Hidden => {
                 let polynomial = self.line.polynomial::<N>(Interval { low, high });
                 return match Bernstein::of(&polynomial) {
                     Some(again) if *self.pieces > 0 && again.error() < SMALLER * form.error() => {
                         *self.pieces -= 1;
-                        let expansion = Expansion { polynomial: &polynomial, low, high };
-                        self.on_a_polynomial(low, high, &again, &expansion)
+                        self.on_a_polynomial(low, high, &again)
                     }
                     _ => self.hide(low, high),
                 };
             }
             Roots::One { rises, near } => {
-                if let Some(root) = self.reveal() {
-                    return Some(root);
+                let hidden = self.reveal();
+                if hidden.is_some() || is_before || !self.counts(rises) {
+                    return hidden;
                 }
-                self.note_ends(low, high);
-                match self.counts(rises) {
-                    true => {
-                        let near = expansion.near_root((low, high), rises, low + near * (high - low));
-                        Judgement::Root(self.newton(low, high, rises, near))
-                    }
-                    false => Judgement::Free,
+                let (start, end) = (self.inner.start - low, high - self.inner.end);
+                if !form.has_clear_ends(start.max(end) / (high - low)) {
+                    self.note_ends(low, high);
                 }
+                let near = form.near_root(rises, near);
+                let root = low + near.place * (high - low);
+                let beside = BESIDE * (high - low);
+                let is_outside =
+                    self.base + root + beside < self.range.near || self.base + root - beside > self.range.far;
+                if is_outside {
+                    return None;
+                }
+                let near = NearRoot { place: root, slope: near.slope / (high - low), ..near };
+                if let Some(root) = self.line.finished(&near, form.error()) {
+                    let root = root.clamp(low, high);
+                    return self.is_in_range(root).then_some(root);
+                }
+                Judgement::Root(self.newton(low, high, rises, root))
             }
             Roots::Monotone { rises, near } => {
-                if let Some(root) = self.reveal() {
-                    return Some(root);
+                let hidden = self.reveal();
+                if hidden.is_some() || is_before {
+                    return hidden;
                 }
                 self.note_ends(low, high);
                 self.judge_monotone(low, high, rises, low + near * (high - low))

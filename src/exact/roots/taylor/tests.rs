@@ -85,6 +85,24 @@ fn kinks_and_jumps_are_met_and_poles_are_not() {
     assert_eq!(first(&Broken, 3.3..9.0, None), None);
 }
 
+/// The difference of two values, which are both beyond all numbers from 2.2 on.
+struct Overflowing;
+
+impl FunctionOnLine for Overflowing {
+    fn at<N: Scalar>(&self, t: N) -> N {
+        let power = |of: N| of.powi(100).scaled(1e300);
+        power(t) - power(t - N::constant(1.0))
+    }
+}
+
+#[test]
+fn values_beyond_all_numbers_end_a_search_soon() {
+    let mut left = MAX_PIECES;
+    let range = RayRange::ALL;
+    let found = first_root_within(&Overflowing, &(2.3..9.7).into(), 0.0, &range, 1e-14, &mut left);
+    assert!(!found.is_certain && MAX_PIECES - left < 128, "{found:?} after {} pieces", MAX_PIECES - left);
+}
+
 /// The polynomial with these roots, which falls at the first one; isolated by its coefficients or by bounds.
 struct Product {
     roots: Vec<f64>,
