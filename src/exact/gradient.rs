@@ -96,7 +96,7 @@ impl Scalar for Gradient {
     }
 
     fn sin_cos(self) -> (Self, Self) {
-        let (sin, cos) = self.value.sin_cos();
+        let (sin, cos) = Scalar::sin_cos(self.value);
         (self.map(|_| Dual { value: sin, slope: cos }), self.map(|_| Dual { value: cos, slope: -sin }))
     }
 

@@ -95,11 +95,11 @@ impl Nodes {
     ) -> Option<Bernstein<f64, N>> {
         let program = field.by_products();
         match self.places.len() {
-            ..=4 => self.form_by::<N, 4>(program, line, piece),
-            ..=6 => self.form_by::<N, 6>(program, line, piece),
-            ..=8 => self.form_by::<N, 8>(program, line, piece),
-            ..=10 => self.form_by::<N, 10>(program, line, piece),
-            ..=14 => self.form_by::<N, 14>(program, line, piece),
+            0..=4 => self.form_by::<N, 4>(program, line, piece),
+            5..=6 => self.form_by::<N, 6>(program, line, piece),
+            7..=8 => self.form_by::<N, 8>(program, line, piece),
+            9..=10 => self.form_by::<N, 10>(program, line, piece),
+            11..=14 => self.form_by::<N, 14>(program, line, piece),
             _ => self.form_by::<N, { MOST_DEGREE + 2 }>(program, line, piece),
         }
     }
