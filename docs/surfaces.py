@@ -1,6 +1,7 @@
 """Surfaces by their formula beside surf and POV-Ray: a table in Markdown of the CPU seconds for an image of 640 x 480 pixels.
 
     python3 docs/surfaces.py [-q] [ROUNDS] [NAME...]
+    python3 docs/surfaces.py cost
 
 The programs take turns, each on one thread, and the least time of some rounds counts. All of them show the part of the surface in
 a ball, from the same place, by parallel rays through the same pixels, in one light. Pixels are wrong that show the surface where
@@ -8,6 +9,9 @@ another program shows none, or the other way round, and are not beside its silho
 `tabray verify` proves. For POV-Ray's `isosurface`, a twentieth more than the steepest slope among thousands of points in the
 ball is the `max_gradient`. The last line compares 16 samples for each pixel with one. With `-q`, the isosurfaces and the 16 samples are left out, which take nearly all
 of the time.
+
+`cost` counts instructions with valgrind, for images of 48 x 36 pixels of formulas of growing degree, of more terms and of
+more parts: docs/data/surfaces.csv, and its chart, docs/charts/surfaces.svg.
 
 TABRAY names a program other than a new build. A program that is not installed is left out.
 """
@@ -22,6 +26,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -302,6 +307,82 @@ def wrong(known, other):
     return count
 
 
+def terms(count: int) -> str:
+    """A sphere with this number of small terms of degrees up to 8."""
+    powers = [(x, y, z) for x in range(9) for y in range(9 - x) for z in range(9 - x - y)]
+    dice = random.Random(2)
+    chosen = dice.sample(powers, count)
+    small = [f"{dice.uniform(-0.1, 0.1):.3f}*x^{x}*y^{y}*z^{z}" for x, y, z in chosen]
+    return " + ".join(["x^2 + y^2 + z^2 - 0.8", *small])
+
+
+def parts(count: int) -> str:
+    """The union of this number of balls."""
+    dice, size = random.Random(3), 0.7 / count ** (1 / 3)
+    places = [[dice.uniform(-0.7, 0.7) for _ in range(3)] for _ in range(count)]
+    ball = lambda x, y, z: f"sqrt((x - {x:.3f})^2 + (y - {y:.3f})^2 + (z - {z:.3f})^2) - {size:.4f}"
+    balls = [ball(*place) for place in places]
+    return f"min({', '.join(balls)})" if count > 1 else balls[0]
+
+
+# What grows, its sizes, and the formula of a size.
+GROWING = [
+    ("degree: Chmutov's surfaces", range(4, 41, 4), chmutov),
+    ("degree: a product of planes", range(4, 41, 4), lambda count: f"{product_of_planes(count)} - 0.02"),
+    ("terms of degrees up to 8", [5, 10, 20, 40, 80, 160], terms),
+    ("parts of a union", [1, 4, 16, 64, 256, 1000], parts),
+]
+
+
+def instructions(program, scene):
+    """The instructions of a small image, in millions."""
+    command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", program, "render", scene, "--size", "48x36"]
+    done = subprocess.run(
+        [*command, "--threads", "1", "-o", scene.with_suffix(".ppm")], capture_output=True, text=True, check=True)
+    return int(re.search(r"Collected : (\d+)", done.stderr).group(1)) / 1e6
+
+
+def cost(program):
+    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(4) as threads:
+        # Instructions are counted one by one, whatever else runs.
+        def counted(text):
+            scene = Path(folder) / f"{hash(text)}.ray"
+            scene.write_text(text)
+            return threads.submit(instructions, program, scene)
+
+        start = counted(ours("x", 1.2).replace("clip ball", "box 2 2 2 3 3 3").replace('"x"', '"x - 2.5"'))
+        rows = [(name, size, counted(ours(formula(size), 1.2))) for name, sizes, formula in GROWING for size in sizes]
+        rows = [(name, size, count.result() - start.result()) for name, size, count in rows]
+    lines = [f"{name},{size},{count:.1f}" for name, size, count in rows]
+    (ROOT / "docs/data/surfaces.csv").write_text("\n".join(["what,size,million instructions", *lines, ""]))
+    (ROOT / "docs/charts/surfaces.svg").write_text(chart(rows))
+
+
+def chart(rows):
+    """A panel for each thing that grows, with logarithmic scales."""
+    wide, tall, most = 260, 240, 10 ** math.ceil(math.log10(max(count for *_, count in rows)))
+    least = 10 ** math.floor(math.log10(min(count for *_, count in rows)))
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{4 * wide}" height="{tall + 90}" font-family="sans-serif" font-size="11">',
+           f'<rect width="{4 * wide}" height="{tall + 90}" fill="#FFFFFF"/>',
+           '<text x="20" y="20" font-weight="bold">million instructions for 48 x 36 pixels, beyond those of an empty image</text>']
+    for panel, (name, sizes, _) in enumerate(GROWING):
+        left, low, high = 50 + panel * wide, math.log(min(sizes)), math.log(max(sizes))
+        right = lambda size: left + (wide - 70) * (math.log(size) - low) / (high - low)
+        down = lambda count: 60 + tall * (1 - math.log(count / least) / math.log(most / least))
+        out.append(f'<text x="{left}" y="46">{name}</text>')
+        for power in range(round(math.log10(least)), round(math.log10(most)) + 1):
+            y = down(10 ** power)
+            out.append(f'<path d="M{left} {y:.1f}H{left + wide - 70}" stroke="#DDDDDD"/>')
+            out.append(f'<text x="{left - 4}" y="{y + 4:.1f}" text-anchor="end">{10 ** power:g}</text>')
+        own = [(size, count) for of, size, count in rows if of == name]
+        line = " ".join(f"{right(size):.1f},{down(count):.1f}" for size, count in own)
+        out.append(f'<polyline fill="none" stroke="#1F77B4" stroke-width="2" points="{line}"/>')
+        for size, count in own:
+            out.append(f'<circle cx="{right(size):.1f}" cy="{down(count):.1f}" r="3" fill="#1F77B4"/>')
+            out.append(f'<text x="{right(size):.1f}" y="{tall + 76}" text-anchor="middle" font-size="9">{size}</text>')
+    return "\n".join([*out, "</svg>", ""])
+
+
 def main():
     is_quick = sys.argv[1:2] == ["-q"]
     rounds, *names = sys.argv[2 if is_quick else 1:] or ["3"]
@@ -309,6 +390,8 @@ def main():
     if not program:
         subprocess.run(["cargo", "build", "--profile", "dist", "--locked", "--quiet"], cwd=ROOT, check=True)
         program = str(Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "dist/tabray")
+    if names == [] and rounds == "cost":
+        return cost(program)
     peers = {"surf": next(filter(shutil.which, ["surf-alggeo-nox", "surf-alggeo"]), None), "poly": "povray", "isosurface": "povray"}
     for name in [name for name, peer in peers.items() if not (peer and shutil.which(peer))]:
         print(f"SKIPPED: {peers.pop(name) or name} is not installed", file=sys.stderr)
