@@ -18,6 +18,7 @@ mod exact;
 mod facets;
 mod grow;
 mod light;
+mod light_points;
 mod media;
 mod mixed;
 mod occlusion;
