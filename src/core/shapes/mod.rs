@@ -25,6 +25,6 @@ pub use placed::Placed;
 pub use quadratic::Quadric;
 pub use revolution::{ClassicRevolution, InFrame, Refinement, Revolution};
 pub use solid::{Clip, Objects, combined};
-pub use triangle::LooseTriangle;
+pub use triangle::loose::LooseTriangle;
 
 pub use crate::world::solid::Operation;

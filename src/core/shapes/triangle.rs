@@ -1,7 +1,7 @@
 //! The tests of a ray against the edges of a triangle: the arithmetic behind triangles.
 
 mod hits;
-mod loose;
+pub mod loose;
 mod sides;
 
 use crate::geometry::aabb::larger;
@@ -17,7 +17,6 @@ use tabray_exact::double_double::vectors::{
 use tabray_exact::double_double::{DoubleDouble, two_sum};
 use tabray_exact::scalar::{Scalar, constants, cross, dot, per_axis};
 
-pub use loose::LooseTriangle;
 pub(crate) use sides::{UNDERFLOW, largest, passed, passed_by_eight};
 
 /// A triangle.

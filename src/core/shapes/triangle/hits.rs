@@ -1,6 +1,6 @@
 //! Hits of triangles, and what is certain about them.
 
-use super::LooseTriangle;
+use super::loose::LooseTriangle;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
 use crate::geometry::ray_packet::RayPacket;
