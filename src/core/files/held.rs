@@ -46,7 +46,7 @@ impl SceneFile {
     /// Opens the file at a path.
     ///
     /// # Errors
-    /// Returns those of [`open`](super::open).
+    /// Returns those of [`open`].
     pub fn open(path: &Path) -> io::Result<Self> {
         match find(path) {
             Some(bytes) => Ok(Self::Held(Cursor::new(bytes))),
