@@ -38,7 +38,7 @@ pub(super) type Decoded = (Texels, Vec<&'static str>);
 /// Decodes an image whose bytes are given.
 ///
 /// # Errors
-/// As [`read`].
+/// Returns the reason why the image cannot be decoded.
 pub(super) fn decode(
     contents: &[u8],
     is_opaque: bool,
