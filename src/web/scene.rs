@@ -2,11 +2,13 @@
 
 use crate::text::{NAME, view, without_files};
 use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use tabray_core::files::held;
+use tabray_core::files::{held, plain};
 use tabray_core::render::plan::Plan;
 use tabray_core::scene::model::Model;
 use tabray_core::scene::value::Datum;
+use tabray_core::text::list;
 use tabray_lang::editor;
 use tabray_lang::reader::{self, Places, ReadOptions, Report};
 use tabray_lang::registry::Registry;
@@ -78,7 +80,8 @@ impl Scene {
             );
             return Err(Unread { lines: Vec::new(), report, lacking: Vec::new() });
         }
-        let (warnings, lacking) = (loaded.warnings.to_string(), lacking(&loaded.warnings));
+        let (warnings, lacking) =
+            (loaded.warnings.to_string() + &shared(&loaded.warnings), lacking(&loaded.warnings));
         Ok(Self {
             version: version.to_owned(),
             text: text.to_owned(),
@@ -169,8 +172,26 @@ impl Unread {
 
 /// Returns the files that a scene names and that are not held.
 fn lacking(report: &Report) -> Vec<String> {
-    let files = report.files().iter().filter(|file| !held::has(file));
+    let files = report.files().iter().filter(|file| held::place(file).is_none());
     files.map(|file| file.to_string_lossy().into_owned()).collect()
+}
+
+/// Returns a warning for each held file that stands for several that a scene names.
+fn shared(report: &Report) -> String {
+    let mut named = BTreeMap::<_, BTreeSet<_>>::new();
+    for file in report.files() {
+        if let Some(place) = held::place(file) {
+            named.entry(place).or_default().insert(plain(file).display().to_string());
+        }
+    }
+    let several = named.iter().filter(|(_, files)| files.len() > 1).map(|(place, files)| {
+        let files = list(files.iter().map(String::as_str));
+        format!(
+            "warning: the file `{}` stands for {files}\nhelp: give these files different names\n",
+            place.display()
+        )
+    });
+    several.collect()
 }
 
 /// Writes values of an attribute into a text.

@@ -84,6 +84,26 @@ fn a_file_that_the_scene_names_is_told_of_and_can_be_given() {
     let told = asked(&mut session, "scene/1", &text);
     assert_eq!(told["lacking"], serde_json::json!([]));
     assert!(painted(&mut session, 50).iter().any(|byte| *byte > 0));
+    assert_eq!(told["warnings"], "");
+}
+
+#[test]
+fn a_file_that_stands_for_two_of_its_name_is_told_of() {
+    let mut session = Session::new();
+    asked(&mut session, "scene/1", BALL);
+    while !session.answer("paint/1/50", b"").bytes.is_empty() {}
+    let image = session.answer("png/1", b"").bytes;
+    assert_eq!(session.answer("file/marble.png", &image).status, 200);
+    let textures = "texture old { filename \"old/marble.png\" }
+        texture new { filename \"new/marble.png\" }
+        texplane left { material red  normal 0 0 1  point 1 1 -1  xdir 1 0 0  dimensions 4 4  texname old  mode 0 }
+        texplane right { material red  normal 0 0 1  point 1 1 -2  xdir 1 0 0  dimensions 4 4  texname new  mode 0 }\n";
+    let told = asked(&mut session, "scene/2", &(BALL.to_owned() + textures));
+    let warnings = told["warnings"].as_str().expect("warnings");
+    assert!(
+        warnings.contains("the file `marble.png` stands for `new/marble.png`, `old/marble.png`"),
+        "{warnings}"
+    );
 }
 
 #[test]

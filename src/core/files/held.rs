@@ -17,21 +17,21 @@ pub fn hold(path: &Path, bytes: Vec<u8>) {
     all.insert(plain(path), bytes.into());
 }
 
-/// Finds a file that is held: at this path, or else one of the same name in another folder.
-fn find(path: &Path) -> Option<Arc<[u8]>> {
+/// Returns the path at which the file for a path is held: the path itself, or else its name alone, as a file that comes
+/// without its folder stands for one of that name in any folder.
+pub fn place(path: &Path) -> Option<PathBuf> {
     let all = ALL.read().unwrap_or_else(PoisonError::into_inner);
     if all.is_empty() {
         return None;
     }
-    let path = plain(path);
-    let is_namesake = |known: &Path| known.file_name() == path.file_name();
-    let namesake = || all.iter().find(|(known, _)| is_namesake(known)).map(|(_, bytes)| bytes);
-    all.get(&path).or_else(namesake).cloned()
+    let places = [Some(plain(path)), path.file_name().map(PathBuf::from)];
+    places.into_iter().flatten().find(|place| all.contains_key(place))
 }
 
-/// Tells whether a file is held for this path.
-pub fn has(path: &Path) -> bool {
-    find(path).is_some()
+/// Finds a file that is held.
+fn find(path: &Path) -> Option<Arc<[u8]>> {
+    let place = place(path)?;
+    ALL.read().unwrap_or_else(PoisonError::into_inner).get(&place).cloned()
 }
 
 /// A file that a scene names, opened to be read.
@@ -89,19 +89,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_held_file_is_found_at_its_path_and_by_its_name() {
-        for (path, bytes) in [("held/a/wood.test", "a"), ("held/b/wood.test", "b")] {
+    fn a_held_file_is_found_at_its_path_and_one_without_a_folder_by_its_name() {
+        for (path, bytes) in [("held/a/wood.test", "a"), ("held/b/wood.test", "b"), ("grass.test", "c")] {
             hold(Path::new(path), bytes.into());
         }
         for (path, found) in [
             ("held/b/wood.test", Some("b")),
             ("held/x/../b/./wood.test", Some("b")),
-            ("wood.test", Some("a")),
+            ("held/c/grass.test", Some("c")),
+            ("held/c/wood.test", None),
+            ("wood.test", None),
             ("held/other.test", None),
         ] {
             let text = SceneFile::open(Path::new(path)).and_then(io::read_to_string).ok();
             assert_eq!(text.as_deref(), found, "{path}");
-            assert_eq!(has(Path::new(path)), found.is_some(), "{path}");
+            assert_eq!(place(Path::new(path)).is_some(), found.is_some(), "{path}");
         }
         let file = SceneFile::open(Path::new("held/a/wood.test")).expect("it is held");
         assert_eq!(file.length().expect("a length"), 1);
