@@ -107,8 +107,10 @@ fn of_others(text: &str) -> Option<Fault> {
 
 /// Recognises a text in the notes' syntax.
 fn of_notes(registry: &Registry, name: &str, text: &str) -> Option<Fault> {
+    // What is well-formed TOML may look like an entity, as an inline table does.
+    let is_toml = || text.parse::<toml::Table>().is_ok();
     // Most texts in TOML have no braces, and entities of the notes' syntax do.
-    if Syntax::of_name(name) != Some(Syntax::Toml) || !text.contains('{') {
+    if Syntax::of_name(name) != Some(Syntax::Toml) || !text.contains('{') || is_toml() {
         return None;
     }
     let first = has_entities(registry, text)?;
