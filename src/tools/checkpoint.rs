@@ -17,7 +17,9 @@ use tabray_core::output::picture::AS_SHOWN;
 use tabray_core::parallel;
 use tabray_core::render::tiles::{Band, Strip, TILE, Tiles};
 use tabray_core::scene::choice::Choice;
+use tabray_core::scene::entity::Args;
 use tabray_core::scene::model::Model;
+use tabray_core::scene::value::Datum;
 use tabray_core::text::{self, Named};
 use tabray_core::world::sensor::Adaptive;
 use tabray_lang::dump;
@@ -169,11 +171,10 @@ fn program() -> io::Result<String> {
     }
 }
 
-/// The number of entities that are dumped and hashed together.
+/// The number of entities that are hashed together.
 const TOGETHER: usize = 1 << 12;
 
-/// Returns the hash of a scene. For a million entities this takes seconds, so it runs on all threads: a user may be
-/// waiting for an interrupted render to end.
+/// Returns the hash of a scene, computed on all threads: a user may be waiting for an interrupted render to end.
 fn scene(model: &Model) -> String {
     let entities = dump::in_order(model);
     let chunks: Vec<_> = entities.chunks(TOGETHER).collect();
@@ -181,7 +182,7 @@ fn scene(model: &Model) -> String {
         let mut hasher = Sha256::new();
         let mut memory = None;
         for record in chunks[index] {
-            hasher.update(dump::block(record.args_in(&mut memory), Syntax::Notes, false));
+            add(&mut hasher, record.args_in(&mut memory));
         }
         hasher.finalize()
     };
@@ -191,6 +192,28 @@ fn scene(model: &Model) -> String {
         None => (0..chunks.len()).map(hash).collect(),
     };
     shown(hashes.iter().fold(Sha256::new(), |all, hash| all.chain_update(hash)))
+}
+
+/// Hashes what a scene gives of an entity: numbers as they are, which is much faster than as text, and all else as in a
+/// dump. The length of each part comes before it.
+fn add(hasher: &mut Sha256, args: &Args) {
+    let mut part = |bytes: &[u8]| {
+        hasher.update((bytes.len() as u64).to_le_bytes());
+        hasher.update(bytes);
+    };
+    part(args.entity.name.as_bytes());
+    part(args.name.as_bytes());
+    part(&args.given().count().to_le_bytes());
+    for (attribute, datum) in args.given() {
+        part(attribute.name().as_bytes());
+        match datum {
+            Datum::Numbers(numbers) => {
+                let bytes: Vec<_> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+                part(&bytes);
+            }
+            other => Syntax::Notes.values(other).iter().for_each(|word| part(word.as_bytes())),
+        }
+    }
 }
 
 fn files(model: &Model) -> BTreeMap<String, String> {
