@@ -72,7 +72,9 @@ fn limits_table() {
     let line = |what: &str, limit: &str, args: &[&str], interrupt: Option<Duration>| {
         let (time, memory, said) = measured(&folder, args, interrupt);
         println!("| {what} | {limit} | {:.2} s | {memory} MiB | {said} |", time.as_secs_f64());
-        let _ = fs::remove_file(folder.path().join("a.png.checkpoint"));
+        for left in ["a.png", "a.png.checkpoint", "a.ppm", "a.ppm.checkpoint"] {
+            let _ = fs::remove_file(folder.path().join(left));
+        }
     };
     let large = ["render", "ball.ray", "--size", "100000x100000"];
     for (what, limit, args) in [
