@@ -21,17 +21,23 @@ impl<E: Equation, C: Coefficient> Coefficients<C> for E {
     }
 }
 
-/// Finds the first hit with t > 0 of a line in world coordinates; `None` where the equation is no polynomial.
+/// Finds the first hit with t > 0 of a line in world coordinates; `None` where the equation is no polynomial. With `leaves`, the
+/// line's true start lies on the shape, and it is `None` also where the root at the start is not told from others.
 pub(super) fn first_hit<C: Coefficient>(
     shape: &dyn Coefficients<C>,
     line: &Line<Interval<C::End>>,
+    leaves: bool,
 ) -> Option<HitEnclosure<C::End>> {
     let zero = C::End::of(0.0);
     let line = shape.to_local(*line);
     let [low, high] = shape.extent();
-    let Some((from, to)) = line.clip(low, high) else { return Some(HitEnclosure::Misses) };
+    let Some((mut from, to)) = line.clip(low, high) else { return Some(HitEnclosure::Misses) };
     if !to.is_finite() {
         return None;
+    }
+    if leaves {
+        // The root at the start is amid the piece, not at its end.
+        from = from - (to - from) * C::End::of(0.125);
     }
     // The parameter counts from near the shape, so that a piece of the line is not a small difference of large numbers.
     let half = (Interval::point(to) - Interval::point(from)).high * C::End::of(0.5);
@@ -48,6 +54,11 @@ pub(super) fn first_hit<C: Coefficient>(
         let [low, high] = [low.bounds(0.0).low, high.bounds(0.0).high];
         Interval::point(half) * Interval { low, high }
     };
+    // The start is the only root of a part that it is certainly in.
+    let is_start = |[low, high]: [C; 2]| {
+        let place = |end: C| base + Interval::point(half) * end.bounds(0.0);
+        leaves && place(low).high < zero && place(high).low > zero
+    };
     let found = isolation::visit(&polynomial, |part| match part {
         RootPart::Root { ends, rises } => {
             let at = interval(isolation::enclosed(&polynomial, ends, rises));
@@ -56,7 +67,7 @@ pub(super) fn first_hit<C: Coefficient>(
                 return None;
             }
             if distance.low <= zero {
-                return Some(HitEnclosure::Doubtful(zero));
+                return (!is_start(ends)).then_some(HitEnclosure::Doubtful(zero));
             }
             match is_kept(shape, &near, at) {
                 Some(true) => Some(HitEnclosure::Hits(distance)),
@@ -71,7 +82,8 @@ pub(super) fn first_hit<C: Coefficient>(
             is_open.then(|| HitEnclosure::Doubtful((base + at).low.max(zero)))
         }
     });
-    Some(found.unwrap_or(HitEnclosure::Misses))
+    let found = found.unwrap_or(HitEnclosure::Misses);
+    (!(leaves && matches!(found, HitEnclosure::Doubtful(_)))).then_some(found)
 }
 
 /// Finds the first hit with t > 0 of a ray exactly; `None` where the equation is no polynomial, or if its coefficients
@@ -105,4 +117,62 @@ pub fn exact_line(line: &Line<Fine>) -> Option<[[Rational; 3]; 2]> {
     let exact = |of: &Fine| if of.low == of.high { Rational::of(of.low) } else { None };
     let all = |[x, y, z]: &[Fine; 3]| Some([exact(x)?, exact(y)?, exact(z)?]);
     Some([all(&line.origin)?, all(&line.dir)?])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+    use std::cell::Cell;
+    use tabray_exact::scalar::Scalar;
+
+    /// Three planes, and the number of times that their equation was evaluated.
+    struct Planes(Cell<usize>);
+
+    const PLACES: [f64; 3] = [-0.5, 0.25, 0.75];
+
+    impl Equation for Planes {
+        fn value<N: Scalar>(&self, [x, _, _]: [N; 3]) -> N {
+            self.0.set(self.0.get() + 1);
+            PLACES
+                .map(|place| x - N::constant(place))
+                .into_iter()
+                .fold(N::constant(1.0), |all, one| all * one)
+        }
+
+        fn is_polynomial(&self) -> bool {
+            true
+        }
+
+        fn along<C: Coefficient, const N: usize>(
+            &self,
+            [x, _, _]: [Polynomial<C, N>; 3],
+        ) -> Polynomial<C, N> {
+            let factors = PLACES.map(|place| x + Polynomial::constant(-place));
+            factors[0] * factors[1] * factors[2]
+        }
+
+        fn extent(&self) -> [DVec3; 2] {
+            [DVec3::NEG_ONE, DVec3::ONE]
+        }
+    }
+
+    #[test]
+    fn a_line_that_leaves_a_root_finds_the_next_one_without_a_search() {
+        let planes = Planes(Cell::new(0));
+        for (start, next) in PLACES.into_iter().zip([Some(0.75), Some(0.5), None]) {
+            let error = f256::from(1e-40);
+            let x = Interval { low: f256::from(start) - error, high: f256::from(start) + error };
+            let [y, z] = [0.1, 0.2].map(Interval::constant);
+            let line = Line { origin: [x, y, z], dir: [1.0, 0.0, 0.0].map(Interval::constant) };
+            match (first_hit::<f256>(&planes, &line, true), next) {
+                (Some(HitEnclosure::Hits(at)), Some(next)) => {
+                    assert!(at.low <= f256::from(next) && f256::from(next) <= at.high, "{at:?} from {start}");
+                }
+                (Some(HitEnclosure::Misses), None) => {}
+                (found, _) => panic!("{found:?} from {start}"),
+            }
+        }
+        assert_eq!(planes.0.get(), 0);
+    }
 }

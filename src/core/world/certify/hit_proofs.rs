@@ -130,7 +130,7 @@ impl Precise for f64 {
     }
 
     fn along(shape: &impl Equation, line: &Line<Interval>, leaves: bool) -> HitEnclosure<Self> {
-        let hit = if leaves { None } else { algebraic::first_hit::<f64>(shape, line) };
+        let hit = algebraic::first_hit::<f64>(shape, line, leaves);
         hit.unwrap_or_else(|| first_along(shape, line, leaves, PIECES))
     }
 
@@ -154,7 +154,7 @@ impl Precise for f256 {
     }
 
     fn along(shape: &impl Equation, line: &Line<Wide>, leaves: bool) -> HitEnclosure<Self> {
-        let hit = if leaves { None } else { algebraic::first_hit::<f256>(shape, line) };
+        let hit = algebraic::first_hit::<f256>(shape, line, leaves);
         hit.unwrap_or_else(|| first_along(shape, line, leaves, most_pieces(shape)))
     }
 
