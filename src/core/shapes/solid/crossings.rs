@@ -2,6 +2,7 @@
 
 use crate::geometry::sight::Line;
 use crate::world::certify::{HitEnclosure, Precise, ProofMethods};
+use std::vec;
 use tabray_exact::dual::Dual;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::Scalar;
@@ -21,6 +22,9 @@ pub struct Crossing<F> {
 pub struct Crossings<'l, F> {
     shape: &'l dyn ProofMethods,
     line: &'l Line<Interval<F>>,
+    /// The hits from the line's start, where the shape knows them at once. If each were searched from the one before, the
+    /// errors of their places would add up.
+    listed: Option<vec::IntoIter<HitEnclosure<F>>>,
     start: Line<Interval<F>>,
     gone: Interval<F>,
     leaves: Option<usize>,
@@ -32,8 +36,9 @@ pub struct Crossings<'l, F> {
 impl<'l, F: Precise> Crossings<'l, F> {
     /// Prepares the search along a line, whose true start lies on this part of the shape, if it lies on the shape.
     pub fn new(shape: &'l dyn ProofMethods, line: &'l Line<Interval<F>>, leaves: Option<usize>) -> Self {
-        let gone = Interval::constant(0.0);
-        Self { shape, line, start: *line, gone, leaves, known: Vec::new(), end: None }
+        let (gone, listed) =
+            (Interval::constant(0.0), F::proofs(shape).all_hits(line, leaves).map(Vec::into_iter));
+        Self { shape, line, listed, start: *line, gone, leaves, known: Vec::new(), end: None }
     }
 
     /// Returns the crossing of an index, counted from the start of the line.
@@ -54,7 +59,10 @@ impl<'l, F: Precise> Crossings<'l, F> {
     }
 
     fn next(&mut self) -> Result<Crossing<F>, F> {
-        let (found, part) = F::proofs(self.shape).first_hit(&self.start, self.leaves);
+        let (found, part) = match &mut self.listed {
+            Some(listed) => (listed.next().unwrap_or(HitEnclosure::Misses), 0),
+            None => F::proofs(self.shape).first_hit(&self.start, self.leaves),
+        };
         let at = match found {
             HitEnclosure::Misses => return Err(F::INFINITY),
             HitEnclosure::Hits(at) => self.gone + at,
@@ -65,8 +73,10 @@ impl<'l, F: Precise> Crossings<'l, F> {
         if slope.has_zero() {
             return Err(at.low);
         }
-        self.start.origin = self.line.at(at);
-        (self.gone, self.leaves) = (at, Some(part));
+        if self.listed.is_none() {
+            self.start.origin = self.line.at(at);
+            (self.gone, self.leaves) = (at, Some(part));
+        }
         Ok(Crossing { at, part, enters: slope.high < F::of(0.0) })
     }
 

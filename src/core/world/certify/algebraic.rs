@@ -28,10 +28,39 @@ pub(super) fn first_hit<C: Coefficient>(
     line: &Line<Interval<C::End>>,
     leaves: bool,
 ) -> Option<HitEnclosure<C::End>> {
+    let mut first = HitEnclosure::Misses;
+    visit_hits(shape, line, leaves, |hit| {
+        first = hit;
+        true
+    })?;
+    (!(leaves && matches!(first, HitEnclosure::Doubtful(_)))).then_some(first)
+}
+
+/// Finds the hits with t > 0 in order, up to the first that is open; `None` where [`first_hit`] is.
+pub(super) fn all_hits<C: Coefficient>(
+    shape: &dyn Coefficients<C>,
+    line: &Line<Interval<C::End>>,
+    leaves: bool,
+) -> Option<Vec<HitEnclosure<C::End>>> {
+    let mut all = Vec::new();
+    visit_hits(shape, line, leaves, |hit| {
+        all.push(hit);
+        !matches!(hit, HitEnclosure::Hits(_))
+    })?;
+    (!(leaves && matches!(all[..], [HitEnclosure::Doubtful(_), ..]))).then_some(all)
+}
+
+/// Visits the hits with t > 0 of a line in order, until the visitor returns true; `None` where the equation is no polynomial.
+fn visit_hits<C: Coefficient>(
+    shape: &dyn Coefficients<C>,
+    line: &Line<Interval<C::End>>,
+    leaves: bool,
+    mut visit: impl FnMut(HitEnclosure<C::End>) -> bool,
+) -> Option<()> {
     let zero = C::End::of(0.0);
     let line = shape.to_local(*line);
     let [low, high] = shape.extent();
-    let Some((mut from, to)) = line.clip(low, high) else { return Some(HitEnclosure::Misses) };
+    let Some((mut from, to)) = line.clip(low, high) else { return Some(()) };
     if !to.is_finite() {
         return None;
     }
@@ -59,15 +88,15 @@ pub(super) fn first_hit<C: Coefficient>(
         let place = |end: C| base + Interval::point(half) * end.bounds(0.0);
         leaves && place(low).high < zero && place(high).low > zero
     };
-    let found = isolation::visit(&polynomial, |part| match part {
+    let hit = |part| match part {
         RootPart::Root { ends, rises } => {
             let at = interval(isolation::enclosed(&polynomial, ends, rises));
             let distance = base + at;
-            if distance.high <= zero {
+            if distance.high <= zero || distance.low <= zero && is_start(ends) {
                 return None;
             }
             if distance.low <= zero {
-                return (!is_start(ends)).then_some(HitEnclosure::Doubtful(zero));
+                return Some(HitEnclosure::Doubtful(zero));
             }
             match is_kept(shape, &near, at) {
                 Some(true) => Some(HitEnclosure::Hits(distance)),
@@ -81,9 +110,9 @@ pub(super) fn first_hit<C: Coefficient>(
             let is_open = is_kept(shape, &near, at) != Some(false) && (base + at).high > zero;
             is_open.then(|| HitEnclosure::Doubtful((base + at).low.max(zero)))
         }
-    });
-    let found = found.unwrap_or(HitEnclosure::Misses);
-    (!(leaves && matches!(found, HitEnclosure::Doubtful(_)))).then_some(found)
+    };
+    isolation::visit(&polynomial, |part| hit(part).filter(|hit| visit(*hit)).map(drop));
+    Some(())
 }
 
 /// Finds the first hit with t > 0 of a ray exactly; `None` where the equation is no polynomial, or if its coefficients

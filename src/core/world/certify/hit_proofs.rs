@@ -21,6 +21,12 @@ pub trait HitProofs<F: Float> {
     /// in world coordinates; `leaves` is the part on which the line's true start lies, if it lies on the shape.
     fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (HitEnclosure<F>, usize);
 
+    /// Returns what is proven about each of a line's hits with t > 0, in order, up to the first that is open; `None` where they
+    /// are only found one from the other. Then the shape has one part.
+    fn all_hits(&self, _line: &Line<Interval<F>>, _leaves: Option<usize>) -> Option<Vec<HitEnclosure<F>>> {
+        None
+    }
+
     /// Encloses the value of the equation of a part at a point in world coordinates, and its derivative.
     fn slope(&self, at: [Dual<Interval<F>>; 3], part: usize) -> Dual<Interval<F>>;
 
@@ -72,6 +78,10 @@ impl<E: Equation, F: Precise> HitProofs<F> for E {
         (F::along(self, line, leaves.is_some()), 0)
     }
 
+    fn all_hits(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> Option<Vec<HitEnclosure<F>>> {
+        F::all_along(self, line, leaves.is_some())
+    }
+
     fn slope(&self, at: [Dual<Interval<F>>; 3], _part: usize) -> Dual<Interval<F>> {
         let point = Line { origin: at, dir: [Dual::constant(0.0); 3] };
         self.value(self.to_local(point).origin)
@@ -117,6 +127,15 @@ pub trait Precise: Float {
     /// Returns what is proven about a line's first hit. With `leaves`, the line's true start lies on the shape.
     fn along(shape: &impl Equation, line: &Line<Interval<Self>>, leaves: bool) -> HitEnclosure<Self>;
 
+    /// Returns what is proven about each of a line's hits, as [`HitProofs::all_hits`] does.
+    fn all_along(
+        _shape: &impl Equation,
+        _line: &Line<Interval<Self>>,
+        _leaves: bool,
+    ) -> Option<Vec<HitEnclosure<Self>>> {
+        None
+    }
+
     /// Converts an interval, rounded outward. Numbers that need no rounding stay as they are.
     fn narrow(of: Fine) -> Interval<Self>;
 
@@ -132,6 +151,14 @@ impl Precise for f64 {
     fn along(shape: &impl Equation, line: &Line<Interval>, leaves: bool) -> HitEnclosure<Self> {
         let hit = algebraic::first_hit::<f64>(shape, line, leaves);
         hit.unwrap_or_else(|| first_along(shape, line, leaves, PIECES))
+    }
+
+    fn all_along(
+        shape: &impl Equation,
+        line: &Line<Interval>,
+        leaves: bool,
+    ) -> Option<Vec<HitEnclosure<Self>>> {
+        algebraic::all_hits::<f64>(shape, line, leaves)
     }
 
     fn narrow(of: Fine) -> Interval {
@@ -158,6 +185,10 @@ impl Precise for f256 {
         hit.unwrap_or_else(|| first_along(shape, line, leaves, most_pieces(shape)))
     }
 
+    fn all_along(shape: &impl Equation, line: &Line<Wide>, leaves: bool) -> Option<Vec<HitEnclosure<Self>>> {
+        algebraic::all_hits::<f256>(shape, line, leaves)
+    }
+
     fn narrow(of: Fine) -> Wide {
         of.wide()
     }
@@ -177,13 +208,12 @@ impl Precise for Fraction {
         if is_closed(shape) {
             return first_along(shape, line, leaves, 0);
         }
-        let wide = Line { origin: line.origin.map(Interval::wide), dir: line.dir.map(Interval::wide) };
-        match f256::along(shape, &wide, leaves) {
-            HitEnclosure::Misses => HitEnclosure::Misses,
-            HitEnclosure::Hits(at) => HitEnclosure::Hits(at.into()),
-            HitEnclosure::Edge(at) => HitEnclosure::Edge(at.into()),
-            HitEnclosure::Doubtful(from) => HitEnclosure::Doubtful(from.into()),
-        }
+        finely(f256::along(shape, &wide(line), leaves))
+    }
+
+    fn all_along(shape: &impl Equation, line: &Line<Fine>, leaves: bool) -> Option<Vec<HitEnclosure<Self>>> {
+        let all = (!is_closed(shape)).then(|| f256::all_along(shape, &wide(line), leaves))?;
+        Some(all?.into_iter().map(finely).collect())
     }
 
     fn narrow(of: Fine) -> Fine {
@@ -192,6 +222,19 @@ impl Precise for Fraction {
 
     fn widen(of: Fine) -> Fine {
         of
+    }
+}
+
+fn wide(line: &Line<Fine>) -> Line<Wide> {
+    Line { origin: line.origin.map(Interval::wide), dir: line.dir.map(Interval::wide) }
+}
+
+fn finely(hit: HitEnclosure<f256>) -> HitEnclosure<Fraction> {
+    match hit {
+        HitEnclosure::Misses => HitEnclosure::Misses,
+        HitEnclosure::Hits(at) => HitEnclosure::Hits(at.into()),
+        HitEnclosure::Edge(at) => HitEnclosure::Edge(at.into()),
+        HitEnclosure::Doubtful(from) => HitEnclosure::Doubtful(from.into()),
     }
 }
 
