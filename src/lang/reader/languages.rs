@@ -87,9 +87,10 @@ pub fn recognised(
     let fault = match syntax {
         Syntax::Toml => of_notes(registry, name, text).or_else(|| of_others(text)),
         Syntax::Notes => {
-            let surface = || of_surfaces(name, text);
-            surface()
-                .or_else(|| of_meshes(name, text))
+            // A scene that is made around a mesh has the mesh's name.
+            let mesh = || of_meshes(name, text).filter(|_| has_entities(registry, text).is_none());
+            of_surfaces(name, text)
+                .or_else(mesh)
                 .or_else(|| of_pov(text, name))
                 .or_else(|| of_others(text))
                 .or_else(|| of_numbers(registry, text))
@@ -198,4 +199,24 @@ fn of_numbers(registry: &Registry, text: &str) -> Option<Fault> {
             .label("this number stands for a type, or for a value")
             .help(registry.first_steps(Syntax::Notes))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::reader::{ReadOptions, read_by};
+    use crate::registry::Registry;
+    use std::path::Path;
+
+    #[test]
+    fn a_scene_with_the_name_of_its_mesh_is_told_its_own_faults() {
+        let registry = Registry::get().expect("entity types");
+        let faults = |text: &str| {
+            let read = read_by(registry, "part.obj", Path::new(""), text.as_bytes(), ReadOptions::default());
+            read.map(drop).expect_err("a fault").to_string()
+        };
+        let scene = faults("camera eye { pixeldim 4 3  worlddim 4 3  viewpoint 0 0 9  colour 1 }");
+        assert!(scene.contains("`colour`") && !scene.contains("this is a mesh"), "{scene}");
+        let mesh = faults("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+        assert!(mesh.contains("this is a mesh, not a scene"), "{mesh}");
+    }
 }
