@@ -255,20 +255,30 @@ def may_hit(vertices, faces, origins, directions):
     return (np.abs(size) < 1e-6 * area) | ((u > -room) & (v > -room) & (u + v < 1 + room))
 
 
+def whole(rows):
+    """Return the numbers of rows as whole numbers, and the power of two by which they are multiplied."""
+    ratios = [[float(number).as_integer_ratio() for number in row] for row in rows]
+    scale = max(below for row in ratios for _, below in row)
+    return [[above * (scale // below) for above, below in row] for row in ratios], scale
+
+
 def truth(vertices, faces, origin, direction, near):
     """Return the faces that are hit first, the t, and whether that is at an edge."""
-    o, d = ([Fraction(x) for x in row] for row in (origin, direction))
+    near = np.flatnonzero(near)
+    (o, *corners), scale = whole([origin, *vertices[faces[near]].reshape(-1, 3)])
+    (d,), times = whole([direction])
     found = []
-    for face in np.flatnonzero(near):
-        a, b, c = ([Fraction(x) for x in vertices[corner]] for corner in faces[face])
+    for face, a, b, c in zip(near, corners[::3], corners[1::3], corners[2::3]):
         normal = cross(minus(b, a), minus(c, a))
-        slope = dot(normal, d)
-        t = dot(normal, minus(a, o)) / slope if slope else 0
-        if t > 0:
-            at = [x + t * y for x, y in zip(o, d)]
-            sides = [dot(normal, cross(minus(q, p), minus(at, p))) for p, q in ((a, b), (b, c), (c, a))]
+        slope, height = dot(normal, d), dot(normal, minus(a, o))
+        if slope < 0:
+            slope, height = -slope, -height
+        if slope and height > 0:
+            # The vectors to the hit are multiplied by the slope, which is positive: only the signs count.
+            to_hit = ([slope * x + height * y for x, y in zip(minus(o, p), d)] for p in (a, b, c))
+            sides = [dot(normal, cross(minus(q, p), to)) for p, q, to in zip((a, b, c), (b, c, a), to_hit)]
             if min(sides) >= 0:
-                found.append((t, int(face), min(sides) == 0))
+                found.append((Fraction(height * times, slope * scale), int(face), 0 in sides))
     first = [hit for hit in found if hit[0] == min(found)[0]]
     return [face for _, face, _ in first], first[0][0] if first else None, any(is_edge for _, _, is_edge in first)
 
