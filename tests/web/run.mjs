@@ -1,4 +1,4 @@
-// The page for browsers, in Chromium: node tests/web/run.mjs WEB PROGRAM [AXE]
+// The page for browsers and that of `tabray watch`, in Chromium: node tests/web/run.mjs WEB PROGRAM [AXE]
 //
 // WEB is what `cargo run -p tabray-web-build` made, PROGRAM is tabray itself, and AXE the script of axe-core. Screenshots are
 // written to WEB/shots. TABRAY_EDITS is the number of random edits, by default 600.
@@ -78,6 +78,15 @@ const show = async (text) => {
   await wait(`version > ${before} && ${isShown}`)
 }
 
+/// The scene of a surface that has a name. Only the page for browsers knows it.
+const surfaces = new Map()
+const surface = async (name) => {
+  if (!surfaces.has(name)) {
+    surfaces.set(name, await until('helper(`surface/${arguments[0]}`).then((answer) => answer.text()).then(done)', name))
+  }
+  return surfaces.get(name)
+}
+
 /// The bytes of the picture on the canvas.
 const canvas = async () => Buffer.from(await run(`
   const c = document.querySelector('canvas'), d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data
@@ -107,6 +116,83 @@ const accessible = async (what) => {
   return found.map(([id]) => id)
 }
 
+// Each page: how it gets a scene, the text that it shows, and whether the picture is whole.
+const own = { of: 'the page for browsers', shots: '', show, text: 'editor.value', isShown }
+const file = join(work, 'watched.ray')
+const watched = {
+  of: 'the page of watch', shots: 'watch-', text: 'current',
+  isShown: 'document.documentElement.dataset.shown === String(version)',
+  show: async (text) => {
+    const before = await run('return version')
+    writeFileSync(file, text)
+    await wait(`version > ${before} && ${watched.isShown}`)
+  },
+}
+
+/// What both pages can do, with Barth's sextic in them.
+const both = async ({ of, shots, show, text, isShown }) => {
+  await step(`${of}: a pixel is explained, the plan is there, and a slider changes the text`, async () => {
+    await run('look([200, 150])')
+    await wait("document.querySelector('#told pre').textContent.includes('surface')")
+    await run("selectTab(document.querySelector('#tab-plan'))")
+    await wait("document.querySelector('#plan').textContent.includes('mirrors')")
+    await shot(`${shots}explained`)
+    await run("selectTab(document.querySelector('#tab-text')); close(); shown = { kind: 'let', name: 'w' }; refresh()")
+    await wait("document.querySelector('#field-w-0')")
+    await run("const box = document.querySelector('#field-w-0'); box.value = 1.2; box.dispatchEvent(new Event('input'))")
+    await wait(`${text}.includes('let w 1.2') && ${isShown}`)
+  })
+
+  await step(`${of}: the camera orbits by dragging, and by keys`, async () => {
+    const before = await run(`if (!steers) toggleSteering(); return ${text}`)
+    const box = await run("const b = stage.getBoundingClientRect(); return [b.left + b.width / 2, b.top + b.height / 2].map(Math.round)")
+    const move = (x, y) => ({ type: 'pointerMove', x, y, duration: 20 })
+    await send('/actions', { actions: [{ type: 'pointer', id: 'mouse', actions: [move(...box), { type: 'pointerDown', button: 0 }, move(box[0] + 60, box[1]), move(box[0] + 120, box[1] + 20), { type: 'pointerUp', button: 0 }] }] })
+    await wait(`${text} !== ${JSON.stringify(before)} && ${isShown}`)
+    const dragged = await run(`stage.focus(); return ${text}`)
+    await send('/actions', { actions: [{ type: 'key', id: 'keys', actions: [{ type: 'keyDown', value: '\ue012' }, { type: 'keyUp', value: '\ue012' }] }] })
+    await wait(`${text} !== ${JSON.stringify(dragged)} && ${isShown}`)
+    assert((await canvas()).equals(native(await run(`return ${text}`))))
+  })
+
+  await step(`${of}: the image is pinned, and compared with the next`, async () => {
+    await show(await surface('heart'))
+    await run("document.querySelector('#compare').click()")
+    await wait("document.querySelector('#comparing span').textContent.startsWith('none of')")
+    await show(await surface('cayley'))
+    await wait("document.querySelector('#comparing span').textContent.includes('differ')")
+    const said = await run("return document.querySelector('#comparing span').textContent")
+    await shot(`${shots}compared`)
+    await run("document.querySelector('#compare').click()")
+    return said
+  })
+
+  if (axe) await step(`${of}: axe-core finds nothing serious`, async () => {
+    const minor = new Set()
+    for (const [width, height, mobile, scheme] of [[1360, 850, false, 'light'], [1360, 850, false, 'dark'], [390, 844, true, 'light'], [390, 844, true, 'dark']]) {
+      await screen(width, height, mobile, scheme)
+      await run("refresh(); look([200, 150])")
+      await pause(500)
+      for (const id of await accessible(`${width} x ${height}, ${scheme}`)) minor.add(id)
+    }
+    return minor.size ? `minor: ${[...minor].join(', ')}` : 'nothing at all'
+  })
+  else console.log('SKIPPED: axe-core is not here')
+
+  await step(`${of}: a phone and the dark`, async () => {
+    await screen(390, 844, true, 'light')
+    await run('close(); fit(); scrollTo(0, 0)')
+    assert(await run('return document.documentElement.scrollWidth <= innerWidth'), 'wider than a phone')
+    await pause(300)
+    await shot(`${shots}phone`)
+    await screen(1360, 850, false, 'dark')
+    await run('fit(); refresh()')
+    await pause(300)
+    await shot(`${shots}dark`)
+    await screen(1360, 850, false, 'light')
+  })
+}
+
 try {
   await screen(1360, 850, false, 'light')
   await step('the first image of Barth’s sextic, 400 x 300', async () => {
@@ -122,7 +208,7 @@ try {
 
   await step('ten scenes have the bytes of the program', async () => {
     const names = ['barth-6', 'clebsch', 'heart', 'goursat', 'gyroid', 'torus', 'kummer', 'superquadric']
-    const texts = await Promise.all(names.map(async (name) => until('helper(`surface/${arguments[0]}`).then((answer) => answer.text()).then(done)', name)))
+    const texts = await Promise.all(names.map(surface))
     for (const file of ['scenes/entities/revsurf.ray', 'scenes/entities/glass.ray', 'scenes/gallery/marbles.ray', 'scenes/light/shadow.ray']) {
       texts.push(readFileSync(join(sources, file), 'utf8').replace(/pixeldim +\d+ +\d+/, 'pixeldim 96 72'))
     }
@@ -134,7 +220,7 @@ try {
   })
 
   await step('proofs', async () => {
-    await show((await until("helper('surface/goursat').then((answer) => answer.text()).then(done)")).replace('400 300', '160 120'))
+    await show((await surface('goursat')).replace('400 300', '160 120'))
     await wait("document.documentElement.dataset.proven === String(version)", 300)
     assert.equal(await run("return document.querySelector('#badge').textContent"), '✓ proven: 19,200 pixels')
     await go(`${served}#surface=barth-6`)
@@ -151,30 +237,7 @@ try {
     return words
   })
 
-  await step('a pixel is explained, the plan is there, and a slider changes the text', async () => {
-    await run('look([200, 150])')
-    await wait("document.querySelector('#told pre').textContent.includes('surface')")
-    await run("selectTab(document.querySelector('#tab-plan'))")
-    await wait("document.querySelector('#plan').textContent.includes('mirrors')")
-    await shot('explained')
-    await run("selectTab(document.querySelector('#tab-text')); close(); refresh()")
-    await wait("document.querySelector('#fields input[type=range]')")
-    await run("const box = document.querySelector('#fields input[type=range]'); box.value = 1.2; box.dispatchEvent(new Event('input'))")
-    await wait(`editor.value.includes('let w 1.2') && ${isShown}`)
-  })
-
-  await step('the camera orbits by dragging, and by keys', async () => {
-    const before = await run('return editor.value')
-    await wait('steers')
-    const box = await run("const b = stage.getBoundingClientRect(); return [b.left + b.width / 2, b.top + b.height / 2].map(Math.round)")
-    const move = (x, y) => ({ type: 'pointerMove', x, y, duration: 20 })
-    await send('/actions', { actions: [{ type: 'pointer', id: 'mouse', actions: [move(...box), { type: 'pointerDown', button: 0 }, move(box[0] + 60, box[1]), move(box[0] + 120, box[1] + 20), { type: 'pointerUp', button: 0 }] }] })
-    await wait(`editor.value !== ${JSON.stringify(before)} && ${isShown}`)
-    const dragged = await run('return editor.value')
-    await run('stage.focus()')
-    await send('/actions', { actions: [{ type: 'key', id: 'keys', actions: [{ type: 'keyDown', value: '\ue012' }, { type: 'keyUp', value: '\ue012' }] }] })
-    await wait(`editor.value !== ${JSON.stringify(dragged)} && ${isShown}`)
-  })
+  await both(own)
 
   await step('the formula bar draws what is typed', async () => {
     await run("const bar = document.querySelector('#formula'); bar.value = 'x^2 + y^2 + bend*z^2 = 1'; bar.dispatchEvent(new Event('input'))")
@@ -187,7 +250,7 @@ try {
   })
 
   await step('errors are marked while they are typed, and words are completed', async () => {
-    const text = await until("helper('surface/torus').then((answer) => answer.text()).then(done)")
+    const text = await surface('torus')
     await show(text)
     await run("const at = editor.value.indexOf('direction'); editor.focus(); editor.setSelectionRange(at, at + 9); document.execCommand('insertText', false, 'dircetion')")
     await wait("document.querySelector('#problems li')")
@@ -224,19 +287,19 @@ try {
     await run(`
       const given = new DataTransfer()
       given.items.add(new File(['# dropped\\n' + arguments[0]], 'a.ray'))
-      document.dispatchEvent(new DragEvent('drop', { dataTransfer: given, cancelable: true }))`, await until("helper('surface/torus').then((answer) => answer.text()).then(done)"))
+      document.dispatchEvent(new DragEvent('drop', { dataTransfer: given, cancelable: true }))`, await surface('torus'))
     await wait(`editor.value.startsWith('# dropped') && ${isShown}`)
   })
 
   await step('a worker that is busy with an older scene is given up', async () => {
     const busy = "look_at eye { pixeldim 64 64  position 3 2 4  target 0 0 0  angle 36  samples 65536 }"
-    const heavy = (await until("helper('surface/barth-10').then((answer) => answer.text()).then(done)")).replace(/look_at eye [^\n]*/, busy)
+    const heavy = (await surface('barth-10')).replace(/look_at eye [^\n]*/, busy)
     const late = +(await data('late') ?? 0)
     await until('setText(arguments[0]).then(done)', heavy)
     await wait("document.documentElement.dataset.begun === String(version)")
     // It paints coarsely first.
     await pause(1500)
-    const start = Date.now(), text = await until("helper('surface/heart').then((answer) => answer.text()).then(done)")
+    const start = Date.now(), text = await surface('heart')
     await show(text)
     const took = Date.now() - start
     assert.equal(+await data('late'), late + 1)
@@ -246,20 +309,8 @@ try {
     return `the next picture is there after ${took} ms`
   })
 
-  await step('the image is pinned, and compared with the next', async () => {
-    await show(await until("helper('surface/heart').then((answer) => answer.text()).then(done)"))
-    await run("document.querySelector('#compare').click()")
-    await wait("document.querySelector('#comparing span').textContent.startsWith('none of')")
-    await show(await until("helper('surface/cayley').then((answer) => answer.text()).then(done)"))
-    await wait("document.querySelector('#comparing span').textContent.includes('differ')")
-    const said = await run("return document.querySelector('#comparing span').textContent")
-    await shot('compared')
-    await run("document.querySelector('#compare').click()")
-    return said
-  })
-
   await step('the address has the scene', async () => {
-    await show(await until("helper('surface/cayley').then((answer) => answer.text()).then(done)"))
+    await show(await surface('cayley'))
     await wait("location.hash.startsWith('#scene=') && location.hash === own")
     await pause(600)
     const [text, address] = await run('return [editor.value, location.href]')
@@ -284,32 +335,8 @@ try {
     return said.join(', ')
   })
 
-  if (axe) await step('axe-core finds nothing serious', async () => {
-    const minor = new Set()
-    for (const [width, height, mobile, scheme] of [[1360, 850, false, 'light'], [1360, 850, false, 'dark'], [390, 844, true, 'light'], [390, 844, true, 'dark']]) {
-      await screen(width, height, mobile, scheme)
-      await run("refresh(); look([200, 150])")
-      await pause(500)
-      for (const id of await accessible(`${width} x ${height}, ${scheme}`)) minor.add(id)
-    }
-    return minor.size ? `minor: ${[...minor].join(', ')}` : 'nothing at all'
-  })
-  else console.log('SKIPPED: axe-core is not here')
-
-  await step('a phone and the dark', async () => {
-    await screen(390, 844, true, 'light')
-    await run('close(); fit(); scrollTo(0, 0)')
-    await pause(300)
-    await shot('phone')
-    await screen(1360, 850, false, 'dark')
-    await run('fit(); refresh()')
-    await pause(300)
-    await shot('dark')
-    await screen(1360, 850, false, 'light')
-  })
-
   await step(`${edits} random edits`, async () => {
-    await show((await until("helper('surface/barth-6').then((answer) => answer.text()).then(done)")).replace('400 300', '24 18'))
+    await show((await surface('barth-6')).replace('400 300', '24 18'))
     await run(`
       const pieces = ['{', '}', '"', ' 1e300 ', '-', ' sphere ', 'let k 0\\n', '😀', 'formula', '^', '(', '\\n', '#', 'repeat i 3 {', '0', ' 7 ', 'x', '*y']
       let seed = 7
@@ -391,6 +418,17 @@ try {
     await shot('hosted')
     await command('Page.removeScriptToEvaluateOnNewDocument', { identifier })
   })
+
+  writeFileSync(file, await surface('barth-6'))
+  const watching = spawn(program, ['watch', file, '--port', '0'], { stdio: ['ignore', 'pipe', 'ignore'] })
+  try {
+    const said = await new Promise((done) => watching.stdout.once('data', (bytes) => done(`${bytes}`)))
+    await go(said.match(/http:\S+/)[0])
+    await wait(`version && ${watched.isShown}`)
+    await both(watched)
+  } finally {
+    watching.kill()
+  }
 } finally {
   await send('', null, 'DELETE').catch(() => {})
   driver.kill()
