@@ -10,7 +10,7 @@ another program shows none, or the other way round, and are not beside its silho
 ball is the `max_gradient`. The last line compares 16 samples for each pixel with one. With `-q`, the isosurfaces and the 16 samples are left out, which take nearly all
 of the time.
 
-`cost` counts instructions with valgrind, for images of 48 x 36 pixels of formulas of growing degree, of more terms and of
+`cost` counts instructions with valgrind, for images of 32 x 24 pixels of formulas of growing degree, of more terms and of
 more parts: docs/data/surfaces.csv, and its chart, docs/charts/surfaces.svg.
 
 TABRAY names a program other than a new build. A program that is not installed is left out.
@@ -336,7 +336,7 @@ GROWING = [
 
 def instructions(program, scene):
     """The instructions of a small image, in millions."""
-    command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", program, "render", scene, "--size", "48x36"]
+    command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", program, "render", scene, "--size", "32x24"]
     done = subprocess.run(
         [*command, "--threads", "1", "-o", scene.with_suffix(".ppm")], capture_output=True, text=True, check=True)
     return int(re.search(r"Collected : (\d+)", done.stderr).group(1)) / 1e6
@@ -364,7 +364,7 @@ def chart(rows):
     least = 10 ** math.floor(math.log10(min(count for *_, count in rows)))
     out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{4 * wide}" height="{tall + 90}" font-family="sans-serif" font-size="11">',
            f'<rect width="{4 * wide}" height="{tall + 90}" fill="#FFFFFF"/>',
-           '<text x="20" y="20" font-weight="bold">million instructions for 48 x 36 pixels, beyond those of an empty image</text>']
+           '<text x="20" y="20" font-weight="bold">million instructions for 32 x 24 pixels, beyond those of an empty image</text>']
     for panel, (name, sizes, _) in enumerate(GROWING):
         left, low, high = 50 + panel * wide, math.log(min(sizes)), math.log(max(sizes))
         right = lambda size: left + (wide - 70) * (math.log(size) - low) / (high - low)
