@@ -2,11 +2,14 @@
 //! its own. Their bytes, one after the other, are one zlib stream.
 
 use crate::named;
+use crate::output::codes;
 use crate::output::filter::Filter;
+use crate::parallel;
 use flate2::write::DeflateEncoder;
 use simd_adler32::Adler32;
 use std::io::{self, Write};
 use std::mem::take;
+use std::ops::Range;
 
 /// The effort of the compression. The decoded image does not depend on it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -33,6 +36,12 @@ pub(super) const EMPTY_END: [u8; 5] = [1, 0, 0, 0xff, 0xff];
 /// The length of the checksum at the end of a zlib stream, in bytes.
 const TRAILER: usize = 4;
 
+/// The minimum length of the stripes of a piece, in bytes. To start a thread takes as long as to compress some of them.
+const STRIPE: usize = 1 << 14;
+
+/// The length of a block of bytes that are stored as they are, as `flate2` has it.
+const STORED: usize = 31745;
+
 /// Some rows of a PNG, with 3 bytes for each pixel.
 pub(super) struct Piece {
     /// The row above, from which the first row is predicted; empty at the top of the image.
@@ -54,43 +63,89 @@ pub(super) struct CompressedPiece {
 }
 
 impl Piece {
-    /// Compresses the rows.
+    /// Compresses the rows, if that is quick in a number of stripes at the same time. The bytes do not depend on the number.
     ///
     /// # Errors
     /// No error is known: all output is written to memory.
-    pub fn pack(&self, compression: Compression) -> io::Result<CompressedPiece> {
+    pub fn pack(&self, compression: Compression, stripes: usize) -> io::Result<CompressedPiece> {
         match compression {
-            Compression::Fast => self.pack_fast(),
-            Compression::Balanced => self.pack_at(flate2::Compression::default(), Filter::Adaptive),
-            Compression::High => self.pack_at(flate2::Compression::best(), Filter::Adaptive),
+            Compression::Fast => self.pack_fast(stripes),
+            Compression::Balanced => self.pack_at(flate2::Compression::default()),
+            Compression::High => self.pack_at(flate2::Compression::best()),
         }
     }
 
     /// Compresses the rows with the one Huffman code of `fdeflate`, which was made for PNGs.
-    fn pack_fast(&self) -> io::Result<CompressedPiece> {
-        let mut compressor = fdeflate::Compressor::new(Vec::with_capacity(self.rows.len() / 4))?;
-        self.filtered(Filter::Up, |row| compressor.write_data(row))?;
-        let (mut bytes, len) = (compressor.finish()?, self.filtered_len());
-        if bytes.len() > len {
-            // Noise is shorter as it is.
-            return self.pack_at(flate2::Compression::none(), Filter::None);
+    fn pack_fast(&self, stripes: usize) -> io::Result<CompressedPiece> {
+        let (height, len) = (self.height(), self.filtered_len());
+        let stripe = height.div_ceil(stripes.min(self.rows.len() / STRIPE).max(1));
+        let packed = parallel::map(height.div_ceil(stripe), |index| {
+            self.coded(index * stripe..height.min((index + 1) * stripe))
+        });
+        let mut packed = packed.into_iter();
+        let Some(first) = packed.next() else { return self.store() };
+        let (mut bytes, mut checksum) = first?;
+        for next in packed {
+            let (more, sum) = next?;
+            codes::append(&mut bytes, &more);
+            checksum = checksum.and(&sum);
         }
-        let checksum = bytes.split_off(bytes.len() - TRAILER);
-        let checksum = checksum.try_into().map_or(0, u32::from_be_bytes);
+        if bytes.len() + TRAILER > len {
+            // Noise is shorter as it is.
+            return self.store();
+        }
         if !self.is_last {
             continues(&mut bytes);
         }
         if !self.above.is_empty() {
             bytes.drain(..HEADER.len());
         }
-        Ok(CompressedPiece { bytes, checksum: Checksum::new(checksum, len) })
+        Ok(CompressedPiece { bytes, checksum })
+    }
+
+    /// Returns the stream of some of the rows by themselves, without its checksum, and the checksum. `fdeflate` ends the
+    /// runs of a row with the row, so that the codes of a row do not depend on the rows before it.
+    fn coded(&self, rows: Range<usize>) -> io::Result<(Vec<u8>, Checksum)> {
+        let len = rows.len() * (self.row + 1);
+        let mut compressor = fdeflate::Compressor::new(Vec::with_capacity(len / 4))?;
+        self.filtered(rows, Filter::Up, |row| compressor.write_data(row))?;
+        let mut bytes = compressor.finish()?;
+        let checksum = bytes.split_off(bytes.len() - TRAILER);
+        let checksum = checksum.try_into().map_or(0, u32::from_be_bytes);
+        Ok((bytes, Checksum::new(checksum, len)))
+    }
+
+    /// Stores the rows as they are.
+    fn store(&self) -> io::Result<CompressedPiece> {
+        let (mut all, mut adler) = (Vec::with_capacity(self.filtered_len()), Adler32::new());
+        self.filtered(0..self.height(), Filter::None, |row| {
+            all.extend_from_slice(row);
+            Ok(())
+        })?;
+        adler.write(&all);
+        let mut bytes = if self.above.is_empty() { HEADER.to_vec() } else { Vec::new() };
+        let mut block = |block: &[u8], is_last| {
+            let len = (block.len() as u16).to_le_bytes();
+            bytes.push(u8::from(is_last));
+            bytes.extend(len.into_iter().chain(len.map(|byte| !byte)));
+            bytes.extend_from_slice(block);
+        };
+        let whole = all.chunks_exact(STORED);
+        let rest = whole.remainder();
+        whole.for_each(|whole| block(whole, false));
+        if !self.is_last && !rest.is_empty() {
+            block(rest, false);
+        }
+        // As `flate2` ends a stream, or a part of one.
+        block(if self.is_last { rest } else { &[] }, self.is_last);
+        Ok(CompressedPiece { bytes, checksum: Checksum::new(adler.finish(), all.len()) })
     }
 
     /// Compresses the rows at a level of zlib.
-    fn pack_at(&self, level: flate2::Compression, filter: Filter) -> io::Result<CompressedPiece> {
+    fn pack_at(&self, level: flate2::Compression) -> io::Result<CompressedPiece> {
         let bytes = if self.above.is_empty() { HEADER.to_vec() } else { Vec::new() };
         let (mut encoder, mut adler) = (DeflateEncoder::new(bytes, level), Adler32::new());
-        self.filtered(filter, |row| {
+        self.filtered(0..self.height(), Filter::Adaptive, |row| {
             adler.write(row);
             encoder.write_all(row)
         })?;
@@ -104,12 +159,21 @@ impl Piece {
         Ok(CompressedPiece { bytes, checksum: Checksum::new(adler.finish(), self.filtered_len()) })
     }
 
-    /// Passes each filtered row to `put`.
-    fn filtered(&self, filter: Filter, mut put: impl FnMut(&[u8]) -> io::Result<()>) -> io::Result<()> {
+    /// Passes each of some rows to `put`, filtered.
+    fn filtered(
+        &self,
+        rows: Range<usize>,
+        filter: Filter,
+        mut put: impl FnMut(&[u8]) -> io::Result<()>,
+    ) -> io::Result<()> {
         let black = vec![0; self.row];
-        let mut above = if self.above.is_empty() { &black } else { &self.above[..] };
+        let mut above = match rows.start.checked_sub(1) {
+            Some(above) => &self.rows[above * self.row..][..self.row],
+            None if self.above.is_empty() => &black,
+            None => &self.above[..],
+        };
         let mut filtered = vec![0; 1 + self.row];
-        for row in self.rows.chunks_exact(self.row) {
+        for row in self.rows[rows.start * self.row..rows.end * self.row].chunks_exact(self.row) {
             filter.apply(above, row, &mut filtered);
             put(&filtered)?;
             above = row;
@@ -117,10 +181,15 @@ impl Piece {
         Ok(())
     }
 
+    /// Returns the number of rows.
+    fn height(&self) -> usize {
+        self.rows.len() / self.row
+    }
+
     /// Returns the length of the filtered rows in bytes. Each row has one more byte, which says how the row is
     /// filtered.
     fn filtered_len(&self) -> usize {
-        self.rows.len() / self.row * (self.row + 1)
+        self.height() * (self.row + 1)
     }
 }
 
@@ -203,7 +272,7 @@ mod tests {
                 for height in heights {
                     let (rows, others) = rest.split_at(height * row);
                     let piece = Piece { above, rows: rows.to_vec(), row, is_last: others.is_empty() };
-                    let mut packed = piece.pack(compression).expect("memory takes it");
+                    let mut packed = piece.pack(compression, 1).expect("memory takes it");
                     checksum = checksum.and(&packed.checksum);
                     if piece.is_last {
                         packed.bytes.extend(checksum.trailer());
@@ -219,10 +288,26 @@ mod tests {
     }
 
     #[test]
+    fn the_bytes_do_not_depend_on_the_number_of_stripes() {
+        for seed in 0..32 {
+            let (row, is_last) = (3 * (100 + 31 * seed), seed % 2 == 0);
+            let rows = bytes(row * (STRIPE / row + 2) * 9, seed);
+            let above = if seed % 3 == 0 { Vec::new() } else { bytes(row, seed + 1) };
+            let piece = Piece { above, rows, row, is_last };
+            let [one, others @ ..] =
+                [1, 2, 3, 8].map(|stripes| piece.pack(Compression::Fast, stripes).expect("memory takes it"));
+            for other in others {
+                assert!(one.bytes == other.bytes, "{seed}");
+                assert_eq!(one.checksum.trailer(), other.checksum.trailer(), "{seed}");
+            }
+        }
+    }
+
+    #[test]
     fn noise_is_stored() {
         let rows: Vec<u8> =
             (0..3 << 16).map(|byte: u64| (byte.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40) as u8).collect();
-        let packed = Piece { above: Vec::new(), row: 3 << 8, is_last: true, rows }.pack(Compression::Fast);
+        let packed = Piece { above: Vec::new(), row: 3 << 8, is_last: true, rows }.pack(Compression::Fast, 1);
         let len = packed.expect("memory takes it").bytes.len();
         assert!(len < (3 << 16) + 400, "{len}");
     }

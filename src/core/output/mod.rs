@@ -2,6 +2,7 @@
 
 pub mod aov;
 pub mod aov_values;
+mod codes;
 pub mod compare;
 pub mod deflate;
 mod filter;

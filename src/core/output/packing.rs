@@ -127,10 +127,15 @@ impl<'r> Packing<'r> {
     fn pack(&mut self, put: &mut impl FnMut(&[u8]) -> io::Result<()>) -> io::Result<()> {
         let (pieces, compression) = (take(&mut self.pieces), self.compression);
         let is_last = pieces.last().is_some_and(|piece| piece.is_last);
-        let pack = |piece: usize| pieces[piece].pack(compression);
+        let pack_all = || {
+            // Where there are fewer pieces than threads, each piece is compressed by several. One thread needs no stripes.
+            let threads = parallel::threads();
+            let stripes = if threads == 1 { 1 } else { (2 * threads).div_ceil(pieces.len().max(1)) };
+            parallel::map(pieces.len(), |piece| pieces[piece].pack(compression, stripes))
+        };
         let packed = match self.renderer {
-            Some(renderer) if pieces.len() > 1 => renderer.run(|| parallel::map(pieces.len(), pack)),
-            _ => (0..pieces.len()).map(pack).collect(),
+            Some(renderer) => renderer.run(pack_all),
+            None => pieces.iter().map(|piece| piece.pack(compression, 1)).collect(),
         };
         let mut packed = packed.into_iter().collect::<io::Result<Vec<_>>>()?;
         for packed in &packed {
