@@ -326,7 +326,7 @@ impl ImageRender<'_> {
         let start = Instant::now();
         let plan = args.keep.plan(&model);
         stats.building += start.elapsed();
-        let renderer = args.threads.renderer()?.on(self.cpu);
+        let renderer = args.threads.renderer_for(region.rows.len())?.on(self.cpu);
         let whole = Instant::now();
         if let Some(format) = self.full_range {
             args.stop.refuse_too_large(full_range::PIXEL * region.columns.len() * region.rows.len())?;

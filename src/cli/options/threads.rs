@@ -3,6 +3,7 @@
 use super::number::whole;
 use std::io;
 use tabray_core::render::renderer::Renderer;
+use tabray_core::render::tiles::TILE;
 use tabray_tools::threads::renderer_with;
 
 #[derive(clap::Args, Clone, Copy)]
@@ -22,5 +23,10 @@ impl Args {
     /// Starts the threads.
     pub fn renderer(self) -> io::Result<Renderer> {
         renderer_with(self.count())
+    }
+
+    /// Starts the threads for an image with this many rows: one for an image of one strip of tiles, which one thread renders.
+    pub fn renderer_for(self, rows: usize) -> io::Result<Renderer> {
+        renderer_with(if rows <= TILE { 1 } else { self.count() })
     }
 }

@@ -13,8 +13,10 @@ use tabray_lang::syntax::Syntax;
 
 /// Parses the program's arguments. What is wrong with them is printed, and ends the program; so do `--help` and
 /// `--version`.
-pub fn matches(mut command: Command) -> Result<ArgMatches, Failure> {
-    let words = joined(&command, wild::args_os().collect());
+pub fn matches(command: Command) -> Result<ArgMatches, Failure> {
+    // It is never freed: to free all that it says of each option takes a tenth of the start of the program.
+    let command = Box::leak(Box::new(command));
+    let words = joined(command, wild::args_os().collect());
     color::choose_early(&words);
     let mut error = match command.try_get_matches_from_mut(&words) {
         Ok(matches) => return Ok(matches),
@@ -24,7 +26,7 @@ pub fn matches(mut command: Command) -> Result<ArgMatches, Failure> {
         Some(ContextValue::String(word)) => Some(word.clone()),
         _ => None,
     };
-    let without_command = chosen(&command, &words).get_name() == command.get_name();
+    let without_command = chosen(command, &words).get_name() == command.get_name();
     let scene = match error.kind() {
         ErrorKind::InvalidSubcommand => given(ContextKind::InvalidSubcommand),
         // An option of `render`, before the scene.
@@ -45,7 +47,7 @@ pub fn matches(mut command: Command) -> Result<ArgMatches, Failure> {
     let near = near.and_then(|option| {
         let name = option.strip_prefix("--")?.split('=').next()?;
         // Of options that are equally near, the first in the help is taken.
-        let known = chosen(&command, &words).get_arguments().filter_map(Arg::get_long);
+        let known = chosen(command, &words).get_arguments().filter_map(Arg::get_long);
         nearest(name, known).map(|near| format!("--{near}"))
     });
     if let Some(near) = near {
