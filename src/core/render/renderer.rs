@@ -100,6 +100,19 @@ impl Renderer {
         overseer: RenderCallbacks,
         watched: &(dyn Fn(W) + Sync),
     ) {
+        self.fill_by(plan, band, overseer.row, &|scratch, tiles, sink| {
+            watched(W::trace(plan, self.cpu, scratch, tiles, overseer.stops, sink).0);
+        });
+    }
+
+    /// Renders tiles of a band by a function for those of one strip. It is compiled in this crate, whatever the observer.
+    fn fill_by(
+        &self,
+        plan: &Plan,
+        band: &Band,
+        row: &(dyn Fn() + Sync),
+        trace: &(dyn Fn(&mut Scratch, &StripTiles, &mut TileSink) + Sync),
+    ) {
         let ([_, height], display) = (plan.camera.pixels, plan.camera.display());
         let (left, width) = (band.columns.start, band.columns.len());
         let strip = |scratch: &mut Scratch, index: usize| {
@@ -122,10 +135,8 @@ impl Renderer {
                 });
                 strip.tiles[tile] = true;
             };
-            let tiles = StripTiles { columns: &band.columns, rows: &rows, indices: open };
-            let (observer, _) = W::trace(plan, self.cpu, scratch, &tiles, overseer.stops, &mut add);
-            watched(observer);
-            rows.for_each(|_| (overseer.row)());
+            trace(scratch, &StripTiles { columns: &band.columns, rows: &rows, indices: open }, &mut add);
+            rows.for_each(|_| row());
         };
         // With strips assigned beforehand, threads would wait for the slowest one.
         self.run(|| parallel::for_each_in_order(band.strips.len(), &strip));
