@@ -243,6 +243,9 @@ impl Body {
 
     /// Takes from the shape what the shader cuts out.
     pub fn cut_out(self) -> Self {
+        if self.more.is_empty() && !self.shader.cuts_out() {
+            return self;
+        }
         let more = self.more.into_iter().map(Self::cut_out).collect();
         if !self.shader.cuts_out() {
             return Self { more, ..self };
