@@ -176,11 +176,11 @@ pub fn is_value(
 }
 
 /// Tells whether a word begins as a number does.
+#[inline]
 pub fn looks_like_number(word: &str) -> bool {
-    let is_digit = |word: &str| word.starts_with(|c: char| c.is_ascii_digit() || c == '.');
-    is_digit(word) || {
-        let unsigned = word.trim_start_matches(['+', '-']);
-        is_digit(unsigned)
-            || ["nan", "inf", "infinity"].iter().any(|number| unsigned.eq_ignore_ascii_case(number))
-    }
+    let bytes = word.as_bytes();
+    let signs = bytes.iter().take_while(|byte| matches!(byte, b'+' | b'-')).count();
+    let unsigned = &bytes[signs..];
+    unsigned.first().is_some_and(|byte| byte.is_ascii_digit() || *byte == b'.')
+        || ["nan", "inf", "infinity"].iter().any(|number| unsigned.eq_ignore_ascii_case(number.as_bytes()))
 }

@@ -88,7 +88,7 @@ impl Names {
                     .help("a name is any word; put it in quotes if it contains white space"),
             );
         }
-        if text.contains(char::is_control) {
+        if !text.bytes().all(|byte| byte.is_ascii_graphic()) && text.contains(char::is_control) {
             report.add(
                 Fault::error(place.clone(), format!("`{}` cannot be a name", text.escape_debug()))
                     .help("a name must not contain newlines or other control characters"),

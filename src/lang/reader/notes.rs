@@ -96,10 +96,12 @@ impl<'a, 'r> Grammar<'a, 'r> {
         Self { is_draft: true, ..Self::new(registry, text, 0, report) }
     }
 
+    #[inline]
     pub fn token(&self) -> Option<Token> {
         self.tokens.ahead[0]
     }
 
+    #[inline]
     fn step(&mut self) -> Option<Token> {
         let token = self.tokens.step(self.report);
         if let Some(token) = &token {
@@ -114,6 +116,7 @@ impl<'a, 'r> Grammar<'a, 'r> {
     }
 
     /// Returns the keyword that follows, if there is one.
+    #[inline]
     fn keyword(&self) -> Option<Keyword> {
         let token = self.token().filter(|token| token.form == TokenForm::Word)?;
         Keyword::of(self.tokens.raw(token))
@@ -123,10 +126,12 @@ impl<'a, 'r> Grammar<'a, 'r> {
         self.tokens.text(token)
     }
 
+    #[inline]
     fn is(&self, ahead: usize, form: TokenForm) -> bool {
         self.tokens.ahead[ahead].is_some_and(|token| token.form == form)
     }
 
+    #[inline]
     fn is_word(&self, ahead: usize) -> bool {
         self.tokens.ahead[ahead].is_some_and(|token| !token.is_brace())
     }
@@ -136,6 +141,7 @@ impl<'a, 'r> Grammar<'a, 'r> {
     }
 
     /// Tells whether a word, a name and an opening brace follow.
+    #[inline]
     fn has_form(&self) -> bool {
         self.is(2, TokenForm::Open)
             && self.is_word(0)

@@ -4,7 +4,7 @@ use super::fault::{Fault, Place};
 use super::report::Report;
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
-use std::mem::{replace, take};
+use std::mem::replace;
 use std::ops::Range;
 
 /// A word of a scene and its place.
@@ -31,6 +31,7 @@ pub(crate) enum Form {
 }
 
 impl<'a> Word<'a> {
+    #[inline]
     pub fn at(text: impl Into<Cow<'a, str>>, form: Form, place: Range<usize>) -> Self {
         Self { text: text.into(), form, place: Some(place) }
     }
@@ -87,11 +88,12 @@ impl<'a> Parsed<'a> {
     pub(crate) fn begin_again(&mut self, kind: Word<'a>, name: Word<'a>) {
         self.attributes.clear();
         self.values.clear();
-        let (attributes, values) = (take(&mut self.attributes), take(&mut self.values));
-        *self = Self { attributes, values, ..Self::begin(kind, name) };
+        (self.kind, self.name) = (kind, name);
+        (self.place, self.is_damaged) = (None, false);
     }
 
     /// Adds a value of the attribute that [`add`](Self::add) adds next. Beyond [`MAX_VALUES`] it is not kept.
+    #[inline]
     pub(crate) fn value(&mut self, value: Word<'a>) {
         if self.values.len() - self.attributes.last().map_or(0, |(_, end)| *end) < MAX_VALUES {
             self.keep(value);
@@ -99,11 +101,13 @@ impl<'a> Parsed<'a> {
     }
 
     /// Adds a value, however many there are.
+    #[inline]
     pub(crate) fn keep(&mut self, value: Word<'a>) {
         self.values.push(value);
     }
 
     /// Adds an attribute with the values added since the one before; beyond [`MAX_ATTRIBUTES`] reports it instead.
+    #[inline]
     pub(crate) fn add(&mut self, name: Word<'a>, report: &mut Report<'_>) {
         match self.attributes.len() {
             MAX_ATTRIBUTES.. => {
@@ -166,12 +170,14 @@ impl<'a> Parsed<'a> {
     }
 
     /// Returns the values of the attribute of this index.
+    #[inline]
     pub(crate) fn values_of(&self, index: usize) -> &[Word<'a>] {
         let start = index.checked_sub(1).map_or(0, |before| self.attributes[before].1);
         &self.values[start..self.attributes[index].1]
     }
 
     /// Returns the number of attributes.
+    #[inline]
     pub(crate) fn count(&self) -> usize {
         self.attributes.len()
     }

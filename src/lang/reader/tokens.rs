@@ -55,18 +55,22 @@ impl Token {
     }
 
     /// Tells whether it only separates others.
+    #[inline]
     pub fn is_trivia(self) -> bool {
         matches!(self.form, TokenForm::Space | TokenForm::Comment)
     }
 
+    #[inline]
     pub fn is_brace(self) -> bool {
         matches!(self.form, TokenForm::Open | TokenForm::Close)
     }
 
+    #[inline]
     pub(super) fn form(self) -> Form {
         if matches!(self.form, TokenForm::Quoted | TokenForm::Unclosed) { Form::Text } else { Form::Any }
     }
 
+    #[inline]
     pub fn place(self) -> Range<usize> {
         self.start..self.end
     }
@@ -98,9 +102,26 @@ const CLASSES: [Class; 256] = {
     classes
 };
 
+/// Marks the highest bit of the first of eight bytes that is not certainly a letter of a word, and perhaps those of later
+/// ones: white space, braces, and a few others.
+#[inline(always)]
+fn perhaps_others(eight: u64) -> u64 {
+    const ONES: u64 = u64::MAX / 255;
+    let (low, high) = (eight.wrapping_sub(0x21 * ONES) & !eight, (eight & 0x7f * ONES) + 0x05 * ONES);
+    (low | high | eight) & 0x80 * ONES
+}
+
 /// Returns the end of the word that begins at a byte of a text: the beginning of white space or a brace.
+#[inline]
 fn word_end(text: &str, mut at: usize) -> usize {
     let bytes = text.as_bytes();
+    while let Some(eight) = bytes.get(at..).and_then(<[u8]>::first_chunk) {
+        let others = perhaps_others(u64::from_le_bytes(*eight));
+        at += if others == 0 { 8 } else { others.trailing_zeros() as usize / 8 };
+        if others != 0 {
+            break;
+        }
+    }
     while let Some(byte) = bytes.get(at) {
         match CLASSES[usize::from(*byte)] {
             Class::Letter => at += 1,
@@ -160,8 +181,24 @@ impl<'a> Tokens<'a> {
     }
 
     /// Reads the token after the lookahead.
+    #[inline]
     fn read(&mut self, report: &mut Report<'_>) -> Option<Token> {
+        let bytes = self.text.as_bytes();
         loop {
+            // Most tokens are words of letters, with a space or a line end between them.
+            match bytes.get(self.at) {
+                Some(b' ' | b'\n') => {
+                    self.at += 1;
+                    continue;
+                }
+                Some(b'#' | b'"') => {}
+                Some(byte) if CLASSES[usize::from(*byte)] == Class::Letter => {
+                    let start = self.at;
+                    self.at = word_end(self.text, start);
+                    return Some(Token { form: TokenForm::Word, start, end: self.at });
+                }
+                _ => {}
+            }
             let token = Token::at(self.text, self.at, report)?;
             self.at = token.end;
             if !token.is_trivia() {
@@ -171,6 +208,7 @@ impl<'a> Tokens<'a> {
     }
 
     /// Returns the word that a token stands for.
+    #[inline]
     pub fn text(&self, token: Token) -> Cow<'a, str> {
         match token.form {
             TokenForm::Quoted => unescaped(&self.text[token.start + 1..token.end - 1]),
@@ -185,6 +223,7 @@ impl<'a> Tokens<'a> {
         &self.text[token.start..token.end]
     }
 
+    #[inline]
     pub(super) fn word(&self, token: Token) -> Word<'a> {
         Word::at(self.text(token), token.form(), token.place())
     }
