@@ -1,5 +1,6 @@
 //! From a scene's text to a [`Model`], or to a report of all its faults.
 
+mod alike;
 mod astray;
 mod attributes;
 mod build;

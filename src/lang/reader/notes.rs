@@ -1,6 +1,7 @@
 //! The grammar of the notes' scene language: `entity-type name { attribute values ... }`, one word after another. The reader,
 //! `fmt` and editors know a text by it alone.
 
+use super::alike::Alike;
 use super::fault::Fault;
 use super::guesses::{Tables, is_value, looks_like_number};
 use super::keyword::Keyword;
@@ -175,6 +176,25 @@ impl<'a, 'r> Grammar<'a, 'r> {
         } else {
             self.stray(is_repeated).map(|()| Node::Stray)
         }
+    }
+
+    /// Reads entities with the same words as those in whose memory they are put, as far as there are such. Returns their number.
+    pub fn alike(&mut self, memory: &mut [Option<Parsed<'a>>]) -> usize {
+        let Some(first) = self.token() else { return 0 };
+        let (mut end, mut last, mut count) = (first.start, None, 0);
+        while let Some(Some(entity)) = memory.get_mut(count)
+            && let Some(alike) = entity.become_alike(self.tokens.text, end)
+        {
+            (end, count) = (alike.body.end + 1, count + 1);
+            last = Some(alike);
+        }
+        if let Some(Alike { kind, body }) = last {
+            self.go_to(end);
+            self.table = self.tables.named(self.registry, &self.tokens.text[kind.clone()]);
+            (self.before, self.body) = (body.end..end, body);
+            self.last = Some((kind, self.before.clone()));
+        }
+        count
     }
 
     /// Reads a keyword and what follows it.

@@ -157,6 +157,20 @@ impl<'a> Parsed<'a> {
         }
     }
 
+    /// Changes the names of all attributes and all values, in the order of the text, until that fails. `change` is told of
+    /// each word whether it is a value.
+    pub(super) fn all_words(&mut self, mut change: impl FnMut(&mut Word<'a>, bool) -> bool) -> bool {
+        let mut start = 0;
+        for (name, end) in &mut self.attributes {
+            let values = &mut self.values[start..*end];
+            if !change(name, false) || !values.iter_mut().all(|value| change(value, true)) {
+                return false;
+            }
+            start = *end;
+        }
+        start == self.values.len()
+    }
+
     /// Gives back memory that the entity does not need.
     pub(crate) fn shrink(&mut self) {
         self.attributes.shrink_to_fit();

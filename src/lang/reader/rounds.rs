@@ -68,6 +68,11 @@ impl<'a> Rounds<'a> {
         !self.open.is_empty()
     }
 
+    /// Tells whether no entity so far was other than its text, and the next one is not.
+    pub fn is_plain(&self) -> bool {
+        self.count == 0 && self.open.is_empty() && self.numbers.len() == 0 && self.sets.is_empty()
+    }
+
     /// Gives an entity the name of this round, and replaces formulas and set values by numbers.
     pub fn entity(
         &mut self,

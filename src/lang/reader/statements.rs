@@ -81,6 +81,13 @@ impl<'a> Parser<'a, '_> {
             if self.stops && self.grammar.report.is_fatal() {
                 return 0;
             }
+            if self.rounds.is_plain() {
+                let alike = self.grammar.alike(&mut parsed[count..]);
+                if alike > 0 {
+                    count += alike;
+                    continue;
+                }
+            }
             match self.grammar.next(self.rounds.is_open(), &mut parsed[count]) {
                 Some(Node::Entity) => {
                     let grammar = &mut self.grammar;

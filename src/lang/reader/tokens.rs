@@ -4,6 +4,7 @@ use super::fault::Fault;
 use super::parsed::{Form, Word};
 use super::report::Report;
 use std::borrow::Cow;
+use std::mem::replace;
 use std::ops::Range;
 
 /// A part of a text, and its place.
@@ -80,6 +81,8 @@ impl Token {
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Class {
     Letter,
+    /// A letter of a word that begins something else where it is the first.
+    Mark,
     Space,
     Brace,
     /// Part of a character of several bytes, which may be white space.
@@ -93,6 +96,7 @@ const CLASSES: [Class; 256] = {
     while byte < 256 {
         classes[byte] = match byte as u8 {
             b'{' | b'}' => Class::Brace,
+            b'#' | b'"' => Class::Mark,
             128.. => Class::Wide,
             byte if (byte as char).is_whitespace() => Class::Space,
             _ => Class::Letter,
@@ -124,7 +128,7 @@ fn word_end(text: &str, mut at: usize) -> usize {
     }
     while let Some(byte) = bytes.get(at) {
         match CLASSES[usize::from(*byte)] {
-            Class::Letter => at += 1,
+            Class::Letter | Class::Mark => at += 1,
             Class::Wide => match text[at..].chars().next() {
                 Some(letter) if !letter.is_whitespace() => at += letter.len_utf8(),
                 _ => break,
@@ -146,10 +150,27 @@ fn space_end(text: &str, mut at: usize) -> usize {
                 Some(letter) if letter.is_whitespace() => at += letter.len_utf8(),
                 _ => break,
             },
-            Class::Letter | Class::Brace => break,
+            Class::Letter | Class::Mark | Class::Brace => break,
         }
     }
     at
+}
+
+/// Returns the end of the white space at a byte of a text, as far as each is of one byte.
+#[inline]
+pub fn after_space(text: &str, mut at: usize) -> usize {
+    let is_space = |byte: &u8| CLASSES[usize::from(*byte)] == Class::Space;
+    while text.as_bytes().get(at).is_some_and(is_space) {
+        at += 1;
+    }
+    at
+}
+
+/// Returns the end of the word that begins at a byte of a text, if there begins one, and its first letter is of one byte.
+#[inline]
+pub fn plain_word(text: &str, at: usize) -> Option<usize> {
+    let first = CLASSES[usize::from(*text.as_bytes().get(at)?)];
+    (first == Class::Letter).then(|| word_end(text, at))
 }
 
 /// The words and braces of a text, with enough lookahead to recognise the beginning of an entity.
@@ -183,21 +204,11 @@ impl<'a> Tokens<'a> {
     /// Reads the token after the lookahead.
     #[inline]
     fn read(&mut self, report: &mut Report<'_>) -> Option<Token> {
-        let bytes = self.text.as_bytes();
         loop {
-            // Most tokens are words of letters, with a space or a line end between them.
-            match bytes.get(self.at) {
-                Some(b' ' | b'\n') => {
-                    self.at += 1;
-                    continue;
-                }
-                Some(b'#' | b'"') => {}
-                Some(byte) if CLASSES[usize::from(*byte)] == Class::Letter => {
-                    let start = self.at;
-                    self.at = word_end(self.text, start);
-                    return Some(Token { form: TokenForm::Word, start, end: self.at });
-                }
-                _ => {}
+            self.at = after_space(self.text, self.at);
+            if let Some(end) = plain_word(self.text, self.at) {
+                let start = replace(&mut self.at, end);
+                return Some(Token { form: TokenForm::Word, start, end });
             }
             let token = Token::at(self.text, self.at, report)?;
             self.at = token.end;
