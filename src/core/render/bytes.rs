@@ -30,7 +30,15 @@ pub(crate) fn to_bytes(cpu: Cpu, display: &Display, colours: View, pixels: &mut 
     for (pixels, first) in pixels.chunks_mut(CHUNK).zip((0..).step_by(CHUNK)) {
         let packed = &mut packed[..pixels.len()];
         pack(cpu, gain, colours.part(first..first + pixels.len()), packed);
-        for (pixel, packed) in pixels.iter_mut().zip(packed) {
+        let (eights, rest) = pixels.as_chunks_mut::<8>();
+        let (packed, packed_rest) = packed.as_chunks::<8>();
+        for (pixels, [a, b, c, d, e, f, g, h]) in eights.iter_mut().zip(packed) {
+            // The 24 bytes of eight pixels are three numbers.
+            let words =
+                [a | b << 24 | c << 48, c >> 16 | d << 8 | e << 32 | f << 56, f >> 8 | g << 16 | h << 40];
+            pixels.as_flattened_mut().copy_from_slice(words.map(u64::to_le_bytes).as_flattened());
+        }
+        for (pixel, packed) in rest.iter_mut().zip(packed_rest) {
             let [red, green, blue, ..] = packed.to_le_bytes();
             *pixel = [red, green, blue];
         }
@@ -53,14 +61,15 @@ fn quantized(channel: f64) -> u64 {
 }
 
 kernels! {
-    /// Packs the bytes of each colour into the lowest bits of a number, red lowest.
+    /// Packs the bytes of each colour into a number, red lowest.
     fn pack(gain: f64, colours: View, packed: &mut [u64]) {
         let count = packed.len();
         let View { x, y, z } = colours;
         let (x, y, z) = (&x[..count], &y[..count], &z[..count]);
         for lane in 0..count {
-            packed[lane] =
+            let all =
                 quantized(gain * x[lane]) | quantized(gain * y[lane]) << 8 | quantized(gain * z[lane]) << 16;
+            packed[lane] = all & 0xff_ffff;
         }
     }
 }

@@ -127,10 +127,14 @@ impl Renderer {
                 let (mut strip, mut rest) = (locked(strip), &bytes[..]);
                 let from = left + TILE * tile;
                 let columns = from..band.columns.end.min(from + TILE);
+                let pixels = &mut strip.pixels[..];
                 tiles::for_each_run(columns, height - rows.end..height - top, |run, y| {
                     let (bytes, others) = rest.split_at(run.len());
-                    strip.pixels[(height - 1 - y - top) * width + run.start - left..][..run.len()]
-                        .copy_from_slice(bytes);
+                    let row = &mut pixels[(height - 1 - y - top) * width + run.start - left..];
+                    match (row.first_chunk_mut::<{ tiles::SIDE }>(), bytes.first_chunk()) {
+                        (Some(row), Some(bytes)) => *row = *bytes,
+                        _ => row[..run.len()].copy_from_slice(bytes),
+                    }
                     rest = others;
                 });
                 strip.tiles[tile] = true;

@@ -1,5 +1,6 @@
 //! The tiles of an image, and which of them are rendered.
 
+use std::array;
 use std::iter;
 use std::mem::take;
 use std::ops::Range;
@@ -13,14 +14,17 @@ pub const TILE: usize = 16;
 /// go on, and packets are to be full.
 pub const TOGETHER: usize = 8;
 
+/// The width and height of a block, in pixels.
+pub(crate) const SIDE: usize = 8;
+
 /// Calls a function for each run of up to eight pixels of a tile, with its columns and its row. The runs go through blocks of
 /// 8 x 8 pixels, so that pixels that follow each other are close together.
+#[inline]
 pub(crate) fn for_each_run(
     columns: Range<usize>,
     rows: Range<usize>,
     mut each: impl FnMut(Range<usize>, usize),
 ) {
-    const SIDE: usize = 8;
     for low in rows.clone().step_by(SIDE) {
         for left in columns.clone().step_by(SIDE) {
             let run = left..columns.end.min(left + SIDE);
@@ -31,7 +35,10 @@ pub(crate) fn for_each_run(
 
 /// Adds the pixels of a tile to `pixels`, by column and row.
 pub fn list(columns: Range<usize>, rows: Range<usize>, pixels: &mut Vec<[usize; 2]>) {
-    for_each_run(columns, rows, |columns, y| pixels.extend(columns.map(|x| [x, y])));
+    for_each_run(columns, rows, |columns, y| match columns.len() {
+        SIDE => pixels.extend_from_slice(&array::from_fn::<_, SIDE, _>(|x| [columns.start + x, y])),
+        _ => pixels.extend(columns.map(|x| [x, y])),
+    });
 }
 
 /// The maximum number of pixels that are in memory at one time, unless one row of tiles has more.

@@ -159,8 +159,8 @@ impl Check<'_, '_> {
     pub(super) fn entities<'p>(&mut self, parsed: &[&'p Parsed<'p>]) {
         let mut rest = parsed;
         while let Some(first) = rest.first() {
-            // What others can refer to is defined before they are checked.
-            let waiting = rest.iter().take_while(|parsed| self.quick.waits(parsed)).count();
+            // What others can refer to is defined before they are checked, and so is each type.
+            let waiting = rest.iter().take_while(|parsed| self.quick.waits(&self.store, parsed)).count();
             if waiting == 0 {
                 self.entity(first);
                 rest = &rest[1..];

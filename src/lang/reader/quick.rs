@@ -52,10 +52,12 @@ impl<'r> Quick<'r> {
         }
     }
 
-    /// Tells whether nothing can refer to an entity, so that entities after it can be checked before it.
-    pub fn waits(&mut self, parsed: &Parsed<'_>) -> bool {
-        let table = self.tables.named(self.registry, &parsed.kind.text);
-        table.is_none_or(|table| matches!(self.tables[table].entity.kind(), Kind::Object | Kind::Light))
+    /// Tells whether nothing can refer to an entity, so that entities after it can be checked before it, and it is not the
+    /// first of its type.
+    pub fn waits(&mut self, store: &Store, parsed: &Parsed<'_>) -> bool {
+        let Some(table) = self.tables.named(self.registry, &parsed.kind.text) else { return false };
+        let entity = self.tables[table].entity;
+        matches!(entity.kind(), Kind::Object | Kind::Light) && store.number(entity).is_some()
     }
 
     /// Returns the entities that were checked, or `None` where something is out of the ordinary.
