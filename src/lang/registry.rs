@@ -1,7 +1,7 @@
 //! The registry: all entity types of the program, by name.
 
 use crate::syntax::Syntax;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::iter;
 use std::sync::LazyLock;
 use tabray_core::scene::choice::contradictions;
@@ -58,16 +58,17 @@ impl Registry {
             if let Some(first) = by_name.insert(entity.name, entity) {
                 faults.push(taken("entity type", entity.name, first, entity));
             }
-            let mut names = BTreeSet::new();
+            let mut names = Vec::new();
             for attribute in entity.attributes() {
                 for &name in iter::once(&attribute.name()).chain(attribute.aliases()) {
-                    if !names.insert(name) {
+                    if names.contains(&name) {
                         faults.push(format!(
                             "the table of `{}` at {} has `{name}` twice: rename one of them",
                             entity.name,
                             entity.place()
                         ));
                     }
+                    names.push(name);
                 }
             }
         }

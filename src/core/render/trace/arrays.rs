@@ -64,6 +64,8 @@ pub(super) struct VectorList {
     x: Vec<f64>,
     y: Vec<f64>,
     z: Vec<f64>,
+    /// The number of first vectors that are known to be the same, bit by bit: most packets start at the viewpoint.
+    same: usize,
 }
 
 impl VectorList {
@@ -76,6 +78,7 @@ impl VectorList {
     /// Returns the first `count` vectors for writing; the list grows if it is shorter. Old vectors keep their values.
     #[inline(always)]
     pub fn resized(&mut self, count: usize) -> ViewMut<'_> {
+        self.same = 0;
         ViewMut {
             x: resized(&mut self.x, count),
             y: resized(&mut self.y, count),
@@ -92,15 +95,21 @@ impl VectorList {
     /// Sets the vector of this index.
     #[inline(always)]
     pub fn set(&mut self, index: usize, vector: DVec3) {
+        self.same = 0;
         (self.x[index], self.y[index], self.z[index]) = (vector.x, vector.y, vector.z);
     }
 
     /// Sets the first `count` vectors to the same value.
     pub fn fill(&mut self, count: usize, vector: DVec3) {
+        let bits = |vector: DVec3| vector.to_array().map(f64::to_bits);
+        if 0 < count && count <= self.same && bits(self.get(0)) == bits(vector) {
+            return;
+        }
         let ViewMut { x, y, z } = self.resized(count);
         x.fill(vector.x);
         y.fill(vector.y);
         z.fill(vector.z);
+        self.same = count;
     }
 
     /// Copies vectors to the start of the list.
@@ -110,6 +119,7 @@ impl VectorList {
 
     /// Gathers the vectors of some lanes of another list. The last vector is repeated to make `count`.
     pub fn gather(&mut self, from: &Self, lanes: &[u8], count: usize) {
+        self.same = 0;
         gather(&mut self.x, &from.x, lanes, count);
         gather(&mut self.y, &from.y, lanes, count);
         gather(&mut self.z, &from.z, lanes, count);
