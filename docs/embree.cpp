@@ -2,7 +2,7 @@
 // thread, without shading. Prints the milliseconds of CPU time of a frame and of building on one thread, the milliseconds
 // of building on all threads, and the number of rays.
 //
-//     embree spheres|triangles EXPONENT
+//     embree spheres|triangles|meshes EXPONENT
 
 #include <cmath>
 #include <cstdio>
@@ -82,7 +82,7 @@ static RTCRay ray(Vector from, Vector dir, double near, double far) {
 }
 
 // Traces a frame; the number of its rays.
-static size_t frame(RTCScene scene) {
+static size_t frame(RTCScene scene, bool two_sided) {
     const Vector eye = {4, 3, 7}, lights[] = {{2, 4, 0}, {6, 4, 0}};
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -98,8 +98,9 @@ static size_t frame(RTCScene scene) {
             rtcIntersect1(scene, &context, &hit);
             rays++;
             if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
-            // Triangles are lit on one side, as they are there.
+            // Triangles are lit on one side, as they are there, and open meshes on both.
             Vector normal = unit({hit.hit.Ng_x, hit.hit.Ng_y, hit.hit.Ng_z});
+            if (two_sided && dot(normal, dir) > 0) normal = {-normal.x, -normal.y, -normal.z};
             double t = hit.ray.tfar;
             Vector at = {eye.x + t * dir.x, eye.y + t * dir.y, eye.z + t * dir.z};
             for (Vector light : lights) {
@@ -116,7 +117,7 @@ static size_t frame(RTCScene scene) {
 }
 
 int main(int, char **arguments) {
-    bool spheres = !std::strcmp(arguments[1], "spheres");
+    bool spheres = !std::strcmp(arguments[1], "spheres"), meshes = !std::strcmp(arguments[1], "meshes");
     size_t count = size_t(std::lround(std::pow(10, std::atoi(arguments[2]))));
     double building[2];
     for (int all = 0; all < 2; all++) {
@@ -136,7 +137,7 @@ int main(int, char **arguments) {
                 size_t rays = 0;
                 for (int run = 0; run < 3 || now(CLOCK_THREAD_CPUTIME_ID) - begin < 0.5; run++) {
                     start = now(CLOCK_THREAD_CPUTIME_ID);
-                    rays = frame(scene);
+                    rays = frame(scene, meshes);
                     least = std::fmin(least, now(CLOCK_THREAD_CPUTIME_ID) - start);
                 }
                 std::printf("%.2f %.2f %.2f %zu\n", 1e3 * least, 1e3 * building[0], 1e3 * building[1], rays);
