@@ -2,6 +2,7 @@
 
 mod hits;
 pub mod loose;
+mod normals;
 mod sides;
 
 use crate::geometry::aabb::larger;
@@ -274,6 +275,9 @@ mod tests {
             for (lane, corners) in corners.into_iter().enumerate() {
                 let slow = slow_normal(corners);
                 prop_assert_eq!(exact_normal(corners), slow, "{:?}", corners);
+                for _ in 0..2 {
+                    prop_assert_eq!(normals::remembered_normal(corners), slow, "{:?}", corners);
+                }
                 if slow.iter().any(|part| part.high != 0.0) {
                     let bits = |of: [f64; 3]| of.map(f64::to_bits);
                     prop_assert_eq!(bits(normals.get(lane).to_array()), bits(rounded_unit(slow)), "{:?}", corners);

@@ -1,6 +1,7 @@
 //! A triangle in little memory: a scene may have millions of them.
 
-use super::{Triangle, exact_normal, passed, passed_by_eight};
+use super::normals::remembered_normal;
+use super::{Triangle, passed, passed_by_eight};
 use crate::geometry::ray::{Bracket, MISS, RayBall, RayError, RayRange};
 use crate::geometry::ray_packet::RayPacket;
 use crate::shapes::plane::Plane;
@@ -48,7 +49,7 @@ impl<A: AccuracyTag> LooseTriangle<A> {
     /// Returns the triangle with all that follows from its corners.
     #[inline]
     pub(super) fn whole(&self) -> Triangle<A> {
-        let mut plane = Plane::new(self.normal, exact_normal(self.corners), self.corners[0]);
+        let mut plane = Plane::new(self.normal, remembered_normal(self.corners), self.corners[0]);
         plane.max_z = self.max_z;
         Triangle { plane, corners: self.corners }
     }
