@@ -14,6 +14,9 @@ use std::ops::Range;
 /// The largest number of rays in a packet.
 pub const PACKET_SIZE: usize = 256;
 
+/// The largest number of rays whose hits are searched together, where they lie close together.
+pub const BEAM: usize = 16;
+
 /// Splits the lanes of `count` rays into consecutive ranges of at most `max_size` lanes.
 pub fn split(count: usize, max_size: usize) -> impl Iterator<Item = Range<usize>> {
     (0..count).step_by(max_size).map(move |first| first..count.min(first + max_size))

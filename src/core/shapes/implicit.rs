@@ -4,6 +4,7 @@
 //! ray's first hit by interval arithmetic, or if the formula is a polynomial by its Bernstein coefficients along the ray,
 //! and [`Dual`] numbers give the normal.
 
+mod beam;
 mod curvature;
 mod finely;
 mod formula;
@@ -14,6 +15,7 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::facet::Facet;
 use crate::geometry::frame::Frame;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
+use crate::geometry::ray_packet::RayPacket;
 use crate::geometry::sight::Line;
 use crate::world::body::Body;
 use crate::world::certify::Equation;
@@ -102,6 +104,12 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
 }
 
 impl<T: Implicit> Bracketed for ImplicitShape<T> {
+    const BY_BEAMS: bool = true;
+
+    fn t_bounds_each(&self, rays: RayPacket, ranges: &[RayRange], brackets: &mut [Bracket]) {
+        beam::bracket_each(self, rays, ranges, brackets);
+    }
+
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         if !ray.is_single() {
             return FormulaOnRay::new(self, ray).within(ray.drift).bracket(range);

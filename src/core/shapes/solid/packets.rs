@@ -1,9 +1,10 @@
 //! Packets of rays that may hit a part of a solid.
 
-use super::solid_part::{ByParts, SolidPart};
+use super::solid_part::{ByParts, Known, SolidPart};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
-use crate::geometry::ray_packet::{Nearest, PACKET_SIZE, RayPacket, SurfaceInteraction};
+use crate::geometry::ray_packet::{BEAM, Nearest, PACKET_SIZE, RayPacket, SurfaceInteraction, split};
 use crate::simd::cpu::Cpu;
+use crate::world::coincidence::close;
 use crate::world::hittable::{ByPackets, Hittable, Shape};
 use crate::world::packets::shape::{self, PacketIntersect};
 
@@ -19,14 +20,36 @@ impl SolidPart {
     }
 }
 
+impl SolidPart {
+    /// Passes on a bracket of the first hit of each of up to [`BEAM`] rays that end at these distances. The part's own hits are searched
+    /// between the places where the rays enter and leave other parts, together.
+    fn brackets_within(&self, rays: RayPacket, ends: &[f64], mut pass: impl FnMut(usize, Bracket)) {
+        let (mut ranges, mut firsts) = ([RayRange::ALL; BEAM], [Bracket::MISS; BEAM]);
+        let mut within = [Bracket { near: 0.0, far: 0.0 }; BEAM];
+        for (lane, end) in ends.iter().enumerate() {
+            let ray = rays.get(lane);
+            if *end > 0.0 {
+                within[lane] = self.within_others(&ray).unwrap_or(within[lane]);
+            }
+            let far = if *end < MISS { end + close(&ray, *end) } else { MISS };
+            ranges[lane] = self.first_range(&rays.range(lane, far), &within[lane]);
+        }
+        self.own().packets().t_bounds_each(rays, &ranges[..ends.len()], &mut firsts[..ends.len()]);
+        for (lane, end) in ends.iter().enumerate() {
+            let known = Known { within: Some(within[lane]), first: Some(firsts[lane]) };
+            pass(lane, self.t_bounds_from(&rays.get(lane).into(), &rays.range(lane, *end), known));
+        }
+    }
+}
+
 impl PacketIntersect for Shape<SolidPart, ByPackets, ByParts> {
     fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {
         let (part, count) = (&self.shape, near.len());
         if part.is_within_others() && rays.drift.is_none() {
-            for lane in 0..count {
-                let ray = RayBall::from(rays.get(lane));
-                let bracket = part.t_bounds_from(&ray, &rays.range(lane, ends[lane]), None);
-                (near[lane], far[lane]) = (bracket.near, bracket.far);
+            for lanes in split(count, BEAM) {
+                part.brackets_within(rays.part(lanes.clone()), &ends[lanes.clone()], |lane, bracket| {
+                    (near[lanes.start + lane], far[lanes.start + lane]) = (bracket.near, bracket.far);
+                });
             }
             return;
         }
@@ -53,9 +76,10 @@ impl PacketIntersect for Shape<SolidPart, ByPackets, ByParts> {
             let bracket = Bracket { near: near[lane], far: far[lane] };
             let range = rays.range(lane, ends[lane]);
             let first = if bracket.near == bracket.far { bracket.near } else { distances[lane] };
-            let first = (!bracket.is_doubtful() && !first.is_nan()).then_some(first);
+            let first = (!bracket.is_doubtful() && !first.is_nan()).then_some(Bracket::exactly(first));
             let bracket = if bracket.near < ends[lane] {
-                part.t_bounds_from(&RayBall { ray: rays.get(lane), drift: rays.drift }, &range, first)
+                let known = Known { first, within: None };
+                part.t_bounds_from(&RayBall { ray: rays.get(lane), drift: rays.drift }, &range, known)
             } else {
                 Bracket::MISS
             };

@@ -29,6 +29,15 @@ const SHORTLY: f64 = 1e-6;
 /// Marks a shape of which only a part is seen. Hits of the part are proven as hits of the shape.
 pub struct ByParts;
 
+/// What is known of a ray before it is searched for a part of a solid.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Known {
+    /// Bounds of the distances at which it is in other parts.
+    pub within: Option<Bracket>,
+    /// A bracket of its first hit of the part.
+    pub first: Option<Bracket>,
+}
+
 /// The surface of a part, where it is that of the solid.
 pub struct SolidPart {
     /// All parts of the solid, and a box around each.
@@ -188,7 +197,7 @@ impl SolidPart {
 
     /// Returns bounds of the distances, in world units, at which a ray is in another part; `None` if it certainly passes
     /// all of them by.
-    fn within_others(&self, ray: &Ray) -> Option<Bracket> {
+    pub(super) fn within_others(&self, ray: &Ray) -> Option<Bracket> {
         let mut within: Option<Bracket> = None;
         for part in (0..self.parts.len()).filter(|part| *part != self.index) {
             let Some(around) = &self.around[part] else { return Some(Bracket { near: 0.0, far: MISS }) };
@@ -212,9 +221,17 @@ impl SolidPart {
         within
     }
 
-    /// Returns the distance of the first hit that is seen, and whether it is certain. `first` is the distance of the
-    /// part's own first hit, if that is known.
-    pub(super) fn first_hit(&self, ray: &Ray, range: &RayRange, mut first: Option<f64>) -> (f64, bool) {
+    /// Returns the range in which the part's own first hit is searched of a ray that is within other parts in these bounds.
+    pub(super) fn first_range(&self, range: &RayRange, within: &Bracket) -> RayRange {
+        let far = if range.far < MISS { (1.0 + CLOSE) * range.far } else { MISS };
+        let (near, far) = (within.near.max(0.0), far.min(within.far));
+        RayRange { near, far, ..self.own_range(range) }
+    }
+
+    /// Returns the distance of the first hit that is seen, and whether it is certain. `known` is a bracket of the part's own first
+    /// hit, if that is known.
+    pub(super) fn first_hit(&self, ray: &Ray, range: &RayRange, known: Known) -> (f64, bool) {
+        let Known { within, mut first } = known;
         let (shape, max_coordinate) = (self.own(), self.facts.max_coordinate);
         let (mut start, mut gone, mut is_certain) = (*ray, 0.0, true);
         let mut leaves = range.origin_side.map(|side| self.side(side));
@@ -224,7 +241,7 @@ impl SolidPart {
         let is_apart =
             !is_clipped && self.around[self.index].is_some_and(|own| !own.overlaps(&Aabb { low, high }));
         let within = match self.is_within_others {
-            true => self.within_others(ray),
+            true => within.or_else(|| self.within_others(ray)),
             false => Some(Bracket { near: 0.0, far: MISS }),
         };
         let Some(within) = within else { return (MISS, true) };
@@ -240,7 +257,7 @@ impl SolidPart {
                 break;
             }
             let left = RayRange { near, far: end, origin_side: leaves, origin_error: error };
-            let bracket = first.take().map_or_else(|| shape.t_bounds(&start, &left), Bracket::exactly);
+            let bracket = first.take().unwrap_or_else(|| shape.t_bounds(&start, &left));
             let is_exact = bracket.near == bracket.far;
             let onward = if is_exact { bracket.near } else { shape.distance(&start, &left) };
             if onward == MISS {
@@ -289,12 +306,11 @@ impl SolidPart {
 
     /// Returns a bracket of the first hit of one ray.
     pub(super) fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
-        self.t_bounds_from(ray, range, None)
+        self.t_bounds_from(ray, range, Known::default())
     }
 
-    /// Returns a bracket of the first hit of one ray. `first` is the distance of the part's own first hit, if that is
-    /// known.
-    pub(super) fn t_bounds_from(&self, ray: &RayBall, range: &RayRange, first: Option<f64>) -> Bracket {
+    /// Returns a bracket of the first hit of one ray, of which something is known.
+    pub(super) fn t_bounds_from(&self, ray: &RayBall, range: &RayRange, known: Known) -> Bracket {
         if self.is_whole() {
             return self.own().packets().t_bounds(ray, &self.own_range(range));
         }
@@ -304,7 +320,7 @@ impl SolidPart {
         }
         let is_on_surface = || self.own().is_on_surface(ray.origin, range.origin_error);
         by_distance(ray, range, is_on_surface, |range| {
-            let (distance, is_certain) = self.first_hit(ray, range, first);
+            let (distance, is_certain) = self.first_hit(ray, range, known);
             is_certain.then_some(distance)
         })
     }
@@ -319,7 +335,7 @@ impl Hittable for SolidPart {
         if self.is_whole() {
             self.own().distance(ray, &self.own_range(range))
         } else {
-            self.first_hit(ray, range, None).0
+            self.first_hit(ray, range, Known::default()).0
         }
     }
 

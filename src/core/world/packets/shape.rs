@@ -8,7 +8,8 @@ pub use super::proofs::HitQueries;
 
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
 use crate::geometry::ray_packet::{
-    self, Brackets, Nearest, PACKET_SIZE, RayPacket, SurfaceInteraction, mark_occluded, merge_nearest, turned,
+    self, BEAM, Brackets, Nearest, PACKET_SIZE, RayPacket, SurfaceInteraction, mark_occluded, merge_nearest,
+    split, turned,
 };
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::LANES;
@@ -70,6 +71,13 @@ pub trait PacketIntersect: Send + Sync {
     /// Returns a bracket of the first hit of each ray that one stands for.
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket;
 
+    /// Computes what [`t_bounds`](Self::t_bounds) returns for each of up to [`BEAM`] rays, each in a range of its own.
+    fn t_bounds_each(&self, rays: RayPacket, ranges: &[RayRange], brackets: &mut [Bracket]) {
+        for (lane, range) in ranges.iter().enumerate() {
+            brackets[lane] = self.t_bounds(&RayBall { ray: rays.get(lane), drift: rays.drift }, range);
+        }
+    }
+
     /// Returns the distance of one ray's hit that [`t_bounds`](Self::t_bounds) has found for certain, or NaN where it
     /// takes more than plain arithmetic.
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64;
@@ -122,6 +130,16 @@ pub trait ScalarIntersect: Send + Sync {
     /// The type of the plugin author's shape.
     type Author: Hittable;
 
+    /// Whether rays that lie close together are searched together, by [`t_bounds_each`](Self::t_bounds_each).
+    const BY_BEAMS: bool = false;
+
+    /// Computes a bracket of the first hit of each of up to [`BEAM`] rays, each in a range of its own.
+    fn t_bounds_each(&self, rays: RayPacket, ranges: &[RayRange], brackets: &mut [Bracket]) {
+        for (lane, range) in ranges.iter().enumerate() {
+            brackets[lane] = self.t_bounds(&RayBall { ray: rays.get(lane), drift: rays.drift }, range);
+        }
+    }
+
     /// Returns the plugin author's shape.
     fn author(&self) -> &Self::Author;
 
@@ -159,6 +177,12 @@ pub trait ScalarIntersect: Send + Sync {
 
 impl<T: Bracketed, P> ScalarIntersect for Shape<T, ByBracket, P> {
     type Author = T;
+
+    const BY_BEAMS: bool = T::BY_BEAMS;
+
+    fn t_bounds_each(&self, rays: RayPacket, ranges: &[RayRange], brackets: &mut [Bracket]) {
+        self.shape.t_bounds_each(rays, ranges, brackets);
+    }
 
     #[inline(always)]
     fn author(&self) -> &T {
@@ -232,10 +256,16 @@ where
     Self: ScalarIntersect<Author = T>,
 {
     fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {
+        if Self::BY_BEAMS {
+            return brackets_of_beams(self, rays, ends, near, far);
+        }
         brackets(cpu, self, rays, ends, near, far);
     }
 
     fn closest_hits(&self, cpu: Cpu, rays: RayPacket, id: u64, nearest: Nearest) -> bool {
+        if Self::BY_BEAMS {
+            return closest_by_brackets(self, cpu, RayPacket { drift: RayError::NONE, ..rays }, id, nearest);
+        }
         closest_hits(cpu, self, rays, id, nearest)
     }
 
@@ -247,6 +277,10 @@ where
         blocked: &mut [u64],
         doubt: &mut [u64],
     ) -> bool {
+        if Self::BY_BEAMS {
+            let rays = RayPacket { drift: RayError::NONE, ..rays };
+            return occluded_by_brackets(self, cpu, rays, t_max, blocked, doubt);
+        }
         occluded(cpu, self, rays, t_max, blocked, doubt)
     }
 
@@ -262,8 +296,36 @@ where
         ScalarIntersect::t_bounds(self, ray, range)
     }
 
+    fn t_bounds_each(&self, rays: RayPacket, ranges: &[RayRange], brackets: &mut [Bracket]) {
+        ScalarIntersect::t_bounds_each(self, rays, ranges, brackets);
+    }
+
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
         ScalarIntersect::refine(self, ray, origin_side)
+    }
+}
+
+/// Computes brackets of the first hits of a packet's rays, some of which are searched together.
+fn brackets_of_beams<T: Hittable>(
+    shape: &impl ScalarIntersect<Author = T>,
+    rays: RayPacket,
+    ends: &[f64],
+    near: &mut [f64],
+    far: &mut [f64],
+) {
+    let can_hit_itself = shape.author().facts().can_hit_itself;
+    for lanes in split(near.len(), BEAM) {
+        let (rays, ends) = (rays.part(lanes.clone()), &ends[lanes.clone()]);
+        let (mut ranges, mut brackets) = ([RayRange::ALL; BEAM], [Bracket::MISS; BEAM]);
+        for (lane, end) in ends.iter().enumerate() {
+            let is_missed = rays.side(lane).is_some_and(|side| !can_hit_itself.contain(side));
+            // Nothing is hit before 0.
+            ranges[lane] = rays.range(lane, if is_missed { 0.0 } else { *end });
+        }
+        shape.t_bounds_each(rays, &ranges[..ends.len()], &mut brackets[..ends.len()]);
+        for (lane, bracket) in lanes.zip(&brackets) {
+            (near[lane], far[lane]) = (bracket.near, bracket.far);
+        }
     }
 }
 

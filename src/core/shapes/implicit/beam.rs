@@ -1,0 +1,383 @@
+//! First hits of rays that lie close together, as those of a pixel's samples do: what surrounds them is searched once.
+//!
+//! A beam is the set of all lines whose coordinates are between those of its rays. Bounds of the formula and of its slope on pieces
+//! of the beam prove that no ray is hit on a piece, or that each ray is hit there once. Each ray then takes only the steps that
+//! find its own root. Where the bounds do not decide, the beam is halved, and in the end each ray is searched alone.
+
+use super::formula::Implicit;
+use super::on_ray::{FormulaOnRay, ImplicitShape, shortest};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
+use crate::geometry::ray_packet::{BEAM, RayPacket};
+use crate::world::coincidence::close;
+use crate::world::hittable::{Bracketed, Certified};
+use crate::world::packets::shape::by_distance;
+use std::array::from_fn;
+use std::mem::take;
+use std::ops::Range;
+use tabray_exact::dual::Dual;
+use tabray_exact::gradient::Gradient;
+use tabray_exact::interval::Interval;
+use tabray_exact::roots::newton;
+use tabray_exact::roots::stretch::Stretch;
+use tabray_exact::roots::taylor::FunctionOnLine;
+use tabray_exact::scalar::{Scalar, per_axis};
+
+/// The fewest rays that are searched together from the start.
+const LEAST: usize = 4;
+
+/// The largest width of a beam, as a fraction of the longest side of the shape's box.
+const WIDEST: f64 = 1.0 / 32.0;
+
+/// The largest number of pieces of a beam that are judged.
+const MOST_PIECES: usize = 64;
+
+/// The number of pieces that a beam would have if none were halved.
+const PARTS: f64 = 8.0;
+
+/// A piece that is shorter than this many times the width of the beam is not halved.
+const SHORT: f64 = 0.25;
+
+/// A ray of a beam.
+struct Member<'s, T> {
+    lane: usize,
+    line: FormulaOnRay<'s, T>,
+    stretch: Stretch,
+    /// The part of the line that is searched.
+    span: Range<f64>,
+}
+
+/// The lines `base + t dir`, for all numbers between these bounds.
+struct Beam<'s, T> {
+    formula: &'s T,
+    base: [Interval; 3],
+    dir: [Interval; 3],
+    /// Where all lines end.
+    to: f64,
+    side: Option<Side>,
+    /// The largest width of a beam.
+    widest: f64,
+}
+
+/// A part of a beam on which the formula only rises, or only falls, along each line.
+#[derive(Clone, Copy)]
+struct Run {
+    start: f64,
+    rises: bool,
+    /// Whether the formula is above 0 at the start of the part; `None` where that is not known of all lines.
+    was_above: Option<bool>,
+}
+
+/// How far a beam was searched without a root that counts.
+#[derive(Clone, Copy)]
+struct Search {
+    /// Where the search started, and how far it came.
+    from: f64,
+    at: f64,
+    /// The length of the next piece.
+    step: f64,
+    /// Whether the formula is above 0 there; `None` where that is not known of all lines.
+    is_above: Option<bool>,
+    run: Option<Run>,
+}
+
+/// What is known of the first roots that count.
+#[derive(Clone, Copy)]
+enum Found {
+    /// No line has one.
+    None,
+    /// Each line has one between these places, the only one there, and none before.
+    Between { low: f64, high: f64, rises: bool },
+}
+
+/// Why a search ended without knowing the roots.
+enum Open {
+    /// Bounds of narrower beams would be closer.
+    Wide,
+    Lost,
+}
+
+/// Computes brackets of the first hits of up to [`BEAM`] rays, each in a range of its own.
+pub(super) fn bracket_each<T: Implicit>(
+    shape: &ImplicitShape<T>,
+    rays: RayPacket,
+    ranges: &[RayRange],
+    brackets: &mut [Bracket],
+) {
+    let singles: [Ray; BEAM] = from_fn(|lane| rays.get(lane.min(ranges.len() - 1)));
+    let is_as_before = |lane: &usize| {
+        let [one, other] = [lane - 1, *lane].map(|lane| (&singles[lane], &ranges[lane]));
+        let of =
+            |(ray, range): (&Ray, &RayRange)| (ray.origin, ray.dir, range.near, range.far, range.origin_side);
+        of(one) == of(other)
+    };
+    // Packets are filled up with copies of their last ray.
+    let own = ranges.len() - (1..ranges.len()).rev().take_while(is_as_before).count();
+    let (first, rest) = (&ranges[0], &ranges[1..own]);
+    let is_together = own >= LEAST
+        && rays.drift.is_none()
+        && !shape.formula.is_cut()
+        && shape.degree.is_none()
+        && rest.iter().all(|range| range.origin_side == first.origin_side);
+    let mut members = Vec::with_capacity(BEAM);
+    for lane in 0..own {
+        let (ray, range) = (&singles[lane], &ranges[lane]);
+        if !is_together {
+            brackets[lane] = shape.t_bounds(&RayBall { ray: *ray, drift: rays.drift }, range);
+            continue;
+        }
+        let line = FormulaOnRay::new(shape, ray);
+        let stretch = line.stretch();
+        let end = if range.far < MISS { range.far + close(ray, range.far) } else { MISS };
+        let start = stretch.outer.start.max(range.near - line.closest);
+        let span = start..stretch.outer.end.min(end - line.closest);
+        if range.far <= range.near {
+            brackets[lane] = Bracket::MISS;
+        } else if span.start <= span.end {
+            members.push(Member { lane, line, stretch, span });
+        } else {
+            brackets[lane] = bracket(shape, ray, range, MISS);
+        }
+    }
+    together(shape, &members, None, ranges, brackets);
+    let last = brackets[own - 1];
+    brackets[own..].fill(last);
+}
+
+/// Searches some rays together, or in halves, from where those among them came that were searched together before.
+fn together<T: Implicit>(
+    shape: &ImplicitShape<T>,
+    members: &[Member<T>],
+    before: Option<Search>,
+    ranges: &[RayRange],
+    brackets: &mut [Bracket],
+) {
+    let mut search = before.unwrap_or_else(|| Search::of(members));
+    let is_many = members.len() >= LEAST || !members.is_empty() && search.at > search.from;
+    let found = if is_many {
+        Beam::around(shape, members, ranges[members[0].lane].origin_side).first_roots(&mut search)
+    } else {
+        Err(Open::Lost)
+    };
+    let found = match found {
+        Ok(found) => found,
+        Err(Open::Wide) if members.len() > 1 => {
+            let (one, other) = members.split_at(members.len() / 2);
+            together(shape, one, Some(search), ranges, brackets);
+            return together(shape, other, Some(search), ranges, brackets);
+        }
+        Err(_) => {
+            for Member { lane, line, .. } in members {
+                brackets[*lane] = shape.t_bounds(&line.ray.into(), &ranges[*lane]);
+            }
+            return;
+        }
+    };
+    let mut near = None;
+    for member in members {
+        let Member { lane, line, .. } = member;
+        let root = match found {
+            Found::Between { low, high, rises } if low <= member.span.end => {
+                let ends = member.ends((low, high), rises);
+                ends.map(|ends| {
+                    ends.map(|ends| root(line, ends, rises, shortest(&member.stretch.outer), &mut near))
+                })
+            }
+            _ => Some(None),
+        };
+        let (ray, range) = (line.ray, &ranges[*lane]);
+        brackets[*lane] = match root {
+            Some(root) => bracket(shape, ray, range, root.map_or(MISS, |root| line.closest + root)),
+            None => shape.t_bounds(&ray.into(), range),
+        };
+    }
+}
+
+impl<T: Implicit> Member<'_, T> {
+    /// Returns the places between which the line has the root that the beam's lines have between these, `Some(None)` if the line ends
+    /// before it, and `None` if that is not known.
+    fn ends(&self, (low, high): (f64, f64), rises: bool) -> Option<Option<(f64, f64)>> {
+        let Self { line, stretch, span, .. } = self;
+        let is_after = |low: f64, high: f64| {
+            let value = line.at(Interval { low, high });
+            (!value.has_zero()).then_some(rises == (value.low > 0.0))
+        };
+        let start = if span.start < stretch.inner.start { stretch.inner.start } else { span.start };
+        let end = if span.end > stretch.inner.end { stretch.inner.end } else { span.end };
+        if start > low && is_after(span.start.min(start), start)? {
+            return None;
+        }
+        let has_root = end >= high || is_after(end, span.end)?;
+        Some(has_root.then_some((low.max(start), high.min(end))))
+    }
+}
+
+/// Returns the bracket of a ray whose first root is at this distance.
+fn bracket<T: Implicit>(shape: &ImplicitShape<T>, ray: &Ray, range: &RayRange, distance: f64) -> Bracket {
+    let is_on_surface = || shape.is_on_surface(ray.origin, range.origin_error);
+    by_distance(&(*ray).into(), range, is_on_surface, |range| Some(range.keep(distance)))
+}
+
+/// The root of a line, for those of its neighbours.
+struct Near {
+    root: f64,
+    at: [f64; 3],
+    /// The gradient of the formula there.
+    slopes: [f64; 3],
+}
+
+impl Near {
+    /// Returns about where another line has its root.
+    fn guess<T: Implicit>(&self, line: &FormulaOnRay<T>) -> f64 {
+        let beside = line.on_line(self.root);
+        let along = |of: [f64; 3]| (0..3).map(|axis| self.slopes[axis] * of[axis]).sum::<f64>();
+        self.root - along(per_axis(|axis| beside[axis] - self.at[axis])) / along(line.dir.to_array())
+    }
+}
+
+/// Returns the root of a line between two places, as precisely as a search for it alone.
+fn root<T: Implicit>(
+    line: &FormulaOnRay<T>,
+    (low, high): (f64, f64),
+    rises: bool,
+    shortest: f64,
+    near: &mut Option<Near>,
+) -> f64 {
+    let guess = near.as_ref().map_or(f64::NAN, |near| near.guess(line));
+    let guess = if low < guess && guess < high { guess } else { low + 0.5 * (high - low) };
+    let root = newton::root(|t| line.at(Dual::variable(t)), (low, high), !rises, guess, 0.5 * shortest);
+    if near.is_none() {
+        let at = line.on_line(root);
+        let Gradient { slopes, .. } = line.shape.formula.value(Gradient::point(at));
+        *near = Some(Near { root, at, slopes });
+    }
+    root
+}
+
+impl<'s, T: Implicit> Beam<'s, T> {
+    fn around(shape: &'s ImplicitShape<T>, members: &[Member<T>], side: Option<Side>) -> Self {
+        let hull = |of: &dyn Fn(&FormulaOnRay<T>) -> (f64, f64)| {
+            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+            for member in members {
+                let (middle, error) = of(&member.line);
+                (low, high) = (low.min(middle - error), high.max(middle + error));
+            }
+            Interval { low: low.next_down(), high: high.next_up() }
+        };
+        let base = per_axis(|axis| hull(&|line| (line.base[axis], line.blur)));
+        let dir = per_axis(|axis| hull(&|line| (line.dir[axis], line.turn)));
+        let to = members.iter().map(|member| member.span.end).fold(f64::NEG_INFINITY, f64::max);
+        let widest = WIDEST * (shape.high - shape.low).max_element();
+        Self { formula: &shape.formula, base, dir, to, side, widest }
+    }
+
+    /// Returns the lines on a piece, with their slopes.
+    fn lines(&self, piece: Interval) -> [Dual<Interval>; 3] {
+        per_axis(|axis| Dual { value: self.base[axis] + self.dir[axis] * piece, slope: self.dir[axis] })
+    }
+
+    /// Returns bounds of the formula at a place.
+    fn at(&self, t: f64) -> Interval {
+        let t = Interval::constant(t);
+        self.formula.value(per_axis(|axis| self.base[axis] + self.dir[axis] * t))
+    }
+
+    /// Finds the first roots that count.
+    fn first_roots(&self, search: &mut Search) -> Result<Found, Open> {
+        let from = search.from;
+        let far = self.to.abs().max(from.abs());
+        let width =
+            (0..3).map(|axis| self.base[axis].width() + far * self.dir[axis].width()).fold(0.0, f64::max);
+        if !(width <= self.widest && from.is_finite() && self.to.is_finite()) {
+            return Err(Open::Wide);
+        }
+        let mut is_new = true;
+        for _ in 0..MOST_PIECES {
+            let Search { at: low, step, is_above, run, .. } = *search;
+            // Where a wider beam did not know the sign.
+            if let Some(run) = run.filter(|_| take(&mut is_new)) {
+                let value = self.at(low);
+                if !value.has_zero() {
+                    let above = value.low > 0.0;
+                    if let Some(found) = self.ended(&run, search, low, above)? {
+                        return Ok(found);
+                    }
+                    continue;
+                }
+            }
+            if low >= self.to {
+                return if run.is_none() { Ok(Found::None) } else { Err(Open::Wide) };
+            }
+            let high = if low + 1.5 * step < self.to { low + step } else { self.to };
+            let piece = Interval { low, high };
+            let Dual { value, slope } = self.formula.value(self.lines(piece));
+            let is_smooth = value.is_bounded() && slope.is_bounded();
+            if is_smooth && value.has_zero() && !slope.has_zero() {
+                let rises = slope.low > 0.0;
+                let run = run.unwrap_or(Run { start: low, rises, was_above: is_above });
+                if run.rises != rises {
+                    return Err(Open::Wide);
+                }
+                (search.at, search.is_above, search.run) = (high, None, Some(run));
+                let end = self.at(high);
+                if !end.has_zero()
+                    && let Some(found) = self.ended(&run, search, high, end.low > 0.0)?
+                {
+                    return Ok(found);
+                }
+                continue;
+            }
+            let value = match value.has_zero() && is_smooth {
+                true => {
+                    let half = (0.5 * (high - low)).next_up();
+                    self.at(low + 0.5 * (high - low)) + slope * Interval { low: -half, high: half }
+                }
+                false => value,
+            };
+            if value.has_zero() {
+                search.step = 0.5 * (high - low);
+                if search.step <= SHORT * width {
+                    return Err(Open::Wide);
+                }
+                continue;
+            }
+            let above = value.low > 0.0;
+            if let Some(run) = run
+                && let Some(found) = self.ended(&run, search, low, above)?
+            {
+                return Ok(found);
+            }
+            if search.is_above.is_some_and(|was| was != above) {
+                return Err(Open::Lost);
+            }
+            (search.at, search.step, search.is_above) = (high, 2.0 * (high - low), Some(above));
+        }
+        Err(Open::Lost)
+    }
+
+    /// Ends a run at a place at which all lines are above 0, or below it. Returns its root, if there is one that counts.
+    fn ended(&self, run: &Run, search: &mut Search, end: f64, above: bool) -> Result<Option<Found>, Open> {
+        let Run { start, rises, was_above } = *run;
+        let counts = self.side.is_none_or(|side| rises == (side == Side::Inside));
+        let found = match was_above {
+            Some(was_above) if was_above == above => None,
+            Some(_) if rises != above => return Err(Open::Lost),
+            Some(_) if counts => Some(Found::Between { low: start, high: end, rises }),
+            Some(_) => None,
+            // What rises to less than 0 was below it.
+            None if rises != above => None,
+            // Lines that leave the surface start on it.
+            None if self.side.is_some() && !counts && start == search.from => None,
+            None => return Err(Open::Lost),
+        };
+        (search.is_above, search.run) = (Some(above), None);
+        Ok(found)
+    }
+}
+
+impl Search {
+    fn of<T>(members: &[Member<T>]) -> Self {
+        let from = members.iter().map(|member| member.span.start).fold(f64::INFINITY, f64::min);
+        let to = members.iter().map(|member| member.span.end).fold(f64::NEG_INFINITY, f64::max);
+        Self { from, at: from, step: (to - from) / PARTS, is_above: None, run: None }
+    }
+}
