@@ -11,6 +11,7 @@ use crate::geometry::ray_packet::{BEAM, RayPacket};
 use crate::world::coincidence::close;
 use crate::world::hittable::{Bracketed, Certified};
 use crate::world::packets::shape::by_distance;
+use glam::DVec3;
 use std::array::from_fn;
 use std::mem::take;
 use std::ops::Range;
@@ -36,6 +37,10 @@ const PARTS: f64 = 8.0;
 
 /// A piece that is shorter than this many times the width of the beam is not halved.
 const SHORT: f64 = 0.25;
+
+/// How far the middle of the values on a piece is from 0, as a part of the most that the values differ from it, where closer bounds
+/// are computed.
+const AWAY: f64 = 0.25;
 
 /// A ray of a beam.
 struct Member<'s, T> {
@@ -138,7 +143,7 @@ pub(super) fn bracket_each<T: Implicit>(
             brackets[lane] = bracket(shape, ray, range, MISS);
         }
     }
-    together(shape, &members, None, ranges, brackets);
+    together(shape, &mut members, None, ranges, brackets);
     let last = brackets[own - 1];
     brackets[own..].fill(last);
 }
@@ -146,7 +151,7 @@ pub(super) fn bracket_each<T: Implicit>(
 /// Searches some rays together, or in halves, from where those among them came that were searched together before.
 fn together<T: Implicit>(
     shape: &ImplicitShape<T>,
-    members: &[Member<T>],
+    members: &mut [Member<T>],
     before: Option<Search>,
     ranges: &[RayRange],
     brackets: &mut [Bracket],
@@ -161,7 +166,8 @@ fn together<T: Implicit>(
     let found = match found {
         Ok(found) => found,
         Err(Open::Wide) if members.len() > 1 => {
-            let (one, other) = members.split_at(members.len() / 2);
+            sort(members, search.at);
+            let (one, other) = members.split_at_mut(members.len() / 2);
             together(shape, one, Some(search), ranges, brackets);
             return together(shape, other, Some(search), ranges, brackets);
         }
@@ -209,6 +215,15 @@ impl<T: Implicit> Member<'_, T> {
         let has_root = end >= high || is_after(end, span.end)?;
         Some(has_root.then_some((low.max(start), high.min(end))))
     }
+}
+
+/// Orders rays along the axis on which they are farthest apart at a place.
+fn sort<T: Implicit>(members: &mut [Member<T>], t: f64) {
+    let at = |member: &Member<T>| member.line.base + t * member.line.dir;
+    let [low, high] =
+        [DVec3::min, DVec3::max].map(|end| members.iter().map(at).reduce(end).unwrap_or_default());
+    let axis = (high - low).max_position();
+    members.sort_unstable_by(|one, other| at(one)[axis].total_cmp(&at(other)[axis]));
 }
 
 /// Returns the bracket of a ray whose first root is at this distance.
@@ -290,20 +305,20 @@ impl<'s, T: Implicit> Beam<'s, T> {
         if !(width <= self.widest && from.is_finite() && self.to.is_finite()) {
             return Err(Open::Wide);
         }
-        let mut is_new = true;
+        // A wider beam may not have known the sign.
+        let start = self.at(search.at);
+        if search.is_above.is_none() && !start.has_zero() {
+            let (above, from_now) = (start.low > 0.0, search.at);
+            search.is_above = Some(above);
+            if let Some(run) = search.run
+                && let Some(found) = self.ended(&run, search, from_now, above)?
+            {
+                return Ok(found);
+            }
+        }
+        let mut is_halved = false;
         for _ in 0..MOST_PIECES {
             let Search { at: low, step, is_above, run, .. } = *search;
-            // Where a wider beam did not know the sign.
-            if let Some(run) = run.filter(|_| take(&mut is_new)) {
-                let value = self.at(low);
-                if !value.has_zero() {
-                    let above = value.low > 0.0;
-                    if let Some(found) = self.ended(&run, search, low, above)? {
-                        return Ok(found);
-                    }
-                    continue;
-                }
-            }
             if low >= self.to {
                 return if run.is_none() { Ok(Found::None) } else { Err(Open::Wide) };
             }
@@ -326,15 +341,15 @@ impl<'s, T: Implicit> Beam<'s, T> {
                 }
                 continue;
             }
-            let value = match value.has_zero() && is_smooth {
-                true => {
-                    let half = (0.5 * (high - low)).next_up();
-                    self.at(low + 0.5 * (high - low)) + slope * Interval { low: -half, high: half }
-                }
+            let half = (0.5 * (high - low)).next_up();
+            // Bounds by the value in the middle are hardly closer where the value is 0 near it.
+            let is_away = value.middle().abs() > AWAY * half * slope.magnitude();
+            let value = match value.has_zero() && is_smooth && is_away {
+                true => self.at(low + 0.5 * (high - low)) + slope * Interval { low: -half, high: half },
                 false => value,
             };
             if value.has_zero() {
-                search.step = 0.5 * (high - low);
+                (search.step, is_halved) = (0.5 * (high - low), true);
                 if search.step <= SHORT * width {
                     return Err(Open::Wide);
                 }
@@ -349,7 +364,9 @@ impl<'s, T: Implicit> Beam<'s, T> {
             if search.is_above.is_some_and(|was| was != above) {
                 return Err(Open::Lost);
             }
-            (search.at, search.step, search.is_above) = (high, 2.0 * (high - low), Some(above));
+            // A piece of twice the length was just judged in vain.
+            let longer = if take(&mut is_halved) { 1.0 } else { 2.0 };
+            (search.at, search.step, search.is_above) = (high, longer * (high - low), Some(above));
         }
         Err(Open::Lost)
     }
@@ -379,5 +396,120 @@ impl Search {
         let from = members.iter().map(|member| member.span.start).fold(f64::INFINITY, f64::min);
         let to = members.iter().map(|member| member.span.end).fold(f64::NEG_INFINITY, f64::max);
         Self { from, at: from, step: (to - from) / PARTS, is_above: None, run: None }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::parts::Parts;
+    use super::*;
+    use crate::geometry::frame::Frame;
+    use crate::simd::soa::Vectors;
+    use crate::world::hittable::Hittable;
+    use std::sync::Arc;
+    use tabray_exact::formula::Formula;
+    use tabray_exact::formula::field::Field;
+
+    /// The half of the box.
+    const HALF: f64 = 3.0;
+
+    struct Surface(Field);
+
+    impl Implicit for Surface {
+        const IS_IN_WIDE_BOX: bool = true;
+
+        fn value<N: Scalar>(&self, at: [N; 3]) -> N {
+            self.0.at(at)
+        }
+
+        fn field(&self) -> Option<&Field> {
+            Some(&self.0)
+        }
+
+        fn bounds(&self) -> [DVec3; 2] {
+            [DVec3::splat(-HALF), DVec3::splat(HALF)]
+        }
+    }
+
+    fn shape(text: &str) -> ImplicitShape<Surface> {
+        let field = Formula::parse_in(text, Field::VARIABLES).map(|formula| Field::new(Arc::new(formula)));
+        let formula = Surface(field.ok().flatten().expect(text));
+        let [low, high] = formula.bounds();
+        let frame = Frame::at(DVec3::new(0.3, -0.2, 0.1));
+        ImplicitShape { formula, degree: None, frame, low, high, parts: Parts::new(low, high), nodes: None }
+    }
+
+    /// Returns numbers from -0.5 to 0.5 that look random.
+    fn numbers(seed: usize) -> impl Iterator<Item = f64> {
+        (1..).map(move |step: usize| {
+            let mixed = (step + 977 * seed).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+            ((mixed ^ (mixed >> 29)).wrapping_mul(0xBF58_476D_1CE4_E5B9) >> 11) as f64 / (1_u64 << 53) as f64
+                - 0.5
+        })
+    }
+
+    /// Compares the brackets of a beam's rays with those of each ray alone. Returns the distances of hits.
+    fn compare(shape: &ImplicitShape<Surface>, rays: &[Ray; BEAM], range: &RayRange) -> [f64; BEAM] {
+        let (mut origin, mut dir) = (Vectors::<BEAM>::ZERO, Vectors::<BEAM>::ZERO);
+        for (lane, ray) in rays.iter().enumerate() {
+            origin.view_mut(BEAM).set(lane, ray.origin);
+            dir.view_mut(BEAM).set(lane, ray.dir);
+        }
+        let packet = RayPacket::new(origin.view(BEAM), dir.view(BEAM), range.origin_error);
+        let mut brackets = [Bracket::MISS; BEAM];
+        bracket_each(shape, packet, &[*range; BEAM], &mut brackets);
+        from_fn(|lane| {
+            let (alone, together) = (shape.t_bounds(&rays[lane].into(), range), brackets[lane]);
+            let is_same =
+                (alone.near - together.near).abs() <= 1e-12 * (1.0 + alone.near) || alone == together;
+            assert!(alone.is_doubtful() || is_same, "{lane} {range:?}: {together:?} and {alone:?}");
+            together.near
+        })
+    }
+
+    #[test]
+    fn rays_of_a_beam_are_hit_where_each_alone_is() {
+        for text in [
+            "sin(x)*cos(y) + sin(y)*cos(z) + sin(z)*cos(x)",
+            "0.5*(sin(2*x)*cos(y)*sin(z) + sin(2*y)*cos(z)*sin(x) + sin(2*z)*cos(x)*sin(y)) \
+                - 0.5*(cos(2*x)*cos(2*y) + cos(2*y)*cos(2*z) + cos(2*z)*cos(2*x)) + 0.15",
+            "y - 0.2*sin(4*x)*cos(3*z) - 0.1*sin(x*z)",
+            "sqrt(max(abs(x) - 1.7, 0)^2 + max(abs(y) - 1.5, 0)^2 + max(abs(z) - 0.3, 0)^2) - 0.1",
+            "min(abs(x) + abs(y) + abs(z) - 1, 0.5 - exp(-4*((x - 1.5)^2 + y^2 + z^2)))",
+            "floor(3*x) + y + 0.3*z",
+        ] {
+            let shape = shape(text);
+            for seed in 0..60 {
+                let mut number = numbers(seed);
+                let mut vector =
+                    |size: f64| size * DVec3::from_array(from_fn(|_| number.next().unwrap_or(0.0)));
+                let size = [0.0, 1e-9, 1e-4, 1e-2, 0.05, 0.5][seed % 6];
+                let (from, to) = (12.0 * vector(1.0).normalize(), vector(4.0));
+                let rays: [Ray; BEAM] = from_fn(|_| {
+                    let origin = from + vector(size);
+                    Ray { origin, dir: (to + vector(size) - origin).normalize() }
+                });
+                let distances = compare(&shape, &rays, &RayRange::ALL);
+                let near = distances[0].min(14.0);
+                compare(&shape, &rays, &RayRange { near: near - 0.3 * size, ..RayRange::ALL });
+                compare(&shape, &rays, &RayRange { far: near + 0.3 * size, ..RayRange::ALL });
+                // Rays from where these hit.
+                let toward = vector(20.0);
+                let leaving = |lane: usize| {
+                    let origin = rays[lane].at(if distances[lane] < MISS { distances[lane] } else { near });
+                    Ray { origin, dir: (toward - origin).normalize() }
+                };
+                let leaving: [Ray; BEAM] = from_fn(leaving);
+                let is_above = leaving[0].dir.dot(shape.normal(leaving[0].origin)) > 0.0;
+                let origin_side = Some(if is_above { Side::Outside } else { Side::Inside });
+                if distances.iter().all(|distance| *distance < MISS) {
+                    compare(
+                        &shape,
+                        &leaving,
+                        &RayRange { origin_side, origin_error: 1e-13, ..RayRange::ALL },
+                    );
+                }
+            }
+        }
     }
 }
