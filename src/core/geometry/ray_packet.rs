@@ -5,7 +5,7 @@
 //! instructions ([`cpu`](crate::simd::cpu)). Arrays are as long as a multiple of [`LANES`](crate::simd::soa::LANES);
 //! the lanes beyond the last ray are copies of it, whose results are ignored.
 
-use crate::geometry::ray::{Bracket, MISS, Ray, RayError, RayRange, Side};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
 use crate::simd::cpu::kernels;
 use crate::simd::soa::{View, ViewMut};
 use glam::DVec3;
@@ -61,6 +61,19 @@ impl<'r> RayPacket<'r> {
     pub fn range(&self, index: usize, far: f64) -> RayRange {
         let (origin_side, origin_error) = (self.side(index), self.origin_error);
         RayRange { far, origin_side, origin_error, ..RayRange::ALL }
+    }
+
+    /// Computes the bracket of each ray in a range of its own.
+    #[inline]
+    pub fn each(
+        &self,
+        ranges: &[RayRange],
+        brackets: &mut [Bracket],
+        of: impl Fn(&RayBall, &RayRange) -> Bracket,
+    ) {
+        for (lane, range) in ranges.iter().enumerate() {
+            brackets[lane] = of(&RayBall { ray: self.get(lane), drift: self.drift }, range);
+        }
     }
 
     /// Returns the number of rays.

@@ -155,9 +155,7 @@ pub trait Bracketed: Hittable {
 
     /// Computes a bracket of the first hit of each of up to [`BEAM`](crate::geometry::ray_packet::BEAM) rays, in a range of its own.
     fn t_bounds_each(&self, rays: RayPacket, ranges: &[RayRange], brackets: &mut [Bracket]) {
-        for (lane, range) in ranges.iter().enumerate() {
-            brackets[lane] = self.t_bounds(&RayBall { ray: rays.get(lane), drift: rays.drift }, range);
-        }
+        rays.each(ranges, brackets, |ray, range| self.t_bounds(ray, range));
     }
 
     /// Returns the distance that [`distance`](Hittable::distance) returns, to the last bit, for a ray whose hit a

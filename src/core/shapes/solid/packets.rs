@@ -18,12 +18,10 @@ impl SolidPart {
         });
         call(rays.leaving(own.as_ref().map(|own| &own[..rays.len()])))
     }
-}
 
-impl SolidPart {
-    /// Passes on a bracket of the first hit of each of up to [`BEAM`] rays that end at these distances. The part's own hits are searched
-    /// between the places where the rays enter and leave other parts, together.
-    fn brackets_within(&self, rays: RayPacket, ends: &[f64], mut pass: impl FnMut(usize, Bracket)) {
+    /// Computes brackets of the first hits of up to [`BEAM`] rays, which end at `ends`. The part's own hits are searched together,
+    /// each between the places where its ray enters and leaves other parts.
+    fn brackets_within(&self, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {
         let (mut ranges, mut firsts) = ([RayRange::ALL; BEAM], [Bracket::MISS; BEAM]);
         let mut within = [Bracket { near: 0.0, far: 0.0 }; BEAM];
         for (lane, end) in ends.iter().enumerate() {
@@ -37,7 +35,8 @@ impl SolidPart {
         self.own().packets().t_bounds_each(rays, &ranges[..ends.len()], &mut firsts[..ends.len()]);
         for (lane, end) in ends.iter().enumerate() {
             let known = Known { within: Some(within[lane]), first: Some(firsts[lane]) };
-            pass(lane, self.t_bounds_from(&rays.get(lane).into(), &rays.range(lane, *end), known));
+            let bracket = self.t_bounds_from(&rays.get(lane).into(), &rays.range(lane, *end), known);
+            (near[lane], far[lane]) = (bracket.near, bracket.far);
         }
     }
 }
@@ -47,9 +46,8 @@ impl PacketIntersect for Shape<SolidPart, ByPackets, ByParts> {
         let (part, count) = (&self.shape, near.len());
         if part.is_within_others() && rays.drift.is_none() {
             for lanes in split(count, BEAM) {
-                part.brackets_within(rays.part(lanes.clone()), &ends[lanes.clone()], |lane, bracket| {
-                    (near[lanes.start + lane], far[lanes.start + lane]) = (bracket.near, bracket.far);
-                });
+                let brackets = (&mut near[lanes.clone()], &mut far[lanes.clone()]);
+                part.brackets_within(rays.part(lanes.clone()), &ends[lanes], brackets);
             }
             return;
         }

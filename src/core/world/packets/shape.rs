@@ -4,12 +4,13 @@
 //! are compiled for each instruction set. [`PacketIntersect`] takes packets; it is derived from [`ScalarIntersect`], except for shapes
 //! that take packets themselves. [`HitQueries`] tells what is certain about hits.
 
+pub(crate) use super::brackets::{closest_by_brackets, occluded_by_brackets};
 pub use super::proofs::HitQueries;
 
+use super::brackets::of_beams;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
 use crate::geometry::ray_packet::{
-    self, BEAM, Brackets, Nearest, PACKET_SIZE, RayPacket, SurfaceInteraction, mark_occluded, merge_nearest,
-    split, turned,
+    Brackets, Nearest, RayPacket, SurfaceInteraction, mark_occluded, merge_nearest, turned,
 };
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::LANES;
@@ -71,58 +72,14 @@ pub trait PacketIntersect: Send + Sync {
     /// Returns a bracket of the first hit of each ray that one stands for.
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket;
 
-    /// Computes what [`t_bounds`](Self::t_bounds) returns for each of up to [`BEAM`] rays, each in a range of its own.
+    /// Computes what [`t_bounds`](Self::t_bounds) returns for each of up to [`BEAM`](crate::geometry::ray_packet::BEAM) rays, each in a range of its own.
     fn t_bounds_each(&self, rays: RayPacket, ranges: &[RayRange], brackets: &mut [Bracket]) {
-        for (lane, range) in ranges.iter().enumerate() {
-            brackets[lane] = self.t_bounds(&RayBall { ray: rays.get(lane), drift: rays.drift }, range);
-        }
+        rays.each(ranges, brackets, |ray, range| self.t_bounds(ray, range));
     }
 
     /// Returns the distance of one ray's hit that [`t_bounds`](Self::t_bounds) has found for certain, or NaN where it
     /// takes more than plain arithmetic.
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64;
-}
-
-/// Merges hits as [`PacketIntersect::closest_hits`] does by default.
-pub(crate) fn closest_by_brackets(
-    shape: &(impl PacketIntersect + ?Sized),
-    cpu: Cpu,
-    rays: RayPacket,
-    id: u64,
-    nearest: Nearest,
-) -> bool {
-    with_brackets(rays.len(), |near, far| {
-        shape.brackets(cpu, rays, nearest.far, (&mut *near, &mut *far));
-        ray_packet::closest_of_brackets(cpu, near, far, id, nearest)
-    })
-}
-
-/// Marks rays as [`PacketIntersect::occluded`] does by default.
-pub(crate) fn occluded_by_brackets(
-    shape: &(impl PacketIntersect + ?Sized),
-    cpu: Cpu,
-    rays: RayPacket,
-    t_max: &[f64],
-    blocked: &mut [u64],
-    doubt: &mut [u64],
-) -> bool {
-    let count = t_max.len();
-    with_brackets(count, |near, far| {
-        shape.brackets(cpu, rays.first(count), t_max, (&mut *near, &mut *far));
-        ray_packet::occluded_by_brackets(cpu, near, far, t_max, blocked, doubt)
-    })
-}
-
-/// Calls a function with arrays for the brackets of `count` rays: no longer than they need to be, as clearing them takes
-/// time.
-#[inline(always)]
-fn with_brackets(count: usize, call: impl FnOnce(&mut [f64], &mut [f64]) -> bool) -> bool {
-    if count <= LANES {
-        let (mut near, mut far) = ([MISS; LANES], [MISS; LANES]);
-        return call(&mut near[..count], &mut far[..count]);
-    }
-    let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
-    call(&mut near[..count], &mut far[..count])
 }
 
 /// A shape that is tested against one ray at a time.
@@ -133,11 +90,9 @@ pub trait ScalarIntersect: Send + Sync {
     /// Whether rays that lie close together are searched together, by [`t_bounds_each`](Self::t_bounds_each).
     const BY_BEAMS: bool = false;
 
-    /// Computes a bracket of the first hit of each of up to [`BEAM`] rays, each in a range of its own.
+    /// Computes a bracket of the first hit of each of up to [`BEAM`](crate::geometry::ray_packet::BEAM) rays, each in a range of its own.
     fn t_bounds_each(&self, rays: RayPacket, ranges: &[RayRange], brackets: &mut [Bracket]) {
-        for (lane, range) in ranges.iter().enumerate() {
-            brackets[lane] = self.t_bounds(&RayBall { ray: rays.get(lane), drift: rays.drift }, range);
-        }
+        rays.each(ranges, brackets, |ray, range| self.t_bounds(ray, range));
     }
 
     /// Returns the plugin author's shape.
@@ -257,7 +212,7 @@ where
 {
     fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {
         if Self::BY_BEAMS {
-            return brackets_of_beams(self, rays, ends, near, far);
+            return of_beams(self, rays, ends, near, far);
         }
         brackets(cpu, self, rays, ends, near, far);
     }
@@ -302,30 +257,6 @@ where
 
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
         ScalarIntersect::refine(self, ray, origin_side)
-    }
-}
-
-/// Computes brackets of the first hits of a packet's rays, some of which are searched together.
-fn brackets_of_beams<T: Hittable>(
-    shape: &impl ScalarIntersect<Author = T>,
-    rays: RayPacket,
-    ends: &[f64],
-    near: &mut [f64],
-    far: &mut [f64],
-) {
-    let can_hit_itself = shape.author().facts().can_hit_itself;
-    for lanes in split(near.len(), BEAM) {
-        let (rays, ends) = (rays.part(lanes.clone()), &ends[lanes.clone()]);
-        let (mut ranges, mut brackets) = ([RayRange::ALL; BEAM], [Bracket::MISS; BEAM]);
-        for (lane, end) in ends.iter().enumerate() {
-            let is_missed = rays.side(lane).is_some_and(|side| !can_hit_itself.contain(side));
-            // Nothing is hit before 0.
-            ranges[lane] = rays.range(lane, if is_missed { 0.0 } else { *end });
-        }
-        shape.t_bounds_each(rays, &ranges[..ends.len()], &mut brackets[..ends.len()]);
-        for (lane, bracket) in lanes.zip(&brackets) {
-            (near[lane], far[lane]) = (bracket.near, bracket.far);
-        }
     }
 }
 
