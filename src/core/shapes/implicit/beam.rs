@@ -156,9 +156,10 @@ fn together<T: Implicit>(
     ranges: &[RayRange],
     brackets: &mut [Bracket],
 ) {
-    let mut search = before.unwrap_or_else(|| Search::of(members));
-    let is_many = members.len() >= LEAST || !members.is_empty() && search.at > search.from;
-    let found = if is_many {
+    let own = Search::of(members);
+    let mut search = before.filter(|before| before.at >= own.from).unwrap_or(own);
+    let is_begun = before.is_some_and(|before| before.at > before.from);
+    let found = if members.len() >= LEAST || is_begun {
         Beam::around(shape, members, ranges[members[0].lane].origin_side).first_roots(&mut search)
     } else {
         Err(Open::Lost)
@@ -209,7 +210,8 @@ impl<T: Implicit> Member<'_, T> {
         };
         let start = if span.start < stretch.inner.start { stretch.inner.start } else { span.start };
         let end = if span.end > stretch.inner.end { stretch.inner.end } else { span.end };
-        if start > low && is_after(span.start.min(start), start)? {
+        // The root may lie before the line's start, and others may follow.
+        if start > high || start > low && is_after(span.start.min(start), start)? {
             return None;
         }
         let has_root = end >= high || is_after(end, span.end)?;

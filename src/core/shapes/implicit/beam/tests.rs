@@ -48,16 +48,17 @@ fn numbers(seed: usize) -> impl Iterator<Item = f64> {
 }
 
 /// Compares the brackets of a beam's rays with those of each ray alone. Returns the distances of hits.
-fn compare(shape: &ImplicitShape<Surface>, rays: &[Ray; BEAM], range: &RayRange) -> [f64; BEAM] {
+fn compare(shape: &ImplicitShape<Surface>, rays: &[Ray; BEAM], ranges: &[RayRange; BEAM]) -> [f64; BEAM] {
     let (mut origin, mut dir) = (Vectors::<BEAM>::ZERO, Vectors::<BEAM>::ZERO);
     for (lane, ray) in rays.iter().enumerate() {
         origin.view_mut(BEAM).set(lane, ray.origin);
         dir.view_mut(BEAM).set(lane, ray.dir);
     }
-    let packet = RayPacket::new(origin.view(BEAM), dir.view(BEAM), range.origin_error);
+    let packet = RayPacket::new(origin.view(BEAM), dir.view(BEAM), ranges[0].origin_error);
     let mut brackets = [Bracket::MISS; BEAM];
-    bracket_each(shape, packet, &[*range; BEAM], &mut brackets);
+    bracket_each(shape, packet, ranges, &mut brackets);
     from_fn(|lane| {
+        let range = &ranges[lane];
         let (alone, together) = (shape.t_bounds(&rays[lane].into(), range), brackets[lane]);
         let is_same = (alone.near - together.near).abs() <= 1e-12 * (1.0 + alone.near) || alone == together;
         assert!(alone.is_doubtful() || is_same, "{lane} {range:?}: {together:?} and {alone:?}");
@@ -86,10 +87,18 @@ fn rays_of_a_beam_are_hit_where_each_alone_is() {
                 let origin = from + vector(size);
                 Ray { origin, dir: (to + vector(size) - origin).normalize() }
             });
-            let distances = compare(&shape, &rays, &RayRange::ALL);
+            let distances = compare(&shape, &rays, &[RayRange::ALL; BEAM]);
             let near = distances[0].min(14.0);
-            compare(&shape, &rays, &RayRange { near: near - 0.3 * size, ..RayRange::ALL });
-            compare(&shape, &rays, &RayRange { far: near + 0.3 * size, ..RayRange::ALL });
+            compare(&shape, &rays, &[RayRange { near: near - 0.3 * size, ..RayRange::ALL }; BEAM]);
+            compare(&shape, &rays, &[RayRange { far: near + 0.3 * size, ..RayRange::ALL }; BEAM]);
+            // Rays that start before and behind where they hit, as where a ball cuts a surface.
+            let beside = vector(1.0).abs();
+            let starts = from_fn(|lane| {
+                let part = [-0.5, 0.1, 1.0, 3.0][lane % 4] * beside.x;
+                let near = if distances[lane] < MISS { distances[lane] + part * size } else { near };
+                RayRange { near, ..RayRange::ALL }
+            });
+            compare(&shape, &rays, &starts);
             // Rays from where these hit.
             let toward = vector(20.0);
             let leaving = |lane: usize| {
@@ -100,7 +109,8 @@ fn rays_of_a_beam_are_hit_where_each_alone_is() {
             let is_above = leaving[0].dir.dot(shape.normal(leaving[0].origin)) > 0.0;
             let origin_side = Some(if is_above { Side::Outside } else { Side::Inside });
             if distances.iter().all(|distance| *distance < MISS) {
-                compare(&shape, &leaving, &RayRange { origin_side, origin_error: 1e-13, ..RayRange::ALL });
+                let range = RayRange { origin_side, origin_error: 1e-13, ..RayRange::ALL };
+                compare(&shape, &leaving, &[range; BEAM]);
             }
         }
     }
