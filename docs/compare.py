@@ -156,13 +156,16 @@ class OfTrimesh:
         from trimesh import Trimesh
         from trimesh.ray.ray_triangle import RayMeshIntersector
 
-        mesh = Trimesh(vertices, faces, process=False)
-        at, rays, hit = RayMeshIntersector(mesh).intersects_location(origins, directions, multiple_hits=False)
+        caster = RayMeshIntersector(Trimesh(vertices, faces, process=False))
         face, t = np.full(len(origins), -1), np.full(len(origins), np.nan)
-        if len(rays) == 0:
-            return face, t
-        face[rays] = hit
-        t[rays] = ((at - origins[rays]) * directions[rays]).sum(1) / (directions[rays] ** 2).sum(1)
+        # It keeps all pairs of a ray and a face that it may hit.
+        for start in range(0, len(origins), 1000):
+            some = slice(start, start + 1000)
+            at, rays, hit = caster.intersects_location(origins[some], directions[some], multiple_hits=False)
+            if len(rays):
+                rays += start
+                face[rays] = hit
+                t[rays] = ((at - origins[rays]) * directions[rays]).sum(1) / (directions[rays] ** 2).sum(1)
         return face, t
 
 
