@@ -1,4 +1,4 @@
-"""Surfaces by their formula beside surf and POV-Ray: a table in Markdown of the CPU seconds for an image of 640 x 480 pixels.
+"""Surfaces by their formula beside surf, POV-Ray and fidget: a table in Markdown of the CPU seconds for an image of 640 x 480 pixels.
 
     python3 docs/surfaces.py [-q] [ROUNDS] [NAME...]
     python3 docs/surfaces.py cost
@@ -7,7 +7,8 @@ The programs take turns, each on one thread, and the least time of some rounds c
 a ball, from the same place, by parallel rays through the same pixels, in one light. Pixels are wrong that show the surface where
 another program shows none, or the other way round, and are not beside its silhouette in tabray's image, whose first hits
 `tabray verify` proves. For POV-Ray's `isosurface`, a twentieth more than the steepest slope among thousands of points in the
-ball is the `max_gradient`. The last line compares 16 samples for each pixel with one. With `-q`, the isosurfaces and the 16 samples are left out, which take nearly all
+ball is the `max_gradient`. fidget shows a solid of 480 voxels in depth: its pixels are compared with those of the same solid,
+by `capped`. The last line compares 16 samples for each pixel with one. With `-q`, the isosurfaces and the 16 samples are left out, which take nearly all
 of the time.
 
 `cost` counts instructions with valgrind, for images of 32 x 24 pixels of formulas of growing degree, of more terms and of
@@ -236,6 +237,9 @@ def pov(formula, radius, how):
     # Its coordinates are left-handed: all vectors are given in them, and the third of an image's is forward.
     if how == "poly":
         terms = expanded(formula).terms
+        (folder / "solid.ray").write_text(ours(formula, radius).replace("clip ball", "clip ball  capped yes"))
+        solid = out["tabray"].with_name("solid.ppm")
+        subprocess.run([program, "render", folder / "solid.ray", "--force", "--quiet", "-o", solid], check=True)
         degree = max(sum(powers) for powers in terms)
         factors = [
             terms.get((x, y, z), 0.0)
@@ -254,6 +258,47 @@ camera {{ orthographic location {vector([4 * radius * side for side in back])}
 light_source {{ {vector([1e5 * side for side in back])} rgb 1 parallel point_at 0 shadowless }}
 object {{ {shape} pigment {{ rgb 1 }} finish {{ ambient 0.2 diffuse 0.8 }} }}
 """
+
+
+def fidget(formula, radius):
+    """The solid in the ball, as fidget reads it: an operation on each line, with a name."""
+    lines = []
+
+    def put(*words):
+        lines.append(f"_{len(lines)} {' '.join(words)}")
+        return f"_{len(lines) - 1}"
+
+    def value(node):
+        match node:
+            case ast.Constant(number):
+                return put("const", repr(float(number)))
+            case ast.Name(name):
+                return put(f"var-{name}")
+            case ast.UnaryOp(ast.USub(), of):
+                return put("neg", value(of))
+            case ast.BinOp(base, ast.Pow(), ast.Constant(power)):
+                of = power_of = value(base)
+                for bit in f"{power:b}"[1:]:
+                    power_of = put("square", power_of)
+                    if bit == "1":
+                        power_of = put("mul", power_of, of)
+                return power_of
+            case ast.BinOp(one, sign, other):
+                return put({"Add": "add", "Sub": "sub", "Mult": "mul", "Div": "div"}[type(sign).__name__], value(one), value(other))
+            case ast.Call(ast.Name(name), of):
+                return put(name, *map(value, of))
+            case _:
+                raise ValueError(ast.dump(node))
+
+    inside = f"max({formula}, x^2 + y^2 + z^2 - {radius * radius!r})"
+    value(ast.parse(inside.replace("^", "**"), mode="eval").body)
+    return "\n".join(lines)
+
+
+def fidget_view(radius):
+    """The columns of the matrix from fidget's world, in which the image is 2 units high, to the formula's coordinates."""
+    unit = SHOWN / 2 * radius / BALL
+    return [repr(unit * side) for direction in directions() for side in direction]
 
 
 def powers(formula):
@@ -397,6 +442,11 @@ def main():
         print(f"SKIPPED: {peers.pop(name) or name} is not installed", file=sys.stderr)
     if is_quick:
         peers.pop("isosurface", None)
+    built = subprocess.run(["cargo", "build", "--release", "--locked", "--quiet", "--target-dir", ROOT / "target/fidget"], cwd=ROOT / "docs/fidget")
+    if built.returncode == 0:
+        peers["fidget"] = ROOT / "target/fidget/release/fidget-peer"
+    else:
+        print("SKIPPED: docs/fidget does not compile", file=sys.stderr)
     with tempfile.TemporaryDirectory() as folder:
         table(Path(folder), int(rounds), names, program, peers, is_quick)
 
@@ -416,7 +466,11 @@ def table(folder, rounds, names, program, peers, is_quick):
         if not is_quick:
             commands["many"] = [program, "render", folder / "many.ray", "--threads", "1", "-o", folder / "many.ppm"]
         for peer in peers:
-            if peer != "isosurface" and not is_polynomial(formula):
+            if peer in ("surf", "poly") and not is_polynomial(formula):
+                continue
+            if peer == "fidget":
+                (folder / "fidget.vm").write_text(fidget(formula, radius))
+                commands[peer] = [peers[peer], folder / "fidget.vm", str(WIDTH), str(HEIGHT), out[peer], *fidget_view(radius)]
                 continue
             text = surf(formula, radius, out[peer]) if peer == "surf" else pov(formula, radius, peer)
             scene = folder / f"scene.{peer}"
@@ -430,11 +484,15 @@ def table(folder, rounds, names, program, peers, is_quick):
                     continue
                 spent = seconds(command)
                 least[peer] = spent if turn == 0 else min(least[peer], spent)
+        (folder / "solid.ray").write_text(ours(formula, radius).replace("clip ball", "clip ball  capped yes"))
+        solid = out["tabray"].with_name("solid.ppm")
+        subprocess.run([program, "render", folder / "solid.ray", "--force", "--quiet", "-o", solid], check=True)
         degree = max(sum(powers) for powers in expanded(formula).terms) if is_polynomial(formula) else "–"
         line, known = f"| {name} | {degree} | {told(least['tabray'])} |", shown(out["tabray"])
         for peer in peers:
             is_shown = least.get(peer) is not None
-            line += f" {told(least[peer])} | {wrong(known, shown(out[peer]))} |" if is_shown else (
+            right = shown(solid) if peer == "fidget" else known
+            line += f" {told(least[peer])} | {wrong(right, shown(out[peer]))} |" if is_shown else (
                 " stopped | |" if peer in commands else " | |")
         if is_quick:
             print(line, flush=True)
