@@ -111,8 +111,8 @@ const CLASSES: [Class; 256] = {
 #[inline(always)]
 fn perhaps_others(eight: u64) -> u64 {
     const ONES: u64 = u64::MAX / 255;
-    let (low, high) = (eight.wrapping_sub(0x21 * ONES) & !eight, (eight & 0x7f * ONES) + 0x05 * ONES);
-    (low | high | eight) & 0x80 * ONES
+    let (low, high) = (eight.wrapping_sub(0x21 * ONES) & !eight, (eight & (0x7f * ONES)) + 0x05 * ONES);
+    (low | high | eight) & (0x80 * ONES)
 }
 
 /// Returns the end of the word that begins at a byte of a text: the beginning of white space or a brace.

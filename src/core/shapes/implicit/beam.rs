@@ -231,7 +231,7 @@ fn sort<T: Implicit>(members: &mut [Member<T>], t: f64) {
 /// Returns the bracket of a ray whose first root is at this distance.
 fn bracket<T: Implicit>(shape: &ImplicitShape<T>, ray: &Ray, range: &RayRange, distance: f64) -> Bracket {
     let is_on_surface = || shape.is_on_surface(ray.origin, range.origin_error);
-    by_distance(&(*ray).into(), range, is_on_surface, |range| Some(range.keep(distance)))
+    by_distance(ray, range, is_on_surface, |range| Some(range.keep(distance)))
 }
 
 /// The root of a line, for those of its neighbours.

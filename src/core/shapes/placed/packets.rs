@@ -9,6 +9,7 @@ use crate::geometry::ray_packet::{RayPacket, SurfaceInteraction, split};
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::LANES;
 use crate::world::hittable::{ByPackets, Hittable, Shape};
+use crate::world::packets::brackets;
 use crate::world::packets::shape::{self, PacketIntersect};
 
 /// The number of rays that are taken to an object's own coordinates together, where there are more than [`LANES`].
@@ -182,7 +183,10 @@ impl PacketIntersect for Shape<Placed, ByPackets, ByPlacement> {
         // The shape does not know where its copy ends.
         let is_whole = placed.max_z.0.is_none() && !placed.body.shape.packets().is_of_the_notes();
         let Some(bounds) = placed.bounds.filter(|_| is_whole) else {
-            return shape::occluded_by_brackets(self, cpu, rays, t_max, blocked, doubt);
+            let rays = rays.first(t_max.len());
+            return brackets::occluded_by_brackets(cpu, t_max, blocked, doubt, |brackets| {
+                self.brackets(cpu, rays, t_max, brackets);
+            });
         };
         if count <= LANES {
             return placed.few_occluded::<LANES>(cpu, rays, (t_max, &bounds), blocked, doubt);

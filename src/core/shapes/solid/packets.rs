@@ -6,6 +6,7 @@ use crate::geometry::ray_packet::{BEAM, Nearest, PACKET_SIZE, RayPacket, Surface
 use crate::simd::cpu::Cpu;
 use crate::world::coincidence::close;
 use crate::world::hittable::{ByPackets, Hittable, Shape};
+use crate::world::packets::brackets;
 use crate::world::packets::shape::{self, PacketIntersect};
 
 impl SolidPart {
@@ -87,7 +88,9 @@ impl PacketIntersect for Shape<SolidPart, ByPackets, ByParts> {
 
     fn closest_hits(&self, cpu: Cpu, rays: RayPacket, id: u64, nearest: Nearest) -> bool {
         if !self.shape.is_whole() {
-            return shape::closest_by_brackets(self, cpu, rays, id, nearest);
+            return brackets::closest_by_brackets(cpu, rays.len(), id, nearest, |ends, brackets| {
+                self.brackets(cpu, rays, ends, brackets);
+            });
         }
         self.shape.with_own_sides(rays, |own| self.shape.own().closest_hits(cpu, own, id, nearest))
     }
@@ -101,7 +104,10 @@ impl PacketIntersect for Shape<SolidPart, ByPackets, ByParts> {
         doubt: &mut [u64],
     ) -> bool {
         if !self.shape.is_whole() {
-            return shape::occluded_by_brackets(self, cpu, rays, t_max, blocked, doubt);
+            let rays = rays.first(t_max.len());
+            return brackets::occluded_by_brackets(cpu, t_max, blocked, doubt, |brackets| {
+                self.brackets(cpu, rays, t_max, brackets);
+            });
         }
         let own = self.shape.own().packets();
         self.shape.with_own_sides(rays, |rays| own.occluded(cpu, rays, t_max, blocked, doubt))

@@ -1,38 +1,39 @@
 //! Hits of packets by brackets that are computed first.
 
-use super::shape::{PacketIntersect, ScalarIntersect};
 use crate::geometry::ray::{Bracket, MISS, RayRange};
 use crate::geometry::ray_packet::{self, BEAM, Nearest, PACKET_SIZE, RayPacket, split};
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::LANES;
-use crate::world::hittable::Hittable;
+use crate::world::hittable::Sides;
 
-/// Merges hits as [`PacketIntersect::closest_hits`] does by default.
+/// Merges hits as [`PacketIntersect::closest_hits`] does by default. `find` computes brackets of the hits before some ends.
+///
+/// [`PacketIntersect::closest_hits`]: super::shape::PacketIntersect::closest_hits
 pub(crate) fn closest_by_brackets(
-    shape: &(impl PacketIntersect + ?Sized),
     cpu: Cpu,
-    rays: RayPacket,
+    count: usize,
     id: u64,
     nearest: Nearest,
+    find: impl FnOnce(&[f64], (&mut [f64], &mut [f64])),
 ) -> bool {
-    with_brackets(rays.len(), |near, far| {
-        shape.brackets(cpu, rays, nearest.far, (&mut *near, &mut *far));
+    with_brackets(count, |near, far| {
+        find(nearest.far, (&mut *near, &mut *far));
         ray_packet::closest_of_brackets(cpu, near, far, id, nearest)
     })
 }
 
-/// Marks rays as [`PacketIntersect::occluded`] does by default.
+/// Marks rays as [`PacketIntersect::occluded`] does by default. `find` computes brackets of the hits.
+///
+/// [`PacketIntersect::occluded`]: super::shape::PacketIntersect::occluded
 pub(crate) fn occluded_by_brackets(
-    shape: &(impl PacketIntersect + ?Sized),
     cpu: Cpu,
-    rays: RayPacket,
     t_max: &[f64],
     blocked: &mut [u64],
     doubt: &mut [u64],
+    find: impl FnOnce((&mut [f64], &mut [f64])),
 ) -> bool {
-    let count = t_max.len();
-    with_brackets(count, |near, far| {
-        shape.brackets(cpu, rays.first(count), t_max, (&mut *near, &mut *far));
+    with_brackets(t_max.len(), |near, far| {
+        find((&mut *near, &mut *far));
         ray_packet::occluded_by_brackets(cpu, near, far, t_max, blocked, doubt)
     })
 }
@@ -49,15 +50,14 @@ fn with_brackets(count: usize, call: impl FnOnce(&mut [f64], &mut [f64]) -> bool
     call(&mut near[..count], &mut far[..count])
 }
 
-/// Computes brackets of the first hits of a packet's rays, some of which are searched together.
-pub(super) fn of_beams<T: Hittable>(
-    shape: &impl ScalarIntersect<Author = T>,
+/// Computes brackets of the first hits of a packet's rays, some of which `find` searches together, each in a range of its own.
+pub(super) fn of_beams(
     rays: RayPacket,
     ends: &[f64],
-    near: &mut [f64],
-    far: &mut [f64],
+    (near, far): (&mut [f64], &mut [f64]),
+    can_hit_itself: Sides,
+    find: impl Fn(RayPacket, &[RayRange], &mut [Bracket]),
 ) {
-    let can_hit_itself = shape.author().facts().can_hit_itself;
     for lanes in split(near.len(), BEAM) {
         let (rays, ends) = (rays.part(lanes.clone()), &ends[lanes.clone()]);
         let (mut ranges, mut brackets) = ([RayRange::ALL; BEAM], [Bracket::MISS; BEAM]);
@@ -66,7 +66,7 @@ pub(super) fn of_beams<T: Hittable>(
             // Nothing is hit before 0.
             ranges[lane] = rays.range(lane, if is_missed { 0.0 } else { *end });
         }
-        shape.t_bounds_each(rays, &ranges[..ends.len()], &mut brackets[..ends.len()]);
+        find(rays, &ranges[..ends.len()], &mut brackets[..ends.len()]);
         for (lane, bracket) in lanes.zip(&brackets) {
             (near[lane], far[lane]) = (bracket.near, bracket.far);
         }

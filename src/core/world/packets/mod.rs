@@ -1,6 +1,6 @@
 //! The packet versions of the traits of shapes, shaders and lights. Plugins do not use them.
 
-mod brackets;
+pub(crate) mod brackets;
 pub mod light;
 mod proofs;
 pub mod shader;

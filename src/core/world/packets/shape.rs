@@ -4,10 +4,9 @@
 //! are compiled for each instruction set. [`PacketIntersect`] takes packets; it is derived from [`ScalarIntersect`], except for shapes
 //! that take packets themselves. [`HitQueries`] tells what is certain about hits.
 
-pub(crate) use super::brackets::{closest_by_brackets, occluded_by_brackets};
 pub use super::proofs::HitQueries;
 
-use super::brackets::of_beams;
+use super::brackets::{closest_by_brackets, occluded_by_brackets, of_beams};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
 use crate::geometry::ray_packet::{
     Brackets, Nearest, RayPacket, SurfaceInteraction, mark_occluded, merge_nearest, turned,
@@ -41,7 +40,9 @@ pub trait PacketIntersect: Send + Sync {
     /// Merges the hits of a packet's rays with this shape into the nearest hits so far, and tells whether the order of
     /// any is in doubt. `id` is the object's index in the scene plus 1.
     fn closest_hits(&self, cpu: Cpu, rays: RayPacket, id: u64, nearest: Nearest) -> bool {
-        closest_by_brackets(self, cpu, rays, id, nearest)
+        closest_by_brackets(cpu, rays.len(), id, nearest, |ends, brackets| {
+            self.brackets(cpu, rays, ends, brackets)
+        })
     }
 
     /// Marks in `blocked` the rays that this shape blocks before `t_max`, and in `doubt` the rays for which that is
@@ -54,7 +55,8 @@ pub trait PacketIntersect: Send + Sync {
         blocked: &mut [u64],
         doubt: &mut [u64],
     ) -> bool {
-        occluded_by_brackets(self, cpu, rays, t_max, blocked, doubt)
+        let rays = rays.first(t_max.len());
+        occluded_by_brackets(cpu, t_max, blocked, doubt, |brackets| self.brackets(cpu, rays, t_max, brackets))
     }
 
     /// Computes the distances of certain hits that [`closest_hits`](Self::closest_hits) has bracketed; NaN where a
@@ -212,14 +214,20 @@ where
 {
     fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {
         if Self::BY_BEAMS {
-            return of_beams(self, rays, ends, near, far);
+            let can_hit_itself = self.author().facts().can_hit_itself;
+            return of_beams(rays, ends, (near, far), can_hit_itself, |rays, ranges, brackets| {
+                ScalarIntersect::t_bounds_each(self, rays, ranges, brackets);
+            });
         }
         brackets(cpu, self, rays, ends, near, far);
     }
 
     fn closest_hits(&self, cpu: Cpu, rays: RayPacket, id: u64, nearest: Nearest) -> bool {
         if Self::BY_BEAMS {
-            return closest_by_brackets(self, cpu, RayPacket { drift: RayError::NONE, ..rays }, id, nearest);
+            let rays = RayPacket { drift: RayError::NONE, ..rays };
+            return closest_by_brackets(cpu, rays.len(), id, nearest, |ends, brackets| {
+                self.brackets(cpu, rays, ends, brackets);
+            });
         }
         closest_hits(cpu, self, rays, id, nearest)
     }
@@ -234,7 +242,10 @@ where
     ) -> bool {
         if Self::BY_BEAMS {
             let rays = RayPacket { drift: RayError::NONE, ..rays };
-            return occluded_by_brackets(self, cpu, rays, t_max, blocked, doubt);
+            let rays = rays.first(t_max.len());
+            return occluded_by_brackets(cpu, t_max, blocked, doubt, |brackets| {
+                self.brackets(cpu, rays, t_max, brackets);
+            });
         }
         occluded(cpu, self, rays, t_max, blocked, doubt)
     }
