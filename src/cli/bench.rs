@@ -19,8 +19,8 @@ use tabray_tools::bench::{Cost, Speed, TestTimes, scenes};
 
 /// Measure how fast scenes are traced on one core
 ///
-/// For each scene, prints the rays per second by kind, the time of a test by entity type, and how close the frame comes
-/// to the bare arithmetic of its tests. Times are CPU times of one core, the minimum of several rounds.
+/// For each scene, prints the rays per second of each kind, the time of a test of each entity type, and how close the
+/// frame comes to the bare arithmetic of its tests. Times are CPU times of one core, the minimum of several rounds.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {

@@ -24,18 +24,18 @@ use tabray_tools::chart::{self, Chart};
 
 /// Chart the cost and the error of each choice in a scene
 ///
-/// Computes the ground truth, runs the choices that the scene has (methods of finding the hits of its shapes, and
-/// samples per pixel) in turn, and says which are best. Ctrl-C keeps what has been measured so far.
+/// Computes the true hits and colours, runs the choices of the scene in turn (methods of finding hits, and samples per
+/// pixel), and says which are best. Ctrl-C keeps the measurements so far.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
     #[command(flatten)]
     scene: scene::Args,
-    /// Directory for the chart (SCENE-chart.svg and .png), its numbers (.csv and .json) and the verdict in words (.txt), by
-    /// default the working directory; or one of these files, such as `a.svg`, of any name
+    /// The folder for the chart (SCENE-chart.svg and .png), its numbers (.csv and .json) and the verdict in words
+    /// (.txt), by default the working directory; or a single file to write, such as `a.svg`
     #[arg(short, long, value_name = "DIR|FILE", default_value = ".", hide_default_value = true)]
     output: PathBuf,
-    /// The time that the chart may take, such as 90s or 5m, instead of 2 minutes; what is not measured by then is left
+    /// The time that the chart may take, such as 90s or 5m, instead of 2 minutes; choices not measured by then are left
     /// out
     #[arg(long, value_name = "TIME", value_parser = stop::time)]
     time_limit: Option<Duration>,

@@ -12,7 +12,7 @@ use tabray_tools::diagnosis;
 
 /// Check scenes for errors
 ///
-/// Of each scene, the first 100 errors and the first 100 warnings are printed, and the others are counted.
+/// Prints the first 100 errors and the first 100 warnings of each scene, and counts the others.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {

@@ -28,10 +28,10 @@ use tabray_tools::chart::{self, Cost, Estimate, Estimates, Goal};
 /// Choose accuracy and samples for a maximum error or time
 ///
 /// Measures the choices on a part of the image, shows them with bounds on their errors, and prints the command line to
-/// use. The bounds hold with a confidence of 99 %. Comparing the choices takes about 1 million rays (2 million with
-/// `--worst`), and looking for lamps, wires and glints that samples may miss up to 4 million. Then the likely choice is
-/// measured on as many pixels as its bound needs. Gives up after 30 seconds or after --time-limit, and may take a tenth
-/// longer.
+/// use. The bounds hold with a confidence of 99 %. The comparison of the choices takes about 1 million rays (2 million
+/// with `--worst`), and the search for lamps, wires and glints that samples may miss up to 4 million. The likely choice
+/// is then measured on as many pixels as its bound needs. Gives up after 30 seconds or after --time-limit, and may take
+/// a tenth longer.
 #[derive(clap::Args)]
 #[command(group = ArgGroup::new("limit").args(["max_error", "max_time"]).required(true))]
 #[command(after_long_help = EXAMPLES)]
@@ -41,7 +41,7 @@ pub struct Args {
     /// Maximum error: the root mean square error of the colours, such as `2` (levels of 255) or `0.5%` (of white)
     #[arg(long, value_name = "LEVELS|PERCENT%", allow_negative_numbers = true)]
     max_error: Option<MaxError>,
-    /// Maximum time for the image in seconds, on all cores if these have nothing else to do
+    /// Maximum time for the image in seconds, on all cores of an otherwise idle machine
     #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
     max_time: Option<f64>,
     /// Measure the error that one of a thousand pixels exceeds, instead of the root mean square of all: a few jagged edges

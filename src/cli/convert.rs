@@ -15,13 +15,13 @@ use tabray_lang::reader;
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
 
-/// Write a scene in the other syntax, or the surface of another program as a scene
+/// Convert a scene to the other syntax, or a surface of another program to a scene
 ///
-/// Everything but comments is kept, and what the scene computes is written out: the copy loads to the identical model.
+/// The copy loads to the identical model. It lacks the comments, and has the values of what the scene computes.
 ///
-/// A SCENE whose name ends in .jsurf is a surface of SURFER, and one in .surf or .pic a script of surf. Other names and
-/// standard input are recognized by their text. The copy has the formula and its parameters, the view, what cuts the
-/// surface, the colours and the lamps. Warnings say what it leaves out.
+/// If the name of SCENE ends in .jsurf, it is a surface of SURFER; if it ends in .surf or .pic, a script of surf. Files
+/// with other names and standard input are recognized by their text. The copy has the formula and its parameters, the
+/// view, the body that clips the surface, the colours and the lamps. Warnings say what it leaves out.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {

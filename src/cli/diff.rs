@@ -15,9 +15,10 @@ use tabray_lang::registry::Registry;
 
 /// Compare two images
 ///
-/// Prints how many pixels differ, the largest difference of any channel, in levels from 0 to 255, the root mean square
-/// (RMS) of the differences of all channels, the first pixel that differs, row by row from the top, each row from the
-/// left, and the one that differs most. As everywhere, a pixel's column counts from 0 at the left and its row from 0 at the bottom.
+/// Prints how many pixels differ, the largest difference of any channel, in levels from 0 to 255, and the root mean
+/// square (RMS) of the differences of all channels. Names the first pixel that differs, row by row from the top, and
+/// the pixel that differs most. As everywhere, a pixel's column counts from 0 at the left, and its row from 0 at the
+/// bottom.
 #[derive(clap::Args)]
 #[command(after_help = EXIT_STATUS, after_long_help = EXAMPLES)]
 pub struct Args {
@@ -28,7 +29,7 @@ pub struct Args {
     /// Ignore differences of up to this many levels in each channel
     #[arg(long, value_name = "LEVELS", default_value = "0", value_parser = whole::<u8>(0..=255))]
     tolerance: u8,
-    /// Write a page that shows both images and their difference: one self-contained .html file
+    /// Write a page that shows both images and their difference, as one self-contained .html file
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// The scene of the images, from which the page explains the pixel that differs most

@@ -19,9 +19,9 @@ use tabray_core::output::full_range::FullRange;
 use tabray_core::text;
 use tabray_lang::registry::Registry;
 
-/// Write what renders the parts of an image, or the frames of a film, on a cluster
+/// Write the jobs that render the parts of an image, or the frames of a film, on a cluster
 ///
-/// The options and the scene are checked first, as `render` does. Nothing is submitted.
+/// Checks the options and the scene first, like `render`. Submits nothing.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
@@ -43,15 +43,15 @@ enum Engine {
     /// Each task of the array renders a part, and a job that depends on all of them puts the image or the film together.
     #[command(after_long_help = EXAMPLES)]
     Slurm(Order),
-    /// Print the commands that render the parts, one a line, in any order or at the same time
+    /// Print the commands that render the parts, one per line; they can run in any order, or at the same time
     ///
-    /// GNU parallel, `xargs`, OpenCue's `cuecmd`, Flamenco's scripts and arrays of AWS Batch take them. The command that
-    /// puts the image or the film together afterwards is printed to standard error.
+    /// The commands suit GNU parallel, `xargs`, OpenCue's `cuecmd`, Flamenco's scripts and arrays of AWS Batch. The
+    /// command that then joins the parts or the frames goes to standard error.
     #[command(after_long_help = EXAMPLES)]
     Commands {
         #[command(flatten)]
         order: Order,
-        /// Run each command by `podman` in this container image, with the working directory as /scenes
+        /// Run each command with `podman` in this container image, with the working directory as /scenes
         #[arg(long, value_name = "NAME")]
         container: Option<String>,
     },

@@ -23,7 +23,7 @@ const ON_SHEET: usize = 100;
 /// The width of a frame on a contact sheet in pixels.
 const WIDTH: u32 = 192;
 
-/// Put frames together into a contact sheet or an animation
+/// Join frames into a contact sheet or an animation
 ///
 /// The frames are those that `tabray render --frames A..B -o IMAGE` wrote.
 #[derive(clap::Args)]
@@ -32,7 +32,7 @@ const WIDTH: u32 = 192;
 pub struct Args {
     /// The name of the frames, as given to `render --frames` with -o: film.png for film-0001.png, film-0002.png ...
     frames: PathBuf,
-    /// Write small images of the frames, evenly chosen if there are more than 100, in rows on one image
+    /// Write one image with small images of the frames in rows; of more than 100 frames, an even choice
     #[arg(long, value_name = "FILE")]
     sheet: Option<PathBuf>,
     /// Write an animated PNG, which browsers and image viewers play

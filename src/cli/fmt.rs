@@ -10,8 +10,8 @@ use tabray_lang::registry::Registry;
 
 /// Format scenes
 ///
-/// Attributes that have a line each are aligned in columns; what shares a line stays on it. Comments, the order and the
-/// meaning of the scene are kept. A scene with syntax errors is left as it is.
+/// Aligns attributes that have a line each in columns; attributes that share a line stay on it. Keeps the comments, the
+/// order and the meaning of the scene. A scene with syntax errors stays as it is.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {

@@ -18,25 +18,24 @@ use tabray_tools::grade::{Finding, Grade};
 use tabray_tools::probe::{self, PixelExplained};
 use tabray_tools::threads::renderer_with;
 
-/// Say in what way a picture differs from what its scene shows
+/// Name the mistakes in a picture that another program made of a scene
 ///
-/// For exercises: the picture was made by another program. The scene is rendered as it is, and then with the usual mistakes:
-/// flipped, shifted by up to three pixels, with another curve of levels, without each light, without what is in a light's way,
-/// without glints, without the object that is seen. Where the picture has the colours of one of these, to a level, the pixels are
-/// counted under that mistake. Then the pixel to look at first is explained as `probe` does: the first, in rows from the top, of
-/// the mistake of most pixels.
+/// For exercises: renders the scene as it is, and then with the usual mistakes: flipped, shifted by up to three pixels,
+/// with another curve of levels, without each light, without the objects in a light's way, without highlights, without
+/// the visible object. A pixel of the picture counts under a mistake if it has the colour of that image, to one level.
+/// Then explains one pixel, like `probe`: the first, in rows from the top, of the most frequent mistake.
 #[derive(clap::Args)]
 #[command(after_help = EXIT_STATUS, after_long_help = EXAMPLES)]
 pub struct Args {
     #[command(flatten)]
     scene: scene::Args,
-    /// The picture: PPM or PNG, of the size that the scene's camera says
+    /// The picture: a PPM or PNG file, of the size in the scene's camera
     #[arg(value_name = "PICTURE")]
     picture: PathBuf,
     /// Ignore differences of up to this many levels in each channel
     #[arg(long, value_name = "LEVELS", default_value = "0", value_parser = whole::<u8>(0..=255))]
     tolerance: u8,
-    /// Print what was found and the explanation as JSON
+    /// Print the findings and the explanation as JSON
     #[arg(long)]
     json: bool,
     #[command(flatten)]

@@ -60,9 +60,9 @@ use tabray_lang::registry::Registry;
 
 /// A ray tracer in which a scene is data and every entity type is a plugin
 ///
-/// Without a command, does what the course notes' program does: reads a scene from standard input, prints its dump to
-/// standard error and writes its image, a PPM, to standard output. It uses the notes' own methods unless the scene's
-/// camera says otherwise. Warnings follow the dump, and `--quiet` leaves them out.
+/// Without a command, behaves like the program of the course notes: reads a scene from standard input, prints its dump
+/// to standard error and writes its image, a PPM, to standard output. Unless the scene's camera says otherwise, it uses
+/// the notes' own methods. Warnings follow the dump; `--quiet` leaves them out.
 #[derive(Parser)]
 #[command(name = "tabray", version, after_help = EXIT_STATUS, after_long_help = EXAMPLES)]
 struct Cli {
@@ -74,7 +74,7 @@ struct Cli {
     /// Print only errors and warnings
     #[arg(short, long, global = true)]
     quiet: bool,
-    /// How progress is shown
+    /// The form of the progress display
     #[arg(long, global = true, value_name = "FORM", default_value = "bar")]
     progress: progress::Form,
     /// Whether messages have colours

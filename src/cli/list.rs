@@ -13,12 +13,12 @@ use tabray_lang::reference;
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
 
-/// List the entity types, the attributes of one, or what the file of a mesh holds
+/// List the entity types, the attributes of one type, or the contents of a mesh file
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
-    /// The entity type whose attributes to list, or the file of a mesh: its bounds, faces and parts, whether it is closed,
-    /// a guess of its unit, and which normals, texture coordinates, colours and materials it has
+    /// The entity type whose attributes to list, or a mesh file. Of a mesh, prints the bounds, faces and parts, whether
+    /// it is closed, a guess of its unit, and its normals, texture coordinates, colours and materials
     entity: Option<String>,
     /// Print the whole reference of the language as Markdown
     #[arg(long, conflicts_with = "entity")]

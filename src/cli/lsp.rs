@@ -22,8 +22,8 @@ use tabray_lang::registry::Registry;
 
 /// Serve editors: the Language Server Protocol on standard input and output
 ///
-/// An editor starts it: docs/commands.md says how to set it up. It finds all errors of a scene, completes, explains,
-/// renames and formats, in both syntaxes.
+/// Editors start this server: docs/commands.md says how to set it up. It finds the errors of a scene, completes,
+/// explains, renames and formats, in both syntaxes.
 #[derive(clap::Args)]
 pub struct Args {
     /// For clients that say so; there is no other way

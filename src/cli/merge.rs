@@ -26,16 +26,16 @@ use tabray_tools::part::{self, PixelFormat, Reader};
 /// The maximum number of parts that are named in a message.
 const NAMED: usize = 12;
 
-/// Put an image together from its parts
+/// Join the parts of an image
 ///
-/// The parts are those that `tabray render --part K/N -o IMAGE` wrote. The image, and the images of --aov, are byte for
-/// byte those that one render of the whole image writes.
+/// The parts are those that `tabray render --part K/N -o IMAGE` wrote. The image, and the images of --aov, have the
+/// same bytes as from a single render.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
     /// The image to write, as given to `render --part` with -o
     image: PathBuf,
-    /// The parts, in any order; by default all files beside the image that are named like its parts
+    /// The parts, in any order; by default, all files beside the image that are named like its parts
     parts: Vec<PathBuf>,
     /// Remove the parts once the image is written
     #[arg(long)]

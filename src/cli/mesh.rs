@@ -17,13 +17,13 @@ const LISTED: usize = 5;
 
 /// Write an object as a closed mesh of triangles, within a proven distance
 ///
-/// The mesh is watertight and two-manifold, and its triangles face outward. No point of it is farther than E from the
-/// object's surface, and no point of the surface farther than E from the mesh, as interval arithmetic proves; the command
-/// fails where that is not so, and says where. It warns of places where the surface may be joined otherwise than the mesh,
-/// such as the nodes of an algebraic surface.
+/// The mesh is watertight and two-manifold, and its triangles face outward. Interval arithmetic proves that no point of
+/// it is farther than E from the object's surface, and no point of the surface farther than E from the mesh; otherwise,
+/// the command fails and says where. It warns of places where mesh and surface may be joined differently, such as the
+/// nodes of an algebraic surface.
 ///
-/// The object is one that is closed: an implicit, a surface of revolution, a solid, a copy of these. An implicit that its
-/// box cuts is closed by the faces of the box.
+/// The object must be closed: an implicit, a surface of revolution, a solid, or a copy of one. If its box cuts an
+/// implicit, the faces of the box close it.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {

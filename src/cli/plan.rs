@@ -7,7 +7,7 @@ use tabray_core::render::plan::Plan;
 use tabray_core::simd::cpu::Cpu;
 use tabray_lang::registry::Registry;
 
-/// Print how a scene would be rendered, each decision with its reason
+/// Explain how a scene would be rendered: each decision with its reason
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {

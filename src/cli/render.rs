@@ -40,10 +40,10 @@ pub struct Args {
     scenes: Vec<PathBuf>,
     #[command(flatten)]
     set: set::Args,
-    /// The image to write: a .png or .ppm file, or an .exr or .pfm file for colours that are not clamped or rounded, or
-    /// `-` for standard output (a PPM unless --format says otherwise); by default the scene's name with .png in the
-    /// working directory. For several scenes, a folder, which is created if necessary; for one scene too, if it ends
-    /// with `/`
+    /// The image to write: a .png or .ppm file, an .exr or .pfm file for colours that are neither clamped nor rounded,
+    /// or `-` for standard output (a PPM unless --format says otherwise). By default, the image has the scene's name
+    /// with .png and lies in the working directory. For several scenes, or if it ends with `/`, this is a folder, which
+    /// is created if necessary
     #[arg(short, long, value_name = "FILE|DIR")]
     output: Option<PathBuf>,
     /// The image format, whatever the file's extension
@@ -54,7 +54,7 @@ pub struct Args {
     compress: Compression,
     #[command(flatten)]
     size: size::Args,
-    /// The exposure in stops: each stop doubles all colours, and each negative stop halves them
+    /// The exposure in stops: each stop doubles all colours, and each stop below 0 halves them
     #[arg(long, value_name = "STOPS", default_value = "0", value_parser = exposure, allow_negative_numbers = true)]
     #[arg(help_heading = "Image")]
     exposure: f64,

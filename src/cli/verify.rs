@@ -16,21 +16,22 @@ use tabray_core::render::plan::Plan;
 use tabray_lang::registry::Registry;
 use tabray_tools::verify;
 
-/// Prove for each pixel which object is seen, or the bytes of its colour
+/// Prove which object each pixel shows, or the bytes of its colour
 ///
-/// The proof is about the real ray through the centre of the pixel, and the scene's numbers as they are read: each is the
-/// f64 nearest to what is written, or the value of a formula as f64 computes it. Numbers that were rounded before the
-/// proof starts, such as the rays of a `fisheye` or the vertices of a turned mesh, are printed as assumed. The proof uses
-/// intervals of 53 bits, which contain all rounding errors, and then intervals of 237 bits. It does not use the methods
-/// that render the image. A pixel that 237 bits leave undecided is a tie: two objects may coincide there. The exit status
-/// is 1 if the tracer finds an object that is neither the first nor part of a tie.
+/// The proof is about the real ray through the centre of the pixel, and the scene's numbers as they are read: each is
+/// the f64 nearest to what is written, or the value of a formula as f64 computes it. Numbers that were rounded before
+/// the proof starts, such as the rays of a `fisheye` or the vertices of a turned mesh, are printed as assumptions. The
+/// proof uses intervals of 53 bits, which contain all rounding errors, and then intervals of 237 bits. It does not use
+/// the methods that render the image, although these use the same equations and intervals where their own arithmetic
+/// does not decide. A pixel that 237 bits leave undecided is a tie: two objects may coincide there. The exit status is
+/// 1 if the tracer finds an object that is neither the first nor part of a tie.
 ///
-/// If the plugin of a shape has no equation, only rays that miss its bounds, or meet another object before them, are
-/// proven. The other pixels are not certified.
+/// If the plugin of a shape has no equation, the proof covers only rays that miss its bounds, or meet another object
+/// before them. The other pixels are not certified.
 ///
-/// With --colours, every decision behind a pixel is proven: each hit, shadow, mirror and pane, and the tile or texel
-/// that is hit. A pixel is proven if the intervals of its colour contain a single byte for each channel, that of the
-/// image. A pixel is off by rounding where the true ray passes exactly through an edge, or where a level is a whole
+/// With --colours, the proof covers every decision behind a pixel: each hit, shadow, mirror and pane, and the tile or
+/// texel that is hit. A pixel is proven if the intervals of its colour contain a single byte for each channel, that of
+/// the image. A pixel is off by rounding where the true ray passes exactly through an edge, or where a level is a whole
 /// number. The exit status is 1 if a byte differs by more.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]

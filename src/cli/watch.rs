@@ -44,13 +44,14 @@ const PATIENCE: Duration = Duration::from_millis(300);
 
 /// Show the image in the browser, and render it again whenever the scene changes
 ///
-/// Only this machine can reach the page, unless `--host` says otherwise, and only at the address that is printed: it
-/// contains a token, new for each run, that keeps other users out. Click a pixel to see how it gets its colour. For several scenes, the page has a
-/// list, and only scenes that are open on a page are read and rendered. Ctrl-C quits, with status 0.
+/// Unless `--host` says otherwise, only this machine can reach the page, and only at the printed address. The address
+/// contains a token, new for each run, that keeps other users out. Click a pixel to see how it gets its colour. For
+/// several scenes, the page has a list; only scenes that are open on a page are read and rendered. Ctrl-C quits, with
+/// status 0.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
-    /// The scenes: files, and folders, whose .ray and .toml files are shown, including those that are added later
+    /// The scenes: files, or folders with .ray and .toml files, including files that are added later
     #[arg(required = true, value_name = "SCENE|DIR")]
     scenes: Vec<PathBuf>,
     #[command(flatten)]

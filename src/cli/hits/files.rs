@@ -14,7 +14,7 @@ use tabray_tools::hits::rays::{BadRay, Input};
 /// The format on standard output.
 #[derive(Clone, Copy, ValueEnum)]
 pub enum To {
-    /// A JSON object a line
+    /// A JSON object per line
     Jsonl,
     /// A line of names, and then of values
     Csv,

@@ -20,12 +20,12 @@ use tabray_tools::hits::hard;
 /// Write rays that are hard to decide
 ///
 /// The rays are aimed at outlines, at edges between faces, at seams between objects, and at corners. They pass these at
-/// distances of 1e-2 to 1e-15 of the object's size, or at none, up to rounding. `hits` answers such rays, and `judge` judges
-/// the answers of another tracer.
+/// distances of 1e-2 to 1e-15 of the object's size, or, up to rounding, meet them. `hits` answers such rays, and
+/// `judge` judges the answers of another ray tracer.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
-    /// The scene, or the file of a mesh; `-` reads a scene from standard input
+    /// The scene, or a mesh file; `-` reads a scene from standard input
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
     #[command(flatten)]
@@ -33,7 +33,7 @@ pub struct Args {
     /// The number of rays
     #[arg(short = 'n', long = "count", value_name = "N", default_value = "1000", value_parser = whole::<u32>(1..=100_000_000))]
     count: u32,
-    /// Another number gives other rays
+    /// The seed: another number gives other rays
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// Write the rays to this file; its ending, .csv, .jsonl or .npy, is their format

@@ -22,15 +22,16 @@ use tabray_tools::hits::answers;
 use tabray_tools::hits::judge::{self, Finding, Judged, Report};
 use tabray_tools::hits::theirs::TheirReader;
 
-/// Judge the answers of another tracer
+/// Judge the answers of another ray tracer
 ///
-/// Reads rays with the answers of the other tracer: as CSV with the columns ox, oy, oz, dx, dy, dz and t, and perhaps hit,
-/// object, face and t_max, or as JSON lines with origin, direction and the same names. No t, or one that is negative or not
-/// finite, says that nothing is hit. An object is a name or an index, a face an index. What is left out is not judged.
+/// Reads rays with the answers of the other ray tracer: as CSV with the columns ox, oy, oz, dx, dy, dz and t, and
+/// perhaps hit, object, face and t_max, or as JSON lines with origin, direction and the same names. A t that is
+/// missing, negative or not finite means a miss. An object is a name or an index, and a face is an index. Values that
+/// are left out are not judged.
 ///
-/// The right answers are proven, as by `hits`. An answer is wrong if it misses a surface, invents one, hits a later one than
-/// the first, has a t at which there is no surface, or names another object or face. What the proof does not decide is not
-/// judged. The exit status is 1 if any answer is wrong.
+/// The right answers are proven, as by `hits`. An answer is wrong if it misses the first surface, invents one, hits a
+/// later one, has a t at which no surface lies, or names another object or face. Rays that the proof does not decide
+/// are not judged. The exit status is 1 if any answer is wrong.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
@@ -42,7 +43,7 @@ pub struct Args {
     answers: Option<PathBuf>,
     #[command(flatten)]
     set: set::Args,
-    /// The error of t that is no fault, as a part of t
+    /// The error of t that is accepted, as a fraction of t
     #[arg(long, value_name = "PART", default_value = "1e-5", value_parser = part)]
     tolerance: f64,
     /// Write the scene's image to this .png or .ppm file, dark, with a dot where each wrong answer lies: red where a surface

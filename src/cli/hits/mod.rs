@@ -23,14 +23,14 @@ use tabray_tools::hits::{self, Asked, Ended, Tally};
 
 /// Answer what rays hit first, each with a proof
 ///
-/// Reads rays, and writes an answer for each, in the same order: the object that is hit, t in lengths of the ray's direction
-/// with bounds that contain the real t, the distance in world units, the point, the normal, and u, v and the face where the
-/// shape has some. The scene needs no camera, and may be the file of a mesh.
+/// Reads rays, and writes an answer for each, in the same order: the object that the ray hits, t in lengths of the
+/// ray's direction, with bounds that contain the real t, the distance in world units, the point, the normal, and u, v
+/// and the face if the shape has them. The scene needs no camera, and may be a mesh file.
 ///
 /// The proof is about the real ray and the scene's numbers as they are read; `tabray help verify` has more. `hit` and
 /// `miss` are proven. `edge` is a ray through the edge of a surface, as far as 237 bits tell. `tie` is a ray that hits
-/// several objects at once, and the first in the scene is named. `undecided` is a ray of which 237 bits do not tell what
-/// it hits, or whose shape has no equation; the object that the tracer finds is named.
+/// several objects at once; the answer names the first in the scene. `undecided` is a ray for which 237 bits do not
+/// decide, or whose shape has no equation; the answer names the object that the tracer finds.
 ///
 /// Rays are lines of six numbers: the origin and the direction, which need not be a unit vector. A seventh number is the t at
 /// which the ray ends. Rays may also be CSV with the columns ox, oy, oz, dx, dy, dz and t_max, JSON lines, or a NumPy array of
@@ -38,7 +38,7 @@ use tabray_tools::hits::{self, Asked, Ended, Tally};
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
-    /// The scene, or the file of a mesh; `-` reads a scene from standard input
+    /// The scene, or a mesh file; `-` reads a scene from standard input
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
     /// The rays; by default, or with `-`, they are read from standard input
@@ -46,7 +46,7 @@ pub struct Args {
     rays: Option<PathBuf>,
     #[command(flatten)]
     set: set::Args,
-    /// The format of the rays; by default it is told from their first bytes
+    /// The format of the rays; by default, their first bytes tell it
     #[arg(long, value_name = "FORM")]
     from: Option<From>,
     /// Ask about the rays through the middles of the pixels of the scene's camera, row by row from the top, with t in world
@@ -59,24 +59,24 @@ pub struct Args {
     /// The format of the answers on standard output
     #[arg(long, value_name = "FORM", default_value = "jsonl", conflicts_with = "output")]
     to: To,
-    /// Prove nothing, and say what the tracer finds: many times faster
+    /// Prove nothing, and give what the tracer finds, many times faster
     #[arg(long)]
     fast: bool,
     /// Narrow the bounds of t to about a unit in its last place, in many times the time
     #[arg(long, conflicts_with = "fast")]
     tight: bool,
-    /// Answer with all surfaces that a ray crosses, in their order, a record each: `ray` is the number of the ray, from 0, and
-    /// `enters` tells whether it enters a closed shape there. The last record of a ray is a `miss`, or `undecided` from
-    /// `t_low` on, as where the ray touches a surface or passes through an edge
+    /// Answer with all surfaces that a ray crosses, in their order, one record each. `ray` is the number of the ray,
+    /// from 0, and `enters` tells whether it enters a closed shape there. The last record of a ray is a `miss`, or
+    /// `undecided` from `t_low` on, for example where the ray touches a surface or passes through an edge
     #[arg(long, conflicts_with_all = ["fast", "any"])]
     all: bool,
-    /// Say only whether something is hit, as for shadows: no object is named
+    /// Say only whether the ray hits something, as for shadows, without naming the object
     #[arg(long)]
     any: bool,
-    /// The t at which rays end that have no end of their own
+    /// The t at which rays without a t_max of their own end
     #[arg(long, value_name = "T", value_parser = end)]
     t_max: Option<f64>,
-    /// Leave out what is no ray, and count it
+    /// Leave out lines that are no rays, and count them
     #[arg(long)]
     skip_bad: bool,
     #[command(flatten)]
@@ -95,11 +95,11 @@ Examples:
 
 #[derive(Clone, Copy, ValueEnum)]
 enum From {
-    /// Six or seven numbers a line
+    /// Six or seven numbers per line
     Text,
     /// A line of names, and lines of values
     Csv,
-    /// A JSON object or list a line
+    /// A JSON object or list per line
     Jsonl,
     /// A NumPy array
     Npy,

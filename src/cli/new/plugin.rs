@@ -12,7 +12,7 @@ use tabray_lang::registry::Registry;
 
 /// Write a working, commented plugin and its scenes
 ///
-/// A plugin is compiled into the program, so this runs in the top folder of a checkout of tabray. After `cargo build`,
+/// A plugin is compiled into the program, so run this in the top folder of a clone of tabray. After `cargo build`,
 /// scenes can use the new name.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]

@@ -18,7 +18,7 @@ pub struct Args {
     /// Write TOML, as for a file that ends in .toml
     #[arg(long)]
     toml: bool,
-    /// Show the mesh of this file, with a camera, lights and a floor that fit it, whatever its size
+    /// Show the mesh in this file, with a camera, lights and a floor that fit its size
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
 }

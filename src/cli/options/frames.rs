@@ -21,12 +21,13 @@ pub struct Args {
     /// film-0240.png. With --part K/N, every Nth frame from the Kth on
     #[arg(long, value_name = "A..B", value_parser = range)]
     pub frames: Option<Range>,
-    /// Override values as --set does, with different ones in each frame: `vase.height=4..6` goes evenly from 4 in the
-    /// first frame to 6 in the last, and in formulas, as in `eye.viewpoint="4*cos(2*pi*t)" 3 6`, t goes from 0 to 1;
-    /// may be given more than once
+    /// Override values like --set, but with different ones in each frame: `vase.height=4..6` goes evenly from 4 in the
+    /// first frame to 6 in the last. In formulas, as in `eye.viewpoint="4*cos(2*pi*t)" 3 6`, t goes from 0 to 1. May be
+    /// given more than once
     #[arg(long = "sweep", value_name = "NAME=VALUES", requires = "frames")]
     sweeps: Vec<String>,
-    /// Render only this frame of --frames, as a task of a job array does; with --part, only a part of this frame
+    /// Render only this frame of --frames, for example as one task of a job array; with --part, only a part of this
+    /// frame
     #[arg(long, value_name = "N", value_parser = whole::<u32>(0..=MOST), requires = "frames")]
     frame: Option<u32>,
 }

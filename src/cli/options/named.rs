@@ -43,17 +43,17 @@ impl Value for Compression {
 impl Value for Aov {
     fn help(self) -> Option<&'static str> {
         Some(match self {
-            Self::Depth => "Distance of the first hit, near ones bright",
+            Self::Depth => "Distance of the first hit: the nearer, the brighter",
             Self::Normal => "Surface normal: red, green and blue are x, y and z",
             Self::Object => "Object seen, each in its own colour",
-            Self::Face => "Face seen of a mesh, a box, a prism or a polygon, each in its own colour",
+            Self::Face => "Face of a mesh, a box, a prism or a polygon, each in its own colour",
             Self::Colour => "Colour, before it is clamped and rounded",
-            Self::Cost => "Number of rays that a pixel takes",
-            Self::Samples => "Number of samples that a pixel takes",
+            Self::Cost => "Number of rays of a pixel",
+            Self::Samples => "Number of samples of a pixel",
             Self::Error => {
                 "Error of a pixel's colour, against four times its samples, at least 64, traced exactly"
             }
-            Self::Undecided => "Pixels whose first hit could not be decided: white, all others black",
+            Self::Undecided => "Pixels whose first hit could not be decided, in white; all others are black",
         })
     }
 }

@@ -16,18 +16,18 @@ const BY_ERROR: [u32; 2] = [4, 4096];
 #[command(next_help_heading = "Samples")]
 pub struct Args {
     /// The number of samples per pixel, to smooth edges; by default that of the scene's camera. With two powers of two,
-    /// such as `4..64`, each pixel takes the first number, and up to the second where its colour is less certain: at
-    /// edges, in soft shadows and where objects are small
+    /// such as `4..64`, each pixel takes the first number of samples, and up to the second where its colour is less
+    /// certain: at edges, in soft shadows and where objects are small
     #[arg(long, value_name = "N|MIN..MAX", value_parser = samples)]
     samples: Option<Samples>,
     /// Take as many samples in each pixel as it needs for this error, such as `2` (levels of 255) or `0.5%` (of white).
-    /// The error is estimated, not proven: it held for 98 to 100 of 100 pixels in the scenes of docs/errors.md. Takes 4
-    /// to 4096 samples unless --samples gives other limits
+    /// The error is estimated, not proven: in the scenes of docs/errors.md, 98 to 100 % of the pixels kept the limit.
+    /// Takes 4 to 4096 samples unless --samples gives other limits
     #[arg(long, value_name = "LEVELS|PERCENT%", allow_negative_numbers = true)]
     max_error: Option<MaxError>,
-    /// Prove the error of --max-error where that is possible. A pixel whose colour is enclosed narrowly enough, for all
-    /// rays through it at once, takes no samples. The others take samples as without this option. The share of proven
-    /// pixels is printed, with a bound on the error of the others
+    /// Prove the error of --max-error where possible. A pixel takes no samples if narrow bounds enclose its colour for
+    /// all rays through it. The others take samples as without this option. The command prints the share of proven
+    /// pixels, and a bound on the error of the others
     #[arg(long, requires = "max_error")]
     certain: bool,
     /// The distribution of the samples within a pixel

@@ -6,8 +6,8 @@ use tabray_core::text;
 #[derive(Clone, Default, clap::Args)]
 #[group(id = "what is set")]
 pub struct Args {
-    /// Override values of the scene: `ball.radius=3` those of an attribute, written as in a scene, and `radius=3` that
-    /// of a `let`; may be given more than once
+    /// Override values of the scene, written as in a scene: `ball.radius=3` sets an attribute, and `radius=3` a `let`.
+    /// May be given more than once
     #[arg(long = "set", value_name = "NAME=VALUES")]
     pub values: Vec<String>,
     /// What messages call the last of these values, where they are those of a sweep.

@@ -15,18 +15,18 @@ const MAX_SIDE: usize = 100_000;
 #[group(id = "how large")]
 #[command(next_help_heading = "Image")]
 pub struct Args {
-    /// The width and height of the image in pixels, or the width alone, with the height in proportion; by default those
+    /// The width and height of the image in pixels, or only the width, with the height in proportion. By default, those
     /// of the scene's camera
     #[arg(long, value_name = "W|WxH", value_parser = size)]
     size: Option<Size>,
     /// Render a preview: a quarter of the width and height, with one sample per pixel
     #[arg(long, conflicts_with_all = ["size", "samples", "max_error"])]
     quick: bool,
-    /// Render only this part of the image, W pixels wide and H high, exactly as it is in the whole image: X is its
-    /// first column, from 0 at the left, and Y its first row, from 0 at the bottom
+    /// Render only this part of the image, W pixels wide and H pixels high, with the pixels of the whole image. X is
+    /// its first column, from 0 at the left, and Y its first row, from 0 at the bottom
     #[arg(long, value_name = "X,Y,W,H", conflicts_with = "aov", value_parser = crop, allow_hyphen_values = true)]
     crop: Option<[i64; 4]>,
-    /// Replace an image of another size, which `--quick`, `--size` and `--crop` do not
+    /// Replace an image of a different size, which `--quick`, `--size` and `--crop` otherwise refuse
     #[arg(long)]
     force: bool,
 }

@@ -40,8 +40,8 @@ pub struct Args {
     /// from the beginning. Existing parts and frames are not rendered again
     #[arg(long)]
     pub resume: bool,
-    /// Stop after this time, such as 90s, 5m or 1.5h, as Ctrl-C does: write what is done, and beside it a checkpoint
-    /// for --resume; the time includes reading the scene and writing the image
+    /// Stop after this time, such as 90s, 5m or 1.5h, like Ctrl-C: write the finished part, and beside it a checkpoint
+    /// for --resume. The time includes reading the scene and writing the image
     #[arg(long, value_name = "TIME", value_parser = time)]
     time_limit: Option<Duration>,
 }

@@ -10,13 +10,13 @@ use tabray_core::{files, text};
 #[group(skip)]
 #[command(next_help_heading = "Limits")]
 pub struct Args {
-    /// Read and write nothing outside of this folder, by real path: no scene, included file, texture, mesh or image,
-    /// through no link
+    /// Read and write nothing outside of this folder: no scene, included file, texture, mesh or image, not even through
+    /// a link
     #[arg(long, global = true, value_name = "DIR")]
     root: Option<PathBuf>,
-    /// Take at most this memory, such as 200MiB, and refuse what takes more: a text, its model, textures, meshes; by
-    /// default half of the machine's memory. A render holds less of the image at a time to stay within it, and if that is
-    /// not enough, it stops as Ctrl-C does
+    /// Take at most this memory, such as 200MiB, and refuse scenes, textures and meshes that need more; by default half
+    /// of the machine's memory. A render first holds less of the image at a time, and if that is not enough, it stops
+    /// like Ctrl-C
     #[arg(long, global = true, value_name = "SIZE", value_parser = size)]
     max_memory: Option<ByteSize>,
 }

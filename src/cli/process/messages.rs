@@ -11,10 +11,10 @@ use tabray_tools::diagnosis::Remark;
 /// The form of messages.
 #[derive(Clone, Copy, Default, PartialEq, clap::ValueEnum)]
 pub enum Form {
-    /// For people: with the lines of the scene concerned
+    /// For people: with the lines of the scene that they are about
     #[default]
     Human,
-    /// For editors: one per line, `FILE:LINE:COLUMN: error: MESSAGE`
+    /// For editors: one message per line, `FILE:LINE:COLUMN: error: MESSAGE`
     Short,
     /// For programs: one JSON object per line
     Json,

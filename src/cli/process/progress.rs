@@ -6,17 +6,17 @@ use std::io::{self, Write};
 use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How progress is shown.
+/// The form of the progress display.
 #[derive(Clone, Copy, Default, PartialEq, clap::ValueEnum)]
 pub enum Form {
     /// As a bar, on a terminal
     #[default]
     Bar,
-    /// For programs: as JSON on standard error, one object a line, at most ten a second
+    /// For programs: as JSON on standard error, one object per line, at most ten per second
     Json,
 }
 
-/// How progress is shown.
+/// The form of the progress display.
 static CHOSEN: OnceLock<Form> = OnceLock::new();
 
 /// Sets how all later progress is shown.

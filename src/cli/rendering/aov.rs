@@ -27,8 +27,8 @@ const LARGEST: usize = 1 << 26;
 #[group(id = "pictures beside")]
 #[command(next_help_heading = "Looking inside")]
 pub struct Args {
-    /// Also write these auxiliary images, beside the main one: `-o a.png --aov depth` writes a-depth.png, and
-    /// a-depth.exr and, of depth, object and face, a-depth.npy with the numbers
+    /// Also write these auxiliary images beside the main one: `-o a.png --aov depth` writes a-depth.png, and
+    /// a-depth.exr with the numbers. Depth, object and face also go into an array, such as a-depth.npy
     #[arg(long, value_name = "IMAGES", value_delimiter = ',', value_parser = by_name::<Aov>())]
     aov: Vec<Aov>,
 }

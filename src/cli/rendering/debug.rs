@@ -17,8 +17,8 @@ pub struct Args {
     /// Print the course notes' debug lines to standard error before rendering
     #[arg(long, value_name = "LINES", value_delimiter = ',', value_parser = by_name::<LogLine>())]
     debug: Vec<LogLine>,
-    /// Print the debug lines of one pixel or of a rectangle, both corners included: columns count from 0 at the left,
-    /// rows from 0 at the bottom
+    /// Print the debug lines of one pixel, or of a rectangle including both corners. Columns count from 0 at the left,
+    /// and rows from 0 at the bottom
     #[arg(long, value_name = "X,Y|X0,Y0,X1,Y1", requires = "debug", value_parser = corners)]
     #[arg(allow_hyphen_values = true)]
     at: Option<[[i64; 2]; 2]>,

@@ -37,7 +37,7 @@ const UNKEPT: &str = "the part was not finished, and nothing is written";
 #[command(next_help_heading = "Parts and frames")]
 pub struct Args {
     /// Render only part K of N, into a file beside the image: `-o a.png --part 3/16` writes a.png.part-3-of-16, and
-    /// `merge a.png` makes the image of all parts. Parts have about equal work, and are the same on every machine; with
+    /// `merge a.png` joins all parts. The parts take about equal work, and are the same on every machine. With
     /// --resume, an existing part is not rendered again
     #[arg(long, value_name = "K/N", value_parser = share)]
     pub part: Option<[usize; 2]>,

@@ -16,8 +16,8 @@ use tabray_lang::registry::Registry;
 /// Review the snapshots that failing tests left
 ///
 /// For each snapshot, the page shows the old image, the new image and their difference, or the changed lines of a text,
-/// and the command that accepts it. The pixel that differs most is explained as by `tabray probe`, for the scene as it
-/// is now and, with `--before`, by the program that made the old image.
+/// and the command that accepts it. It explains the pixel that differs most, like `tabray probe`, for the current scene
+/// and, with `--before`, by the program that made the old image.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
@@ -30,8 +30,8 @@ pub struct Args {
     /// An older `tabray`, to explain the old images
     #[arg(long, value_name = "PROGRAM")]
     before: Option<PathBuf>,
-    /// Serve the page instead, to accept or reject from the browser until nothing is pending; only this machine can
-    /// reach it, and only at the address that is printed: it contains a token that keeps other users out
+    /// Serve the page instead, to accept or reject snapshots in the browser until none is pending. Only this machine
+    /// can reach the page, and only at the printed address, which contains a token that keeps other users out
     #[arg(long, conflicts_with = "output")]
     serve: bool,
     /// The port to serve on; by default the first free one from 3000

@@ -10,11 +10,12 @@ pub struct Reach {
     /// The port of the page; by default the first free one from 3000; 0 is any free one
     #[arg(long, value_name = "N", value_parser = whole::<u16>(0..=65535))]
     pub port: Option<u16>,
-    /// The address to listen on; by any other than 127.0.0.1, other machines can reach the page, and what is sent can be read
-    /// on the way
+    /// The address to listen on. With any other than 127.0.0.1, other machines can reach the page, and can read what is
+    /// sent on the way
     #[arg(long, value_name = "ADDR", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST))]
     pub host: IpAddr,
-    /// A name of a host by which browsers may ask for the page, at any port, as through a tunnel or a proxy; may be repeated
+    /// A host name in addresses under which browsers may ask for the page, at any port, for example through a tunnel or
+    /// a proxy; may be repeated
     #[arg(long, value_name = "NAME", value_parser = name)]
     pub allow_host: Vec<String>,
 }
