@@ -13,7 +13,7 @@ static TO: Pparm<DVec3> =
 static FROM: Pparm<DVec3> = Pparm::or("from", "how far they reach to the other side", DVec3::ZERO)
     .unit("world units")
     .must("0 or less along each axis", |from: &DVec3| from.max_element() <= 0.0);
-static TICKS: Pparm<f64> = Pparm::or("ticks", "the distance of the ticks from each other; 0 for none", 1.0)
+static TICKS: Pparm<f64> = Pparm::or("ticks", "the distance between ticks; 0 for none", 1.0)
     .unit("world units")
     .must("0 or more", |ticks| *ticks >= 0.0);
 static RADIUS: Pparm<f64> =

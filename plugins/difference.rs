@@ -5,7 +5,8 @@ use tabray::shapes::{Objects, Operation, combined};
 
 static OBJECTS: Pparm<Objects> = Pparm::required(
     "objects",
-    "the object and those that are taken away from it, defined earlier in the scene; they are seen only as parts of it",
+    "the object and the objects taken away from it, defined earlier in the scene; they are seen only as parts of \
+     this one",
 );
 
 const TABLE: Table = &[&OBJECTS as &dyn Row];

@@ -22,12 +22,12 @@ static TRANSPARENCY: Pparm<f64> =
         .must("more than 0 and at most 1", |fraction| *fraction > 0.0 && *fraction <= 1.0);
 static ATTENUATION: Pparm<Rgb> = Pparm::or(
     "attenuation",
-    "the fraction of light that is left after a way of the length `at` through the glass, in red, green and blue",
+    "the fraction of light that is left after a path of length `at` through the glass, in red, green and blue",
     Rgb::ONE,
 )
 .must("more than 0 and at most 1 in each channel", |left| left.min_element() > 0.0 && left.max_element() <= 1.0)
 .not_dumped();
-static AT: Pparm<f64> = Pparm::or("at", "the length of the way after which `attenuation` is left", 1.0)
+static AT: Pparm<f64> = Pparm::or("at", "the length of the path after which `attenuation` is left", 1.0)
     .unit("world units")
     .positive()
     .not_dumped();

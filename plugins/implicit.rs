@@ -14,8 +14,8 @@ static CENTER: Pparm<DVec3> = Pparm::or("center", "the origin of the formula's c
     .unit("world coordinates");
 static BOX: Pparm<Option<[f64; 6]>> = Pparm::or(
     "box",
-    "the box that clips the surface, as its low and its high corner relative to `center`; where it clips, the surface is \
-     open, and its inside is seen",
+    "the box that clips the surface, as its low and its high corner relative to `center`; where it clips, the \
+     surface is open and shows its inside",
     None,
 )
 .each(&["low x", "low y", "low z", "high x", "high y", "high z"])
@@ -80,7 +80,7 @@ inventory::submit! {
             Some(clip) => clip.cut(args, body, is_capped),
             None if is_capped => Err(Refusal {
                 attribute: Some("capped"),
-                message: "is capped, and has no `clip`".to_owned(),
+                message: "is capped, but has no `clip`".to_owned(),
                 help: "caps are faces of the object that clips it: give it a `clip` in place of its `box`",
             }),
             None => Ok(body),

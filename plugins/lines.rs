@@ -5,21 +5,21 @@ use tabray::prelude::*;
 
 static FORMULA: Pparm<Field> = Pparm::required("formula", "the formula, which is 0 on the lines");
 static SPACING: Pparm<Option<f64>> =
-    Pparm::or("spacing", "for level lines: they are where the formula is a multiple of this", None)
+    Pparm::or("spacing", "for level lines: these lie where the formula is a multiple of this number", None)
         .must("above 0", |spacing: &Option<f64>| spacing.is_none_or(|spacing| spacing > 0.0));
 static WIDTH: Pparm<f64> = Pparm::or("width", "the width of the lines", 0.02)
     .unit("world units")
     .must("0 or more", |width| *width >= 0.0);
 static PIXELS: Pparm<f64> = Pparm::or(
     "pixels",
-    "the least width of the lines, where samples show patches of a surface: by the free rules, and not in mirrors",
+    "the least width of the lines, where samples show patches of a surface: under the free rules, and not in mirrors",
     0.0,
 )
 .unit("pixels")
 .between(0.0, 1e3);
 static ALTMATERIAL: Pparm<Arc<Material>> = Pparm::required("altmaterial", "the material of the lines");
 static SHADER: Pparm<Option<ShaderFactory>> =
-    Pparm::or("shader", "the shader of what is between the lines, in place of the material", None);
+    Pparm::or("shader", "the shader of the surface between the lines, in place of the material", None);
 
 const TABLE: Table = &[&FORMULA, &SPACING, &WIDTH, &PIXELS, &ALTMATERIAL, &SHADER];
 

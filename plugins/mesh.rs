@@ -93,7 +93,7 @@ enum Sides {
 choices! {
     Normals, "choice of normals" {
         Faces => "faces", "those of its faces, as `smooth` and `crease` say";
-        File => "file", "the file's, and where it has none those of its faces as far as edges are no creases";
+        File => "file", "the file's; where it has none, those of its faces, smoothed except across creases";
     }
     Materials, "choice of materials" {
         Scene => "scene", "the scene's, by the names that the file gives";

@@ -31,7 +31,7 @@ inventory::submit! {
         };
         Body::parametric(surface).ok_or(Refusal {
             attribute: None,
-            message: "has formulas that are not bounded where u and v are, or that turn there too often".to_owned(),
+            message: "has formulas that are unbounded in the range of u and v, or that turn there too often".to_owned(),
             help: "a quotient by 0, a logarithm of 0 and a tangent have no bounds; change the formulas, or the ends of `u` and `v`",
         })
     })

@@ -35,7 +35,7 @@ inventory::submit! {
         let object = args.get(&OBJECT).get().cloned().ok_or(Refusal {
             attribute: Some("object"),
             message: "refers to an object that has not been made".to_owned(),
-            help: "the object is to be defined before it is placed",
+            help: "define the object before it is placed",
         })?;
         if object.depth == MAX_DEPTH {
             return Err(Refusal {

@@ -9,7 +9,7 @@ static TO: Pparm<f64> =
     Pparm::or("to", "the number that the last colour stands for, and all larger ones", 1.0);
 static COLOURS: Pparm<Option<List<Rgb, 2, 256>>> = Pparm::or(
     "colours",
-    "the factors of the ambient and diffuse colours, equally far apart; without, from blue by white to red",
+    "the factors of the ambient and diffuse colours, equally far apart; by default, from blue through white to red",
     None,
 )
 .alias(&["colors"])

@@ -9,8 +9,8 @@ static FILENAME: Pparm<String> = Pparm::required(
 
 static CUTOUT: Pparm<bool> = Pparm::or(
     "cutout",
-    "whether what an `image` or a `texplane` shows is not there where the image is less than half opaque; otherwise it has its own \
-     colour there",
+    "whether an `image` or a `texplane` cuts the object out where the image is less than half opaque; otherwise, the \
+     object has its own colour there",
     false,
 )
 .not_dumped();

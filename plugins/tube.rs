@@ -41,7 +41,7 @@ inventory::submit! {
         if along.iter().any(|along| !(along.length() > 0.0 && along.is_finite())) {
             return Err(refusal(
                 "has a curve that stands still, or is not defined, at some t",
-                "its derivative by t is nowhere 0: cut the curve there, into two tubes",
+                "its derivative by t must nowhere be 0: cut the curve there, into two tubes",
             ));
         }
         let sine = |avoided: DVec3| {
@@ -58,7 +58,7 @@ inventory::submit! {
         }
         tube.avoided = avoided;
         Body::parametric(tube).ok_or(refusal(
-            "has formulas that are not bounded where t is, or that turn there too often",
+            "has formulas that are unbounded in the range of t, or that turn there too often",
             "a quotient by 0, a logarithm of 0 and a tangent have no bounds; change the formulas, or the ends of `t`",
         ))
     })

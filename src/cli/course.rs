@@ -163,8 +163,7 @@ fn of_course(model: &Model) -> Vec<Difference> {
     );
     let sensor = &model.camera.value;
     if objects.len() * sensor.pixels[0] * sensor.pixels[1] <= MOST_RAYS {
-        let reason =
-            "rays exactly through an edge or between two texels, which the course's program rounds otherwise";
+        let reason = "rays exactly through an edge or between two texels, which the course's program rounds differently";
         all.extend(differences(objects.iter(), &[(reason, &|object| edges::are_met(sensor, object))]));
     }
     all

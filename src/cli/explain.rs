@@ -58,7 +58,7 @@ impl Place<'_> {
 
     fn by_another(&self, program: &Path) -> Result<String, String> {
         if self.model.camera.value.pixels != self.size() {
-            return Err("the image does not have the size that its scene gives".to_owned());
+            return Err("the image does not have the size in its scene".to_owned());
         }
         let output = Command::new(program)
             .arg("probe")

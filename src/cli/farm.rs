@@ -102,7 +102,7 @@ pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
                 None => program()?,
             };
             print(&commands::text(&job, &program))?;
-            messages::note(&format!("when all of them have ended: {program} {}", job.last));
+            messages::note(&format!("once all of them have ended: {program} {}", job.last));
             Ok(())
         }
         Engine::Kubernetes { order, container, claim } => {

@@ -96,7 +96,7 @@ pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
     match &made.tangled {
         Some(places) if !places.is_empty() => messages::warning(
             &format!(
-                "the surface may be joined otherwise than the mesh in {}: {}",
+                "the surface and the mesh may be joined differently in {}: {}",
                 count(places.len(), "cell"),
                 listed(places)
             ),
@@ -113,7 +113,7 @@ pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::Failed(format!(
-        "that the mesh is within {} of the surface is not proven in {}: {}",
+        "the mesh is not proven to be within {} of the surface in {}: {}",
         shortest(error),
         count(made.far.len(), "cell"),
         listed(&made.far)
@@ -166,7 +166,7 @@ fn no_mesh(name: &str, error: f64, fault: &NoMesh) -> Failure {
             format!("give an `--error` of about {} or more", short(*least)),
         ),
         NoMesh::TooFine => (
-            format!("an error of {error} is too small for the digits of files of meshes"),
+            format!("an error of {error} is too small for the digits of mesh files"),
             "give a larger `--error`".to_owned(),
         ),
         NoMesh::Open => return Failure::Failed(format!("the mesh of `{name}` is not closed")),

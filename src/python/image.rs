@@ -26,7 +26,8 @@ use tempfile::NamedTempFile;
 /// An image: its light is an array of shape (height, width, 3), float64: red, green and blue, in rows from the top.
 /// `numpy.asarray` accepts an image.
 ///
-/// The light is linear: it is taken before tone, transfer curve and rounding, and by the notes' rules after the exposure.
+/// The light is linear: it is taken before tone, transfer curve and rounding, and under the notes' rules after the
+/// exposure.
 #[pyclass(frozen, module = "tabray")]
 pub struct Image {
     size: [usize; 2],

@@ -138,7 +138,7 @@ impl<'p, 'm> Prover<'p, 'm> {
             return Attempt { pixel, is_enclosed: false, is_final: is_spent, meets_uncertified };
         };
         let (display, leaves_out) = (self.plan.camera.display(), self.plan.depth.is_some());
-        // Rays may be left out that add less than this to a pixel, and by the free rules change it by fewer levels.
+        // Rays may be left out that add less than this to a pixel, and under the free rules change it by fewer levels.
         let (missing, off) = if leaves_out { (FAINT, MOST_OFF) } else { (0.0, 0.0) };
         let possible = match display.truncates() {
             Some(_) => colour.map(|channel| truncated(channel, missing)),
@@ -210,14 +210,14 @@ type Possible = [u8; 4];
 /// apart is shown.
 const MOST_OFF: f64 = 0.5;
 
-/// Returns the bytes of a channel by the notes' rules. `missing` is the most that the image may lack.
+/// Returns the bytes of a channel under the notes' rules. `missing` is the most that the image may lack.
 fn truncated<F: Float>(channel: Interval<F>, missing: f64) -> Possible {
     let level = level(channel);
     let least = (level - Interval::constant(255.0 * missing)).low;
     [least, level.low, level.high, level.high].map(|level| level.floor().to_f64() as u8)
 }
 
-/// Returns the bytes of a colour by the free rules. `off` is the number of levels that the image may be off.
+/// Returns the bytes of a colour under the free rules. `off` is the number of levels that the image may be off.
 fn rounded<F: Float>(display: &Display, colour: &Colour<Interval<F>>, off: f64) -> [Possible; 3] {
     // More than the rounding of a level to `f64`, and of its code.
     const OFF: f64 = 1e-9;

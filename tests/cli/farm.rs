@@ -93,7 +93,7 @@ fn commands_stand_one_a_line_and_make_the_image() {
     let (status, out, err) = farm(&folder, &["commands", "ball.ray", "--output=-x.png", "--parts", "3"]);
     assert_eq!(status, 0, "{err}");
     assert_eq!(out.lines().count(), 3);
-    let last = err.strip_prefix("when all of them have ended: ").expect("the last command");
+    let last = err.strip_prefix("once all of them have ended: ").expect("the last command");
     for line in out.lines().chain([last]) {
         let mut bash = Command::new("bash");
         let done = bash.args(["-c", line]).current_dir(folder.path()).output().expect("a shell");

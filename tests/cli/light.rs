@@ -60,7 +60,7 @@ fn rows_that_the_notes_rules_do_not_know_are_told() {
     let scene = format!("{EYE} rules notes  exposure 3 }} background all {{ colour 0.25 0.25 0.25 }}");
     let (pixel, said) = middle(&folder, &scene, &[]);
     assert_eq!(pixel, [63; 3]);
-    assert!(said.contains("`exposure` has no effect by the notes' rules of light"), "{said}");
+    assert!(said.contains("`exposure` has no effect under the notes' rules of light"), "{said}");
 }
 
 #[test]
@@ -107,7 +107,7 @@ fn black_burnt_and_empty_images_say_why() {
     for (scene, says, cure) in [
         (&rough, "`part` has a rough material", "`samples 64`"),
         (&sky, "which sees a single direction", "`samples 64`"),
-        (&black, "by the notes' rules adds up to", "`rules free`"),
+        (&black, "under the notes' rules adds up to", "`rules free`"),
         (&burnt, "of the image is burnt to white: `key` adds up to", "`rules notes`"),
         (&empty, "no object is in view", "`target 0 0 0` looks at their middle"),
     ] {

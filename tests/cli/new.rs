@@ -168,7 +168,7 @@ fn a_mesh_is_described() {
     }
     let (status, out, _) = outcome(tabray(&folder).args(["list", "closed.obj"]));
     let expected = "bounds  -1 -1 -1 to 1 39 -0.9\nsize    2 x 40 x 0.1\nfaces   12 triangles\nparts   1\nclosed  yes\n\
-        units   not in the file; by its size perhaps millimetres\nnormals none\nuv      none\ncolours none\nlooks   none\n";
+        units   not in the file; perhaps millimetres, by its size\nnormals none\nuv      none\ncolours none\nlooks   none\n";
     assert_eq!((status, text(out).as_str()), (0, expected));
     let (_, out, _) = outcome(tabray(&folder).args(["list", "open.obj"]));
     let out = text(out);
@@ -258,7 +258,7 @@ fn a_plugin_that_cannot_be_is_refused_and_nothing_is_written() {
         ("rainbow", "the entity type `rainbow` already exists, at plugins/rainbow.rs:", TAKEN),
         ("cone", "the profile `cone` already exists", TAKEN),
         ("body", "the template already uses the name `Body`", TAKEN),
-        ("lib", "`plugins/lib.rs` is no plugin: the crate of all plugins is made by it", TAKEN),
+        ("lib", "`plugins/lib.rs` is not a plugin: it makes the crate of all plugins", TAKEN),
         ("build", "`plugins/build.rs` is no plugin", TAKEN),
         ("gem", "`plugins/gem.rs` already exists", IN_THE_WAY),
         ("coil", "`scenes/wrong/coil.ray` already exists", IN_THE_WAY),

@@ -26,7 +26,7 @@ pub const SHAPES: [(&str, &str); 7] = [
     ),
 ];
 
-/// Returns a camera in front of the shapes, by the free rules, and their materials.
+/// Returns a camera in front of the shapes, under the free rules, and their materials.
 pub fn glass(index: f64) -> String {
     format!(
         "look_at eye {{ pixeldim 12 9 position 0.2 0.5 3 target 0 0 0 angle 45 rules free transfer linear }}

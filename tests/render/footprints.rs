@@ -8,7 +8,7 @@ use tabray::world::display::{Display, Tone, Transfer};
 use tabray::world::material::Rgb;
 use tabray::world::rules::Rules;
 
-/// Images by the notes' rules, with an exposure in stops.
+/// Images under the notes' rules, with an exposure in stops.
 fn display(stops: f64) -> Display {
     Display::new(Rules::Notes, stops, Tone::Clip, Transfer::Linear)
 }

@@ -125,7 +125,7 @@ fn compare(text: &str) -> Result<[usize; 2], TestCaseError> {
             for channel in 0..3 {
                 let Interval { low, high } = colour[channel];
                 let most = ROUNDING * (1.0 + high.abs());
-                // By the free rules, all light above white is shown alike.
+                // Under the free rules, all light above white is shown alike.
                 if plan.camera.rules == Rules::Free && low >= 1.0 && traced[channel] >= 1.0 {
                     continue;
                 }

@@ -157,7 +157,7 @@ fn rounds_within_rounds_without_end_are_refused_quickly() {
     assert_eq!(model(&nested(32)).objects.len(), 1);
     let start = Instant::now();
     let said = refused(Path::new(""), "scene", &nested(50_000));
-    assert!(said.contains("`repeat i32` is one `repeat` too deep"), "{said}");
+    assert!(said.contains("`repeat i32` is nested too deep"), "{said}");
     assert!(start.elapsed() < HANGS, "{:?}", start.elapsed());
 }
 
@@ -255,7 +255,7 @@ fn files_that_cannot_be_included_are_refused() {
         ("s.ray", "`s.ray` includes itself"),
         ("colors.inc", "did you mean `colours.inc`?"),
         ("no/such.inc", "cannot read `no/such.inc`"),
-        ("bytes.inc", "`bytes.inc` is not a text"),
+        ("bytes.inc", "`bytes.inc` is not text"),
         ("latin.inc", "`latin.inc` is probably encoded in Latin-1"),
         ("deep0.inc", "is one file too many"),
         ("wide0.inc", "is one file too many"),

@@ -210,5 +210,5 @@ fn the_courses_older_scenes_load_but_for_another_numbering() {
     }
     assert_eq!(refused.len(), 1, "{refused:?}");
     assert!(refused[0].starts_with("other-numbering-1: "), "{refused:?}");
-    assert!(refused[0].contains("this scene has another numbering, which is not read"), "{refused:?}");
+    assert!(refused[0].contains("this scene has a different numbering, which is not read"), "{refused:?}");
 }

@@ -171,7 +171,8 @@ fn colours_of_vertices_of_an_obj_are_those_of_bytes() {
         let folder = folder(&[("wall.obj", &text), ("plain.mtl", "newmtl plain\nKd 1 1 0.5\n")]);
         let (model, warnings) = read(folder.path(), "file wall.obj materials file");
         assert!(warnings.is_empty(), "{warnings}");
-        // By the notes' rules, bytes are divided by 256; the first edge between triangles is from the first to the third corner.
+        // Under the notes' rules, bytes are divided by 256; the first edge between triangles is from the first to the
+        // third corner.
         let [all, half] = [255.0, 128.0].map(|byte| byte / 256.0);
         for (at, [red, green, blue]) in [
             ([4.0, 0.0, 0.0], [half, 0.0, 0.0]),

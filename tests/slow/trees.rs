@@ -1,5 +1,5 @@
-//! The trees of rays by the free rules against whole ones, which have no ends but a number of rays that leaves nothing to
-//! be seen.
+//! The trees of rays under the free rules against whole ones, which have no ends but a number of rays that leaves
+//! nothing to be seen.
 
 use crate::common::glass::{SHAPES, glass};
 use crate::common::model;

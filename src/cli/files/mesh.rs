@@ -113,8 +113,8 @@ pub fn six_digits(number: f64) -> String {
 /// Guesses the unit of a mesh whose largest side is this long: no file says it.
 fn units(largest: f64) -> &'static str {
     match largest {
-        10.0..10_000.0 => "not in the file; by its size perhaps millimetres",
-        0.01..10.0 => "not in the file; by its size perhaps metres or inches",
-        _ => "not in the file, and its size tells nothing",
+        10.0..10_000.0 => "not in the file; perhaps millimetres, by its size",
+        0.01..10.0 => "not in the file; perhaps metres or inches, by its size",
+        _ => "not in the file, and its size gives no hint",
     }
 }

@@ -148,7 +148,8 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         Some(reader) => reader.count().filter(|_| !args.skip_bad),
     };
     if format == AnswerFormat::Npy && (known.is_none() || args.all) {
-        let what = "an array needs to know the number of its answers first, which only an array of rays says";
+        let what =
+            "an array needs to know the number of its answers first, which only an array of rays gives";
         let help = match (args.skip_bad, args.all) {
             (_, true) => "write .jsonl or .csv, or leave out `--all`",
             (true, _) => "write .jsonl or .csv, or leave out `--skip-bad`",

@@ -150,7 +150,7 @@ fn is_free(registry: &Registry, name: &str, template: &str) -> Result<(), Failur
         return no_name(format!("`{name}` is a Rust keyword"));
     }
     let what = if OWN_FILES.contains(&name) {
-        format!("`plugins/{name}.rs` is no plugin: the crate of all plugins is made by it")
+        format!("`plugins/{name}.rs` is not a plugin: it makes the crate of all plugins")
     } else if let Some(entity) = registry.find(name) {
         format!("the entity type `{name}` already exists, at {}", entity.place())
     } else if <&Profile>::all().iter().any(|profile| profile.option().name == name) {

@@ -57,7 +57,7 @@ pub struct Job<'a> {
 impl Job<'_> {
     /// Renders what a checkpoint does not have, and writes the image to its path. If the render is stopped, the program
     /// ends with what is done, because threads may still be at work.
-    /// Returns the levels of the image, and the rays whose paths were too long by the notes' rules.
+    /// Returns the levels of the image, and the rays whose paths were too long under the notes' rules.
     pub fn run(&self, output: Output, begun: Option<ResumedImage>) -> Result<(Levels, FarPaths), Failure> {
         let progress = Progress::new(self.region.rows.len());
         let (flaws, proofs) = (Mutex::new(Flaws::default()), Mutex::new(Proofs::default()));
@@ -242,12 +242,12 @@ pub fn warn_of(Flaws { cuts, undecided, .. }: &Flaws, model: &Model) {
     }
 }
 
-/// Says how many rays lack light because paths end by the notes' rules, if there are any.
+/// Says how many rays lack light because paths end under the notes' rules, if there are any.
 pub fn tell_of_far(FarPaths { rays, of }: FarPaths) {
     if rays > 0 {
         messages::note(&format!(
-            "light in mirrors and glass ends after {MAX_DIST} units by the notes' rules, and is black beyond: in {rays} of {of} \
-             rays from the viewer; `rules free` in the camera has no such end"
+            "light in mirrors and glass ends after {MAX_DIST} units under the notes' rules, and is black beyond: in \
+             {rays} of {of} rays from the viewer; `rules free` in the camera has no such end"
         ));
     }
 }
@@ -267,8 +267,8 @@ fn warn_of_undecided(undecided: &Undecided, model: &Model) {
             named.join("; ")
         ),
         Some(
-            "a surface that rays touch and do not cross may be missing there, as where a factor of a formula is squared; \
-            `--aov undecided` shows these pixels",
+            "a surface that rays touch but do not cross may be missing there, for example where a factor of a \
+             formula is squared; `--aov undecided` shows these pixels",
         ),
     );
 }

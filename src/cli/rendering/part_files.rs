@@ -158,7 +158,7 @@ fn same((path, label): (&Path, &Label), (other, first): (&Path, &Label)) -> Resu
         differences.push(format!("there are {} parts and not {}", label.part[1], first.part[1]));
     }
     if differences.is_empty() && (label.size, label.what) != (first.size, first.what) {
-        differences.push("its format is another".to_owned());
+        differences.push("its format differs".to_owned());
     }
     if differences.is_empty() && label.beside != first.beside {
         differences.push("it has other images beside it".to_owned());

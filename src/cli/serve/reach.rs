@@ -32,7 +32,7 @@ impl Reach {
         if self.host.is_unspecified() && self.allow_host.is_empty() {
             return Err(Failure::Usage(
                 format!(
-                    "`--host {}` stands for all addresses of this machine, and none is let in",
+                    "`--host {}` stands for all addresses of this machine, and no host name is allowed",
                     self.host
                 ),
                 Some("add `--allow-host NAME`, with the name that browsers ask for".to_owned()),

@@ -77,7 +77,7 @@ pub async fn answer(request: &Request<Bytes>, session: &Session, work: &Work) ->
         };
     }
     if request.method() != Method::GET {
-        return serve::text(StatusCode::METHOD_NOT_ALLOWED, "there is nothing of that kind to do\n");
+        return serve::text(StatusCode::METHOD_NOT_ALLOWED, "this page has no such action\n");
     }
     match path[..] {
         [""] => serve::content(StatusCode::OK, "text/html; charset=utf-8", PAGE.clone()),

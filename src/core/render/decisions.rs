@@ -208,7 +208,7 @@ fn depth(model: &Model, depth: &Depth) -> String {
     }
 }
 
-/// Describes how rays end by the free rules.
+/// Describes how rays end under the free rules.
 fn free_depth(model: &Model, depth: &Depth) -> String {
     let order = format!(
         "the heaviest rays are followed first, in each pixel at most {MAX_TREE} rays, or the work of {MAX_RAYS} simple ones"

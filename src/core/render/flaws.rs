@@ -12,7 +12,7 @@ pub struct Flaws {
     pub cuts: BudgetCuts,
     /// The pixels whose first hit could not be decided.
     pub undecided: Undecided,
-    /// The rays from the viewer whose light is not all there, because paths end by the notes' rules.
+    /// The rays from the viewer whose light is not all there, because paths end under the notes' rules.
     pub far: FarPaths,
 }
 
@@ -25,7 +25,7 @@ pub struct BudgetCuts {
     pub most: f64,
 }
 
-/// The rays from the viewer whose paths are too long by the notes' rules.
+/// The rays from the viewer whose paths are too long under the notes' rules.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FarPaths {
     /// The number of rays of which a path in mirrors or through glass is too long.

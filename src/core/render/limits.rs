@@ -7,9 +7,9 @@ pub use crate::world::rules::MAX_DIST;
 /// long to find as those of many simple rays counts as many.
 pub const MAX_RAYS: usize = 20_000;
 
-/// The number of rays that may be followed for a pixel by the free rules, shadow rays apart. In most glass, the bounds of a
-/// pixel's colour meet after a small part of them. A pixel's samples share them evenly, and also the work of [`MAX_RAYS`]
-/// simple rays.
+/// The number of rays that may be followed for a pixel under the free rules, shadow rays apart. In most glass, the
+/// bounds of a pixel's colour meet after a small part of them. A pixel's samples share them evenly, and also the work
+/// of [`MAX_RAYS`] simple rays.
 pub const MAX_TREE: u32 = 4096;
 
 /// The part of both that a sample has at least, however many there are.

@@ -17,7 +17,7 @@ pub(super) const OBJECT: Table = &[&MATERIAL];
 
 /// The material of an object that is made of others, used instead of [`MATERIAL`].
 pub(super) static MATERIAL_OF_ALL: Pparm<Option<Arc<Material>>> =
-    Pparm::or("material", "the material of all of it; without, each object in it keeps its own", None);
+    Pparm::or("material", "the material of the whole object; without it, each part keeps its own", None);
 
 pub(super) const OF_OBJECTS: Table = &[&MATERIAL_OF_ALL];
 
@@ -53,18 +53,18 @@ pub(super) static RULES: Pparm<Option<Rules>> = Pparm::or(
 )
 .not_dumped();
 
-/// How light becomes bytes by the free rules; the notes' have no choice.
+/// How light becomes bytes under the free rules; the notes' have no choice.
 pub(super) static EXPOSURE: Pparm<f64> =
-    Pparm::or("exposure", "how often the light is doubled, by the free rules", 0.0)
+    Pparm::or("exposure", "how often the light is doubled, under the free rules", 0.0)
         .unit("stops")
         .between(-32.0, 32.0)
         .not_dumped();
 
 pub(super) static TONE: Pparm<Tone> =
-    Pparm::or("tone", "how light above white is shown, by the free rules", Tone::Clip).not_dumped();
+    Pparm::or("tone", "how light above white is shown, under the free rules", Tone::Clip).not_dumped();
 
 pub(super) static TRANSFER: Pparm<Transfer> =
-    Pparm::or("transfer", "how light is encoded in bytes, by the free rules", Transfer::Srgb).not_dumped();
+    Pparm::or("transfer", "how light is encoded in bytes, under the free rules", Transfer::Srgb).not_dumped();
 
 /// The attributes that every camera has before and after its own.
 pub(super) const FILM: [Table; 2] =
@@ -72,7 +72,7 @@ pub(super) const FILM: [Table; 2] =
 
 /// How the light of a lamp weakens, and the distance at which it is as bright as its emissivity.
 pub(super) static FALLOFF: Pparm<Falloff> =
-    Pparm::or("falloff", "by the free rules, how the light weakens with the distance", Falloff::None)
+    Pparm::or("falloff", "under the free rules, how the light weakens with the distance", Falloff::None)
         .not_dumped();
 
 pub(super) static AT: Pparm<f64> =
@@ -83,7 +83,7 @@ pub(super) static AT: Pparm<f64> =
 
 /// Whether a background lights surfaces.
 pub(super) static LIGHTS: Pparm<bool> =
-    Pparm::or("lights", "whether its light falls on surfaces, by the free rules", false).not_dumped();
+    Pparm::or("lights", "whether its light falls on surfaces, under the free rules", false).not_dumped();
 
 /// The attribute that every background has after its own.
 pub(super) const BACKGROUND: Table = &[&LIGHTS as &dyn Row];

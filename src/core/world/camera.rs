@@ -78,8 +78,8 @@ pub trait Camera: fmt::Debug + Send + Sync + 'static {
         Rules::Free
     }
 
-    /// Returns the z, in world units, beyond which planes are cut off by the notes' rules; `None` where there is no such
-    /// rule.
+    /// Returns the z, in world units, beyond which planes are cut off under the notes' rules; `None` where there is no
+    /// such rule.
     fn planes_end_at(&self) -> Option<f64> {
         None
     }

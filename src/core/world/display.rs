@@ -156,8 +156,8 @@ impl Display {
         self.gain
     }
 
-    /// Returns the light for a file of full range: by the notes' rules after exposure, and by the free rules before any
-    /// step that is made for images.
+    /// Returns the light for a file of full range: under the notes' rules after exposure, and under the free rules
+    /// before any step that is made for images.
     pub fn full_range(&self, light: Rgb) -> Rgb {
         match self.rules {
             Rules::Notes if self.gain != 1.0 => self.gain * light,
@@ -245,7 +245,7 @@ impl Display {
         }
     }
 
-    /// Returns the byte of a channel after exposure and tone, by the free rules.
+    /// Returns the byte of a channel after exposure and tone, under the free rules.
     fn byte(&self, channel: f64) -> u8 {
         match self.transfer {
             Transfer::Linear => (255.0 * channel).round() as u8,

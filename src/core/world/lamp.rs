@@ -9,7 +9,7 @@ use std::ops::Deref;
 pub struct Lamp {
     /// The light itself.
     pub light: AnyLight,
-    /// How its light weakens with the distance, by the free rules.
+    /// How its light weakens with the distance, under the free rules.
     pub fading: Fading,
 }
 

@@ -1,6 +1,6 @@
 //! The part of a surface that a sample shows, over which shaders take the mean of their pattern.
 //!
-//! By the free rules, and where all pixels have the same number of samples, a sample stands for a part of its pixel,
+//! Under the free rules, and where all pixels have the same number of samples, a sample stands for a part of its pixel,
 //! and so for a patch of the surface that its ray hits. Far away, a patch is larger than the squares of a chequered
 //! floor; the mean over it is what many samples would show.
 

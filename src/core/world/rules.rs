@@ -1,10 +1,10 @@
 //! The rules of light, in any type of numbers: the numbers of images, and numbers that enclose what images should show.
 //!
 //! A ray that hits a point returns the point's own light, which is its ambient light and the light of each lamp, and
-//! the light that is seen through the point and mirrored in it. By the notes' rules, the own light is divided by the
-//! length of the path, and the light of a lamp is divided once more by the lamp's distance. By the free rules, neither
-//! is divided, and a lamp weakens only as its falloff says. A number is one channel, or a colour where only sums and
-//! products are needed.
+//! the light that is seen through the point and mirrored in it. Under the notes' rules, the own light is divided by the
+//! length of the path, and the light of a lamp is divided once more by the lamp's distance. Under the free rules,
+//! neither is divided, and a lamp weakens only as its falloff says. A number is one channel, or a colour where only
+//! sums and products are needed.
 
 use serde::{Deserialize, Serialize};
 use std::ops::{Add, Mul};
@@ -31,8 +31,8 @@ impl Rules {
         }
     }
 
-    /// Returns a bound on light that is known as a bound on the light times the length of its path by the notes' rules,
-    /// and on the light itself by the free ones.
+    /// Returns a bound on light that is known as a bound on the light times the length of its path under the notes'
+    /// rules, and on the light itself by the free ones.
     #[inline]
     pub fn over_path(self, most: f64, travelled: f64) -> f64 {
         match self {
@@ -52,7 +52,7 @@ impl Rules {
     }
 }
 
-/// How the light of a lamp weakens with the distance, by the free rules.
+/// How the light of a lamp weakens with the distance, under the free rules.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Falloff {
     /// Not at all.
@@ -100,7 +100,7 @@ pub fn path_left<N: Scalar>(travelled: N) -> N {
     N::constant(MAX_DIST) - travelled
 }
 
-/// Returns the factor of the light of a surface by the notes' rules, from the length of the path to it.
+/// Returns the factor of the light of a surface under the notes' rules, from the length of the path to it.
 #[inline(always)]
 pub fn attenuation<N: Scalar>(travelled: N) -> N {
     N::constant(1.0) / travelled

@@ -39,9 +39,9 @@ pub struct Sensor {
     pub scramble: u32,
     /// The exposure in stops: what is shown is multiplied by 2 to this power.
     pub exposure: f64,
-    /// How light above white is shown, by the free rules.
+    /// How light above white is shown, under the free rules.
     pub tone: Tone,
-    /// How light is encoded, by the free rules.
+    /// How light is encoded, under the free rules.
     pub transfer: Transfer,
     /// The accuracy with which hits are found.
     pub accuracy: Accuracy,
@@ -91,8 +91,8 @@ impl Sensor {
         self.camera.planes_end_at().filter(|_| self.rules == Rules::Notes)
     }
 
-    /// Returns the window through which each sample looks; `None` where samples show points: by the notes' rules, and where the
-    /// number of samples depends on the pixel.
+    /// Returns the window through which each sample looks; `None` where samples show points: under the notes' rules,
+    /// and where the number of samples depends on the pixel.
     pub fn window(&self) -> Option<Window> {
         if self.rules == Rules::Notes || self.adaptive.is_some() {
             return None;

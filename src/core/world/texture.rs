@@ -29,7 +29,7 @@ pub struct Texture {
     /// Whether transparent texels show their colours as other texels do, and the opacity of each texel is kept.
     is_opaque: bool,
     cuts_out: bool,
-    /// How the image that is rendered shows light; unless that is known, by the notes' rules.
+    /// How the image that is rendered shows light; unless that is known, under the notes' rules.
     display: OnceLock<Display>,
     picture: OnceLock<Result<Picture, String>>,
 }

@@ -73,7 +73,7 @@ impl<'a> Reader<'a, '_> {
                 if open.is_none() {
                     self.close(end);
                 } else if self.outer.len() > DEEPEST {
-                    let message = "this `repeat` is too deep in others";
+                    let message = "this `repeat` is nested too deep";
                     self.grammar.report.add(Fault::error(Some(first.place()), message));
                     self.close(end);
                     self.grammar.go_to(statements::body(self.text, end).1);

@@ -184,7 +184,7 @@ pub fn renamed(group: &Group, at: usize, new: &str) -> Result<Vec<(Location, Str
         })
     };
     if names.iter().enumerate().any(is_taken) {
-        return Err(format!("there is a {} `{new}` already", super::names::describe(defined.name.namespace)));
+        return Err(format!("a {} `{new}` already exists", super::names::describe(defined.name.namespace)));
     }
     let change = |(file, name, rounds): Use<'_>| {
         let (path, view) = &group[file];

@@ -16,7 +16,7 @@ pub fn read(registry: &Registry, name: &str, text: Text) -> View {
     };
     let read = match syntax {
         Syntax::Notes if is_older(registry, text.as_str()) => {
-            let message = "this is an older scene of numbers, which is not in the language of scenes";
+            let message = "this is an older scene of numbers, not one in the scene language";
             let line = 0..text.as_str().find('\n').unwrap_or(0);
             (Vec::new(), vec![Fault::error(Some(line), message)])
         }

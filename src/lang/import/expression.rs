@@ -102,8 +102,8 @@ pub fn read(text: &str, range: Range<usize>, dialect: Dialect, names: &mut dyn N
     let value = reader.sum()?;
     match reader.peek() {
         None => Ok(value),
-        Some(')') => Err(reader.fault_here("this parenthesis closes none").into()),
-        Some(_) => Err(reader.fault_here("the formula does not go on like this").into()),
+        Some(')') => Err(reader.fault_here("this parenthesis closes nothing").into()),
+        Some(_) => Err(reader.fault_here("the formula cannot continue like this").into()),
     }
 }
 
@@ -300,7 +300,7 @@ impl Reader<'_, '_> {
             Some('.' | '0'..='9') => self.number(),
             Some(letter) if letter.is_ascii_alphabetic() || letter == '_' => self.name(),
             Some(_) => Err(self
-                .fault_here("this is no part of a formula")
+                .fault_here("this cannot be part of a formula")
                 .help("a formula consists of numbers, names, + - * / ^ and parentheses")
                 .into()),
             None => Err(self.fault_here("a number or a name is missing here").into()),

@@ -71,9 +71,9 @@ fn a_fault_in_a_formula_has_its_place() {
     for (formula, fault) in [
         ("x^2+", "a number or a name is missing here at Some(4..4)"),
         ("(x", "a closing parenthesis is missing here at Some(2..2)"),
-        ("x)", "this parenthesis closes none at Some(1..2)"),
+        ("x)", "this parenthesis closes nothing at Some(1..2)"),
         ("x+b", "`b` has no value at Some(2..3)"),
-        ("x&y", "the formula does not go on like this at Some(1..2)"),
+        ("x&y", "the formula cannot continue like this at Some(1..2)"),
         ("besselj(x)", "the function `besselj` is not read at Some(0..7)"),
         ("1e999*x", "this is not a number at Some(0..5)"),
     ] {
@@ -164,7 +164,7 @@ fn a_script_of_surf_is_a_scene() {
     assert!(text.contains("ambient 0.4 0 0.08"), "{text}");
     let left: Vec<_> = left.iter().map(|(word, line)| format!("{word} {line}")).collect();
     assert_eq!(left, ["antialiasing 2", "root_finder 2", "filename 13", "save_color_image 13"]);
-    assert!(warnings.contains("that a surface is transparent is left out"), "{warnings}");
+    assert!(warnings.contains("the transparency of a surface is left out"), "{warnings}");
 }
 
 #[test]
@@ -230,12 +230,8 @@ fn what_is_wrong_with_a_file_is_marked_in_it() {
             "surface_equation=x\nrotation_matrix=1 2 3\n",
             "a.jsurf:2:17: error: `rotation_matrix` must be 16 numbers\n",
         ),
-        ("a.surf", "surface = x^2 +* y;\n", "a.surf:1:16: error: this is no part of a formula\n"),
-        (
-            "a.surf",
-            "int i = 1;\nloop:\ni = i + 1;\n",
-            "a.surf:2:1: error: a script that does not go from line to line is not read\n",
-        ),
+        ("a.surf", "surface = x^2 +* y;\n", "a.surf:1:16: error: this cannot be part of a formula\n"),
+        ("a.surf", "int i = 1;\nloop:\ni = i + 1;\n", "a.surf:2:1: error: a script with jumps is not read\n"),
         ("a.surf", "surface = x", "a.surf:1:1: error: this statement has no end\n"),
         ("a.surf", "double a = 1;", "a.surf:1:1: error: this script has no surface\n"),
         ("a.surf", "surface = x; width = 0;", "a.surf:1:14: error: `width` cannot be 0\n"),

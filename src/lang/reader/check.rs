@@ -335,9 +335,9 @@ impl Check<'_, '_> {
         let unused = (camera.rules == Rules::Notes).then(|| args.given_of_free_rules()).into_iter().flatten();
         for attribute in unused {
             let place = place_of(args.entity, parsed, Some(attribute));
-            let message = format!("`{attribute}` has no effect by the notes' rules of light");
-            let help = "they cut 255 times the light to a byte; by the free rules, light is shown by `exposure`, `tone` \
-                        and `transfer`";
+            let message = format!("`{attribute}` has no effect under the notes' rules of light");
+            let help = "they cut 255 times the light to a byte; under the free rules, light is shown by `exposure`, \
+                        `tone` and `transfer`";
             self.report.add(Fault::warning(place, message).help(help));
         }
     }

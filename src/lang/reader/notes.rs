@@ -413,7 +413,7 @@ impl<'a, 'r> Grammar<'a, 'r> {
         self.report.add(
             Fault::error(Some(place.clone()), message)
                 .label("not defined here")
-                .help(format!("define it before, {example}, and write `{} NAME` here", name.text)),
+                .help(format!("define it earlier, {example}, and write `{} NAME` here", name.text)),
         );
         entity.value(Word::at("", Form::Faulty, place));
     }

@@ -121,7 +121,7 @@ impl<'a> Numbers<'a> {
             let message = format!("`{}` cannot be the name of a number", name.text);
             report.add(
                 fault(message)
-                    .help(format!("in formulas, `{}` has a meaning already: choose another name", name.text)),
+                    .help(format!("in formulas, `{}` already has a meaning: choose another name", name.text)),
             );
         } else if let Some(known) = self.by_name.get(&*name.text) {
             let message = format!("the number `{}` is defined twice", name.text);

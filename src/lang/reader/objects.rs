@@ -155,7 +155,8 @@ impl Check<'_, '_> {
         (!is_used).then(|| Warning {
             attribute: "falloff",
             message: "has a `falloff`, which the notes' rules of light do not know".to_owned(),
-            help: "by the notes' rules, its light is divided by the distance; `rules free` in the camera changes that"
+            help: "under the notes' rules, its light is divided by the distance; `rules free` in the camera changes \
+                   that"
                 .to_owned(),
         })
     }

@@ -126,7 +126,7 @@ impl<'a> Rounds<'a> {
         let names = self.numbers.len();
         let is_too_deep = self.open.len() >= DEEPEST;
         if is_too_deep {
-            let message = format!("`repeat {}` is one `repeat` too deep", name.text);
+            let message = format!("`repeat {}` is nested too deep", name.text);
             let help = format!("a `repeat` can be nested at most {DEEPEST} deep");
             report.add(Fault::error(name.place.clone(), message).help(help));
         }

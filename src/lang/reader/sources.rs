@@ -170,7 +170,7 @@ impl<'t> Sources<'t> {
         may_include(readings, includer, file, &path)?;
         if Syntax::of_name(&path).unwrap_or(syntax) != syntax {
             let help = "`tabray convert` writes a file in the other syntax";
-            return Err((format!("`{file}` has another syntax than the scene"), Some(help.to_owned())));
+            return Err((format!("`{file}` is in a different syntax from the scene"), Some(help.to_owned())));
         }
         let bytes = read(file, &path, open, *room)?;
         *room = room
@@ -179,7 +179,7 @@ impl<'t> Sources<'t> {
         let text = std::str::from_utf8(&bytes).ok().filter(|text| !text.contains('\0'));
         let Some(text) = text else {
             let other = encoding::other(&bytes).map(|name| format!("probably encoded in {name}"));
-            let what = other.unwrap_or_else(|| "not a text".to_owned());
+            let what = other.unwrap_or_else(|| "not text".to_owned());
             let help = "a scene is plain text, in UTF-8";
             return Err((format!("`{file}` is {what}"), Some(help.to_owned())));
         };

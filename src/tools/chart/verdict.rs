@@ -46,7 +46,7 @@ pub fn words(chart: &Chart) -> String {
         );
     }
     if !chart.is_whole {
-        text += "Not all was measured: this is what had been measured by then.\n";
+        text += "Not everything was measured: these are the results by then.\n";
     }
     text
 }

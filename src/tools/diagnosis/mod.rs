@@ -182,7 +182,7 @@ fn place(at: DVec3) -> String {
 fn black(plan: &Plan, survey: &Survey, brightest: u8) -> Remark {
     let (camera, display) = (&plan.camera, plan.camera.display());
     let by_notes = camera.rules == Rules::Notes;
-    let rules = if by_notes { "by the notes' rules " } else { "" };
+    let rules = if by_notes { "under the notes' rules " } else { "" };
     let level = |light: f64| short(255.0 * display.shown(Rgb::splat(light)).x);
     let mut reasons = Vec::new();
     let lamps = survey.brightest();
@@ -255,7 +255,7 @@ fn brighter(survey: &Survey, lamps: &[usize]) -> String {
         cures.push(format!("`exposure {}`", rounded(stops)));
     }
     if cures.is_empty() {
-        return "`tabray probe` tells of a pixel what its rays meet, and which lights reach it".to_owned();
+        return "`tabray probe` explains what the rays of a pixel meet, and which lights reach it".to_owned();
     }
     cures.join(", or ")
 }

@@ -183,15 +183,15 @@ impl View {
         let sides = sides.iter().filter(|(part, _)| *part != 0);
         let shifts: Vec<_> = sides.map(|(part, side)| format!("{} {side}", pixels(*part))).collect();
         match (self.flipped, self.curve) {
-            ([true, true], _) => "is turned by half a turn".to_owned(),
+            ([true, true], _) => "is rotated by 180 degrees".to_owned(),
             ([true, false], _) => "is flipped, left to right".to_owned(),
             ([false, true], _) => "is flipped, top to bottom".to_owned(),
             (_, Curve::Right) => format!("is shifted by {}", shifts.join(" and ")),
             (_, Curve::Encoded) => "has the curve of sRGB once too often".to_owned(),
-            (_, Curve::Decoded) => "lacks the curve of sRGB, or has it taken back".to_owned(),
+            (_, Curve::Decoded) => "lacks the curve of sRGB, or has it undone".to_owned(),
             (_, Curve::Brightened) => "is brightened by a gamma of 2.2".to_owned(),
             (_, Curve::Darkened) => "is darkened by a gamma of 2.2".to_owned(),
-            (_, Curve::Swapped) => "has red and blue in each other's place".to_owned(),
+            (_, Curve::Swapped) => "has red and blue exchanged".to_owned(),
         }
     }
 }

@@ -26,7 +26,7 @@ impl<'r> Rows<'r> {
     /// Reads the head of an array.
     pub fn new(mut input: Box<dyn BufRead + 'r>) -> Result<Self, String> {
         let head = head(&mut input).map_err(|error| match error.kind() {
-            io::ErrorKind::UnexpectedEof | io::ErrorKind::InvalidData => "it is no NumPy array".to_owned(),
+            io::ErrorKind::UnexpectedEof | io::ErrorKind::InvalidData => "it is not a NumPy array".to_owned(),
             _ => reason(&error),
         })?;
         let (is_little, size) = match value(&head, "descr") {
@@ -197,7 +197,7 @@ mod tests {
             b"\x93NUMPY\x03\x00\xff\xff\xff\xff",
             b"none of it",
         ] {
-            assert_eq!(rows(bytes).err().as_deref(), Some("it is no NumPy array"));
+            assert_eq!(rows(bytes).err().as_deref(), Some("it is not a NumPy array"));
         }
         let short = array("{'descr': '<f8', 'fortran_order': False, 'shape': (9, 6), }", &[0; 47]);
         assert!(rows(&short).expect("a head").next().is_some_and(|row| row.is_err()));

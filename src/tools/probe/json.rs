@@ -28,7 +28,7 @@ pub struct PixelExplained<'m> {
 struct RayExplained<'m> {
     /// `primary`, `reflected`, `transmitted` or `shadow`.
     kind: &'static str,
-    /// The number of the ray that led to this one, by the notes' rules. By the free ones, rays are not nested.
+    /// The number of the ray that led to this one, under the notes' rules. By the free ones, rays are not nested.
     #[serde(skip_serializing_if = "Option::is_none")]
     from: Option<usize>,
     /// The factor by which its colour is multiplied.

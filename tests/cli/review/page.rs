@@ -69,7 +69,7 @@ fn a_program_that_does_not_explain_is_told() {
     };
     for (size, program, said) in [
         ("4 3", "./no-such-program", "cannot start `./no-such-program`: no such file or directory"),
-        ("8 6", "false", "the image does not have the size that its scene gives"),
+        ("8 6", "false", "the image does not have the size in its scene"),
         ("4 3", "false", "the program says\\n\\n"),
     ] {
         let told = format!("[\"Before, by {program}\",\"no explanation: {said}\"]");

@@ -74,8 +74,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.scratch.any_missing = true;
     }
 
-    /// Notes the primary rays of paths that end at a surface because they are too long by the notes' rules, and not because
-    /// they could add too little.
+    /// Notes the primary rays of paths that end at a surface because they are too long under the notes' rules, and not
+    /// because they could add too little.
     pub(super) fn end_far(
         &mut self,
         group: &RayGroup,

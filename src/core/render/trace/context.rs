@@ -86,7 +86,7 @@ pub struct Scratch {
     pub(super) are_probes: bool,
     /// What the current primary rays meet on their paths.
     pub(super) trails: PathHashes,
-    /// The trees that grow by the free rules, unless they are being looked at.
+    /// The trees that grow under the free rules, unless they are being looked at.
     pub(super) trees: Option<Box<TreeScratch>>,
     /// The unused scratch space of packets, one for each level of recursion, the outermost one last.
     #[expect(clippy::vec_box, reason = "they come and go, and are large")]
@@ -111,7 +111,7 @@ pub struct Scratch {
     pub(super) kept: Vec<u32>,
     /// Whether any primary ray may lack light.
     pub(super) any_missing: bool,
-    /// Whether a path of each primary ray was too long by the notes' rules; empty while none was.
+    /// Whether a path of each primary ray was too long under the notes' rules; empty while none was.
     pub(super) far: Vec<bool>,
     /// The primary rays whose first hit could not be decided.
     pub(super) undecided: UndecidedScratch,
@@ -203,7 +203,7 @@ pub(super) struct LightScratch {
     pub draws: LightDraws,
     /// The unit vectors toward the light.
     pub toward: VectorList,
-    /// The factors of the light, from the angles at which it arrives and by the notes' rules the distances.
+    /// The factors of the light, from the angles at which it arrives and under the notes' rules the distances.
     pub strengths: Vec<f64>,
     /// The distances at which the shadow rays end, in world units; 0 where none is needed.
     pub t_max: Vec<f64>,

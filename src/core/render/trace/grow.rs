@@ -22,7 +22,7 @@ const TOGETHER: usize = 64;
 const HEAVY: f64 = 1.0 / 16.0;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
-    /// Computes the colours that primary rays return by the free rules.
+    /// Computes the colours that primary rays return under the free rules.
     pub(super) fn grow(&mut self, depth: &Depth, group: &mut RayGroup, colours: &mut VectorList) {
         let (len, ends) = (group.len, Ends::of(&self.plan.camera));
         let mut scratch = self.scratch.trees.take().unwrap_or_default();

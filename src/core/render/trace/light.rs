@@ -27,7 +27,7 @@ pub(super) struct LitPoints<'l> {
     /// The directions of the rays that hit the points.
     pub seen: View<'l>,
     pub normals: View<'l>,
-    /// The factors of the light, from the angles at which it arrives and by the notes' rules the distances.
+    /// The factors of the light, from the angles at which it arrives and under the notes' rules the distances.
     pub strengths: &'l [f64],
     /// 0 where the light does not shine.
     pub shines: &'l [u64],

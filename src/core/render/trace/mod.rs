@@ -338,8 +338,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         group.look(cpu, &plan.camera, plan.depth.as_ref(), places, lens, len);
     }
 
-    /// Reports a pixel that lacks light. `missing` bounds how much, in any channel; by the free rules, it is how far the bounds
-    /// of the pixel are apart as it is shown.
+    /// Reports a pixel that lacks light. `missing` bounds how much, in any channel; under the free rules, it is how far
+    /// the bounds of the pixel are apart as it is shown.
     fn cut(&mut self, missing: f64) {
         let tolerable = match self.plan.camera.rules {
             Rules::Notes => 0.0,

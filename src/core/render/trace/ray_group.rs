@@ -49,7 +49,7 @@ pub(super) struct RayGroup {
     /// The lane of the primary ray that each ray descends from; empty where no ray continues and pixels have one
     /// sample.
     pub camera: Vec<u8>,
-    /// By the free rules, the number of each ray in its round; empty by the notes' rules.
+    /// Under the free rules, the number of each ray in its round; empty under the notes' rules.
     pub places: Vec<u32>,
     /// The index of the object that the rays leave.
     pub origin_object: Option<usize>,

@@ -8,7 +8,7 @@ use glam::DVec2;
 use std::mem::take;
 
 /// For each current primary ray, a hash of the objects, tiles and lights on its path: through mirrors and glass, in
-/// the order in which they are met, or by the free rules in any. It does not depend on the other rays of the packet.
+/// the order in which they are met, or under the free rules in any. It does not depend on the other rays of the packet.
 #[derive(Default)]
 pub(super) struct PathHashes {
     /// Whether anything is recorded.

@@ -1,4 +1,5 @@
-//! The trees of rays by the free rules: each is followed heaviest branch first, until what is left of it cannot be seen.
+//! The trees of rays under the free rules: each is followed heaviest branch first, until what is left of it cannot be
+//! seen.
 //!
 //! A pixel's colour is the sum of what the points that its rays meet send by themselves, each times the weight of its path.
 //! The rays that are yet to be followed are *open*. What they can still add is bounded from below and from above, by their

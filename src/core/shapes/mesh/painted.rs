@@ -51,7 +51,7 @@ impl Painted {
                 text::count(unknown.len(), "material"),
                 first_of(&unknown)
             ),
-            help: "define a material of each name; until then these faces have the material of the mesh"
+            help: "define a material for each name; until then these faces have the material of the mesh"
                 .to_owned(),
         })
     }

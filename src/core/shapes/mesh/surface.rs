@@ -348,7 +348,8 @@ fn degenerate(count: usize) -> Option<Remark> {
 fn unfit(count: usize) -> Option<Remark> {
     (count > 0).then(|| Remark {
         message: format!("does not use the file's normals at {}", text::count(count, "corner")),
-        help: "they are 0, or point away from the face's side: there, normals are those of faces, as far as edges are no creases",
+        help: "they are 0, or point away from the face's side: there, the normals are those of the faces, smoothed \
+               except across creases",
     })
 }
 
@@ -356,6 +357,7 @@ fn unfit(count: usize) -> Option<Remark> {
 fn turned(count: usize, all: usize) -> Option<Remark> {
     (count > 0).then(|| Remark {
         message: format!("turns {count} of {}", text::count(all, "face")),
-        help: "its faces now agree, with the outside of closed parts outside; `sides one` leaves them as the file has them",
+        help: "its faces now agree, and those of closed parts face outward; `sides one` leaves them as the file has \
+               them",
     })
 }

@@ -34,7 +34,7 @@ pub struct LightSamples<'f> {
     pub toward: ViewMut<'f>,
     /// The colours that the light sends, black where it sends nothing. Left untouched for a uniform light.
     pub emissivity: ViewMut<'f>,
-    /// The factors of the light, from the angles at which it arrives and by the notes' rules the distances: see
+    /// The factors of the light, from the angles at which it arrives and under the notes' rules the distances: see
     /// [`Rules::received`].
     pub strengths: &'f mut [f64],
     /// The ends of the shadow rays, in world units from the points; 0 where no shadow ray is needed.

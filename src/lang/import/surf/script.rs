@@ -173,14 +173,14 @@ impl Script<'_, '_> {
             let Some(next) = next else { return false };
             self.at += next.len_utf8();
             let place = self.at - next.len_utf8()..self.at;
-            return next == ';' || self.fault(Fault::error(Some(place), "no statement begins like this"));
+            return next == ';' || self.fault(Fault::error(Some(place), "no statement can begin like this"));
         }
         let end = self.end();
         let after = (end + 1).min(self.text.len());
         if self.parts > 0 {
             self.notes.leave(word, place.start);
         } else if ["if", "goto", "while", "for"].contains(&word) || next == Some(':') {
-            let fault = Fault::error(Some(place), "a script that does not go from line to line is not read");
+            let fault = Fault::error(Some(place), "a script with jumps is not read");
             return self
                 .fault(fault.help("leave out its jumps, and give its variables the values of one picture"));
         } else if end == self.text.len() {
@@ -191,7 +191,7 @@ impl Script<'_, '_> {
         } else if next != Some(';') {
             let place = self.at..self.at + next.map_or(0, char::len_utf8);
             return self.fault(
-                Fault::error(Some(place), "no statement goes on like this")
+                Fault::error(Some(place), "no statement can continue like this")
                     .help("write statements as `a = 1;` or `draw_surface;`"),
             );
         } else if word == "draw_surface" {
@@ -225,7 +225,7 @@ impl Script<'_, '_> {
         }
         if name.starts_with("clip_surface") {
             if self.settings.insert("clip_surface".to_owned(), (1.0, place.clone())).is_none() {
-                let fault = Fault::warning(Some(place), "that a surface cuts others is left out");
+                let fault = Fault::warning(Some(place), "the cuts of a surface through others are left out");
                 self.notes.add(fault.label("`clip` and `radius` are kept"));
             }
             return;

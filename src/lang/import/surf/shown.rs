@@ -143,7 +143,7 @@ impl Script<'_, '_> {
         for (name, (value, place)) in &self.settings {
             let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
             let warning = match stem {
-                "transparence" if *value != 0.0 => Some("that a surface is transparent is left out"),
+                "transparence" if *value != 0.0 => Some("the transparency of a surface is left out"),
                 "perspective" if *value != 0.0 => {
                     Some("perspective is left out: the scene shows parallel rays")
                 }

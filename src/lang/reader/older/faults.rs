@@ -25,7 +25,7 @@ pub fn fragment(place: Range<usize>, ([width, height], [x, y, z]): ([f64; 2], [f
 
 /// A code that stands for something else in this scene than in others.
 pub fn other_numbering(code: &Number) -> Fault {
-    let message = "this scene has another numbering, which is not read";
+    let message = "this scene has a different numbering, which is not read";
     let label = match code.code() {
         Some(PROJECTOR) => "12 is a plane there, and a projector in the numbering that is read",
         _ => "a light has a radius there, and none in the numbering that is read",

@@ -22,7 +22,7 @@ const hint = () => {
   const [click, more, zoom] = matchMedia('(pointer: coarse)').matches
     ? ['tap', 'with two fingers', 'pinch'] : ['click', 'with Shift', 'use the wheel']
   if (!steers) return `${click} a pixel to explain it, ${zoom} to zoom, drag to pan`
-  return `drag to orbit, ${more} to pan, ${zoom} to go nearer; ${click} the point to go around${isWindow ? WINDOW : ''}${turns ? TURNS : ''}`
+  return `drag to orbit, ${more} to pan, ${zoom} to move closer; ${click} the point to orbit around${isWindow ? WINDOW : ''}${turns ? TURNS : ''}`
 }
 
 /// The point that a pixel shows, or will show when the image that comes has come.

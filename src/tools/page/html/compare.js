@@ -76,7 +76,7 @@ const compareNext = () => {
   if (!compares()) return
   delete root.dataset.compared
   if (means() === 'pinned') {
-    if (pins && !isComplete()) tellDifference('the image is pinned when it is complete')
+    if (pins && !isComplete()) tellDifference('the image will be pinned once it is complete')
     showBefore()
   } else fetchOther()
 }

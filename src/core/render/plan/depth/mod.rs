@@ -49,9 +49,10 @@
 //! a branch's weight falls by more than its share does, so each branch ends; and the cuts in a ray's colour add up to
 //! less than [`FAINT`].
 //!
-//! By the free rules, no light is divided by `d`: the bounds are on light itself, `S` counts a lamp as its falloff does, and
-//! the background's own light is its brightest channel. Branches are not cut there one by one, with allowances that are
-//! fixed beforehand: the tracer ends the tree of a pixel as a whole, by [`LightRange`]s from the same inequalities.
+//! Under the free rules, no light is divided by `d`: the bounds are on light itself, `S` counts a lamp as its falloff
+//! does, and the background's own light is its brightest channel. Branches are not cut there one by one, with
+//! allowances that are fixed beforehand: the tracer ends the tree of a pixel as a whole, by [`LightRange`]s from the
+//! same inequalities.
 //!
 //! Where glass and mirrors pass on nearly all that they receive, that takes very many rays. From the `MANY`th ray on,
 //! a branch is also cut where `weight * beyond / d < FAINT` by itself.
@@ -83,7 +84,7 @@ pub struct Depth {
     pub most: f64,
     /// The bounds for each object, by the object's index.
     pub objects: Vec<ContinuationBounds>,
-    /// By the free rules, the bounds of the light that rays leaving each object return, for each side of the object,
+    /// Under the free rules, the bounds of the light that rays leaving each object return, for each side of the object,
     /// the outside first.
     pub ranges: Vec<[LightRange; 2]>,
 }
@@ -132,7 +133,7 @@ impl Depth {
     }
 }
 
-/// Bounds what rays that leave an object return which hit nothing; by the notes' rules, times the path length.
+/// Bounds what rays that leave an object return which hit nothing; under the notes' rules, times the path length.
 fn background(model: &Model) -> f64 {
     let brightest = model.background.as_ref().map(|background| background.value.brightest());
     let longest = match model.camera.value.rules {

@@ -1,4 +1,4 @@
-//! What rays that leave objects can return by the free rules, from below and from above.
+//! What rays that leave objects can return under the free rules, from below and from above.
 //!
 //! A range `[low, high]` of light holds for all rays that leave surfaces under two conditions: every surface that
 //! receives light in the range returns light in the range, and the background lies in it. Then each sum of branches

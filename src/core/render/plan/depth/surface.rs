@@ -40,13 +40,13 @@ pub(super) struct SurfaceLight {
     mirrored: f64,
     /// Whether light is divided between the two, by an interface.
     is_split: bool,
-    /// A factor of what an interface passes on: 1, or [`HELD`] where that alone bounds its light by the free rules.
+    /// A factor of what an interface passes on: 1, or [`HELD`] where that alone bounds its light under the free rules.
     held: f64,
 }
 
-/// By the free rules, the fraction of light that an interface of a surface with light of its own is taken to pass on: no
-/// more than 8 such surfaces in a row pass on nearly all. Metal reflects all light that grazes it, and glass all that it
-/// totally reflects, so that nothing else bounds the sum of their highlights.
+/// Under the free rules, the fraction of light that an interface of a surface with light of its own is taken to pass
+/// on: no more than 8 such surfaces in a row pass on nearly all. Metal reflects all light that grazes it, and glass all
+/// that it totally reflects, so that nothing else bounds the sum of their highlights.
 const HELD: f64 = 7.0 / 8.0;
 
 impl SurfaceLight {
@@ -151,7 +151,7 @@ fn tint(object: &Object, look: Option<&Look>, of: BoundedLight) -> f64 {
     }
 }
 
-/// Bounds the light of an object's own surface; by the notes' rules, times the path length to the surface.
+/// Bounds the light of an object's own surface; under the notes' rules, times the path length to the surface.
 fn own(model: &Model, object: &Object, look: &Look, of: BoundedLight, any_light_comes: bool) -> f64 {
     let highlight = if object.material.shininess == 0.0 { Rgb::ZERO } else { look.specular.abs() };
     let ambient = if of.light.is_some() { Rgb::ZERO } else { look.ambient.abs() };

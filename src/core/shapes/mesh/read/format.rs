@@ -32,10 +32,10 @@ const OTHERS: [(&[u8], &str); 16] = [
     (b"OFF", "it is an OFF: export it as OBJ, PLY, STL or glTF"),
     (
         b"version https://git-lfs",
-        "it only stands for a file that Git LFS stores: fetch that with `git lfs pull`",
+        "it is only a pointer to a file that Git LFS stores: fetch that with `git lfs pull`",
     ),
-    (b"<!DOCTYPE", "it is a page of HTML, not the file that was to be downloaded"),
-    (b"<html", "it is a page of HTML, not the file that was to be downloaded"),
+    (b"<!DOCTYPE", "it is an HTML page, not the file that was to be downloaded"),
+    (b"<html", "it is an HTML page, not the file that was to be downloaded"),
     (b"<", "it is XML, as Collada and X3D are: export it as OBJ, PLY, STL or glTF"),
 ];
 

@@ -61,7 +61,7 @@ pub fn read(path: &Path, wanted: Wanted, memory: u64) -> Result<Model, ReadError
     let is_held =
         usize::try_from(size).is_ok_and(|size| memory::may_fail(|| bytes.try_reserve_exact(size).is_ok()));
     if !is_held {
-        return Err(ReadError::file(format!("there is no memory for its {}", ByteSize(size))));
+        return Err(ReadError::file(format!("not enough memory for its {}", ByteSize(size))));
     }
     file.by_ref().take(size).read_to_end(&mut bytes).map_err(cannot)?;
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();

@@ -56,9 +56,11 @@ pub fn read(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
     }
     if found != announced {
         let help = match count.cmp(&announced) {
-            Ordering::Less => "all that it holds are taken; if the file was cut off, copy or export it again",
-            Ordering::Equal => "what follows those that it announces is left out, as it is no triangles",
-            Ordering::Greater => "all that it holds are taken",
+            Ordering::Less => {
+                "all triangles in the file are used; if the file was cut off, copy or export it again"
+            }
+            Ordering::Equal => "the rest of the file is left out, because it holds no triangles",
+            Ordering::Greater => "all triangles in the file are used",
         };
         let message =
             format!("has a file that announces {} and holds {found}", text::count(announced, "triangle"));

@@ -106,7 +106,7 @@ impl<'f> Buffers<'f> {
             };
             if bytes.len() < *byte_length {
                 return Err(format!(
-                    "buffer {index} has {}, and is to have {byte_length}",
+                    "buffer {index} has {}, but should have {byte_length}",
                     text::count(bytes.len(), "byte")
                 ));
             }
@@ -204,7 +204,7 @@ pub fn contents(uri: &str, folder: &Path, most: u64) -> Result<Vec<u8>, String> 
         .read_to_end(&mut bytes)
         .map_err(|error| cannot(text::reason(&error)))?;
     if bytes.len() as u64 > most {
-        return Err(cannot("there is no memory for it".to_owned()));
+        return Err(cannot("not enough memory for it".to_owned()));
     }
     Ok(bytes)
 }

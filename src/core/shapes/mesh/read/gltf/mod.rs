@@ -38,10 +38,10 @@ pub fn read(bytes: &[u8], folder: &Path, budget: &MemoryBudget) -> Result<Model,
     let (text, own) = if bytes.starts_with(MAGIC) { chunks(bytes)? } else { (bytes, None) };
     let is_text = own.is_none();
     if memchr_iter(b'{', text).count() as u64 * OBJECT > budget.left() {
-        return Err(ReadError::file("it has more objects than there is memory for"));
+        return Err(ReadError::file("not enough memory for its objects"));
     }
     let json: Gltf = serde_json::from_slice(text).map_err(|error| {
-        let message = format!("its JSON is no glTF: {}", shown(error.to_string().as_bytes()));
+        let message = format!("its JSON is not glTF: {}", shown(error.to_string().as_bytes()));
         if is_text && error.line() > 0 {
             ReadError::line(error.line(), message)
         } else {
@@ -83,7 +83,7 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ReadError> {
 fn model(json: &Gltf, own: Option<&[u8]>, folder: &Path, budget: &MemoryBudget) -> Result<Model, String> {
     if !json.asset.version.starts_with("2.") {
         return Err(match &json.asset.version[..] {
-            "" => "it is JSON, and no glTF: it has no `asset` with a version".to_owned(),
+            "" => "it is JSON, but not glTF: it has no `asset` with a version".to_owned(),
             version => format!("it is glTF {}, and only glTF 2 is read", shown(version.as_bytes())),
         });
     }
@@ -110,7 +110,7 @@ fn model(json: &Gltf, own: Option<&[u8]>, folder: &Path, budget: &MemoryBudget) 
         model.remarks.push(Remark { message, help: "only triangles are shown" });
     }
     if posed > 0 {
-        let message = format!("shows meshes of its file as they were modelled, in no pose: {posed}");
+        let message = format!("shows meshes of its file as they were modelled, without a pose: {posed}");
         model.remarks.push(Remark { message, help: "skins and morph targets are not read" });
     }
     Ok(model)

@@ -152,7 +152,7 @@ fn files_that_are_no_gltf_or_broken_are_told() {
         }
     }
     let cut = named("gltf", &sound[..sound.len() - 40]).expect_err("a cut file");
-    assert!(cut.message.starts_with("its JSON is no glTF: EOF") && cut.at.is_some(), "{cut:?}");
+    assert!(cut.message.starts_with("its JSON is not glTF: EOF") && cut.at.is_some(), "{cut:?}");
     let missing = sound.replace("data:application", "no such file.bin?");
     let message = named("gltf", missing).expect_err("no buffer").message;
     assert!(
