@@ -90,13 +90,14 @@ function pop(    i, down, at, node) {
 function draw(    s, n, p, nodes, line) {
     split("#1b6ca8,#c8553d", colour, ",")
     split("10:none,100:6 4,1000:2 3", dash, ",")
-    print "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"700\" height=\"400\" font-family=\"sans-serif\" font-size=\"12\">" >chart
-    print "<rect width=\"700\" height=\"400\" fill=\"white\"/>" >chart
+    # The legend stands below, in two columns, so that a phone shows the text large enough to read.
+    print "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"480\" height=\"487\" viewBox=\"0 0 480 487\" font-family=\"sans-serif\" font-size=\"14\">" >chart
+    print "<rect width=\"480\" height=\"487\" fill=\"white\"/>" >chart
     for (p = 0; p <= 100; p += 20) {
-        printf "<path d=\"M60 %d H450\" stroke=\"#ddd\"/><text x=\"54\" y=\"%d\" text-anchor=\"end\">%d</text>\n", 350 - 3 * p, 354 - 3 * p, p >chart
+        printf "<path d=\"M60 %d H450\" stroke=\"#ddd\"/><text x=\"54\" y=\"%d\" text-anchor=\"end\">%d</text>\n", 350 - 3 * p, 355 - 3 * p, p >chart
     }
-    for (p = 0; p < 7; p++) printf "<text x=\"%d\" y=\"368\" text-anchor=\"middle\">%d</text>\n", 60 + 65 * p, 2 ^ p >chart
-    print "<text x=\"255\" y=\"390\" text-anchor=\"middle\">parts per node</text><text x=\"60\" y=\"30\">efficiency, %</text>" >chart
+    for (p = 0; p < 7; p++) printf "<text x=\"%d\" y=\"370\" text-anchor=\"middle\">%d</text>\n", 60 + 65 * p, 2 ^ p >chart
+    print "<text x=\"255\" y=\"392\" text-anchor=\"middle\">parts per node</text><text x=\"10\" y=\"30\">efficiency, %</text>" >chart
     for (s = 1; s <= count; s++)
         for (n = 1; n <= 3; n++) {
             nodes = 10 ^ n
@@ -104,8 +105,8 @@ function draw(    s, n, p, nodes, line) {
             for (p = 0; p < 7; p++) line = line sprintf("%s%d %.1f", p ? " L" : "", 60 + 65 * p, 350 - 3 * efficiency[s, nodes, p])
             split(dash[n], style, ":")
             printf "<path d=\"%s\" fill=\"none\" stroke=\"%s\" stroke-width=\"2\" stroke-dasharray=\"%s\"/>\n", line, colour[s], style[2] >chart
-            y = 60 + 20 * (3 * s + n)
-            printf "<path d=\"M465 %d H500\" stroke=\"%s\" stroke-width=\"2\" stroke-dasharray=\"%s\"/><text x=\"506\" y=\"%d\">%s, %d nodes</text>\n", y, colour[s], style[2], y + 4, scenes[s], nodes >chart
+            x = s == 1 ? 20 : 220; y = 393 + 24 * n
+            printf "<path d=\"M%d %d h40\" stroke=\"%s\" stroke-width=\"2\" stroke-dasharray=\"%s\"/><text x=\"%d\" y=\"%d\">%s, %d nodes</text>\n", x, y, colour[s], style[2], x + 48, y + 5, scenes[s], nodes >chart
         }
     print "</svg>" >chart
 }

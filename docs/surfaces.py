@@ -404,27 +404,34 @@ def cost(program):
 
 
 def chart(rows):
-    """A panel for each thing that grows, with logarithmic scales."""
+    """A panel for each thing that grows, with logarithmic scales. Two stand in a row, so that a phone shows them large."""
     wide, tall, most = 260, 240, 10 ** math.ceil(math.log10(max(count for *_, count in rows)))
     least = 10 ** math.floor(math.log10(min(count for *_, count in rows)))
-    out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{4 * wide}" height="{tall + 90}" font-family="sans-serif" font-size="11">',
-           f'<rect width="{4 * wide}" height="{tall + 90}" fill="#FFFFFF"/>',
-           '<text x="20" y="20" font-weight="bold">million instructions for 32 x 24 pixels, beyond those of an empty image</text>']
+    width, height = 2 * wide, 40 + 2 * (tall + 70)
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="13">',
+           f'<rect width="{width}" height="{height}" fill="#FFFFFF"/>',
+           '<text x="10" y="20" font-weight="bold">million instructions for 32 x 24 pixels, beyond an empty image</text>']
     for panel, (name, sizes, _) in enumerate(GROWING):
-        left, low, high = 50 + panel * wide, math.log(min(sizes)), math.log(max(sizes))
-        right = lambda size: left + (wide - 70) * (math.log(size) - low) / (high - low)
-        down = lambda count: 60 + tall * (1 - math.log(count / least) / math.log(most / least))
-        out.append(f'<text x="{left}" y="46">{name}</text>')
+        left, low, high = 55 + panel % 2 * wide, math.log(min(sizes)), math.log(max(sizes))
+        top = 70 + panel // 2 * (tall + 70)
+        right = lambda size: left + (wide - 75) * (math.log(size) - low) / (high - low)
+        down = lambda count: top + tall * (1 - math.log(count / least) / math.log(most / least))
+        out.append(f'<text x="{left}" y="{top - 14}">{name}</text>')
         for power in range(round(math.log10(least)), round(math.log10(most)) + 1):
             y = down(10 ** power)
-            out.append(f'<path d="M{left} {y:.1f}H{left + wide - 70}" stroke="#DDDDDD"/>')
-            out.append(f'<text x="{left - 4}" y="{y + 4:.1f}" text-anchor="end">{10 ** power:g}</text>')
+            out.append(f'<path d="M{left} {y:.1f}H{left + wide - 75}" stroke="#DDDDDD"/>')
+            out.append(f'<text x="{left - 4}" y="{y + 5:.1f}" text-anchor="end">{10 ** power:g}</text>')
         own = [(size, count) for of, size, count in rows if of == name]
         line = " ".join(f"{right(size):.1f},{down(count):.1f}" for size, count in own)
         out.append(f'<polyline fill="none" stroke="#1F77B4" stroke-width="2" points="{line}"/>')
+        free = left - 20
         for size, count in own:
             out.append(f'<circle cx="{right(size):.1f}" cy="{down(count):.1f}" r="3" fill="#1F77B4"/>')
-            out.append(f'<text x="{right(size):.1f}" y="{tall + 76}" text-anchor="middle" font-size="9">{size}</text>')
+            # Numbers that would touch the one before are left out.
+            half = 4.2 * len(str(size))
+            if right(size) - half > free:
+                out.append(f'<text x="{right(size):.1f}" y="{top + tall + 18}" text-anchor="middle">{size}</text>')
+                free = right(size) + half + 2
     return "\n".join([*out, "</svg>", ""])
 
 

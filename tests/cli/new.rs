@@ -259,7 +259,7 @@ fn a_plugin_that_cannot_be_is_refused_and_nothing_is_written() {
         ("cone", "the profile `cone` already exists", TAKEN),
         ("body", "the template already uses the name `Body`", TAKEN),
         ("lib", "`plugins/lib.rs` is not a plugin: it makes the crate of all plugins", TAKEN),
-        ("build", "`plugins/build.rs` is no plugin", TAKEN),
+        ("build", "`plugins/build.rs` is not a plugin", TAKEN),
         ("gem", "`plugins/gem.rs` already exists", IN_THE_WAY),
         ("coil", "`scenes/wrong/coil.ray` already exists", IN_THE_WAY),
     ] {
