@@ -1,13 +1,13 @@
 //! A ray tracer in which a scene is data and every entity type is a plugin.
 //!
-//! This library is all of tabray, with its entity types: what links it can read every scene. It consists of crates that
-//! can be used by themselves, and has nothing of its own:
+//! This library is all of tabray, with its entity types: a program that links it can read every scene. It only joins
+//! crates that can also be used by themselves:
 //!
 //! - [`exact`] (tabray-exact): intervals, longer numbers, formulas and roots
 //! - [`geometry`], [`world`], [`shapes`], [`render`] and [`output`] (tabray-core): from a model to an image
 //! - [`scene`] (tabray-core, tabray-lang): the tables of entity types, the model, and the reader of scenes
 //! - [`tools`] (tabray-tools) and [`cli`] (tabray-cli): charts, proofs and contract tests; the command line
-//! - `tabray-plugins`: the entity types, a file in `plugins/` for each
+//! - `tabray-plugins`: the entity types, each a file in `plugins/`
 //!
 //! Data flows in one direction: a scene's text becomes entities, checked against the tables of their types, then a
 //! [`Model`](scene::Model), then a [`Plan`](render::Plan), and tile by tile an image ([`Renderer`](render::Renderer),
@@ -15,8 +15,8 @@
 //! ([`scene::dump`]). `docs/architecture.md` draws this flow, and the module of each step.
 //!
 //! A file in `plugins/` adds an entity type: it registers an [`Entity`](scene::Entity) and implements a trait of
-//! [`world`]; [`prelude`] has all that it needs. No other file mentions it. A plugin outside of this package does the
-//! same, and calls [`cli::run`] from its own `main` (see `docs/plugins.md`).
+//! [`world`]; [`prelude`] has everything that it needs. No other file mentions the type. A plugin outside of this
+//! package does the same, and calls [`cli::run`] from its own `main` (see `docs/plugins.md`).
 
 pub use tabray_cli as cli;
 pub use tabray_core::{geometry, glam, output, prelude, query, render, shapes, simd, world};

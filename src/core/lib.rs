@@ -2,9 +2,9 @@
 //! shapes, rendering and images.
 //!
 //! A [`Model`](scene::Model) becomes a [`Plan`](render::Plan), and tile by tile an image
-//! ([`Renderer`](render::Renderer), [`Format`](output::Format)). [`prelude`] has all that an entity type needs, which a
-//! plugin registers as an [`Entity`](scene::Entity). Texts of scenes are read by `tabray-lang`, and the entity types of
-//! tabray are in `tabray-plugins`.
+//! ([`Renderer`](render::Renderer), [`Format`](output::Format)). A plugin registers an entity type as an
+//! [`Entity`](scene::Entity); [`prelude`] has everything that it needs. `tabray-lang` reads the texts of scenes, and
+//! `tabray-plugins` has the entity types of tabray.
 //!
 //! The core starts no threads and reads no clock: its loops run on the rayon pool that the caller is in ([`parallel`]).
 //!

@@ -192,7 +192,7 @@ pub fn reason(error: &io::Error) -> String {
     }
 }
 
-/// What is said of a file that is no image.
+/// The message about a file that is not an image.
 pub const NO_IMAGE: &str = "it is not an image that can be read";
 
 /// Returns why a file could not be read as an image.

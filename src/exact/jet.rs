@@ -32,7 +32,7 @@ impl<N: Scalar> Jet<N> {
         Self { value, first: N::constant(0.0), second: N::constant(0.0) }
     }
 
-    /// Returns the number with its first derivative alone.
+    /// Returns the number with only its first derivative.
     #[inline(always)]
     fn dual(self) -> Dual<N> {
         Dual { value: self.value, slope: self.first }

@@ -1,7 +1,7 @@
-//! Number types that formulas are evaluated with, formulas, and proven roots.
+//! Number types for the evaluation of formulas, the formulas, and proven roots.
 //!
-//! One formula is evaluated with any [`Scalar`]: `f64`, an [`Interval`] that encloses all values, a [`Dual`] number or a
-//! [`Jet`] for derivatives, or [`Wide`] intervals whose endpoints have 237 bits.
+//! The same formula can be evaluated with any [`Scalar`]: `f64`, an [`Interval`] that encloses all values, a [`Dual`]
+//! number or a [`Jet`] for derivatives, or [`Wide`] intervals whose endpoints have 237 bits.
 //!
 //! ```
 //! use tabray_exact::{Dual, Formula, Interval};
@@ -15,7 +15,7 @@
 //! # Ok::<(), String>(())
 //! ```
 //!
-//! `cargo run -p tabray-exact --example bounds` proves where that formula is first 0.
+//! `cargo run -p tabray-exact --example bounds` proves where that formula is 0 first.
 
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the system's functions"))]
 

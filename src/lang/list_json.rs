@@ -44,7 +44,7 @@ pub struct Entity {
     pub meaning: &'static str,
     /// The name in scenes.
     pub name: &'static str,
-    /// The groups of attributes of each of which a scene gives exactly one.
+    /// The groups of attributes from each of which a scene gives exactly one.
     pub one_of: Vec<Group>,
 }
 
@@ -96,7 +96,7 @@ pub struct ListOf {
     pub most: usize,
 }
 
-/// Attributes of which a scene gives exactly one.
+/// Attributes from which a scene gives exactly one.
 #[derive(Serialize)]
 pub struct Group {
     /// The noun for each of the attributes, with its article.

@@ -1,4 +1,4 @@
-//! Tools that work on a model beside rendering it: charts, benchmarks, contracts, proofs, movements of the camera.
+//! Tools that use a model for more than rendering: charts, benchmarks, contracts, proofs, movements of the camera.
 
 pub mod assumptions;
 pub mod bench;

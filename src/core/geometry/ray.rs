@@ -65,7 +65,7 @@ pub struct RayBall {
 }
 
 impl RayBall {
-    /// Returns whether the ray stands for itself alone.
+    /// Returns whether the ray stands only for itself.
     #[inline(always)]
     pub fn is_single(&self) -> bool {
         self.drift.is_none()

@@ -22,7 +22,7 @@ pub fn split(count: usize, max_size: usize) -> impl Iterator<Item = Range<usize>
     (0..count).step_by(max_size).map(move |first| first..count.min(first + max_size))
 }
 
-/// A packet of rays, all of which leave the same object, or none.
+/// A packet of rays that all leave the same object, or no object.
 #[derive(Clone, Copy)]
 pub struct RayPacket<'r> {
     /// The origins, in world coordinates.

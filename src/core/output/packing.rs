@@ -34,7 +34,7 @@ pub(super) struct Packing<'r> {
 }
 
 impl<'r> Packing<'r> {
-    /// Makes a packer for an image of this width and height in pixels. The pieces depend on the size alone.
+    /// Makes a packer for an image of this width and height in pixels. The pieces depend only on the size.
     pub fn new(
         [width, height]: [usize; 2],
         compression: Compression,

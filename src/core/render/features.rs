@@ -23,8 +23,8 @@ pub(crate) struct Features {
     /// For each square, from the lower left one in rows, the index of its first entry in `small`; and the end.
     starts: Vec<u32>,
     small: Vec<SmallObject>,
-    /// The number of small objects, of which some may be in several squares; `None` where the camera does not say where
-    /// objects are seen, so that there may be a small one in each pixel.
+    /// The number of small objects, some perhaps in several squares; `None` where the camera does not say where objects
+    /// are seen, so that there may be a small one in each pixel.
     count: Option<usize>,
 }
 

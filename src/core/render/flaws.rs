@@ -28,7 +28,7 @@ pub struct BudgetCuts {
 /// The rays from the viewer whose paths are too long under the notes' rules.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FarPaths {
-    /// The number of rays of which a path in mirrors or through glass is too long.
+    /// The number of rays with a path in mirrors or through glass that is too long.
     pub rays: u64,
     /// The number of all rays from the viewer.
     pub of: u64,

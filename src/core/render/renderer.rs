@@ -65,7 +65,7 @@ impl Renderer {
     }
 
     /// Renders a part of the image from the top, some rows at a time. `columns` count from the left and `rows` from the
-    /// top, and neither is empty. The pixels depend on the plan alone, not on the threads.
+    /// top, and neither is empty. The pixels depend only on the plan, not on the threads.
     ///
     /// Each strip of tiles has a new observer, which is then passed to `watched`, on any thread and in no particular
     /// order.

@@ -63,7 +63,7 @@ pub struct Band {
 }
 
 impl Band {
-    /// Makes a band of which nothing is rendered.
+    /// Makes a band without rendered pixels.
     pub fn blank(columns: Range<usize>, rows: Range<usize>) -> Self {
         let width = columns.len();
         let strip = |from: usize| {

@@ -1,4 +1,4 @@
-//! The number of values that an attribute takes, and groups of attributes of which a scene gives one.
+//! The number of values that an attribute takes, and groups of attributes from which a scene gives one.
 
 use crate::text;
 
@@ -77,7 +77,7 @@ impl Counts {
     }
 }
 
-/// Attributes of which a scene gives exactly one. As a row of a table, it stands beside the rows of the attributes,
+/// Attributes from which a scene gives exactly one. As a row of a table, it stands beside the rows of the attributes,
 /// which by themselves may be left out.
 pub struct OneOf {
     /// The noun for each of the attributes, with its article: "the profile curve".

@@ -222,7 +222,7 @@ impl Entity {
         })
     }
 
-    /// Returns the groups of attributes of which exactly one must be given.
+    /// Returns the groups of attributes from which a scene must give exactly one.
     pub fn groups(&self) -> impl Iterator<Item = &'static OneOf> + use<> {
         self.rows().filter_map(|row| row.one_of())
     }

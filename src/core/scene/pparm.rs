@@ -18,7 +18,7 @@ pub trait Row: Sync {
     fn attribute(&self) -> Option<&dyn Attribute>;
     /// Returns the text of this row in the notes' dump, including line ends.
     fn dump(&self, attributes: &Attributes) -> String;
-    /// Returns the attributes of which exactly one must be given, or `None` where the row says nothing of that.
+    /// Returns the attributes from which a scene must give exactly one, or `None` if the row is not such a group.
     fn one_of(&self) -> Option<&OneOf> {
         None
     }

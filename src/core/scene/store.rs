@@ -91,7 +91,7 @@ impl Store {
         }
     }
 
-    /// Returns the number of an entity type of which there is an entity.
+    /// Returns the number of an entity type that the scene uses.
     pub fn number(&self, entity: &'static Entity) -> Option<usize> {
         self.types.iter().position(|known| ptr::eq(*known, entity))
     }

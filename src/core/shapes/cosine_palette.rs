@@ -1,4 +1,4 @@
-//! Colours of the angle of a direction, of which each channel is a cosine.
+//! Colours by the angle of a direction: each channel is a cosine.
 
 use crate::world::certify::Precise;
 use crate::world::material::{Look, Material, Rgb};

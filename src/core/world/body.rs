@@ -133,7 +133,7 @@ pub struct Solid {
     pub parts: Vec<Part>,
     /// The condition on the parts that a point lies in, which decides whether the point lies in the solid.
     pub tree: Tree,
-    /// Whether it is cut open: the surface of its first part alone is seen, and it has no inside.
+    /// Whether it is cut open: only the surface of its first part is seen, and it has no inside.
     pub is_open: bool,
 }
 
@@ -146,7 +146,7 @@ pub struct Part {
     pub body: Arc<Body>,
     /// The material.
     pub material: Arc<Material>,
-    /// Whether other parts clip it: its box may cut its surface, so that the sign of its equation alone tells its inside.
+    /// Whether other parts clip it: its box may cut its surface, so only the sign of its equation tells its inside.
     pub is_clipped: bool,
 }
 

@@ -23,7 +23,7 @@ pub trait Camera: fmt::Debug + Send + Sync + 'static {
 
     /// Returns the same ray as [`ray`](Self::ray), or, where that ray takes more than plain arithmetic, a ray with a
     /// direction whose x or y is 0, which stands for "unknown". Packets of rays call this function first, and `ray`
-    /// again for the unknown ones alone.
+    /// again only for the unknown ones.
     fn plain_ray(&self, at: &ImagePoint, lens: DVec2) -> Ray {
         self.ray(at, lens)
     }

@@ -40,7 +40,7 @@ impl Transfer {
         }
     }
 
-    /// Returns the light of which this is the code, from 0 to 1.
+    /// Returns the light that this code, from 0 to 1, stands for.
     pub fn decode(self, code: f64) -> f64 {
         match self {
             Self::Linear => code,
@@ -197,7 +197,7 @@ impl Display {
         light.map(|channel| self.transfer.encode(channel.min(1.0)))
     }
 
-    /// Bounds what is shown of light between these bounds, but for rounding.
+    /// Bounds the displayed values of light between these bounds, before rounding.
     pub fn shown_within(&self, bounds: [Rgb; 2]) -> [Rgb; 2] {
         match self.tone {
             Tone::Clip => bounds.map(|light| self.shown(light)),

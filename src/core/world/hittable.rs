@@ -141,7 +141,7 @@ pub struct Curvature {
 /// A shape whose [`distance`](Hittable::distance) is expensive, and which can quickly bracket it.
 ///
 /// Branch-free arithmetic on several rays at a time uses the brackets to find the shape that each ray may hit first.
-/// The exact distance is then computed for that shape alone.
+/// The exact distance is then computed only for that shape.
 pub trait Bracketed: Hittable {
     /// Whether [`t_bounds_each`](Self::t_bounds_each) takes less time than rays one by one.
     const BY_BEAMS: bool = false;
@@ -261,7 +261,7 @@ pub struct Sides {
 impl Sides {
     /// Neither side.
     pub const NONE: Self = Self { outside: false, inside: false };
-    /// The inside alone.
+    /// Only the inside.
     pub const INSIDE: Self = Self { outside: false, inside: true };
     /// Both sides.
     pub const BOTH: Self = Self { outside: true, inside: true };

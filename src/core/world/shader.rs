@@ -149,7 +149,7 @@ impl<F: Float> From<&Material> for LookBounds<F> {
 }
 
 impl<F: Float> LookBounds<F> {
-    /// Returns the bounds of means of both, of which the other has this part.
+    /// Returns the bounds of means of both, where the other has this part.
     pub fn mean(&self, other: &Self, part: Interval<F>) -> Self {
         let either = self.hull(other);
         let mean = |one: [Interval<F>; 3], other: [Interval<F>; 3], either: [Interval<F>; 3]| {

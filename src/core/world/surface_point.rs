@@ -33,7 +33,7 @@ pub struct SurfacePoint {
 }
 
 impl SurfacePoint {
-    /// Returns a point of which nothing but the position is known.
+    /// Returns a point with nothing but its position.
     #[inline(always)]
     pub fn at(position: DVec3) -> Self {
         Self {
@@ -110,7 +110,7 @@ pub struct ShaderInputs {
 }
 
 impl ShaderInputs {
-    /// The position alone.
+    /// Only the position.
     pub const POSITION: Self =
         Self { normal: false, uv: false, face: false, tangents: false, curvature: false, patch: false };
     /// The position, the normal and the side.

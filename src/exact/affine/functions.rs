@@ -37,7 +37,7 @@ impl Affine {
         if 0.5 * range.width() < self.rest { range.into() } else { self }
     }
 
-    /// Applies a function by its range alone, where nothing more is known.
+    /// Applies a function of which only the range is known.
     fn by_range(self, function: impl FnOnce(Interval) -> Interval) -> Self {
         function(self.range()).into()
     }

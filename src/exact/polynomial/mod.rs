@@ -38,7 +38,7 @@ pub struct Polynomial<C = f64, const N: usize = FEW> {
 }
 
 impl<C: Coefficient, const N: usize> Polynomial<C, N> {
-    /// A polynomial of which nothing is known.
+    /// A polynomial about which nothing is known.
     pub fn unknown() -> Self {
         Self { norm: f64::INFINITY, ..Self::about(0.0, f64::INFINITY) }
     }

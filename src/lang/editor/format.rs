@@ -56,7 +56,7 @@ struct Line {
 
 enum LineContent {
     Blank,
-    /// A comment alone.
+    /// Only a comment.
     Comment,
     /// A line without columns.
     Plain(String),

@@ -22,7 +22,7 @@ pub enum Form {
     Quoted(u8),
     /// By quotes that this many bytes at each end are, without escape sequences.
     Literal(u8),
-    /// By a quote at its beginning alone.
+    /// Only by a quote at its beginning.
     Unclosed,
 }
 

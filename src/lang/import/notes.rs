@@ -1,4 +1,4 @@
-//! What is to be said of a file of another program.
+//! The messages about a file of another program.
 
 use crate::reader::{Fault, Report};
 

@@ -19,8 +19,8 @@ use tabray_core::text::list;
 /// A model, the places of its entities, and the time that it took to make, in addition to parsing.
 pub type Checked = (Option<Model>, Places, Duration);
 
-/// Makes a model of entities and reports all their faults. Returns a model only if there are no faults. File names are
-/// relative to `folder`. If the text has syntax errors, it is not read to its end.
+/// Makes a model of entities and reports all their faults. Returns a model only if the scene has no faults. File names
+/// are relative to `folder`. If the text has syntax errors, it is not read to its end.
 pub fn model(
     registry: &Registry,
     folder: &Path,
@@ -77,7 +77,7 @@ pub fn model(
     (model, places, time + (now() - start))
 }
 
-/// What is said of a scene without a camera.
+/// The message about a scene without a camera.
 pub const NO_CAMERA: &str = "the scene has no camera";
 
 impl Check<'_, '_> {

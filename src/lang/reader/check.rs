@@ -253,7 +253,7 @@ impl Check<'_, '_> {
         }
     }
 
-    /// Reports an entity of a kind of which a scene has one, if it is the second.
+    /// Reports a second entity of a kind that a scene can have only once.
     fn refuse_second(&mut self, kind: Kind, Word { text, place, .. }: &Word<'_>) {
         let (first, how_many) = match kind {
             Kind::Camera => (&mut self.first_camera, "exactly"),

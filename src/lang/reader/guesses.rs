@@ -47,7 +47,7 @@ impl Table {
         Self { entity, attributes: entity.attributes().map(known).collect(), groups }
     }
 
-    /// Returns the groups of attributes of which exactly one must be given.
+    /// Returns the groups of attributes from which a scene must give exactly one.
     pub fn groups(&self) -> &[&'static OneOf] {
         &self.groups
     }

@@ -240,7 +240,7 @@ fn read_older(
     read_list(registry, folder, &sources, &parse, sources.report(name, Syntax::Notes), options)
 }
 
-/// Reads a scene of which all entities are parsed before any is checked.
+/// Reads a scene: parses all entities before it checks any.
 fn read_list<'s>(
     registry: &Registry,
     folder: &Path,

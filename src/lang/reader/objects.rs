@@ -208,7 +208,7 @@ fn objects(record: Record, mut body: Body) -> impl Iterator<Item = Object> {
 
 /// The result of the constructor of an object or a light.
 enum Constructed {
-    /// The shape and the shader of an object of which there is no more to say.
+    /// Only a shape and a shader.
     Plain(AnyShape, AnyShader),
     /// An object with warnings, further objects or a material of its own.
     Body(Box<Body>),

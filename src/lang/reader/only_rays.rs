@@ -1,4 +1,4 @@
-//! Scenes of which only rays are asked: they need no camera.
+//! Scenes for rays only: they need no camera.
 
 use super::build::NO_CAMERA;
 use super::report::Report;

@@ -19,7 +19,7 @@ pub struct ReadOptions<'s> {
     pub may_share_names: bool,
     /// Whether there is no warning of colours that may be meant to be from 0 to 255.
     pub may_be_bright: bool,
-    /// Whether only rays are asked about, so that nothing is said of the image.
+    /// Whether the scene is for rays only, so that messages about its image are left out.
     pub only_rays: bool,
     /// The limit on the memory of the scene's textures and of its objects' files, in bytes; by default 1 GiB for the
     /// textures, and no limit for the objects, which take little more memory than their files.

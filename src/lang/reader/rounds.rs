@@ -98,7 +98,7 @@ impl<'a> Rounds<'a> {
         }
     }
 
-    /// Names a number, of which another value may be set, or defines a function.
+    /// Names a number, whose value an option may override, or defines a function.
     pub fn define(&mut self, name: &Word<'a>, value: &Word<'a>, report: &mut Report<'_>) {
         if self.numbers.function(name, value, report).is_some() {
             return;

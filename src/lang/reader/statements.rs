@@ -70,8 +70,8 @@ impl<'a> Parser<'a, '_> {
         self
     }
 
-    /// Parses the next entities, in the memory of others, until there are as many as asked for or no more. After a syntax
-    /// error there are no more, except where parsing goes on so that one run finds the faults that follow.
+    /// Parses the next entities, in the memory of others, until there are as many as asked for or no more. They end at
+    /// a syntax error, unless parsing continues to find further faults in one run.
     pub fn entities(&mut self, parsed: &mut [Option<Parsed<'a>>]) -> usize {
         let mut count = 0;
         while count < parsed.len()

@@ -136,7 +136,7 @@ impl RaySummary {
 pub(super) struct Estimate {
     /// The number of samples.
     pub count: u32,
-    /// The number of samples that the pixel is to have next, a power of two.
+    /// The next number of samples of the pixel, a power of two.
     pub goal: u32,
     /// The sum of the samples' colours.
     sum: Rgb,
@@ -154,8 +154,8 @@ pub(super) struct Estimate {
 }
 
 impl Estimate {
-    /// Starts with the results of the probes around the pixel, and with the number of samples that it is to have first.
-    /// `is_careful` tells that light is spread out and the error is limited. The estimate is too large to be copied into its place.
+    /// Starts with the results of the probes around the pixel, and with its first number of samples. `is_careful` tells
+    /// that light is spread out and the error is limited. The estimate is too large to be copied into its place.
     #[inline]
     pub fn begin(&mut self, summary: RaySummary, goal: u32, is_careful: bool) {
         (self.count, self.goal) = (0, goal);
@@ -188,7 +188,7 @@ impl Estimate {
         }
     }
 
-    /// Sets the number of samples that the pixel is to have next, which is no less than before.
+    /// Sets the next number of samples of the pixel, which is no less than before.
     #[inline]
     pub fn set_goal(&mut self, goal: u32) {
         // Pairs of blocks are joined, so that there is room for as many samples again.

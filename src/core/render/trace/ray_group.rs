@@ -71,7 +71,7 @@ impl RayGroup {
         group
     }
 
-    /// Becomes these rays, of which there is at least one.
+    /// Becomes these rays, at least one.
     pub fn become_sights(&mut self, sights: &[Sight], depth: Option<&Depth>) {
         self.begin(sights[0].ray().origin, sights.len(), true, depth);
         let count = self.padded();

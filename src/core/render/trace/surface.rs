@@ -29,7 +29,7 @@ pub(super) struct Surface {
     pub unbent: VectorList,
     /// Whether points may be shaded with other normals than those of the surface.
     pub is_bent: bool,
-    /// The points as the object's shader sees them; empty where it sees their positions alone.
+    /// The points as the object's shader sees them; empty where it sees only their positions.
     pub seen: Vec<SurfacePoint>,
     /// The side that each ray hits.
     pub sides: Vec<Side>,

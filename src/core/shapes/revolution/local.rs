@@ -96,7 +96,7 @@ impl Local {
         N::about(self.origin[axis], self.blur) + along * N::about(self.dir[axis], self.turn)
     }
 
-    /// Returns a coordinate of the place along this ray alone.
+    /// Returns the coordinate of a place along only this ray.
     #[inline(always)]
     pub fn own_place<N: Scalar>(&self, axis: usize, along: N) -> N {
         N::constant(self.origin[axis]) + along * N::constant(self.dir[axis])

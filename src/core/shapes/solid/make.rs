@@ -21,7 +21,7 @@ const MOST_PARTS: usize = 1024;
 /// The maximum depth to which solids may be nested. The name of a part contains the names of all solids around it.
 const DEEPEST: usize = 256;
 
-/// The objects of which a solid is made.
+/// The objects that make up a solid.
 pub type Objects = List<NamedBody, 2, 256>;
 
 /// Makes the solid of an entity that names its objects.

@@ -26,7 +26,7 @@ const BESIDE: f64 = 256.0;
 /// is computed from.
 const SHORTLY: f64 = 1e-6;
 
-/// Marks a shape of which only a part is seen. Hits of the part are proven as hits of the shape.
+/// Marks a shape that is seen only in part. Hits of the part are proven as hits of the shape.
 pub struct ByParts;
 
 /// What is known of a ray before it is searched for a part of a solid.
@@ -54,7 +54,7 @@ pub struct SolidPart {
     /// The way to the part through the tree.
     path: Vec<usize>,
     facts: Facts,
-    /// Whether the part is a clipped surface of which nothing is seen outside of all other parts.
+    /// Whether the part is a clipped surface that is not seen outside of all other parts.
     is_within_others: bool,
 }
 

@@ -1,5 +1,5 @@
-//! What is certain about a ray's first hit, proven in outward-rounded interval arithmetic, independently of how images
-//! are rendered.
+//! What is certain about a ray's first hit, proven in outward-rounded interval arithmetic. Rendering asks for these
+//! proofs only where its own arithmetic leaves a hit open.
 //!
 //! A proof starts from the numbers of the scene: a shape's [`Equation`] is written in them, not in what its constructor
 //! derived from them, and the ray is a [`Sight`]. Everything after that is computed with intervals, so that a proof

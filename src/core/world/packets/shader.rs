@@ -11,7 +11,7 @@ use crate::world::surface_point::SurfacePoint;
 pub struct SurfacePoints<'p> {
     /// The positions, in world coordinates.
     pub positions: View<'p>,
-    /// The points, as many as there are positions; empty for a shader that sees their positions alone.
+    /// The points, as many as there are positions; empty for a shader that sees only their positions.
     pub seen: &'p [SurfacePoint],
 }
 

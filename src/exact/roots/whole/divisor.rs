@@ -112,7 +112,7 @@ impl Whole {
         Self::new(rest)
     }
 
-    /// Returns the quotient by another polynomial, if its coefficients are whole numbers and there is no remainder.
+    /// Returns the quotient by another polynomial, if its coefficients are whole numbers and no remainder is left.
     pub fn divided(&self, other: &Self) -> Option<Self> {
         if self.degree() < other.degree() || other.is_zero() {
             return None;

@@ -1,4 +1,4 @@
-//! Convex regions, of which it is decided what lies outside of them.
+//! Convex regions, and tests for what lies outside of them.
 
 use crate::geometry::aabb::Aabb;
 use glam::DVec3;

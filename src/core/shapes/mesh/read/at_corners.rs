@@ -124,7 +124,7 @@ impl Attributes {
         }
     }
 
-    /// Turns the faces for which that is said.
+    /// Turns the faces that `is_turned` selects.
     pub fn turn(&mut self, is_turned: impl Fn(usize) -> bool) {
         for list in self.lists() {
             let faces = list.iter_mut().enumerate().filter(|(face, _)| is_turned(*face));

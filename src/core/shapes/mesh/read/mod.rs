@@ -32,7 +32,7 @@ use bytesize::ByteSize;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// What is told of a file that has no normals, although they are wanted.
+/// The message about a file without normals, if they are wanted.
 pub const NO_NORMALS: &str = "has a file without normals";
 
 /// The message about a file without materials and colours, if they are wanted.

@@ -1,4 +1,4 @@
-//! What a file of a mesh holds, and how its faults are told.
+//! The contents of a mesh file, and the messages about its faults.
 
 use super::at_corners::Attributes;
 use super::finish::Finish;

@@ -42,7 +42,7 @@ const KNOWN: [&str; 21] = [
     "sharpness",
 ];
 
-/// What is said in material files.
+/// What was found in material files.
 #[derive(Default)]
 struct Found {
     finishes: BTreeMap<String, Finish>,

@@ -25,7 +25,7 @@ macro_rules! readers {
 }
 readers!(obj(std::path::Path::new("")) ply() stl());
 
-/// Makes a budget for a file of this length of which triangles alone are wanted.
+/// Makes a budget for a file of this length, of which only the triangles are wanted.
 fn budget(memory: u64, file: u64) -> Result<MemoryBudget, String> {
     MemoryBudget::new(memory, file, Wanted::default())
 }
