@@ -94,7 +94,7 @@ fn model(mut bytes: Vec<u8>, ending: &str, folder: &Path, budget: &MemoryBudget)
     if budget.wanted.normals && model.attributes.normals.is_empty() {
         model.remarks.push(Remark {
             message: NO_NORMALS.to_owned(),
-            help: "its normals are those of its faces, as far as edges are no creases",
+            help: "its normals are those of its faces, smoothed except across creases",
         });
     }
     if budget.wanted.materials.is_some() && model.finishes.is_empty() && model.attributes.colours.is_empty() {

@@ -135,7 +135,7 @@ fn files_that_are_no_gltf_or_broken_are_told() {
             r#""byteLength":76,"byteOffset":18446744073709551615}]"#,
             "in mesh 0, buffer view 0 reaches beyond the end of buffer 0",
         ),
-        (r#""byteLength":76,"uri""#, r#""byteLength":80,"uri""#, "buffer 0 has 76 bytes, and is to have 80"),
+        (r#""byteLength":76,"uri""#, r#""byteLength":80,"uri""#, "buffer 0 has 76 bytes, but should have 80"),
         (r#""version":"2.0""#, r#""version":"1.0""#, "it is glTF 1.0, and only glTF 2 is read"),
         (
             r#"{"version":"2.0"}"#,
