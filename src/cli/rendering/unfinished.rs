@@ -48,6 +48,7 @@ pub fn fill<'s, W: ImageObserver>(
             Err(RecvTimeoutError::Disconnected) => panic::resume_unwind(Box::new(())),
         }
         if (overseer.stops)() && stopped.get_or_insert_with(Instant::now).elapsed() >= GRACE {
+            renderer.leave_threads();
             *band = band.copied();
             return;
         }

@@ -13,6 +13,7 @@ use crate::simd::soa::View;
 use crate::world::material::Rgb;
 use rayon::ThreadPool;
 use std::ops::{ControlFlow, Range};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The stack size of a thread in bytes that is enough for the deepest chain of reflections that the ray budget allows. The
 /// system commits only what is used.
@@ -44,11 +45,13 @@ pub struct RenderCallbacks<'o> {
 pub struct Renderer {
     pool: Option<ThreadPool>,
     cpu: Cpu,
+    /// Whether threads of the pool may still be at work on tiles that nobody waits for.
+    is_left: AtomicBool,
 }
 
 impl Default for Renderer {
     fn default() -> Self {
-        Self { pool: None, cpu: Cpu::best() }
+        Self { pool: None, cpu: Cpu::best(), is_left: AtomicBool::new(false) }
     }
 }
 
@@ -216,12 +219,17 @@ impl Renderer {
         finished.is_continue().then_some(pixels)
     }
 
-    /// Runs other work on the threads.
+    /// Runs other work on the threads; on those of the caller once the renderer's own have been [left](Self::leave_threads).
     pub fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         match &self.pool {
-            Some(pool) => parallel::run_on(pool, work),
-            None => work(),
+            Some(pool) if !self.is_left.load(Ordering::Relaxed) => parallel::run_on(pool, work),
+            _ => work(),
         }
+    }
+
+    /// Leaves the threads to tiles that nobody waits for any more, which may take hours: no other work waits for them.
+    pub fn leave_threads(&self) {
+        self.is_left.store(true, Ordering::Relaxed);
     }
 }
 
