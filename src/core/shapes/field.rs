@@ -61,10 +61,7 @@ type Part = ([DVec3; 2], u32);
 /// Tells whether a formula and its slope are certainly bounded on its surface in a box.
 pub fn is_regular(field: &Field, corners: [DVec3; 2]) -> bool {
     let mut left = OPERATIONS;
-    let mut waiting: Vec<Part> = match field.cells() {
-        Some(cells) => cells.places().map(|place| (corners_of(place), 0)).collect(),
-        None => vec![(corners, 0)],
-    };
+    let mut waiting: Vec<Part> = vec![(corners, 0)];
     while let Some(part) = waiting.pop() {
         let ([low, high], halvings) = part;
         let at = [0, 1, 2].map(|axis| Interval { low: low[axis], high: high[axis] });
@@ -81,10 +78,6 @@ pub fn is_regular(field: &Field, corners: [DVec3; 2]) -> bool {
         }
     }
     true
-}
-
-fn corners_of([x, y, z]: [Interval; 3]) -> [DVec3; 2] {
-    [DVec3::new(x.low, y.low, z.low), DVec3::new(x.high, y.high, z.high)]
 }
 
 /// Returns the number of parts in which a change of sign is looked for: fewer for a formula of thousands of operations.

@@ -10,118 +10,97 @@
 use super::program::{MOST_REGISTERS, Program, Value, Values};
 use super::step::{Function, Step};
 use crate::interval::Interval;
+use std::sync::{Arc, OnceLock};
 
 /// A cell with this many operations or fewer is not cut: more cells would take longer to walk through.
 const FEW: usize = 32;
 
 /// The maximum number of times that the box is halved: ten times along each axis.
-const HALVINGS: usize = 30;
+const HALVINGS: u32 = 30;
 
-/// The maximum number of interval operations for making cells: about a second. Hits in a cell that is then left uncut
-/// take longer to find, and are the same.
-const OPERATIONS: usize = 20_000_000;
+/// The number of halvings, three along each axis, after which a cell is not cut again if they have left out too few
+/// operations for a shorter program.
+const IN_VAIN: u32 = 9;
 
 /// The margin around a cell on all sides, as a fraction of the box. Places on the sides of a cell belong to it, however
 /// they are rounded.
 pub const MARGIN: f64 = 1.0 / (1 << 20) as f64;
 
-/// A formula's cells.
-#[derive(Clone, Debug, PartialEq)]
+/// A formula's cells. A cell is cut when it is first asked for a place in it. How it is cut does not depend on the place.
+#[derive(Clone, Debug)]
 pub struct Cells {
     /// The whole box, with its margin.
     whole: [Interval; 3],
     margin: [f64; 3],
-    /// The first cell is the whole box.
-    cells: Vec<Cell>,
-    programs: Vec<Program>,
+    first: Cell,
 }
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 struct Cell {
-    /// The index of its program.
-    program: usize,
     place: [Interval; 3],
+    program: Arc<Program>,
     /// Whether the formula is nowhere 0 in the cell.
     is_free: bool,
-    /// The axis and the place where the cell is cut, and the first of its two halves, which follow each other.
-    cut: Option<(usize, f64, [usize; 2])>,
+    cut: Option<Cut>,
+}
+
+/// Where a cell is cut, and its halves.
+#[derive(Clone, Debug)]
+struct Cut {
+    axis: usize,
+    at: f64,
+    /// The numbers of halvings that make a half, and of those since the program of the cell was made.
+    halvings: u32,
+    in_vain: u32,
+    halves: OnceLock<Box<[Cell; 2]>>,
+}
+
+impl PartialEq for Cells {
+    /// Tells whether both are the cells of one formula in one box, however many of them have been made.
+    fn eq(&self, other: &Self) -> bool {
+        self.whole == other.whole && self.first.program == other.first.program
+    }
 }
 
 impl Cells {
-    /// Cuts a box, if that makes a formula shorter there.
-    pub(super) fn new(values: &Values, [low, high]: [[f64; 3]; 2]) -> Option<Self> {
+    /// Cuts a box, if that may make a formula shorter there.
+    pub(super) fn new(program: &Program, [low, high]: [[f64; 3]; 2]) -> Option<Self> {
         let place = [0, 1, 2].map(|axis| Interval { low: low[axis], high: high[axis] });
         let margin = place.map(|side| MARGIN * side.width());
-        let programs = vec![Program::of(values, 3)];
-        let mut cells = Self { whole: widened(place, margin), margin, cells: Vec::new(), programs };
-        let mut left = OPERATIONS;
-        cells.add(values, 0, (place, 0), &mut left);
-        (cells.cells.len() > 1).then_some(cells)
+        let first = Cell::new(&Arc::new(program.clone()), place, [0; 2], margin);
+        first.cut.is_some().then(|| Self { whole: widened(place, margin), margin, first })
     }
 
-    /// Adds a cell and the cells into which it is cut. The new cell is a part of a cell with these values and this
-    /// program, after this number of halvings.
-    fn add(
-        &mut self,
-        values: &Values,
-        mut program: usize,
-        (place, halvings): ([Interval; 3], usize),
-        left: &mut usize,
-    ) -> usize {
-        *left = left.saturating_sub(values.list.len());
-        let (mut values, value) = pruned(values, widened(place, self.margin));
-        let (index, is_free) = (self.cells.len(), !value.has_zero());
-        let has_choice = || values.list.iter().any(|value| is_choice(value.step));
-        let is_cut = !is_free && halvings < HALVINGS && *left > 0 && values.list.len() > FEW && has_choice();
-        let known = self.programs[program].instructions.len();
-        let is_shorter = 4 * values.list.len() < 3 * known || !is_cut && values.list.len() < known;
-        if is_shorter {
-            let shorter = Program::of(&values, 3);
-            // A shared value waits in a register. The program without some operations may need more registers than the
-            // long one.
-            if shorter.registers <= MOST_REGISTERS {
-                program = self.programs.len();
-                self.programs.push(shorter);
-            }
-        }
-        self.cells.push(Cell { program, place, is_free, cut: None });
-        if is_cut {
-            let axis =
-                (0..3).fold(
-                    0,
-                    |longest, axis| {
-                        if place[axis].width() > place[longest].width() { axis } else { longest }
-                    },
-                );
-            let at = place[axis].middle();
-            let (mut below, mut above) = (place, place);
-            (below[axis].high, above[axis].low) = (at, at);
-            values.list.shrink_to_fit();
-            let halves = [below, above].map(|half| self.add(&values, program, (half, halvings + 1), left));
-            self.cells[index].cut = Some((axis, at, halves));
-        }
-        index
+    /// Tells whether the formula is certainly nowhere 0 around some points.
+    pub fn are_free(&self, at: [Interval; 3]) -> bool {
+        self.cell(at).is_some_and(|cell| cell.is_free)
     }
 
     /// Returns the shortest program for some points; `None` where they may lie outside of the box.
     #[inline]
     pub(super) fn program(&self, at: [Interval; 3]) -> Option<&Program> {
+        self.cell(at).map(|cell| &*cell.program)
+    }
+
+    /// Returns the smallest cell around some points; `None` where they may lie outside of the box.
+    #[inline]
+    fn cell(&self, at: [Interval; 3]) -> Option<&Cell> {
         let is_inside =
             (0..3).all(|axis| at[axis].low >= self.whole[axis].low && at[axis].high <= self.whole[axis].high);
         if !is_inside {
             return None;
         }
-        let mut cell = &self.cells[0];
-        while let Some((axis, place, [below, above])) = cell.cut {
+        let mut cell = &self.first;
+        while let Some((axis, place, [below, above])) = cell.halves(self.margin) {
             cell = if at[axis].high <= place + self.margin[axis] {
-                &self.cells[below]
+                below
             } else if at[axis].low >= place - self.margin[axis] {
-                &self.cells[above]
+                above
             } else {
                 break;
             };
         }
-        Some(&self.programs[cell.program])
+        Some(cell)
     }
 
     /// Calls a function with the part of a line, from one place to another, in each cell where the formula may be 0, in
@@ -133,21 +112,20 @@ impl Cells {
         (low, high): (f64, f64),
         visit: &mut impl FnMut(f64, f64) -> Option<R>,
     ) -> Option<R> {
-        self.visit_cell(0, &(base, dir), (low, high), visit)
+        self.visit_cell(&self.first, &(base, dir), (low, high), visit)
     }
 
     fn visit_cell<R>(
         &self,
-        index: usize,
+        cell: &Cell,
         line: &([f64; 3], [f64; 3]),
         (low, high): (f64, f64),
         visit: &mut impl FnMut(f64, f64) -> Option<R>,
     ) -> Option<R> {
-        let cell = &self.cells[index];
         if cell.is_free {
             return None;
         }
-        let Some((axis, place, [below, above])) = cell.cut else { return visit(low, high) };
+        let Some((axis, place, [below, above])) = cell.halves(self.margin) else { return visit(low, high) };
         let (base, dir) = (line.0[axis], line.1[axis]);
         let cut = (place - base) / dir;
         let halves = if dir > 0.0 { [below, above] } else { [above, below] };
@@ -159,11 +137,48 @@ impl Cells {
         let is_below = base + dir * (low + 0.5 * (high - low)) < place;
         self.visit_cell(if is_below { below } else { above }, line, (low, high), visit)
     }
+}
 
-    /// Returns the cells where the formula may be 0, and which are not cut.
-    pub fn places(&self) -> impl Iterator<Item = [Interval; 3]> + '_ {
-        let open = self.cells.iter().filter(|cell| !cell.is_free && cell.cut.is_none());
-        open.map(|cell| cell.place)
+impl Cell {
+    /// Makes a cell of a part of a cell with this program, after these numbers of halvings.
+    fn new(
+        above: &Arc<Program>,
+        place: [Interval; 3],
+        [halvings, in_vain]: [u32; 2],
+        margin: [f64; 3],
+    ) -> Self {
+        let (values, value) = pruned(above, widened(place, margin));
+        let (known, len, is_free) = (above.instructions.len(), values.list.len() - 3, !value.has_zero());
+        let is_shorter = 4 * len < 3 * known;
+        let in_vain = if is_shorter { 0 } else { in_vain };
+        let has_choice = || values.list.iter().any(|value| is_choice(value.step));
+        let is_cut = !is_free && halvings < HALVINGS && in_vain < IN_VAIN && len > FEW && has_choice();
+        let shorter = (is_shorter || !is_cut && len < known)
+            .then(|| Program::of(&values, 3))
+            // A shared value waits in a register. The program without some operations may need more registers than the
+            // long one.
+            .filter(|program| program.registers <= MOST_REGISTERS);
+        let cut = is_cut.then(|| {
+            let width = |axis: usize| place[axis].width();
+            let axis =
+                (1..3).fold(0, |longest, axis| if width(axis) > width(longest) { axis } else { longest });
+            let (at, halvings, in_vain) = (place[axis].middle(), halvings + 1, in_vain + 1);
+            Cut { axis, at, halvings, in_vain, halves: OnceLock::new() }
+        });
+        Self { place, program: shorter.map_or_else(|| above.clone(), Arc::new), is_free, cut }
+    }
+
+    /// Returns the axis and the place where the cell is cut, and its halves, which are made when they are first asked for;
+    /// `None` where it is not cut.
+    fn halves(&self, margin: [f64; 3]) -> Option<(usize, f64, &[Self; 2])> {
+        let &Cut { axis, at, halvings, in_vain, ref halves } = self.cut.as_ref()?;
+        let made = || {
+            let (mut below, mut above) = (self.place, self.place);
+            (below[axis].high, above[axis].low) = (at, at);
+            let half = |place| Self::new(&self.program, place, [halvings, in_vain], margin);
+            Box::new([below, above].map(half))
+        };
+        Some((axis, at, halves.get_or_init(made)))
     }
 }
 
@@ -174,12 +189,13 @@ fn widened(place: [Interval; 3], margin: [f64; 3]) -> [Interval; 3] {
 
 /// Tells whether an operation may choose among several, depending on the place.
 pub(super) fn is_choice(step: Step) -> bool {
-    use Function::{Abs, Floor, Heaviside, If, Max, Min};
-    matches!(step, Step::Call(Min | Max | Abs | Floor | Heaviside | If))
+    use Function::{Abs, Floor, Heaviside, If, Max, Min, Smax, Smin};
+    matches!(step, Step::Call(Min | Max | Abs | Floor | Heaviside | If | Smin | Smax))
 }
 
 /// Returns the values of a formula that matter in a box, and bounds on the formula there.
-fn pruned(values: &Values, place: [Interval; 3]) -> (Values, Interval) {
+fn pruned(program: &Program, place: [Interval; 3]) -> (Values, Interval) {
+    let values = program.values(3);
     let list = &values.list;
     let mut bounds: Vec<Interval> = Vec::with_capacity(list.len());
     // For each value, the value that it equals in the box, and its operation.
@@ -202,6 +218,15 @@ fn pruned(values: &Values, place: [Interval; 3]) -> (Values, Interval) {
             Step::Call(Function::Min) if b.high <= a.low => own = second,
             Step::Call(Function::Max) if a.high <= b.low => own = second,
             Step::Call(Function::Max) if b.high <= a.low => own = first,
+            // Beyond the width, nothing is rounded.
+            Step::Call(of @ (Function::Smin | Function::Smax)) if bounds[third].low > 0.0 => {
+                let (width, is_min) = (bounds[third].high, of == Function::Smin);
+                if (b - a).low >= width {
+                    own = if is_min { first } else { second };
+                } else if (a - b).low >= width {
+                    own = if is_min { second } else { first };
+                }
+            }
             Step::Call(Function::Abs) if a.low >= 0.0 => own = first,
             Step::Call(Function::Abs) if a.high <= 0.0 => step = Step::Neg,
             Step::Call(Function::Heaviside) if a.low > 0.0 => step = Step::Number(1.0),
@@ -245,35 +270,61 @@ mod tests {
     use crate::formula::Formula;
     use crate::formula::field::Field;
     use crate::formula::variables::SPACE;
+    use crate::interval::Interval;
+    use crate::scalar::Scalar;
     use std::sync::Arc;
 
-    /// Returns 125 balls on a grid, as their distances.
-    fn balls() -> Field {
+    /// Returns 125 balls on a grid, as their distances, which a function combines.
+    fn balls(combined: impl Fn(String) -> String) -> Field {
         let place = |index: i32| 0.4 * f64::from(index) - 0.8;
         let ball = |index: i32| {
             let [x, y, z] = [index / 25, index / 5 % 5, index % 5].map(place);
             format!("sqrt((x - {x})^2 + (y - {y})^2 + (z - {z})^2) - 0.1")
         };
         let balls: Vec<_> = (0..125).map(ball).collect();
-        let formula = Formula::parse_in(&format!("min({})", balls.join(", ")), SPACE).expect("a formula");
+        let formula = Formula::parse_in(&combined(balls.join(", ")), SPACE).expect("a formula");
         Field::new(Arc::new(formula)).expect("its variables are x, y and z")
     }
 
     #[test]
     fn a_formula_has_the_same_values_in_its_cells() {
-        let (whole, cut) = (balls(), balls().within([[-1.0; 3], [1.0; 3]]));
-        let cells = cut.cells().expect("it is cut");
-        assert!(cells.places().count() > 100);
-        for step in 0..20_000 {
-            let at = [7, 31, 101].map(|factor| f64::from(step * factor % 997) / 997.0 * 2.2 - 1.1);
-            let (one, other): (f64, f64) = (whole.at(at), cut.at(at));
-            assert_eq!(one, other, "{at:?}");
+        for combined in [
+            |balls| format!("min({balls})"),
+            |balls| format!("smin({balls}, 0.05)"),
+            |balls| format!("-smax(-9, -abs(min({balls})), 0.05)"),
+        ] {
+            let (whole, cut) = (balls(combined), balls(combined).within([[-1.0; 3], [1.0; 3]]));
+            assert!(cut.cells().is_some(), "it is cut");
+            for step in 0..20_000 {
+                let at = [7, 31, 101].map(|factor| f64::from(step * factor % 997) / 997.0 * 2.2 - 1.1);
+                let (one, other): (f64, f64) = (whole.at(at), cut.at(at));
+                assert_eq!(one, other, "{at:?}");
+            }
         }
     }
 
     #[test]
+    fn a_cell_has_a_short_program_only_where_a_place_in_it_is_asked_for() {
+        let cut = balls(|balls| format!("min({balls})")).within([[-1.0; 3], [1.0; 3]]);
+        let cells = cut.cells().expect("it is cut");
+        let made = || {
+            fn of(cell: &super::Cell) -> usize {
+                let halves = cell.cut.as_ref().and_then(|cut| cut.halves.get());
+                1 + halves.map_or(0, |halves| halves.iter().map(of).sum())
+            }
+            of(&cells.first)
+        };
+        assert_eq!(made(), 1);
+        let (at, whole) = ([Interval::constant(0.71); 3], cells.first.program.instructions.len());
+        let program = cells.program(at).expect("the point is in the box");
+        assert!(program.instructions.len() < 32 && whole > 500, "{} {whole}", program.instructions.len());
+        assert!(made() < 64, "{}", made());
+        assert!(cells.are_free([Interval::constant(0.2); 3]));
+    }
+
+    #[test]
     fn a_line_meets_all_balls_in_its_cells() {
-        let cut = balls().within([[-1.0; 3], [1.0; 3]]);
+        let cut = balls(|balls| format!("min({balls})")).within([[-1.0; 3], [1.0; 3]]);
         let mut parts = Vec::new();
         let cells = cut.cells().expect("it is cut");
         let nothing: Option<()> = cells.visit([0.0; 3], [1.0, 0.01, 0.0], (-1.0, 1.0), &mut |low, high| {

@@ -2,7 +2,7 @@
 
 use super::along::{Products, by_products};
 use super::cells::{Cells, is_choice};
-use super::program::{MOST_REGISTERS, Program, Values};
+use super::program::{MOST_REGISTERS, Program};
 use super::step::{Function, Step};
 use super::variables::{CURVE, PATCH, SPACE, SURFACE};
 use super::{FEW_REGISTERS, Formula};
@@ -134,7 +134,7 @@ impl Field {
     pub fn within(self, corners: [[f64; 3]; 2]) -> Self {
         let steps = &self.quick.steps;
         let is_cut = self.program().instructions.len() >= MANY && steps.iter().any(|step| is_choice(*step));
-        let cells = is_cut.then(|| Cells::new(&Values::new(steps, 3), corners)).flatten();
+        let cells = is_cut.then(|| Cells::new(&Program::new(steps, 3), corners)).flatten();
         Self { cells: cells.map(Arc::new), ..self }
     }
 
@@ -205,7 +205,9 @@ fn with_constants(steps: &[Step]) -> Vec<Step> {
             Step::Call(Function::Min | Function::Max | Function::Pow | Function::Atan2) => {
                 starts.pop();
             }
-            Step::Call(Function::Noise | Function::If) => starts.truncate(starts.len().saturating_sub(2)),
+            Step::Call(Function::Noise | Function::If | Function::Smin | Function::Smax) => {
+                starts.truncate(starts.len().saturating_sub(2))
+            }
             Step::Powi(0) => {
                 out.truncate(starts.last().copied().unwrap_or(0));
                 out.push(Step::Number(1.0));

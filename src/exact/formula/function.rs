@@ -15,6 +15,8 @@ pub(super) struct FormulaFunction {
 pub(super) enum Meaning {
     /// An operation on one value, or on two. The latter may be applied to further values, one after the other.
     Operation(Function),
+    /// An operation on two values and a width. It may be applied to further values, one after the other.
+    Smooth(Function),
     /// An operation on exactly as many values as it names.
     Fixed(Function),
     /// A comparison, and the values where it holds and where it does not.
@@ -23,7 +25,7 @@ pub(super) enum Meaning {
     Formula(&'static str),
 }
 
-use Meaning::{Fixed, Formula, Operation};
+use Meaning::{Fixed, Formula, Operation, Smooth};
 
 /// The functions of formulas.
 static FUNCTIONS: [FormulaFunction; 40] = [
@@ -75,16 +77,8 @@ static FUNCTIONS: [FormulaFunction; 40] = [
     FormulaFunction { name: "asinh", arguments: &["x"], meaning: Formula("2*atanh(x/(1 + sqrt(1 + x^2)))") },
     FormulaFunction { name: "acosh", arguments: &["x"], meaning: Formula("ln(x + sqrt(x^2 - 1))") },
     FormulaFunction { name: "atanh", arguments: &["x"], meaning: Formula("ln((1 + x)/(1 - x))/2") },
-    FormulaFunction {
-        name: "smin",
-        arguments: &["a", "b", "k"],
-        meaning: Formula("min(a, b) - max(k - abs(a - b), 0)^2/(4*k)"),
-    },
-    FormulaFunction {
-        name: "smax",
-        arguments: &["a", "b", "k"],
-        meaning: Formula("max(a, b) + max(k - abs(a - b), 0)^2/(4*k)"),
-    },
+    FormulaFunction { name: "smin", arguments: &["a", "b", "k"], meaning: Smooth(Function::Smin) },
+    FormulaFunction { name: "smax", arguments: &["a", "b", "k"], meaning: Smooth(Function::Smax) },
 ];
 
 /// Returns the names of the functions of formulas, each with the names of its arguments.
@@ -100,7 +94,7 @@ pub(super) fn find(name: &str) -> Option<&'static FormulaFunction> {
 impl FormulaFunction {
     /// Tells whether the function takes more arguments than it names, as the smallest of many does.
     pub fn takes_more(&self) -> bool {
-        matches!(self.meaning, Operation(Function::Min | Function::Max))
+        matches!(self.meaning, Operation(Function::Min | Function::Max) | Smooth(_))
     }
 
     /// Tells whether the name is reserved, so that no number of a scene can have it. Names of functions that were added

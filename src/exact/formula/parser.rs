@@ -379,9 +379,11 @@ impl<'t> Parser<'t> {
             starts.push(self.steps.len());
             self.deeper()?;
             self.enclosed(false)?;
+            // The values so far are combined into one, so that many arguments nest no deeper than two.
             if let Meaning::Operation(of) = function.meaning {
-                // The values so far are combined into one, so that many arguments nest no deeper than two.
                 self.steps.push(Step::Call(of));
+                self.depth = depth;
+            } else if function.takes_more() {
                 self.depth = depth;
             }
         }
@@ -390,6 +392,7 @@ impl<'t> Parser<'t> {
         match function.meaning {
             Meaning::Operation(of) if count == 1 => self.steps.push(Step::Call(of)),
             Meaning::Operation(_) => {}
+            Meaning::Smooth(of) => self.combine(of, &starts, &place)?,
             Meaning::Fixed(of) => self.steps.push(Step::Call(of)),
             Meaning::Choice => {
                 if is_reversed {
@@ -450,6 +453,26 @@ impl<'t> Parser<'t> {
         }
         self.steps.truncate(starts[0]);
         self.steps.append(&mut applied);
+        Ok(())
+    }
+
+    /// Combines the first arguments, one after the other, each with the last one as the third value. `starts` are the places where
+    /// the arguments start.
+    fn combine(&mut self, of: Function, starts: &[usize], place: &Range<usize>) -> Parsed {
+        let [_, second, ends @ ..] = starts else { return Ok(()) };
+        let last = self.steps.split_off(*starts.last().unwrap_or(second));
+        if self.steps.len() + ends.len() * (last.len() + 1) > MAX_STEPS {
+            return Err(self.fault(place.clone(), "too many operations"));
+        }
+        let rest = self.steps.split_off(*second);
+        let mut start = 0;
+        for end in ends {
+            let end = end - second;
+            self.steps.extend_from_slice(&rest[start..end]);
+            self.steps.extend_from_slice(&last);
+            self.steps.push(Step::Call(of));
+            start = end;
+        }
         Ok(())
     }
 

@@ -40,14 +40,14 @@ pub(super) struct Program {
 pub(super) const MOST_REGISTERS: usize = SURFACE.len() + MAX_DEPTH + 1;
 
 /// An operation, and the indices of the values that it is applied to.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Value {
     pub step: Step,
     pub operands: [usize; 3],
 }
 
 /// The values of a formula. The variables come first, and each value comes after its operands.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub(super) struct Values {
     pub list: Vec<Value>,
     /// The index of the value of the whole formula.
@@ -108,6 +108,21 @@ impl Program {
             instructions.push(Instruction { step: value.step, operands, result: place as u8 });
         }
         Self { instructions, result: places[*result] as u8, registers }
+    }
+
+    /// Returns the values that the program computes, in its order.
+    pub fn values(&self, variables: usize) -> Values {
+        let variable = |index| Value { step: Step::Variable(index as u8), operands: [0; 3] };
+        let mut list: Vec<_> = (0..variables).map(variable).collect();
+        // The value that each register holds.
+        let mut held = vec![0; self.registers];
+        (0..variables).for_each(|index| held[index] = index);
+        for Instruction { step, operands, result } in &self.instructions {
+            let operands = operands.map(|operand| held[usize::from(operand)]);
+            held[usize::from(*result)] = list.len();
+            list.push(Value { step: *step, operands });
+        }
+        Values { list, result: held[usize::from(self.result)] }
     }
 }
 

@@ -36,7 +36,7 @@ impl Step {
             Self::Variable(_) | Self::Number(_) => 0,
             Self::Add | Self::Sub | Self::Mul | Self::Div => 2,
             Self::Call(Function::Min | Function::Max | Function::Pow | Function::Atan2) => 2,
-            Self::Call(Function::Noise | Function::If) => 3,
+            Self::Call(Function::Noise | Function::If | Function::Smin | Function::Smax) => 3,
             Self::Neg | Self::Powi(_) | Self::Scale(_) | Self::Shift(_) | Self::Spline | Self::Call(_) => 1,
         }
     }
@@ -54,6 +54,7 @@ impl Step {
                 | Function::Max,
             ) => 1,
             Self::Call(Function::Pow | Function::Atan2) => 24,
+            Self::Call(Function::Smin | Function::Smax) => 7,
             Self::Call(Function::Noise) => 160,
             Self::Call(_) => 8,
             Self::Spline => 12,
@@ -116,6 +117,14 @@ impl Step {
                 long!(a.choose(b, c))
             }
             Self::Call(Function::Atan2) => long!(a.atan2(b)),
+            Self::Call(Function::Smin) => {
+                let width = c();
+                long!(a.min(b) - blend(a, b, width))
+            }
+            Self::Call(Function::Smax) => {
+                let width = c();
+                long!(a.max(b) + blend(a, b, width))
+            }
         }
     }
 }
@@ -140,6 +149,18 @@ pub(super) enum Function {
     /// The second value where the first one is 0 or above, and the third one elsewhere.
     If,
     Atan2,
+    /// The smallest of two values, and the largest: rounded where they differ by less than the third one.
+    Smin,
+    Smax,
+}
+
+/// Returns by how much the smallest or the largest of two values is rounded: a quarter of the width where they are equal, and 0
+/// where they differ by the width or more.
+///
+/// Source: I. Quilez, "Smooth minimum" (2013), the quadratic polynomial.
+#[inline(always)]
+fn blend<N: Scalar>(a: N, b: N, width: N) -> N {
+    (width - (a - b).abs()).max(N::constant(0.0)).powi(2) / width.scaled(4.0)
 }
 
 /// The deepest nesting that a formula may have, in values that wait for an operation.

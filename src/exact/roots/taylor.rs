@@ -230,7 +230,12 @@ impl<L: FunctionOnLine> Search<'_, L> {
     /// certain.
     fn at_an_end(&mut self, low: f64, high: f64) -> Option<f64> {
         let end = Interval { low, high };
-        if low >= high || !self.line.at(end).has_zero() || self.line.is_broken(end) {
+        // The first two are cheap for formulas whose values are not.
+        if low >= high
+            || self.line.is_left_out(end)
+            || !self.line.at(end).has_zero()
+            || self.line.is_broken(end)
+        {
             return None;
         }
         self.is_certain = false;

@@ -118,10 +118,13 @@ pub(super) fn bracket_each<T: Implicit>(
     // Packets are filled up with copies of their last ray.
     let own = ranges.len() - (1..ranges.len()).rev().take_while(is_as_before).count();
     let (first, rest) = (&ranges[0], &ranges[1..own]);
+    // Bounds on a piece of a beam would take the long program of a large cell.
+    let has_cells = shape.formula.field().is_some_and(|field| field.cells().is_some());
     let is_together = own >= LEAST
         && rays.drift.is_none()
         && !shape.formula.is_cut()
         && shape.degree.is_none()
+        && !has_cells
         && rest.iter().all(|range| range.origin_side == first.origin_side);
     let mut members = Vec::with_capacity(BEAM);
     for lane in 0..own {

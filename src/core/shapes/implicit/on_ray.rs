@@ -207,7 +207,8 @@ impl<T: Implicit> taylor::FunctionOnLine for FormulaOnRay<'_, T> {
 
     fn is_left_out(&self, piece: Interval) -> bool {
         let formula = &self.shape.formula;
-        formula.is_cut() && formula.inside_trim(self.on_line(piece)).high < 0.0
+        let is_free = || formula.field()?.cells().map(|cells| cells.are_free(self.on_line(piece)));
+        formula.is_cut() && formula.inside_trim(self.on_line(piece)).high < 0.0 || is_free().unwrap_or(false)
     }
 
     fn degree(&self) -> Option<usize> {

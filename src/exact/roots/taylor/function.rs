@@ -29,7 +29,8 @@ pub trait FunctionOnLine {
         value.has_zero().then_some([first, second])
     }
 
-    /// Tells whether no root on a piece counts: where the function is not defined, or the surface is cut off.
+    /// Tells whether no root on a piece counts: where the function is not defined, the surface is cut off, or bounds that are known
+    /// already are not 0.
     fn is_left_out(&self, _piece: Interval) -> bool {
         false
     }
