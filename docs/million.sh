@@ -5,7 +5,8 @@
 #
 #     bash docs/million.sh [ROUNDS]
 #
-# The camera and the lights of POV-Ray's scenes are those in the folder given by SHARED.
+# TABRAY names a program other than a new build. The camera and the lights of POV-Ray's scenes are those in the folder given by
+# SHARED.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -19,8 +20,10 @@ if ! command -v povray >/dev/null; then
     echo "SKIPPED: POV-Ray is not installed"
     exit
 fi
-cargo build --profile dist --locked --quiet
-tabray=$(realpath "${CARGO_TARGET_DIR:-target}/dist/tabray")
+if [ -z "${TABRAY:-}" ]; then
+    cargo build --profile dist --locked --quiet
+    TABRAY=$(realpath "${CARGO_TARGET_DIR:-target}/dist/tabray")
+fi
 out=$(mktemp -d)
 trap 'rm -r "$out"' EXIT
 cp "$peers/course.inc" "$out"
@@ -45,7 +48,7 @@ row() {
     translate "$3" "${4:-}"
     : >"$out/ours" && : >"$out/pov"
     for ((round = 0; round < rounds; round++)); do
-        measure "$out/ours" "$tabray" render "$out/$scene.ray" -o "$out/ours.png" --threads 1
+        measure "$out/ours" "$TABRAY" render "$out/$scene.ray" -o "$out/ours.png" --threads 1
         (cd "$out" && measure "$out/pov" povray +Ipov.pov +W640 +H480 -A +WT1 +FN "+O$out/pov.png" -D -P -V -GA)
     done
     paste -d ' ' "$out/ours" "$out/pov" | awk '{ print $0, $3 / $1 }' | sort -g -k 5 | awk -v name="$name" '

@@ -6,7 +6,7 @@
 #
 #     bash docs/peers.sh [ROUNDS]
 #
-# The scenes of the other programs are in the folder given by SHARED.
+# TABRAY names a program other than a new build. The scenes of the other programs are in the folder given by SHARED.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -22,8 +22,10 @@ if ! command -v povray >/dev/null && ! apt-get install --yes --quiet povray >/de
     echo "SKIPPED: POV-Ray is not installed"
     exit
 fi
-cargo build --profile dist --locked --quiet
-tabray=$(realpath "${CARGO_TARGET_DIR:-target}/dist/tabray")
+if [ -z "${TABRAY:-}" ]; then
+    cargo build --profile dist --locked --quiet
+    TABRAY=$(realpath "${CARGO_TARGET_DIR:-target}/dist/tabray")
+fi
 out=$(mktemp -d)
 trap 'rm -r "$out"' EXIT
 
@@ -36,7 +38,7 @@ seconds() {
         awk -v runs="$runs" '{ print ($1 + $2) / runs }'
 }
 
-ours() { "$tabray" render "$out/$1.ray" -o "$out/$1.png" --threads 1; }
+ours() { "$TABRAY" render "$out/$1.ray" -o "$out/$1.png" --threads 1; }
 course() { "$COURSE" <"$out/$1.ray" >"$out/$1.ppm" 2>/dev/null; }
 pov() {
     local scene=$1
