@@ -11,6 +11,10 @@ use tabray_exact::interval::Interval;
 /// The number of formula operations that a question may take, a function counted as eight: some tenths of a second.
 const OPERATIONS: u64 = 40_000_000;
 
+/// The number of such operations that it may take to tell that a formula is regular, which is asked of objects that must be closed:
+/// a few seconds at most. It suffices for a union of 1,000 balls.
+const MOST_OPERATIONS: u64 = 10 * OPERATIONS;
+
 /// The number of times that the box is halved before a part counts as a point: 18 times along each axis.
 const HALVINGS: u32 = 54;
 
@@ -60,17 +64,23 @@ type Part = ([DVec3; 2], u32);
 
 /// Tells whether a formula and its slope are certainly bounded on its surface in a box.
 pub fn is_regular(field: &Field, corners: [DVec3; 2]) -> bool {
-    let mut left = OPERATIONS;
+    let mut left = MOST_OPERATIONS;
     let mut waiting: Vec<Part> = vec![(corners, 0)];
     while let Some(part) = waiting.pop() {
         let ([low, high], halvings) = part;
         let at = [0, 1, 2].map(|axis| Interval { low: low[axis], high: high[axis] });
-        // The value, and a slope along each axis. Each slope takes several times as long as the value.
-        let Some(after) = left.checked_sub(16 * field.cost(at).max(1)) else { return false };
+        let cost = field.cost(at).max(1);
+        let Some(after) = left.checked_sub(cost) else { return false };
         left = after;
         let value = field.at(at);
-        let is_regular = || value.is_bounded() && (0..3).all(|axis| slope(field, at, axis).is_bounded());
-        if value.has_zero() && !is_regular() {
+        if !value.has_zero() {
+            continue;
+        }
+        // A slope along each axis takes several times as long as the value.
+        let Some(after) = left.checked_sub(15 * cost) else { return false };
+        left = after;
+        let is_regular = value.is_bounded() && (0..3).all(|axis| slope(field, at, axis).is_bounded());
+        if !is_regular {
             if halvings == HALVINGS {
                 return false;
             }
