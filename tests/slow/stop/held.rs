@@ -126,7 +126,7 @@ fn a_time_limit_holds_for_pictures_beside() {
 
 /// Returns the signal of Ctrl-C. If a shell has started the tests in the background, so that programs ignore that
 /// signal, returns the one that terminates them instead.
-fn interruption() -> Signal {
+pub fn interruption() -> Signal {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     let ignored = ignored.map_or(0, |mask| u64::from_str_radix(mask.trim(), 16).expect("a mask"));

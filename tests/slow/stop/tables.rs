@@ -1,9 +1,8 @@
 //! The tables of docs/farms.md.
 
 use crate::common::program::{folder, names_in, scene};
-use crate::stop::held::MIRRORS;
+use crate::stop::held::{MIRRORS, interruption};
 use crate::stop::{Running, bytes, render, tabray_path, workplace};
-use nix::sys::signal::Signal;
 use std::fmt::Write as _;
 use std::fs;
 use std::process::{Command, Stdio};
@@ -48,7 +47,7 @@ fn measured(folder: &TempDir, args: &[&str], interrupt: Option<Duration>) -> (Du
         if interrupt.is_some_and(|time| start.elapsed() > time) {
             interrupt = None;
             start = Instant::now();
-            running.send(Signal::SIGINT);
+            running.send(interruption());
         }
         thread::sleep(Duration::from_millis(5));
     }
