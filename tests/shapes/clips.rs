@@ -77,13 +77,13 @@ fn a_formula_without_an_end_is_capped() {
 
 /// It is told to be closed, for all that its formula takes thousands of operations.
 #[test]
-fn a_union_of_a_thousand_balls_is_capped() {
-    let place = |index: usize| 0.12 * index as f64 - 0.5;
+fn a_union_of_hundreds_of_balls_is_capped() {
+    let place = |index: usize| 0.17 * index as f64 - 0.5;
     let ball = |index: usize| {
-        let [x, y, z] = [index % 10, index / 10 % 10, index / 100].map(place);
-        format!("sqrt((x - {x})^2 + (y - {y})^2 + (z - {z})^2) - 0.07")
+        let [x, y, z] = [index % 7, index / 7 % 7, index / 49].map(place);
+        format!("sqrt((x - {x})^2 + (y - {y})^2 + (z - {z})^2) - 0.1")
     };
-    let balls = (0..1000).map(ball).collect::<Vec<_>>().join(", ");
+    let balls = (0..343).map(ball).collect::<Vec<_>>().join(", ");
     let union = |capped: &str| {
         format!("implicit own {{ material white formula \"min({balls})\" clip ball capped {capped} }}")
     };

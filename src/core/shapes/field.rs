@@ -12,7 +12,7 @@ use tabray_exact::interval::Interval;
 const OPERATIONS: u64 = 40_000_000;
 
 /// The number of such operations that it may take to tell that a formula is regular, which is asked of objects that must be closed:
-/// a few seconds at most. It suffices for a union of 1,000 balls.
+/// a few seconds at most. They suffice for a union of hundreds of balls.
 const MOST_OPERATIONS: u64 = 10 * OPERATIONS;
 
 /// The number of times that the box is halved before a part counts as a point: 18 times along each axis.
