@@ -237,9 +237,6 @@ def pov(formula, radius, how):
     # Its coordinates are left-handed: all vectors are given in them, and the third of an image's is forward.
     if how == "poly":
         terms = expanded(formula).terms
-        (folder / "solid.ray").write_text(ours(formula, radius).replace("clip ball", "clip ball  capped yes"))
-        solid = out["tabray"].with_name("solid.ppm")
-        subprocess.run([program, "render", folder / "solid.ray", "--force", "--quiet", "-o", solid], check=True)
         degree = max(sum(powers) for powers in terms)
         factors = [
             terms.get((x, y, z), 0.0)
