@@ -1,4 +1,4 @@
-//! Shapes whose hits are found by a root-finding method other than their own, for comparison.
+//! Shapes whose hits are found by another root-finding method, for comparison.
 
 use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::geometry::sight::Sight;
@@ -10,8 +10,8 @@ use glam::DVec3;
 use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::roots::Method;
 
-/// Returns a shape whose hits are found by this method, where they are [searched](is_searched); the proofs of its hits
-/// are those of the original.
+/// Returns a shape whose hits are found by this method, if they are [searched](is_searched). Its proofs are those of
+/// the original.
 pub fn by_method(shape: AnyShape, method: Method) -> AnyShape {
     Shape::new(WithMethod { shape, method }).by::<ByDistance, OriginalProofs>().into()
 }
@@ -28,7 +28,7 @@ struct WithMethod {
     method: Method,
 }
 
-/// Takes the proofs of its hits from the original shape.
+/// Takes the proofs of hits from the original shape.
 struct OriginalProofs;
 
 impl Hittable for WithMethod {

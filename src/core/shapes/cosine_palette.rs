@@ -6,17 +6,17 @@ use glam::DVec2;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::Scalar;
 
-/// Red, green and blue for a direction of the angle t: `1 + cos(frequency t + phase)` for each channel, times the
+/// The red, green and blue of a direction at the angle t: `1 + cos(frequency t + phase)` for each channel, times the
 /// brightness.
 #[derive(Clone, Copy)]
 pub struct CosinePalette {
     /// Red, green and blue.
     pub hues: [Hue; 3],
-    /// Half of the strongest colour.
+    /// Half of the brightest possible channel value.
     pub brightness: f64,
 }
 
-/// A channel, whose phase is an angle and a number of thirds of a turn.
+/// A channel. Its phase is an angle plus a number of thirds of a turn.
 #[derive(Clone, Copy)]
 pub struct Hue {
     frequency: i64,
@@ -27,7 +27,7 @@ pub struct Hue {
 }
 
 impl CosinePalette {
-    /// Tells whether the hues come around as the notes' do, twice.
+    /// Tells whether the palette is that of the notes: frequency 2, with phases a third of a turn apart.
     pub fn are_of_the_notes(&self) -> bool {
         let is_of_the_notes =
             |(channel, hue): (usize, &Hue)| (hue.frequency, hue.phase, hue.thirds) == (2, 0.0, channel);
@@ -38,7 +38,7 @@ impl CosinePalette {
     /// arguments outside of its domain.
     #[inline]
     pub fn colour<const OF_THE_NOTES: bool>(&self, toward: DVec2) -> Rgb {
-        // At the point itself there is no direction: cosine and sine count as 0.
+        // The point itself has no direction, and cosine and sine count as 0.
         let DVec2 { x, y } = (toward / toward.abs().max_element()).try_normalize().unwrap_or(DVec2::ZERO);
         let channels = if OF_THE_NOTES {
             [0, 1, 2].map(|thirds| channel(thirds, (x * x - y * y, 2.0 * x * y)))
@@ -69,22 +69,22 @@ impl CosinePalette {
         channels.map(|channel| n(self.brightness) * channel)
     }
 
-    /// Bounds the reflectivities of a shader whose ambient colours are these, and whose others are the material's.
+    /// Bounds the reflectivities of a shader with these ambient colours and the material's other reflectivities.
     pub fn brightest(&self, material: &Material) -> Option<Look> {
         let Material { diffuse, specular, .. } = *material;
         let is_sound = diffuse.min_element() >= 0.0;
-        // The largest colour is 2, up to a few ulps; 1e-6 is far more than those.
+        // The largest sum of 1 and a cosine is 2, up to a few ulps, far less than 1e-6.
         is_sound.then_some(Look { ambient: Rgb::splat(2.000001 * self.brightness), diffuse, specular })
     }
 }
 
 impl Hue {
-    /// Makes a channel, whose phase is an angle in radians and a number of thirds of a turn.
+    /// Makes a channel. Its phase is `phase`, in radians, plus a number of thirds of a turn.
     pub fn new(frequency: i64, phase: f64, thirds: usize) -> Self {
         Self { frequency, phase, thirds, turn: DVec2::new(libm::cos(phase), libm::sin(phase)) }
     }
 
-    /// Returns the cosine and the sine of the multiple of an angle.
+    /// Returns the cosine and the sine of an angle times the frequency.
     fn multiple<N: Scalar>(&self, angle: (N, N), within: impl Fn(N) -> N) -> (N, N) {
         (1..self.frequency).fold(angle, |multiple, _| turned(multiple, angle, &within))
     }
@@ -95,7 +95,7 @@ fn turned<N: Scalar>((cos, sin): (N, N), (x, y): (N, N), within: impl Fn(N) -> N
     (within(cos * x - sin * y), within(cos * y + sin * x))
 }
 
-/// Returns 1 + the cosine of an angle and some thirds of a turn.
+/// Returns 1 plus the cosine of the sum of an angle and some thirds of a turn.
 fn channel<N: Scalar>(thirds: usize, (cos, sin): (N, N)) -> N {
     let (one, half) = (N::constant(1.0), N::constant(0.5));
     let half_root_3 = half * N::constant(3.0).sqrt();

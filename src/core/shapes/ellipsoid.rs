@@ -11,7 +11,7 @@ use std::marker::PhantomData;
 use tabray_exact::double_double::{DoubleDouble, exponent_to_one, times_power_of_two};
 use tabray_exact::scalar::Scalar;
 
-/// A sphere in a space that is divided by `scale` around the ellipsoid's centre.
+/// A sphere in a space divided by `scale` around the ellipsoid's centre.
 pub struct Ellipsoid<A> {
     /// The centre, in world coordinates.
     pub center: DVec3,
@@ -30,7 +30,7 @@ impl<A> Ellipsoid<A> {
     /// Returns the sphere of this radius, scaled along the axes around its centre.
     pub fn new(center: DVec3, radius: f64, scale: DVec3) -> Self {
         let inverse_scale = scale.to_array().map(|part| {
-            // Scaling by a power of two loses no digit that matters, and keeps products from overflowing.
+            // Scaling by a power of two loses no significant digit, and keeps products from overflowing.
             let exponent = exponent_to_one(part);
             let DoubleDouble { high, low } =
                 DoubleDouble::from(1.0) / DoubleDouble::from(times_power_of_two(part, exponent));
@@ -66,7 +66,7 @@ impl<A> Ellipsoid<A> {
         ((at - self.center) / (self.scale * self.scale)).normalize()
     }
 
-    /// Returns the left side of the equation at a point of the world: 0 on the ellipsoid.
+    /// Returns the left side of the equation at a point in world space, which is 0 on the ellipsoid.
     pub fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         let part = |axis: usize| {
             ((at[axis] - N::constant(self.center[axis])) / N::constant(self.scale[axis])).powi(2)
@@ -74,10 +74,10 @@ impl<A> Ellipsoid<A> {
         part(0) + part(1) + part(2) - N::constant(self.radius).powi(2)
     }
 
-    /// Tells whether a point that is off by at most an error may lie on the ellipsoid.
+    /// Tells whether a point with an error of at most `error`, in world units, may lie on the ellipsoid.
     pub fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
-        // To first order, an error moves the distance from the centre of the divided space by at most the error times
-        // this distance's gradient.
+        // To first order, an error changes the distance from the centre of the divided space by at most the error times
+        // the gradient of this distance.
         let from = (at - self.center) / self.scale;
         let gradient = (from / self.scale).length() / from.length();
         sphere::is_on_surface(from, self.radius, error * gradient)
@@ -85,16 +85,16 @@ impl<A> Ellipsoid<A> {
 }
 
 impl<A: Bounded> Ellipsoid<A> {
-    /// Returns the ellipsoid, scaled for the solver.
+    /// Returns the ellipsoid, with its scale normalized for the solver.
     pub fn exact(center: DVec3, radius: f64, scale: DVec3) -> Self {
-        // Moving a power of two from the scale to the radius changes nothing but the size of the squares, which then do
+        // Moving a power of two from the scale to the radius only changes the magnitude of the squares, which then do
         // not overflow or underflow as easily.
         let exponent = exponent_to_one(scale.min_element());
         let scale = DVec3::from(scale.to_array().map(|part| times_power_of_two(part, exponent)));
         Self::new(center, times_power_of_two(radius, -exponent), scale)
     }
 
-    /// Returns a bracket of the distance of the first hit of each ray that one stands for.
+    /// Returns a bracket of the distance of the first hit, for all rays that `ray` stands for.
     #[inline(always)]
     pub fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         let (from, dir) = self.scaled(ray);

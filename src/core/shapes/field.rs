@@ -1,5 +1,5 @@
-//! Questions about a formula in x, y and z in a box: whether it is 0 anywhere, whether it may have an inside, and how
-//! to write it with fewer operations. Interval arithmetic answers on smaller and smaller parts of the box.
+//! Questions about a formula in x, y and z in a box: whether it has a zero, whether it may have an inside, and how to
+//! write it with fewer operations. Interval arithmetic on smaller and smaller parts of the box answers them.
 
 use crate::world::body::Warning;
 use glam::DVec3;
@@ -8,31 +8,31 @@ use tabray_exact::dual::Dual;
 use tabray_exact::formula::field::Field;
 use tabray_exact::interval::Interval;
 
-/// The number of formula operations that a question may take, a function counted as eight: some tenths of a second.
+/// The maximum number of formula operations for a question, a function counted as eight: some tenths of a second.
 const OPERATIONS: u64 = 40_000_000;
 
-/// The number of such operations that it may take to tell that a formula is regular, which is asked of objects that must be closed:
-/// a few seconds at most. They suffice for a union of hundreds of balls.
+/// The maximum number of such operations to find that a formula is regular, which is asked of objects that must be
+/// closed: a few seconds at most. They suffice for a union of hundreds of balls.
 const MOST_OPERATIONS: u64 = 10 * OPERATIONS;
 
-/// The number of times that the box is halved before a part counts as a point: 18 times along each axis.
+/// The number of halvings of the box after which a part counts as a point: 18 along each axis.
 const HALVINGS: u32 = 54;
 
-/// The largest number of parts in which a change of sign is looked for.
+/// The maximum number of parts that are examined for a change of sign.
 const PARTS: u64 = 1 << 14;
 
-/// A formula that is 0 where another one is.
+/// A simpler formula with the zeros of another one.
 pub struct Reduced {
-    /// The formula: the numerator of a quotient of polynomials, without the powers of its factors.
+    /// The formula. It is the numerator of a quotient of polynomials, without the powers of its factors.
     pub formula: Field,
-    /// The denominator that was left out, if there was one.
+    /// The omitted denominator, if any.
     pub denominator: Option<Field>,
-    /// The factors that were left out of the formula, or those that could not be: where a squared factor is 0, the
+    /// The squared factors that were removed from the formula, or could not be. Where a squared factor is 0, the
     /// formula does not change its sign.
     pub warnings: Vec<Warning>,
 }
 
-/// Reduces a formula to one that is found more quickly and more surely.
+/// Reduces a formula to one whose zeros are found faster and more reliably.
 pub fn reduced(field: Field) -> Reduced {
     let mut warnings = Vec::new();
     let (field, denominator) = match field.quotient() {
@@ -59,10 +59,10 @@ pub fn reduced(field: Field) -> Reduced {
     Reduced { formula, denominator, warnings }
 }
 
-/// A part of the box, and the number of halvings that made it.
+/// A part of the box, and the number of halvings that produced it.
 type Part = ([DVec3; 2], u32);
 
-/// Tells whether a formula and its slope are certainly bounded on its surface in a box.
+/// Tells whether a formula and its slope are certainly bounded on the formula's surface in a box.
 pub fn is_regular(field: &Field, corners: [DVec3; 2]) -> bool {
     let mut left = MOST_OPERATIONS;
     let mut waiting: Vec<Part> = vec![(corners, 0)];
@@ -90,7 +90,7 @@ pub fn is_regular(field: &Field, corners: [DVec3; 2]) -> bool {
     true
 }
 
-/// Returns the number of parts in which a change of sign is looked for: fewer for a formula of thousands of operations.
+/// Returns the number of parts to examine for a change of sign, fewer for a formula of thousands of operations.
 fn parts_of(field: &Field) -> u64 {
     PARTS.min(OPERATIONS / (field.formula().cost().max(1) * 2))
 }
@@ -128,11 +128,11 @@ pub fn bounds(field: &Field, [low, high]: [DVec3; 2]) -> Interval {
     field.at([0, 1, 2].map(|axis| Interval { low: low[axis], high: high[axis] }))
 }
 
-/// The places along each side of a box at which a formula is tried: an even number, as many formulas are 0 in the middle.
+/// The number of places tried along each side of a box. It is even, because many formulas are 0 in the middle.
 const TRIED: usize = 8;
 
-/// Tells whether a formula has no number at any place of a box that is tried, and an infinite one at most: its values are
-/// greater than f64 numbers can be.
+/// Tells whether a formula is finite at none of the places tried in a box, and infinite at most of them: its values
+/// exceed the range of f64.
 pub fn overflows(field: &Field, [low, high]: [DVec3; 2]) -> bool {
     let along = |place: usize| (place as f64 + 0.5) / TRIED as f64;
     let places = (0..TRIED.pow(3)).map(|place| [place % TRIED, place / TRIED % TRIED, place / TRIED.pow(2)]);
@@ -148,7 +148,7 @@ pub fn overflows(field: &Field, [low, high]: [DVec3; 2]) -> bool {
     2 * infinite > TRIED.pow(3)
 }
 
-/// Tells whether a formula is certainly nowhere 0 in a box.
+/// Tells whether a formula certainly has no zero in a box.
 pub fn is_nowhere(field: &Field, corners: [DVec3; 2]) -> bool {
     let (mut signs, mut left) = ([false; 2], parts_of(field));
     let mut parts = VecDeque::from([(corners, 0)]);

@@ -1,4 +1,4 @@
-//! A rectangle as a shape: its answers to rays, packets and proofs.
+//! A rectangle as a shape: its hits for rays, packets and proofs.
 
 use super::plane::{Flat, Plane};
 use super::rectangle::{FinitePlane, along_sides};

@@ -1,8 +1,8 @@
 //! Implicit surfaces: the points where f(x, y, z) = 0.
 //!
-//! A plugin gives the formula, once for every number type, and a bounding box. The rest follows: [`taylor`] isolates a
-//! ray's first hit by interval arithmetic, or if the formula is a polynomial by its Bernstein coefficients along the ray,
-//! and [`Dual`] numbers give the normal.
+//! A plugin gives the formula, generic over the number type, and a bounding box. From these, [`taylor`] isolates a
+//! ray's first hit, by interval arithmetic or, for a polynomial, by its Bernstein coefficients along the ray. [`Dual`]
+//! numbers give the normal.
 
 mod beam;
 mod curvature;
@@ -37,14 +37,14 @@ use tabray_exact::roots::stretch::Stretch;
 use tabray_exact::roots::taylor::{self, FirstRoot};
 use tabray_exact::scalar::Scalar;
 
-/// The number of plain rays that take as long as a search: that in a torus takes 25, that in a heart 60.
+/// The number of plain rays that take as long as a search: 25 for a torus, 60 for a heart.
 const RAYS_PER_SEARCH: u32 = 32;
 
-/// The maximum number of roots along a ray where the surface is cut away, for another method than the shape's own.
+/// The maximum number of roots in cut-away parts of the surface along a ray, for other methods than the shape's own.
 const MOST_CUT: usize = 64;
 
 impl Body {
-    /// Makes an object of an implicit surface with the reflectivities of its material.
+    /// Makes an object of an implicit surface. The material gives the reflectivities.
     pub fn implicit(formula: impl Implicit + 'static, frame: Frame) -> Self {
         let [low, high] = formula.bounds();
         let diagonal = Polynomial::<f64, MOST>::along(Interval { low: -1.0, high: 1.0 });
@@ -72,7 +72,7 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
     }
 
     /// Returns the normalized gradient of the formula. Where the gradient vanishes or does not exist, as at the tip of
-    /// a cone, the normal points away from the shape's origin, and at the origin along its y axis.
+    /// a cone, the normal points away from the shape's origin, and at the origin along the y axis of the shape.
     fn normal(&self, at: DVec3) -> DVec3 {
         let at = self.frame.point(at);
         let Gradient { slopes, .. } = self.formula.value(Gradient::point(at.to_array()));
@@ -89,8 +89,7 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
         self.formula.why_not_closed()
     }
 
-    /// Returns the same cost for all rays that enter the box, because a search that is repeated to count it takes as
-    /// long as the first one.
+    /// Returns the same cost for all rays that enter the box. Counting the steps would repeat the search.
     fn search_cost(&self, ray: &Ray, _origin_side: Option<Side>) -> u32 {
         let outer = FormulaOnRay::new(self, ray).stretch().outer;
         if outer.start <= outer.end { RAYS_PER_SEARCH } else { 0 }
@@ -131,7 +130,7 @@ impl<T: Implicit> Certified for ImplicitShape<T> {
     fn facet(&self, at: DVec3, error: f64) -> Option<Facet> {
         let height = self.formula.extruded()?;
         let size = (at.abs() + self.frame.origin.abs()).element_sum();
-        // The box that extends the error along each axis reaches no farther along any other one.
+        // A rotated error is at most √3 times as long along an axis.
         let (at, error) = (self.frame.point(at), 1.75 * error + ROUNDING * size);
         let is_upward = at.y > 0.5 * height;
         let end = if is_upward { height } else { 0.0 };
@@ -150,7 +149,8 @@ impl<T: Implicit> Searched for ImplicitShape<T> {
             let root = method.first_root(&line, outer.clone(), line.closest, &left, shortest(&outer));
             match root {
                 Some(root) if self.formula.is_cut() && !line.kept(root).is_kept => {
-                    // A method may find the root where it starts again, unless it knows that the line leaves there.
+                    // Another method may find the same root again, unless the origin's side tells it that the line
+                    // leaves the surface there.
                     let rises = taylor::FunctionOnLine::at(&line, Dual::variable(root)).slope > 0.0;
                     left.origin_side = Some(if rises { Side::Outside } else { Side::Inside });
                     left.near = line.closest + root;
@@ -200,7 +200,7 @@ impl<T: Implicit> Equation for ImplicitShape<T> {
     }
 }
 
-/// Returns the unit vector along a vector of any length, or `None` if it has no direction.
+/// Returns the unit vector along a vector of any length, or `None` for a vector without a direction.
 fn direction(vector: DVec3) -> Option<DVec3> {
     (vector / vector.abs().max_element()).try_normalize()
 }

@@ -1,4 +1,4 @@
-//! Arithmetic that several shapes, or shaders, share.
+//! Arithmetic shared by several shapes or shaders.
 
 pub mod by_method;
 pub mod cosine_palette;

@@ -1,4 +1,4 @@
-//! Polygons in a plane: cut into triangles, or extended to prisms.
+//! Polygons in a plane, and their division into triangles or extrusion to prisms.
 
 use crate::geometry::placement::Rotation;
 use crate::shapes::mesh::read::Model;
@@ -9,17 +9,18 @@ use glam::{DVec2, DVec3};
 use std::sync::Arc;
 use tabray_exact::double_double::DoubleDouble;
 
-/// Scales points by a power of two to a size between 1 and 2, so that products of their coordinates neither overflow nor
-/// underflow.
+/// Scales points by a power of two to a size between 1 and 2, which keeps products of their coordinates from overflow
+/// and underflow.
 pub fn to_unit_size<const N: usize>(points: &[[f64; N]]) -> Vec<[f64; N]> {
     let size = points.as_flattened().iter().fold(0.0, |most: f64, number| most.max(number.abs()));
-    // Only the exponent is kept, which makes the product exact.
+    // Keeping only the exponent makes the product exact.
     let power = f64::from_bits(size.to_bits() & f64::INFINITY.to_bits());
     let scale = if power.is_normal() { 1.0 / power } else { 1.0 };
     points.iter().map(|point| point.map(|number| number * scale)).collect()
 }
 
-/// Returns a number whose sign tells whether three points turn left (above 0), right, or not at all (0).
+/// Returns a number with a sign that tells whether three points turn left (positive), right (negative), or not at all
+/// (0).
 fn turn([a, b, c]: [DVec2; 3]) -> f64 {
     let from_a = |to: DVec2, axis: usize| DoubleDouble::difference(to[axis], a[axis]);
     let (left, right) = (from_a(b, 0) * from_a(c, 1), from_a(b, 1) * from_a(c, 0));
@@ -32,7 +33,7 @@ fn unit_corners(corners: &[DVec2]) -> Vec<DVec2> {
     to_unit_size(&corners).into_iter().map(DVec2::from).collect()
 }
 
-/// Tells whether a polygon's edges meet only at the corners that they share.
+/// Tells whether a polygon's edges meet only at shared corners.
 pub fn is_simple(corners: &[DVec2]) -> bool {
     let corners = unit_corners(corners);
     let count = corners.len();
@@ -56,14 +57,14 @@ pub fn is_simple(corners: &[DVec2]) -> bool {
 /// Tells whether the corners of a simple polygon run counterclockwise.
 fn is_counterclockwise(corners: &[DVec2]) -> bool {
     let count = corners.len();
-    // The polygon is convex at the corner that is farthest to the left.
+    // The polygon is convex at its leftmost corner.
     let before = |a: DVec2, b: DVec2| (a.x, a.y) < (b.x, b.y);
     let left =
         (1..count).fold(0, |left, index| if before(corners[index], corners[left]) { index } else { left });
     turn([corners[(left + count - 1) % count], corners[left], corners[(left + 1) % count]]) > 0.0
 }
 
-/// Cuts a simple polygon into triangles, whose corners run as the polygon's do; `None` if it is not simple.
+/// Cuts a simple polygon into triangles with the same orientation. Returns `None` if the polygon is not simple.
 pub fn triangles(corners: &[DVec2]) -> Option<Vec<[u32; 3]>> {
     if !is_simple(corners) {
         return None;
@@ -91,8 +92,8 @@ pub fn triangles(corners: &[DVec2]) -> Option<Vec<[u32; 3]>> {
     Some(all)
 }
 
-/// Returns the prism above a polygon in x and z, from one height to another; without its two ends if it is open. Its sides
-/// come first, then the lower end and the upper one. `None` if the polygon is not simple.
+/// Returns the prism above a polygon in x and z, from one height to another, without its two ends if it is open. The
+/// sides come first, then the lower end, then the upper end. Returns `None` if the polygon is not simple.
 pub fn prism(corners: &[DVec2], [low, high]: [f64; 2], is_open: bool) -> Option<Model> {
     let mut corners = corners.to_vec();
     if is_simple(&corners) && !is_counterclockwise(&unit_corners(&corners)) {
@@ -101,7 +102,7 @@ pub fn prism(corners: &[DVec2], [low, high]: [f64; 2], is_open: bool) -> Option<
     let ends = triangles(&corners)?;
     let count = corners.len() as u32;
     let at = |y: f64| corners.iter().map(move |corner| DVec3::new(corner.x, y, corner.y));
-    // From x to z is clockwise as seen from above.
+    // Turning from x to z is clockwise as seen from above.
     let around = (0..count).flat_map(|from| {
         let to = (from + 1) % count;
         [(from, [from, from + count, to + count]), (from, [from, to + count, to])]
@@ -117,13 +118,13 @@ pub fn polygon(vertices: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Model {
     Model { sides: vec![0; faces.len()], vertices, faces, ..Model::default() }
 }
 
-/// Adds two vectors, and notes if that rounds a component.
+/// Adds two vectors, and notes whether a component is rounded.
 pub fn sum(one: DVec3, other: DVec3, is_rounded: &mut bool) -> DVec3 {
     *is_rounded |= (0..3).any(|axis| DoubleDouble::difference(one[axis], -other[axis]).low != 0.0);
     one + other
 }
 
-/// Makes an object of triangles, whose vertices may have been rounded.
+/// Makes an object of triangles. `are_rounded` tells whether their vertices may have been rounded.
 ///
 /// # Errors
 /// Returns the reason why the triangles make no object.

@@ -1,8 +1,8 @@
 //! Line-sphere intersection: the arithmetic behind spheres and ellipsoids.
 //!
-//! The course notes' formula loses far, small and grazed spheres, as `b^2 - 4ac` cancels. Here the discriminant comes
-//! from the line's point closest to the center (Haines, Günther and Akenine-Möller 2019), the root is corrected by a
-//! step of Newton's method, and cases that rounding could decide are decided in double-double arithmetic.
+//! The course notes' formula loses far, small and grazed spheres, because `b^2 - 4ac` cancels. Here, the discriminant
+//! comes from the line's point closest to the center (Haines, Günther and Akenine-Möller 2019), a Newton step corrects
+//! the root, and double-double arithmetic decides cases that rounding could affect.
 
 use crate::geometry::aabb::{Aabb, SLACK, larger};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayError, RayRange, Side};
@@ -16,7 +16,7 @@ use tabray_exact::scalar::per_axis;
 pub struct SphereLine {
     /// The origin, relative to the center.
     pub from: [DoubleDouble; 3],
-    /// The direction, of any length. Distances are in units of this length.
+    /// The direction, of any length. Distances are multiples of this length.
     pub dir: [DoubleDouble; 3],
 }
 
@@ -45,14 +45,14 @@ pub fn bounds(center: DVec3, radius: f64) -> Aabb {
     Aabb { low: center - radius, high: center + radius }
 }
 
-/// Returns a lower bound on the distance from a point to the surface of a sphere.
+/// Returns a lower bound of the distance from a point to the surface of a sphere.
 pub fn clearance(center: DVec3, radius: f64, from: DVec3) -> f64 {
     let away = (from - center).length();
     let rounding = SLACK * (from.length() + center.length() + radius);
     ((away - radius).abs() - rounding).max(0.0)
 }
 
-/// Returns the method of intersection, in a few words.
+/// Returns a short description of the method.
 pub fn method<A: AccuracyTag>() -> &'static str {
     match A::ACCURACY {
         Accuracy::Classic => "the notes' formula",
@@ -64,8 +64,7 @@ pub fn method<A: AccuracyTag>() -> &'static str {
     }
 }
 
-/// Returns the distance of a sphere by the course notes' formula, for a ray that starts at `from`, relative to the
-/// center.
+/// Returns the distance of a sphere by the course notes' formula. The ray starts at `from`, relative to the center.
 #[inline(always)]
 pub fn classic(from: DVec3, dir: DVec3, radius: f64) -> f64 {
     let a = dir.dot(dir);
@@ -76,7 +75,7 @@ pub fn classic(from: DVec3, dir: DVec3, radius: f64) -> f64 {
     if discriminant <= 0.0 { MISS } else { (-b - discriminant.sqrt()) / (2.0 * a) }
 }
 
-/// Returns the distance of the first hit of a sphere: of its near side, or from inside of its far side. A tangent line
+/// Returns the distance of the first hit of a sphere: on its near side, or from inside on its far side. A tangent line
 /// misses it, as in the course notes.
 #[inline(always)]
 pub fn first_hit<A: AccuracyTag>(line: &SphereLine, radius: f64) -> f64 {
@@ -84,7 +83,7 @@ pub fn first_hit<A: AccuracyTag>(line: &SphereLine, radius: f64) -> f64 {
     if quick.is_nan() { in_double_double(line, radius) } else { quick }
 }
 
-/// Computes [`first_hit`], or NaN where rounding could decide it.
+/// Computes [`first_hit`], or NaN if rounding could affect the decision.
 #[inline(always)]
 pub(crate) fn quick_hit<A: AccuracyTag>(line: &SphereLine, radius: f64) -> f64 {
     let (from, dir) = (high(&line.from), high(&line.dir));
@@ -94,16 +93,16 @@ pub(crate) fn quick_hit<A: AccuracyTag>(line: &SphereLine, radius: f64) -> f64 {
     let discriminant = radius * radius - aside.dot(aside);
     let size = from.abs().element_sum() + radius;
     let outside = from.dot(from) - radius * radius;
-    // Units of 2^-53 of `size`: `from` is off by 1, `toward` by 5, `a` by 4, their product with the direction by 3 and
-    // the sum by 1; these 14 are less than the 32 here. For a tangent line, the discriminant is then off by `doubt`.
-    // `outside` is off by 7 units of `size^2`: 5 for the square of `from`, 1 for that of the radius and 1 for the
-    // difference; 64 are used below.
+    // In units of 2^-53 of `size`: the error of `from` is 1, of `toward` 5, of `a` 4, of their product with the
+    // direction 3 and of the sum 1. Their sum, 14, is less than 32 units. For a tangent line, the error of the
+    // discriminant is then `doubt`. The error of `outside` is 7 units of `size^2`: 5 for the square of `from`, 1 for
+    // that of the radius and 1 for the difference. The code below uses 64.
     let aside_error = 16.0 * f64::EPSILON * size;
     let doubt = aside_error * (2.0 * radius + aside_error);
     let is_missed = discriminant < -doubt;
-    // Where the discriminant is GRAZE times its error, the root is off by a fraction of 1 / (2 GRAZE), of which a step
-    // of Newton's method leaves 1 / (8 GRAZE^2). `spheres_are_found` and `ellipsoids_are_found` in
-    // `tests/shapes/arithmetic.rs` hold the results to 4 ulps.
+    // If the discriminant is GRAZE times its error, the relative error of the root is 1 / (2 GRAZE), and a Newton step
+    // leaves 1 / (8 GRAZE^2) of it. `spheres_are_found` and `ellipsoids_are_found` in `tests/shapes/arithmetic.rs`
+    // check the results to 4 ulps.
     const GRAZE: f64 = (1 << 18) as f64;
     let is_doubtful = (A::ACCURACY == Accuracy::Strict)
         | (!is_missed
@@ -125,11 +124,11 @@ pub(crate) fn quick_hit<A: AccuracyTag>(line: &SphereLine, radius: f64) -> f64 {
     }
 }
 
-/// Returns the distance at which a line from the inner side of a sphere hits the sphere again; [`MISS`] where it does
+/// Returns the distance at which a line from the inner side of a sphere hits the sphere again, or [`MISS`] if it does
 /// not go inward.
 ///
-/// The equation's other root is where the line starts. Where the rounding error of the start is not small against the
-/// discriminant, the start is taken for a point of the sphere, whose far root is twice as far as the midpoint of the
+/// The equation's other root is the start of the line. If the rounding error of the start is not small compared to the
+/// discriminant, the start counts as a point of the sphere, and the far root is twice as far as the midpoint of the
 /// chord.
 #[inline(always)]
 pub(crate) fn far_hit<A: AccuracyTag>(line: &SphereLine, radius: f64) -> f64 {
@@ -155,7 +154,7 @@ pub fn distance<A: AccuracyTag>(line: &SphereLine, radius: f64, origin_side: Opt
     }
 }
 
-/// Computes [`distance`], or NaN where rounding could decide it.
+/// Computes [`distance`], or NaN if rounding could affect the decision.
 #[inline(always)]
 pub fn refine<A: AccuracyTag>(line: &SphereLine, radius: f64, origin_side: Option<Side>) -> f64 {
     let distance = match origin_side {
@@ -166,19 +165,20 @@ pub fn refine<A: AccuracyTag>(line: &SphereLine, radius: f64, origin_side: Optio
     if distance.is_nan() { distance } else { RayRange::ALL.keep(distance) }
 }
 
-/// Returns whether a point at `from`, relative to the center, is on a sphere to within `error`, in units of the
-/// sphere's own coordinates, and the rounding error of its distance from the center. That is less than 2 EPSILON of the
-/// length: half an EPSILON for the coordinates, 3/4 for the sum of squares and 1/2 for the root.
+/// Returns whether a point at `from`, relative to the center, is on a sphere, up to `error` in the sphere's own unit
+/// and the rounding error of its distance from the center. That is less than 2 EPSILON of the length: half an EPSILON
+/// for the coordinates, 3/4 for the sum of squares and 1/2 for the root.
 #[inline(always)]
 pub fn is_on_surface(from: DVec3, radius: f64, error: f64) -> bool {
     (from.length() - radius).abs() <= error + 4.0 * f64::EPSILON * radius
 }
 
-/// Returns a bracket of the first hit of a line whose direction has the length `1 / sqrt(inverse)` and whose origin may
-/// be off by `origin_error`, in units of the sphere's own coordinates.
+/// Returns a bracket of the first hit of a line with a direction of length `1 / sqrt(inverse)`. Its origin may be off
+/// by `origin_error`, in the sphere's own unit.
 ///
 /// `spread` is a bound of the rounding error of the direction's components relative to its length, as a multiple of
-/// that of a unit vector. The bracket is wide, and quick to compute in plain arithmetic: most rays miss most spheres.
+/// that of a unit vector. The bracket is wide but fast to compute in plain arithmetic, because most rays miss most
+/// spheres.
 #[inline(always)]
 pub fn t_bounds(
     from: DVec3,
@@ -189,23 +189,23 @@ pub fn t_bounds(
     origin_side: Option<Side>,
     origin_error: f64,
 ) -> Bracket {
-    // Far more than the relative rounding error of the root where the discriminant exceeds `doubt`.
+    // Far more than the relative rounding error of the root if the discriminant exceeds `doubt`.
     const ERROR: f64 = 1.0 / (1 << 29) as f64;
     const ASIDE_ERROR: f64 = 32_768.0 * f64::EPSILON;
-    // A line that starts within an error e of the sphere has one root no farther from its origin than `2 r e` divided
-    // by the other root, which is at least `sqrt(ASIDE_ERROR r size)`: less than `ERROR size` where the size is this
-    // many e.
+    // A line that starts within an error e of the sphere has one root at most `2 r e` divided by the other root from
+    // its origin. The other root is at least `sqrt(ASIDE_ERROR r size)`, and so the distance is less than `ERROR size`
+    // if the size is this many e.
     const ORIGIN_ERRORS: f64 = (1_u64 << 49) as f64;
-    // A line that goes inward by this fraction of the size does so by far more than it may start off the sphere.
+    // A line that goes inward by this fraction of the size does so by far more than its start may be off the sphere.
     const INWARD: f64 = 1.0 / (1 << 20) as f64;
 
     let middle = -from.dot(dir) * inverse;
     let aside = from + middle * dir;
     let discriminant = radius * radius - aside.dot(aside);
-    // `aside` is off by 14 units of 2^-53 of `size`, as in `quick_hit`, and by 3 in each component for a camera ray's
-    // direction. ASIDE_ERROR is thousands of times as much, so that half the chord is off by less than ERROR where the
-    // discriminant exceeds `doubt`; `brackets_hold_the_hits_of_the_real_rays_of_a_camera` in
-    // `tests/shapes/arithmetic.rs` tests this. The sum of what all rays of a packet have in common comes first.
+    // As in `quick_hit`, the error of `aside` is 14 units of 2^-53 of `size`, and 3 more in each component for a camera
+    // ray's direction. ASIDE_ERROR is thousands of times as large, and so the error of half the chord is less than
+    // ERROR if the discriminant exceeds `doubt`. `brackets_hold_the_hits_of_the_real_rays_of_a_camera` in
+    // `tests/shapes/arithmetic.rs` tests this. The terms that all rays of a packet share come first.
     let size = spread * from.abs().element_sum() + (spread * radius + ORIGIN_ERRORS * origin_error);
     let error = ERROR * size * inverse.sqrt();
     let aside_error = ASIDE_ERROR * size;
@@ -224,7 +224,7 @@ pub fn t_bounds(
         }
     }
     let is_missed = (discriminant < -doubt) | (far < -error);
-    // A hit from outside of the sphere, or from inside.
+    // The hit may be from outside of the sphere, or from inside.
     let is_ahead = near > error;
     let is_inside = (near < -error) & (far > error);
     let is_there = (discriminant > doubt) & (is_ahead | is_inside);
@@ -241,12 +241,12 @@ pub fn t_bounds(
     }
 }
 
-/// Returns the amount to add to the `spread` for a ray with a unit direction, so that [`t_bounds`] holds for all rays
+/// Returns the amount to add to the `spread` for a ray with a unit direction to make [`t_bounds`] valid for all rays
 /// within a drift of it.
 ///
-/// The drift moves `aside` by `k` EPSILON of the size. Where the discriminant exceeds `doubt`, which grows with the
-/// spread `K`, that moves half the chord by less than `k EPSILON size / sqrt(32,768 EPSILON K)`, of which half of
-/// `ERROR K size` is more than enough for `K = 1 + k / 8`.
+/// The drift moves `aside` by `k` EPSILON of the size. If the discriminant exceeds `doubt`, which grows with the spread
+/// `K`, that moves half the chord by less than `k EPSILON size / sqrt(32,768 EPSILON K)`. Half of `ERROR K size` is
+/// more than that for `K = 1 + k / 8`.
 #[inline(always)]
 pub fn spread(from: DVec3, radius: f64, drift: RayError) -> f64 {
     if drift.is_none() {
@@ -261,22 +261,22 @@ fn high(of: &[DoubleDouble; 3]) -> DVec3 {
     DVec3::new(of[0].high, of[1].high, of[2].high)
 }
 
-/// Corrects a distance by a step of Newton's method from a point in double-double arithmetic: the rounding error of the
-/// point matters where the sphere is large for its distance or is hit at a grazing angle.
+/// Corrects a distance by a Newton step from a point in double-double arithmetic. The rounding error of the point
+/// matters if the sphere is large compared to its distance, or is hit at a grazing angle.
 #[inline(always)]
 fn corrected(line: &SphereLine, radius: f64, distance: f64) -> f64 {
     let part = |axis: usize| line.from[axis] + DoubleDouble::from(distance) * line.dir[axis];
     let at = [part(0), part(1), part(2)];
     let outside = dot(&at, &at) - square(radius);
-    // The slope need not be as precise.
+    // The slope needs less precision.
     distance - outside.high / (2.0 * high(&at).dot(high(&line.dir)))
 }
 
-/// Computes the first hit in double-double arithmetic, relative to a point of the line near its closest to the center,
-/// so that a sphere that is small for its distance loses no precision.
+/// Computes the first hit in double-double arithmetic, relative to the line's point near its closest to the center. A
+/// distant small sphere thus loses no precision.
 #[inline(never)]
 fn in_double_double(line: &SphereLine, radius: f64) -> f64 {
-    // Scaled by powers of two, so that squares neither overflow nor underflow.
+    // Scaling by powers of two keeps squares from overflow and underflow.
     let exponent = exponent_to_one(radius);
     let scaled = |part: f64| times_power_of_two(part, exponent);
     let from =
@@ -294,7 +294,7 @@ fn in_double_double(line: &SphereLine, radius: f64) -> f64 {
     let half = discriminant.sqrt() / a;
     let middle = middle + toward / a;
     let (near, far) = (middle - half, middle + half);
-    // Of the two, the one that cancels comes from the product of both.
+    // The root that cancels comes from the product of both.
     let product = outside_of(&from) / a;
     let (near, far) = if middle.high > 0.0 { (product / far, far) } else { (near, product / near) };
     let hit = if near.high > 0.0 { near.high } else { far.high };

@@ -30,7 +30,7 @@ pub struct Triangle<A> {
 }
 
 impl Triangle<Classic> {
-    /// Returns the triangle with these corners; `None` where `f64` cannot tell the corners from collinear ones.
+    /// Returns the triangle with these corners, or `None` if `f64` cannot distinguish the corners from collinear ones.
     pub fn classic(corners: [DVec3; 3]) -> Option<Self> {
         let [a, b, c] = corners;
         let normal = (b - a).cross(c - a).try_normalize()?;
@@ -39,7 +39,7 @@ impl Triangle<Classic> {
 }
 
 impl<A: Bounded> Triangle<A> {
-    /// Returns the triangle with these corners; `None` where they are collinear.
+    /// Returns the triangle with these corners, or `None` if they are collinear.
     pub fn new(corners: [DVec3; 3]) -> Option<Self> {
         let area_normal = exact_normal(corners);
         if area_normal.iter().all(|part| part.high == 0.0) {
@@ -62,20 +62,20 @@ impl<A> Triangle<A> {
         per_axis(|corner| constants(self.corners[corner]))
     }
 
-    /// Returns a number above 0 for a point of the plane inside the three edges, and below 0 outside; its unit differs
-    /// from edge to edge.
+    /// Returns a number that is positive for a point of the plane inside the three edges, and negative outside. Its
+    /// unit differs from edge to edge.
     pub fn inside<N: Scalar>(&self, at: [N; 3]) -> N {
         let normal = self.area_normal();
         let [a, b, c] = self.given_corners();
         let inside = |from: [N; 3], to: [N; 3]| {
-            // Perpendicular to the edge, in the plane, toward the inside.
+            // This vector is perpendicular to the edge, in the plane, toward the inside.
             let inward = cross(normal, per_axis(|axis| to[axis] - from[axis]));
             dot(inward, per_axis(|axis| at[axis] - from[axis]))
         };
         inside(a, b).min(inside(b, c)).min(inside(c, a))
     }
 
-    /// Returns whether a point of the plane is to the left of every edge, or on it.
+    /// Returns whether a point of the plane is to the left of each edge, or on it.
     #[inline(always)]
     pub fn contains(&self, at: DVec3) -> bool {
         let left_of = |from: DVec3, to: DVec3| (to - from).cross(at - from).dot(self.plane.normal) >= 0.0;
@@ -83,9 +83,9 @@ impl<A> Triangle<A> {
         left_of(a, b) && left_of(b, c) && left_of(c, a)
     }
 
-    /// Returns whether the line of a ray, extended both ways, passes every edge on the same side.
+    /// Returns whether the line of a ray, extended both ways, passes all edges on the same side.
     ///
-    /// For an edge that two triangles share, both compute the same number except for its sign, so that no ray falls
+    /// For an edge that two triangles share, both compute the same number except for its sign, and so no ray slips
     /// through between them (Woop, Benthin and Wald 2013).
     #[inline(always)]
     pub(crate) fn is_passed_by(&self, ray: &Ray) -> bool {
@@ -97,8 +97,8 @@ impl<A> Triangle<A> {
     }
 }
 
-/// Returns a number whose sign tells on which side of the line from one point to another a ray passes; 0 where the two
-/// lines intersect.
+/// Returns a number with a sign that tells on which side of the line from one point to another a ray passes. It is 0 if
+/// the two lines intersect.
 #[inline(never)]
 pub(crate) fn exact_side(from: DVec3, to: DVec3, ray: &Ray) -> f64 {
     let place =
@@ -106,23 +106,23 @@ pub(crate) fn exact_side(from: DVec3, to: DVec3, ray: &Ray) -> f64 {
     triple_product(place(from), place(to), ray.dir.to_array().map(DoubleDouble::from)).high
 }
 
-/// Returns the plane through the corners of a triangle with an area, for distances only: its unit normal, which takes
-/// longer than everything else, is left 0.
+/// Returns the plane through the corners of a triangle with an area, for distances only. Its unit normal, the slowest
+/// part, stays 0.
 #[inline]
 pub(crate) fn plane_for_distances<A>(corners: [DVec3; 3]) -> Plane<A> {
     Plane::new(DVec3::ZERO, exact_normal(corners), corners[0])
 }
 
-/// Returns a normal of the plane through three points, each component rounded once however thin their triangle is; 0
-/// where the points are collinear.
+/// Returns a normal of the plane through three points, with each component rounded once however thin their triangle is.
+/// It is 0 if the points are collinear.
 #[inline]
 fn exact_normal(corners: [DVec3; 3]) -> [DoubleDouble; 3] {
     let (normal, is_known) = quick_normal(corners);
     if is_known { normal } else { slow_normal(corners) }
 }
 
-/// Computes [`exact_normal`] without branches, and returns whether the result is certain: it is where edges are plain
-/// numbers of common sizes, as they mostly are.
+/// Computes [`exact_normal`] without branches, and returns whether the result is certain. It usually is: edges must be
+/// plain numbers of common magnitudes.
 #[inline(always)]
 fn quick_normal([a, b, c]: [DVec3; 3]) -> ([DoubleDouble; 3], bool) {
     let edge = |to: DVec3| {
@@ -144,19 +144,19 @@ fn quick_normal([a, b, c]: [DVec3; 3]) -> ([DoubleDouble; 3], bool) {
     ([scaled(x), scaled(y), scaled(z)], is_one_known & is_other_known & is_common & (lost == 0.0))
 }
 
-/// Returns the power of two that brings the largest of three numbers to between 1/2 and 1, and whether it is one of
-/// common size.
+/// Returns the power of two that scales the largest of three numbers to between 1/2 and 1, and whether it has a common
+/// magnitude.
 #[inline(always)]
 fn scale_to_one(x: f64, y: f64, z: f64) -> (f64, bool) {
     let exponent = larger(larger(x.abs(), y.abs()), z.abs()).to_bits() >> 52;
-    // From 2^-400 to 2^400. The others' is not used.
+    // Common magnitudes are 2^-400 to 2^400. Other scales are not used.
     (f64::from_bits(2045_u64.wrapping_sub(exponent) << 52), exponent.wrapping_sub(623) <= 800)
 }
 
-/// Computes the distances at which eight rays cross the plane of a triangle each; NaN where that takes more than plain or
-/// compensated arithmetic.
+/// Computes the distances at which eight rays each cross the plane of a triangle, or NaN if plain and compensated
+/// arithmetic are not enough.
 ///
-/// They are those of `plane_for_distances`, to the bit.
+/// The distances equal those of `plane_for_distances`, to the bit.
 #[inline(always)]
 pub fn crossings<A: Bounded>(corners: &[Vectors<LANES>; 3], rays: RayPacket, distances: &mut [f64; LANES]) {
     let corners_of = |lane: usize| [corners[0].get(lane), corners[1].get(lane), corners[2].get(lane)];
@@ -185,9 +185,9 @@ pub fn crossings<A: Bounded>(corners: &[Vectors<LANES>; 3], rays: RayPacket, dis
     Plane::quick_crossings(plane, rays.first(LANES), distances);
 }
 
-/// The unit normals of eight triangles.
+/// Returns the unit normals of eight triangles.
 ///
-/// They are those of [`Triangle::new`], to the bit.
+/// They equal those of [`Triangle::new`], to the bit.
 #[inline(always)]
 pub(crate) fn unit_normals(corners: &[Vectors<LANES>; 3]) -> Vectors<LANES> {
     let (mut normals, mut is_known) = (Vectors::ZERO, [0; LANES]);
@@ -207,8 +207,8 @@ pub(crate) fn unit_normals(corners: &[Vectors<LANES>; 3]) -> Vectors<LANES> {
     normals
 }
 
-/// Computes the quantities that follow from the corners of a triangle, unless the corners equal those of the last
-/// triangle: neighbouring rays often hit the same one.
+/// Computes values from the corners of a triangle, unless the corners equal those of the last triangle. Neighbouring
+/// rays often hit the same one.
 #[inline(always)]
 fn unless_last<T: Copy>(
     last: &mut Option<([DVec3; 3], T)>,
@@ -236,9 +236,9 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Generates coordinates of all sizes, some with few digits.
+    /// Generates coordinates of all magnitudes, some with few digits.
     fn coordinate() -> impl Strategy<Value = f64> {
-        // `prop_oneof` would seed a generator of random numbers for each alternative, which takes far longer.
+        // `prop_oneof` would seed a random number generator for each alternative, which takes far longer.
         (0..16, -1.0..1.0, -490..490).prop_map(|(kind, part, exponent)| match kind {
             0..4 => 10.0 * part,
             4..8 => f64::from((10.0 * part) as f32),

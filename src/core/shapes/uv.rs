@@ -5,50 +5,51 @@ use std::f64::consts::{PI, TAU};
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, constants, cross, dot, per_axis};
 
-/// Returns how far around the y axis a point lies, from 0 to 1: 0.5 toward +z, and more toward +x.
+/// Returns the angle of a point around the y axis, as a fraction of a turn from 0 to 1: 0.5 toward +z, and more toward
+/// +x.
 pub fn turn(at: DVec3) -> f64 {
     0.5 + libm::atan2(at.x, at.z) / TAU
 }
 
-/// Returns the longitude and the latitude of a point of the unit sphere around the origin, from 0 to 1: the latitude is 0
-/// at -y and 1 at +y.
+/// Returns the longitude and the latitude of a point of the unit sphere around the origin, both from 0 to 1. The
+/// latitude is 0 at -y and 1 at +y.
 pub fn on_sphere(at: DVec3) -> DVec2 {
     DVec2::new(turn(at), libm::acos(-at.y.clamp(-1.0, 1.0)) / PI)
 }
 
-/// Returns how far around the y axis a point lies, and how high of a height from y = 0 up, from 0 to 1.
+/// Returns the angle of a point around the y axis, and its height as a fraction of `height`, both from 0 to 1.
 pub fn on_height(at: DVec3, height: f64) -> DVec2 {
     DVec2::new(turn(at), at.y / height)
 }
 
-/// Returns the barycentric coordinates of a point of a triangle: the weights of its second and its third corner, from 0 to
-/// 1.
+/// Returns the barycentric coordinates of a point of a triangle: the weights of its second and its third corner, from 0
+/// to 1.
 pub(crate) fn on_triangle([a, b, c]: [DVec3; 3], at: DVec3) -> DVec2 {
     let (first, second, from) = (b - a, c - a, at - a);
     let upright = first.cross(second);
     let area = upright.length_squared();
     let weights = DVec2::new(from.cross(second).dot(upright), first.cross(from).dot(upright)) / area;
-    // Of a triangle so small that its area underflows, there is one point.
+    // A triangle so small that its area underflows has a single point.
     if weights.is_finite() { weights } else { DVec2::ZERO }
 }
 
-/// Encloses what [`turn`] returns for the points of a box, as mathematics has it.
+/// Encloses the exact [`turn`] for the points of a box.
 fn turn_bounds([x, _, z]: [Interval; 3]) -> Interval {
     x.atan2(z) / (Interval::constant(2.0) * Interval::pi()) + Interval::constant(0.5)
 }
 
-/// Encloses what [`on_sphere`] returns for the directions of the points of a box, as mathematics has it.
+/// Encloses the exact [`on_sphere`] for the directions of the points of a box.
 pub fn bounds_on_sphere(at: [Interval; 3]) -> [Interval; 2] {
     let height = at[1] / dot(at, at).sqrt();
     [turn_bounds(at), (-height).acos() / Interval::pi()]
 }
 
-/// Encloses what [`on_height`] returns for the points of a box, as mathematics has it.
+/// Encloses the exact [`on_height`] for the points of a box.
 pub fn bounds_on_height(at: [Interval; 3], height: f64) -> [Interval; 2] {
     [turn_bounds(at), at[1] / Interval::constant(height)]
 }
 
-/// Encloses what [`on_triangle`] returns for the points of a box, as mathematics has it.
+/// Encloses the exact [`on_triangle`] for the points of a box.
 pub(crate) fn bounds_on_triangle(corners: [DVec3; 3], at: [Interval; 3]) -> [Interval; 2] {
     let [a, b, c] = corners.map(constants::<Interval>);
     let from = |to: [Interval; 3]| per_axis(|axis| to[axis] - a[axis]);
@@ -102,7 +103,7 @@ mod tests {
             if half < 1e-3 {
                 let widest = |bounds: [Interval; 2]| bounds[0].width().max(bounds[1].width());
                 assert!(widest(bounds_on_triangle(corners, near)) < 100.0 * half + 1e-13);
-                // Apart from the meridian where u begins anew.
+                // Except near the meridian where u wraps around.
                 if at.z > 0.0 || at.x.abs() > half {
                     assert!(widest(bounds_on_sphere(near)) < 100.0 * half + 1e-13, "{at}");
                     assert!(widest(bounds_on_height(near, 3.0)) < 100.0 * half + 1e-13, "{at}");

@@ -1,4 +1,4 @@
-//! Hits of ellipsoids, and what is certain about them.
+//! Hits of ellipsoids, and their certainty.
 
 use super::Ellipsoid;
 use crate::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};

@@ -1,8 +1,8 @@
-//! First hits of rays that lie close together, as those of a pixel's samples do: what surrounds them is searched once.
+//! First hits of rays that lie close together, such as the samples of a pixel, searched together.
 //!
-//! A beam is the set of all lines whose coordinates are between those of its rays. Bounds of the formula and of its slope on pieces
-//! of the beam prove that no ray is hit on a piece, or that each ray is hit there once. Each ray then takes only the steps that
-//! find its own root. Where the bounds do not decide, the beam is halved, and in the end each ray is searched alone.
+//! A beam is the set of all lines whose coordinates lie between those of its rays. Bounds of the formula and its slope
+//! on a piece of the beam prove that no ray has a hit there, or that each ray has exactly one. Each ray then only
+//! refines its own root. Where the bounds are not conclusive, the beam is halved, until each ray is searched alone.
 
 use super::formula::Implicit;
 use super::on_ray::{FormulaOnRay, ImplicitShape, shortest};
@@ -23,23 +23,23 @@ use tabray_exact::roots::stretch::Stretch;
 use tabray_exact::roots::taylor::FunctionOnLine;
 use tabray_exact::scalar::{Scalar, per_axis};
 
-/// The fewest rays that are searched together from the start.
+/// The minimum number of rays to search together.
 const LEAST: usize = 4;
 
-/// The largest width of a beam, as a fraction of the longest side of the shape's box.
+/// The maximum width of a beam, as a fraction of the longest side of the shape's box.
 const WIDEST: f64 = 1.0 / 32.0;
 
-/// The largest number of pieces of a beam that are judged.
+/// The maximum number of examined pieces of a beam.
 const MOST_PIECES: usize = 64;
 
-/// The number of pieces that a beam would have if none were halved.
+/// The number of pieces of a beam if none is halved.
 const PARTS: f64 = 8.0;
 
-/// A piece that is shorter than this many times the width of the beam is not halved.
+/// A piece shorter than this many times the width of the beam is not halved.
 const SHORT: f64 = 0.25;
 
-/// How far the middle of the values on a piece is from 0, as a part of the most that the values differ from it, where closer bounds
-/// are computed.
+/// Closer bounds are computed on a piece if the middle of its bounds is farther from 0 than this fraction of the
+/// largest change of the formula from there.
 const AWAY: f64 = 0.25;
 
 /// A ray of a beam.
@@ -47,7 +47,7 @@ struct Member<'s, T> {
     lane: usize,
     line: FormulaOnRay<'s, T>,
     stretch: Stretch,
-    /// The part of the line that is searched.
+    /// The searched part of the line.
     span: Range<f64>,
 }
 
@@ -56,52 +56,52 @@ struct Beam<'s, T> {
     formula: &'s T,
     base: [Interval; 3],
     dir: [Interval; 3],
-    /// Where all lines end.
+    /// The end of all lines.
     to: f64,
     side: Option<Side>,
-    /// The largest width of a beam.
+    /// The maximum width of a beam.
     widest: f64,
 }
 
-/// A part of a beam on which the formula only rises, or only falls, along each line.
+/// A part of a beam where the formula is strictly monotonic along each line.
 #[derive(Clone, Copy)]
 struct Run {
     start: f64,
     rises: bool,
-    /// Whether the formula is above 0 at the start of the part; `None` where that is not known of all lines.
+    /// Whether the formula is above 0 at the start of the part, or `None` if that is unknown for some lines.
     was_above: Option<bool>,
 }
 
-/// How far a beam was searched without a root that counts.
+/// The progress of a search that has found no valid root yet.
 #[derive(Clone, Copy)]
 struct Search {
-    /// Where the search started, and how far it came.
+    /// Where the search started, and the place that it has reached.
     from: f64,
     at: f64,
     /// The length of the next piece.
     step: f64,
-    /// Whether the formula is above 0 there; `None` where that is not known of all lines.
+    /// Whether the formula is above 0 at `at`, or `None` if that is unknown for some lines.
     is_above: Option<bool>,
     run: Option<Run>,
 }
 
-/// What is known of the first roots that count.
+/// Known facts about the first valid roots.
 #[derive(Clone, Copy)]
 enum Found {
-    /// No line has one.
+    /// No line has a root.
     None,
-    /// Each line has one between these places, the only one there, and none before.
+    /// Each line has a single root between these places, and none before.
     Between { low: f64, high: f64, rises: bool },
 }
 
-/// Why a search ended without knowing the roots.
+/// The reason why a search ended without the roots.
 enum Open {
-    /// Bounds of narrower beams would be closer.
+    /// A narrower beam would have closer bounds.
     Wide,
     Lost,
 }
 
-/// Computes brackets of the first hits of up to [`BEAM`] rays, each in a range of its own.
+/// Computes brackets of the first hits of up to [`BEAM`] rays, each in its own range.
 pub(super) fn bracket_each<T: Implicit>(
     shape: &ImplicitShape<T>,
     rays: RayPacket,
@@ -118,7 +118,7 @@ pub(super) fn bracket_each<T: Implicit>(
     // Packets are filled up with copies of their last ray.
     let own = ranges.len() - (1..ranges.len()).rev().take_while(is_as_before).count();
     let (first, rest) = (&ranges[0], &ranges[1..own]);
-    // Bounds on a piece of a beam would take the long program of a large cell.
+    // For a formula with cells, bounds on a piece of a beam would need the long program of a large cell.
     let has_cells = shape.formula.field().is_some_and(|field| field.cells().is_some());
     let is_together = own >= LEAST
         && rays.drift.is_none()
@@ -151,7 +151,7 @@ pub(super) fn bracket_each<T: Implicit>(
     brackets[own..].fill(last);
 }
 
-/// Searches some rays together, or in halves, from where those among them came that were searched together before.
+/// Searches some rays together or in halves, from the place that an earlier search of them together reached.
 fn together<T: Implicit>(
     shape: &ImplicitShape<T>,
     members: &mut [Member<T>],
@@ -203,8 +203,8 @@ fn together<T: Implicit>(
 }
 
 impl<T: Implicit> Member<'_, T> {
-    /// Returns the places between which the line has the root that the beam's lines have between these, `Some(None)` if the line ends
-    /// before it, and `None` if that is not known.
+    /// Returns bounds of the line's root, given bounds of the roots of all lines of the beam. Returns `Some(None)` if
+    /// the line ends before its root, and `None` if that is unknown.
     fn ends(&self, (low, high): (f64, f64), rises: bool) -> Option<Option<(f64, f64)>> {
         let Self { line, stretch, span, .. } = self;
         let is_after = |low: f64, high: f64| {
@@ -213,7 +213,7 @@ impl<T: Implicit> Member<'_, T> {
         };
         let start = if span.start < stretch.inner.start { stretch.inner.start } else { span.start };
         let end = if span.end > stretch.inner.end { stretch.inner.end } else { span.end };
-        // The root may lie before the line's start, and others may follow.
+        // The root may lie before the line's start, and be followed by others.
         if start > high || start > low && is_after(span.start.min(start), start)? {
             return None;
         }
@@ -222,7 +222,7 @@ impl<T: Implicit> Member<'_, T> {
     }
 }
 
-/// Orders rays along the axis on which they are farthest apart at a place.
+/// Sorts rays along the axis on which they are farthest apart at the distance `t`.
 fn sort<T: Implicit>(members: &mut [Member<T>], t: f64) {
     let at = |member: &Member<T>| member.line.base + t * member.line.dir;
     let [low, high] =
@@ -231,22 +231,22 @@ fn sort<T: Implicit>(members: &mut [Member<T>], t: f64) {
     members.sort_unstable_by(|one, other| at(one)[axis].total_cmp(&at(other)[axis]));
 }
 
-/// Returns the bracket of a ray whose first root is at this distance.
+/// Returns the bracket of a ray with its first root at this distance.
 fn bracket<T: Implicit>(shape: &ImplicitShape<T>, ray: &Ray, range: &RayRange, distance: f64) -> Bracket {
     let is_on_surface = || shape.is_on_surface(ray.origin, range.origin_error);
     by_distance(ray, range, is_on_surface, |range| Some(range.keep(distance)))
 }
 
-/// The root of a line, for those of its neighbours.
+/// A root of one line, to guess those of its neighbours.
 struct Near {
     root: f64,
     at: [f64; 3],
-    /// The gradient of the formula there.
+    /// The gradient of the formula at the root.
     slopes: [f64; 3],
 }
 
 impl Near {
-    /// Returns about where another line has its root.
+    /// Estimates the root of another line.
     fn guess<T: Implicit>(&self, line: &FormulaOnRay<T>) -> f64 {
         let beside = line.on_line(self.root);
         let along = |of: [f64; 3]| (0..3).map(|axis| self.slopes[axis] * of[axis]).sum::<f64>();
@@ -254,7 +254,7 @@ impl Near {
     }
 }
 
-/// Returns the root of a line between two places, as precisely as a search for it alone.
+/// Returns the root of a line between two places, as precisely as a search of this line alone.
 fn root<T: Implicit>(
     line: &FormulaOnRay<T>,
     (low, high): (f64, f64),
@@ -301,7 +301,7 @@ impl<'s, T: Implicit> Beam<'s, T> {
         self.formula.value(per_axis(|axis| self.base[axis] + self.dir[axis] * t))
     }
 
-    /// Finds the first roots that count.
+    /// Finds the first valid roots.
     fn first_roots(&self, search: &mut Search) -> Result<Found, Open> {
         let from = search.from;
         let far = self.to.abs().max(from.abs());
@@ -310,7 +310,7 @@ impl<'s, T: Implicit> Beam<'s, T> {
         if !(width <= self.widest && from.is_finite() && self.to.is_finite()) {
             return Err(Open::Wide);
         }
-        // A wider beam may not have known the sign.
+        // In a wider beam, the sign may have been unknown.
         let start = self.at(search.at);
         if search.is_above.is_none() && !start.has_zero() {
             let (above, from_now) = (start.low > 0.0, search.at);
@@ -347,7 +347,7 @@ impl<'s, T: Implicit> Beam<'s, T> {
                 continue;
             }
             let half = (0.5 * (high - low)).next_up();
-            // Bounds by the value in the middle are hardly closer where the value is 0 near it.
+            // The mean value form is hardly closer where the value in the middle is near 0.
             let is_away = value.middle().abs() > AWAY * half * slope.magnitude();
             let value = match value.has_zero() && is_smooth && is_away {
                 true => self.at(low + 0.5 * (high - low)) + slope * Interval { low: -half, high: half },
@@ -369,14 +369,14 @@ impl<'s, T: Implicit> Beam<'s, T> {
             if search.is_above.is_some_and(|was| was != above) {
                 return Err(Open::Lost);
             }
-            // A piece of twice the length was just judged in vain.
+            // The double length has just failed.
             let longer = if take(&mut is_halved) { 1.0 } else { 2.0 };
             (search.at, search.step, search.is_above) = (high, longer * (high - low), Some(above));
         }
         Err(Open::Lost)
     }
 
-    /// Ends a run at a place at which all lines are above 0, or below it. Returns its root, if there is one that counts.
+    /// Ends a run at a place where all lines have the same sign. Returns its root, if valid.
     fn ended(&self, run: &Run, search: &mut Search, end: f64, above: bool) -> Result<Option<Found>, Open> {
         let Run { start, rises, was_above } = *run;
         let counts = self.side.is_none_or(|side| rises == (side == Side::Inside));
@@ -385,7 +385,7 @@ impl<'s, T: Implicit> Beam<'s, T> {
             Some(_) if rises != above => return Err(Open::Lost),
             Some(_) if counts => Some(Found::Between { low: start, high: end, rises }),
             Some(_) => None,
-            // What rises to less than 0 was below it.
+            // A formula that rises to a negative value was negative before.
             None if rises != above => None,
             // Lines that leave the surface start on it.
             None if self.side.is_some() && !counts && start == search.from => None,

@@ -1,4 +1,4 @@
-//! How an implicit surface bends.
+//! Curvatures of implicit surfaces.
 //!
 //! Source: R. Goldman, "Curvature formulas for implicit curves and surfaces", Computer Aided Geometric Design 22 (2005).
 
@@ -8,13 +8,13 @@ use glam::{DMat3, DVec3};
 use tabray_exact::jet::Jet;
 use tabray_exact::scalar::per_axis;
 
-/// Returns the gradient's length and the curvatures of a formula's surface at one of its points.
+/// Returns the curvature of a formula's surface at one of its points, with the length of the gradient.
 pub(super) fn at(formula: &impl Implicit, at: DVec3) -> Curvature {
     let along =
         |dir: DVec3| formula.value(per_axis(|axis| Jet { value: at[axis], first: dir[axis], second: 0.0 }));
     let [x, y, z] = DVec3::AXES.map(along);
     let gradient = DVec3::new(x.first, y.first, z.first);
-    // The second derivative along a diagonal is that along both axes, and twice the mixed one.
+    // The second derivative along a diagonal is the sum of those along both axes and twice the mixed one.
     let mixed = |one: usize, other: usize| {
         let own = [x.second, y.second, z.second];
         0.5 * (along(DVec3::AXES[one] + DVec3::AXES[other]).second - own[one] - own[other])
@@ -38,7 +38,7 @@ mod tests {
     use glam::DVec2;
     use tabray_exact::scalar::Scalar;
 
-    /// A torus around the y axis: its radius, and that of its tube.
+    /// A torus around the y axis: its radius, and the radius of its tube.
     struct Torus(f64, f64);
 
     impl Implicit for Torus {

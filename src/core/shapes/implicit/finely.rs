@@ -1,4 +1,4 @@
-//! Roots of polynomials on pieces of a ray that `f64` does not decide: with twice the digits, and then exactly.
+//! Roots of polynomials on pieces of a ray that `f64` cannot decide: in double-double arithmetic, and then exactly.
 
 use super::formula::Implicit;
 use crate::geometry::frame::Frame;
@@ -14,32 +14,33 @@ use tabray_exact::roots::isolation::{self, RootPart};
 use tabray_exact::roots::range::Side;
 use tabray_exact::scalar::per_axis;
 
-/// The largest distance between the bounds of a root, in ulps of the root's distance. The root is nearly always in
+/// The maximum distance between the bounds of a root, in ulps of the root's distance. The root is nearly always in
 /// their middle.
 const HIDDEN: f64 = 64.0;
 
-/// A step of Newton's method after which another one would not change the digits of a root, as a fraction of its distance: its
-/// square has twenty bits to spare.
+/// A Newton step, as a fraction of a root's distance, after which another step would not change the digits of the root:
+/// the square of this, 2^-74, is far below an ulp.
 const SMALL: f64 = 1.0 / 137_438_953_472.0;
 
-/// The most steps of the secant method.
+/// The maximum number of secant steps.
 const STEPS: usize = 5;
 
 /// The margin by which a piece is enlarged for the exact search, as a fraction of the places on it. A root at the end
-/// of a piece belongs to it.
+/// of a piece belongs to the piece.
 const BEYOND: f64 = 4.0 * f64::EPSILON;
 
-/// A formula along a ray as it is given.
+/// A formula along an exact ray.
 pub(super) struct ExactRay<'s, T> {
     pub formula: &'s T,
     pub frame: &'s Frame,
-    /// The ray in the world, and the distance along it from which roots are counted, in world units.
+    /// The ray in world space, and the distance along it from which roots are counted, in world units.
     pub ray: &'s Ray,
     pub closest: f64,
 }
 
 impl<T: Implicit> ExactRay<'_, T> {
-    /// Returns the first root on a piece of the ray as it is given, or of its wanted side where it leaves the surface.
+    /// Returns the first root on a piece of the exact ray. For a ray that leaves the surface, only roots of the other
+    /// direction count.
     pub fn first_root(&self, degree: usize, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
         if degree < FEW {
             self.first_root_with::<FEW>(piece, origin_side)
@@ -72,7 +73,7 @@ impl<T: Implicit> ExactRay<'_, T> {
                 let [low, high] = ends.map(at);
                 match self.exactly(low, high, origin_side) {
                     Some(decided) => decided,
-                    // A tangent line meets the surface, but one that leaves the surface does not meet it there.
+                    // A tangent ray touches the surface. A ray that starts at the touching point has no hit there.
                     None => origin_side.is_none().then_some(0.5 * (low + high)),
                 }
             }
@@ -80,8 +81,8 @@ impl<T: Implicit> ExactRay<'_, T> {
         root.map(|root| root.clamp(piece.low, piece.high))
     }
 
-    /// Returns the root near a place, by steps of the secant method with twice the digits, of which the first takes a slope that is
-    /// about right; `None` where the root is farther than a polynomial that is known within `hidden` may be off.
+    /// Returns the root near a place, by secant steps in double-double arithmetic. The first step takes an approximate
+    /// slope. Returns `None` if the root is farther away than a polynomial known within `hidden` allows.
     pub fn finished(&self, near: &NearRoot, hidden: f64) -> Option<f64> {
         let &NearRoot { place: near, slope, is_known } = near;
         let exact = self.frame.exactly(self.ray, self.closest);
@@ -95,7 +96,7 @@ impl<T: Implicit> ExactRay<'_, T> {
             let step = value / DoubleDouble::from(steep);
             before = Some((fine, value));
             fine = fine - step;
-            // Each step leaves the error of the slope, as a fraction, of the error before it.
+            // Each step multiplies the error by the relative error of the slope.
             let is_last = step.high.abs() <= SMALL * (self.closest + near).abs();
             if is_last && (is_known || steep != slope) && (steep - slope).abs() <= 0.5 * slope.abs() {
                 let off = (fine - start).high.abs() * slope.abs();
@@ -105,8 +106,8 @@ impl<T: Implicit> ExactRay<'_, T> {
         None
     }
 
-    /// Returns a simple root that may be off by the rounding of `f64`, with twice the digits where that would be more than the
-    /// last ones of its distance. The formula is known within `hidden` there, and has this slope.
+    /// Returns a simple root, refined in double-double arithmetic if the rounding of `f64` exceeds the last digits of
+    /// its distance. The formula is known within `hidden` at the root, and has this slope there.
     pub fn polished(&self, root: f64, hidden: f64, slope: f64) -> f64 {
         if hidden <= HIDDEN * f64::EPSILON * (self.closest + root).abs() * slope {
             return root;
@@ -117,16 +118,16 @@ impl<T: Implicit> ExactRay<'_, T> {
             let Dual { value, slope } = self.formula.value(exact.along(Dual::variable(fine)));
             let step = value / slope;
             fine = fine - step;
-            // Each step leaves about the square of the error before it.
+            // Each step about squares the error.
             if step.high.abs() <= SMALL * (self.closest + root).abs() {
                 break;
             }
         }
-        // Written so that a NaN is none.
+        // The comparison is false for NaN.
         if (fine.high - root).abs() * slope <= hidden { fine.high } else { root }
     }
 
-    /// Returns the first root from one place to another, exactly; `None` where the formula or the line has numbers that
+    /// Returns the exact first root from one place to another, or `None` if the formula or the line has numbers that
     /// are not fractions.
     fn exactly(&self, low: f64, high: f64, origin_side: Option<Side>) -> Option<Option<f64>> {
         let field = self.formula.field()?;

@@ -20,15 +20,15 @@ use tabray_exact::roots::taylor::{self, FirstRoot, SignChange};
 use tabray_exact::roots::twice;
 use tabray_exact::scalar::Scalar;
 
-/// The number of pieces that are judged on a ray that is rounded by more than the size of the shape: `f64` can hardly
-/// tell where it is hit, however many pieces there are.
+/// The maximum number of examined pieces on a ray with a rounding error larger than the shape. In `f64`, its hit is
+/// hardly decidable with any number of pieces.
 const FEW_PIECES: usize = 32;
 
-/// The number of pieces that are judged on a ray that stands for others, as a ray of a copy does. A ray that takes more
-/// pieces is left to a proof.
+/// The maximum number of examined pieces on a ray that stands for others, such as a ray in the space of a copy. With
+/// more pieces, a proof decides.
 const MOST_DRIFTING: usize = 256;
 
-/// A shape whose hits and normals are found by its formula.
+/// A shape with hits and normals from its formula.
 pub(super) struct ImplicitShape<T> {
     pub formula: T,
     /// The degree of the formula's [`polynomial`](Implicit::polynomial), if there is one.
@@ -37,7 +37,7 @@ pub(super) struct ImplicitShape<T> {
     pub low: DVec3,
     pub high: DVec3,
     pub parts: Parts,
-    /// How the formula of a scene is evaluated along lines, if it is a polynomial.
+    /// The evaluation of a scene's formula along lines, if it is a polynomial.
     pub nodes: Option<Nodes>,
 }
 
@@ -50,17 +50,17 @@ pub(super) struct Kept {
 /// A formula along a ray.
 pub(super) struct FormulaOnRay<'s, T> {
     pub shape: &'s ImplicitShape<T>,
-    /// The ray in the shape's own coordinates, starting at its point closest to the shape's origin, so that distant
-    /// shapes are hit as precisely as near ones.
+    /// The ray's point closest to the shape's origin, in the shape's own coordinates. From there, distant shapes are
+    /// hit as precisely as near ones.
     pub base: DVec3,
     pub dir: DVec3,
     /// A bound of the error of each coordinate of that point, in world units.
     pub blur: f64,
     /// A bound of the error of each component of the direction.
     pub turn: f64,
-    /// Whether a root counts only where bounds in `f64` prove it.
+    /// Whether only roots that are proven in `f64` count.
     pub by_proof: bool,
-    /// The ray in the world, and the distance of that point along it, in world units.
+    /// The ray in world space, and the distance of `base` along it, in world units.
     pub ray: &'s Ray,
     pub closest: f64,
 }
@@ -73,19 +73,19 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         Self { shape, base, dir, blur: frame::blur(base, closest), turn: BLUR, by_proof: false, ray, closest }
     }
 
-    /// Returns the formula along the ray as it is given.
+    /// Returns the formula along the exact ray.
     pub fn exactly(&self) -> ExactRay<'s, T> {
         let ImplicitShape { formula, frame, .. } = self.shape;
         ExactRay { formula, frame, ray: self.ray, closest: self.closest }
     }
 
-    /// Stands for all rays within a drift.
+    /// Makes the ray stand for all rays within a drift.
     pub fn within(self, drift: RayError) -> Self {
         let blur = self.blur + drift.origin + self.closest.abs() * drift.dir;
         Self { blur, turn: self.turn + drift.dir, by_proof: true, ..self }
     }
 
-    /// Returns a bracket of the first hits of all rays that this one stands for.
+    /// Returns a bracket of the first hits, for all rays that this one stands for.
     pub fn bracket(&self, range: &RayRange) -> Bracket {
         let stretch = self.stretch();
         let root = match self.first_root(&stretch, range, MOST_DRIFTING) {
@@ -99,7 +99,7 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         let Some(SignChange { low, high, rises }) = taylor::bracket(self, root, width) else {
             return Bracket::UNKNOWN;
         };
-        // The function does not cross 0 from the start to the root, and so has the sign there that it starts with.
+        // The function does not cross 0 before the root, and so has the same sign there as at the start.
         let is_first = if rises { start.high < 0.0 } else { start.low > 0.0 };
         let is_kept = !self.shape.formula.is_cut()
             || self.shape.formula.inside_trim(self.on_line(Interval { low, high })).low >= 0.0;
@@ -111,8 +111,8 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         }
     }
 
-    /// Returns the part of the ray in the box, from the ray's origin on, whatever the range is: so a hit is the same in
-    /// every range that contains it.
+    /// Returns the part of the ray in the box, from the ray's origin on. It does not depend on the range, and so a hit
+    /// is the same in all ranges that contain it.
     pub fn stretch(&self) -> Stretch {
         let ImplicitShape { low, high, .. } = self.shape;
         let reach = 2.0 * low.abs().max(high.abs()).element_sum();
@@ -128,13 +128,14 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         stretch
     }
 
-    /// Returns the first root of a stretch in a range, after judging at most this number of pieces.
+    /// Returns the first root of a stretch in a range, after examining at most `pieces` pieces.
     pub fn first_root(&self, stretch: &Stretch, range: &RayRange, mut pieces: usize) -> FirstRoot {
         let shortest = shortest(&stretch.outer);
         taylor::first_root_within(self, stretch, self.closest, range, shortest, &mut pieces)
     }
 
-    /// Whether the ray is rounded by more than the size of the shape, where rounding is this fraction of that in `f64`.
+    /// Tells whether the ray's rounding error is larger than the shape, in arithmetic with `rounding` times the error
+    /// of `f64`.
     pub fn is_lost(&self, rounding: f64) -> bool {
         rounding * self.blur > (self.shape.high - self.shape.low).max_element()
     }
@@ -158,8 +159,8 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         }
     }
 
-    /// Tells whether the surface is kept at a root. Where that is not certain in `f64`, it is decided at a
-    /// root in double-double arithmetic.
+    /// Tells whether the surface is kept at a root. If `f64` does not decide this, the root is refined in double-double
+    /// arithmetic.
     pub fn kept(&self, root: f64) -> Kept {
         let error = 4.0 * f64::EPSILON * root.abs() + self.blur;
         let at = self.on_line(Interval { low: root - error, high: root + error });
@@ -176,20 +177,20 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         Kept { is_kept: kept.high >= 0.0, is_certain: false }
     }
 
-    /// Encloses the points at distances along every ray that this one may have been rounded from.
+    /// Encloses the points at the distances `t` along all rays that may have been rounded to this one.
     pub fn on_line<N: Scalar>(&self, t: N) -> [N; 3] {
         let along =
             |axis: usize| N::about(self.base[axis], self.blur) + N::about(self.dir[axis], self.turn) * t;
         [along(0), along(1), along(2)]
     }
 
-    /// Returns the distance of a root along the ray in the world; [`MISS`] for none, and outside of the range.
+    /// Returns the distance of a root along the ray in world space, or [`MISS`] if there is none in the range.
     pub fn distance(&self, root: Option<f64>, range: &RayRange) -> f64 {
         root.map_or(MISS, |root| range.keep(self.closest + root))
     }
 }
 
-/// Returns the length below which pieces of a span are not cut: four EPSILON, a few ulps, of its largest number.
+/// Returns the minimum length for halving pieces of a span: 4 EPSILON times its largest number.
 pub(super) fn shortest(span: &Range<f64>) -> f64 {
     4.0 * f64::EPSILON * span.start.abs().max(span.end.abs())
 }
@@ -245,7 +246,7 @@ impl<T: Implicit> taylor::FunctionOnLine for FormulaOnRay<'_, T> {
     ) -> Option<f64> {
         let ImplicitShape { formula, low, high, parts, .. } = self.shape;
         let error = self.blur + self.turn * ends.0.abs().max(ends.1.abs());
-        // With these errors, a line is in the parts of the box in which it seems to be, given their margins.
+        // With small errors, a line is in the parts of the box where it seems to be, given their margins.
         let is_precise = error <= 0.5 * MARGIN * (*high - *low).min_element();
         if !is_precise {
             return visit(ends.0, ends.1);
@@ -260,8 +261,8 @@ impl<T: Implicit> taylor::FunctionOnLine for FormulaOnRay<'_, T> {
         self.by_proof
     }
 
-    /// Decides a piece in double-double arithmetic from the ray in the world, which tells nearly all touches from
-    /// misses.
+    /// Decides a piece in double-double arithmetic along the ray in world space, which distinguishes nearly all touches
+    /// from misses.
     fn undecided(&self, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
         if self.is_lost(twice::STILL_HIDDEN) {
             return None;

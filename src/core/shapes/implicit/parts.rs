@@ -1,7 +1,8 @@
-//! Parts of a shape's box that its surface does not reach: found once, for all rays.
+//! Parts of a shape's box that do not contain its surface, found once for all rays.
 //!
-//! The box is halved along its longest side, again and again, and bounds of the formula tell in which halves it is not 0. A part is
-//! judged when the first ray comes to it. The judgement does not depend on the ray, so that a hit does not depend on other rays.
+//! The box is halved repeatedly along its longest side, and bounds of the formula tell which halves contain no zero. A
+//! part is examined when the first ray enters it. The result does not depend on the ray, and so the hits of a ray do
+//! not depend on other rays.
 //!
 //! Source: M. J. Keeter, "Massively Parallel Rendering of Complex Closed-Form Implicit Surfaces" (2020), which finds
 //! the empty parts for the tiles of an image.
@@ -14,31 +15,31 @@ use tabray_exact::dual::Dual;
 use tabray_exact::formula::cells::MARGIN;
 use tabray_exact::interval::Interval;
 
-/// The number of times that a box is halved at most: six times along each axis of a cube.
+/// The maximum number of halvings of a box: six along each axis of a cube.
 const HALVINGS: usize = 2 * BLOCK;
 
-/// The number of halvings whose parts are kept together: memory for the others is taken when a ray comes there.
+/// The number of halvings whose parts share a block of memory. The other blocks are allocated when a ray enters them.
 const BLOCK: usize = 9;
 
-/// What is known of some parts, four to a byte.
+/// The states of some parts, four to a byte.
 type Known = OnceLock<Box<[AtomicU8]>>;
 
-/// What is known of a part, in two bits; at first, nothing.
+/// The state of a part that was not examined yet. States take two bits.
 const UNKNOWN: u8 = 0;
-/// The formula is nowhere 0.
+/// The formula has no zero.
 const FREE: u8 = 1;
-/// The formula rises or falls along an axis everywhere, in all halves too.
+/// The formula is strictly monotonic along an axis, in all halves too.
 const PLAIN: u8 = 2;
-/// All other parts, which are halved.
+/// Any other part, which is halved.
 const OPEN: u8 = 3;
 
 /// The parts of a box.
 pub(super) struct Parts {
     low: DVec3,
     high: DVec3,
-    /// What is known about the parts. The part with the index 1 is the box, and the halves of part `i` are `2 i` and
-    /// `2 i + 1`. Parts that are halved less than [`BLOCK`] times come first, and then the parts within each of the others. Made
-    /// when the first ray comes.
+    /// The states of the parts. The box has the index 1, and the halves of part `i` have the indices `2 i` and `2 i +
+    /// 1`. The first block has the parts that are halved less than [`BLOCK`] times, and each other block those within
+    /// one part. Made for the first ray.
     known: OnceLock<Box<[Known]>>,
 }
 
@@ -47,9 +48,9 @@ impl Parts {
         Self { low, high, known: OnceLock::new() }
     }
 
-    /// Calls a function with the pieces of a line between two places on which the formula may be 0, in their order, until it
-    /// returns a root. The line is the points `base + t dir`, with errors below the margins of the parts. Pieces that begin after
-    /// `far` may be left out.
+    /// Calls a function with the pieces of a line between two places that may have zeros, in order, until it returns a
+    /// root. The line is the points `base + t dir`, with errors below the margins of the parts. Pieces that begin after
+    /// `far` may be omitted.
     pub fn visit(
         &self,
         formula: &impl Implicit,
@@ -79,13 +80,13 @@ struct Walk<'w, T> {
     known: &'w [Known],
     visit: &'w mut dyn FnMut(f64, f64) -> Option<f64>,
     far: f64,
-    /// The piece of the line in the last parts that are not free, one beside the other, which is not searched yet.
+    /// The piece of the line in the last contiguous parts with possible zeros. It is not searched yet.
     piece: Option<(f64, f64)>,
 }
 
 impl<T: Implicit> Walk<'_, T> {
-    /// Walks through a part, in which the line is from one place to another. `above` is what is known of the part of which it is
-    /// a half.
+    /// Walks through a part, which contains the line from one place to another. `above` is the state of the part's
+    /// parent.
     fn part(
         &mut self,
         (index, above): (usize, u8),
@@ -111,7 +112,7 @@ impl<T: Implicit> Walk<'_, T> {
         (below[1][axis], above[0][axis]) = (middle, middle);
         let (below, above) = (((2 * index, known), below), ((2 * index + 1, known), above));
         let cut = (middle - base) / dir;
-        // Written so that a NaN, of a line in the plane of the cut, is no cut.
+        // The comparisons are false for NaN, which a line in the plane of the cut gives.
         if cut > from && cut < to {
             let [first, last] = if dir > 0.0 { [below, above] } else { [above, below] };
             let found = self.part(first.0, first.1, (from, cut));
@@ -122,13 +123,13 @@ impl<T: Implicit> Walk<'_, T> {
         self.part(half.0, half.1, (from, to))
     }
 
-    /// Searches the last parts that are not free.
+    /// Searches the last parts with possible zeros.
     fn search(&mut self) -> Option<f64> {
         let (from, to) = self.piece.take()?;
         (self.visit)(from, to)
     }
 
-    /// Returns what is known of a part, and judges it if it is the first to ask.
+    /// Returns the state of a part, and examines the part on first use.
     fn known(&self, index: usize, above: u8, corners: [DVec3; 2]) -> u8 {
         let (block, index) = placed(index);
         let block =
@@ -139,7 +140,7 @@ impl<T: Implicit> Walk<'_, T> {
             return known;
         }
         let known = self.judged(above, corners);
-        // Whoever else judges it finds the same.
+        // Other threads find the same state.
         four.fetch_or(known << shift, Ordering::Relaxed);
         known
     }

@@ -1,4 +1,4 @@
-//! What can be proven of a mesh's hits along any line.
+//! Proofs of a mesh's hits along a line.
 
 use super::face::Face;
 use super::hits::BESIDE;
@@ -12,12 +12,12 @@ use tabray_exact::affine::Affine;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, dot, per_axis};
 
-/// A face that a line may hit: the least t of its first hit there, what is certain about that, and the face.
+/// A face that a line may hit: the minimum t of its first hit, the enclosure of that hit, and the face.
 pub(super) type Met<F> = ((F, HitEnclosure<F>), usize);
 
 impl Surface {
-    /// Returns what is certain about a line's first hit with t > 0, and the face that is hit. `leaves` is the face on which
-    /// the line's true start lies.
+    /// Returns the enclosure of a line's first hit with t > 0, and the hit face. `leaves` is the face that the line's
+    /// exact start lies on.
     pub(super) fn first_along<A: Bounded, F: Precise>(
         &self,
         line: &Line<Interval<F>>,
@@ -26,7 +26,7 @@ impl Surface {
         let find = || self.found_along::<A, F>(line, leaves);
         let known = leaves.is_none().then(|| (line as &dyn Any).downcast_ref::<Line<Interval>>()).flatten();
         let Some(known) = known else { return find() };
-        // Who has a hit proven asks for its face next.
+        // The caller of a proof usually asks for the face next.
         let found = proven::found(self.id, known, || {
             let found = find();
             (&found as &dyn Any).downcast_ref::<(HitEnclosure<f64>, usize)>().copied()
@@ -50,7 +50,7 @@ impl Surface {
         if rivals().all(|(_, other)| other == face) {
             return (first, face);
         }
-        // If several faces are at exactly the same distance, the face that `face_along` chooses.
+        // Of several faces at exactly the same distance, `face_along` chooses this one.
         if rivals().all(|(found, _)| found == first && at.low == at.high) {
             let place = |face: usize| {
                 let rank = match self.is_certainly_hidden::<A, F>(face, line, at, leaves)? {
@@ -67,9 +67,9 @@ impl Surface {
         (HitEnclosure::Doubtful(low), face)
     }
 
-    /// Returns the faces that a line may hit, each with what is certain about its first hit there and with the least t of
-    /// that hit. `is_left` tells whether the line's true start lies in the plane of a face. If `only_first`, faces that lie
-    /// behind a certain hit may be left out.
+    /// Returns the faces that a line may hit, each with the enclosure of its first hit and the minimum t of that hit.
+    /// `is_left` tells whether the line's exact start lies in the plane of a face. If `only_first`, faces behind a
+    /// certain hit may be omitted.
     pub(super) fn met<A: Bounded, F: Precise>(
         &self,
         line: &Line<Interval<F>>,
@@ -94,8 +94,8 @@ impl Surface {
         met
     }
 
-    /// Tells whether other faces hide a face beside the point where a line meets it, as [`is_hidden`](Self::is_hidden)
-    /// does; `None` where that is open.
+    /// Tells whether other faces hide a face beside the point where a line hits it, like
+    /// [`is_hidden`](Self::is_hidden), or `None` if that is undecided.
     fn is_certainly_hidden<A: Bounded, F: Precise>(
         &self,
         face: usize,
@@ -136,7 +136,8 @@ impl Surface {
         });
     }
 
-    /// Tells whether a line hits the outside of a face, or whether that makes no difference; `None` where that is open.
+    /// Tells whether a line hits the outside of a face, or whether the mesh is open. Returns `None` if that is
+    /// undecided.
     fn is_certainly_outside<A: Bounded, F: Precise>(
         &self,
         face: usize,

@@ -1,4 +1,4 @@
-//! Rays that come from so far away that plain arithmetic cannot tell the faces of a mesh apart.
+//! Rays from so far away that `f64` arithmetic cannot tell the faces of a mesh apart.
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Ray, RayError};
@@ -8,16 +8,16 @@ use tabray_exact::double_double::exact::exact_sum;
 use tabray_exact::double_double::two_product;
 use tabray_exact::scalar::per_axis;
 
-/// The largest distance, as a multiple of a mesh's size, from which plain arithmetic finds its faces quickly.
+/// The maximum distance, as a multiple of a mesh's size, at which `f64` arithmetic finds the faces quickly.
 pub(super) const FAR: f64 = (1_u64 << 30) as f64;
 
-/// A ray that starts nearer to a mesh than the one that it stands for: plain arithmetic cannot tell faces apart whose
-/// distance is large for their size.
+/// A ray that starts closer to a mesh than the original ray. From a distance that is large for their size, `f64`
+/// arithmetic cannot tell faces apart.
 pub(super) struct Approach {
     pub ray: Ray,
     /// A bound on the error of its origin.
     pub drift: RayError,
-    /// The distance of the new origin from the old one, in world units, and a bound on its error.
+    /// The distance of the new origin from the old one, in world units. `slack` bounds its error.
     pub travelled: f64,
     pub slack: f64,
 }
@@ -28,7 +28,7 @@ impl Approach {
         Self { ray: *ray, drift: RayError::NONE, travelled: 0.0, slack: 0.0 }
     }
 
-    /// Starts a ray before a box that is far away for its size.
+    /// Moves the start of a ray to just before a box that is far away for its size.
     pub(super) fn new(ray: &Ray, bounds: &Aabb) -> Self {
         let middle = 0.5 * bounds.low + 0.5 * bounds.high;
         let size = (bounds.high - bounds.low).length();
@@ -37,7 +37,8 @@ impl Approach {
             return Self::none(ray);
         }
         let (mut steps, mut at) = (Vec::new(), ray.origin);
-        // Each step leaves a rounding error of the one before it. A ray that misses the box by far comes no nearer.
+        // Each step leaves only the rounding error of the step before it. A ray that misses the box by far comes no
+        // closer.
         loop {
             steps.push(ray.dir.dot(middle - at) - 2.0 * size);
             at = DVec3::from(per_axis(|axis| {
@@ -105,8 +106,7 @@ mod tests {
         }
     }
 
-    /// A ray that passes at a distance far larger than the mesh, and that comes from a far larger distance, meets
-    /// nothing.
+    /// A ray that passes a mesh at a distance far larger than the mesh, and comes from much farther away, hits nothing.
     #[test]
     fn rays_that_pass_by_from_far_away_have_no_candidates() {
         let surface = surface(closed(&[1.0], 20), &ToWorld::new(PLAIN, Rotation::NONE, DVec3::ZERO));

@@ -8,15 +8,15 @@ use crate::parallel;
 use glam::DVec3;
 use std::fmt;
 
-/// The reason why no surface can be made of arrays.
+/// The reason why arrays do not make a surface.
 #[derive(Debug, PartialEq)]
 pub enum ArrayError {
-    /// The first face with a corner that is not a vertex: the index of the face, the index of the corner, and the
+    /// The first face with a corner that is not a vertex: the index of the face, the index of the corner in it, and the
     /// number given there.
     Corner(usize, usize, u32),
     /// The first vertex that is not finite, by its index.
     NotFinite(usize),
-    /// No surface can be made of these triangles, for this reason.
+    /// These triangles do not make a surface, for this reason.
     Surface(&'static str),
 }
 
@@ -33,8 +33,8 @@ impl fmt::Display for ArrayError {
 }
 
 impl Surface {
-    /// Makes the surface of triangles, given by the indices of their vertices. Coordinates stay as they are, and so does the
-    /// turn of each face.
+    /// Makes the surface of triangles, given by the indices of their vertices. Coordinates and the orientations of
+    /// faces stay as they are.
     ///
     /// ```
     /// use tabray_core::glam::DVec3;
@@ -46,7 +46,7 @@ impl Surface {
     /// ```
     ///
     /// # Errors
-    /// Returns why there is no surface.
+    /// Returns the reason why there is no surface.
     pub fn of_arrays(vertices: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Result<Self, ArrayError> {
         let first = |vertex: usize| !vertices[vertex].is_finite();
         if let Some(vertex) = parallel::find_first(vertices.len(), first) {
@@ -60,11 +60,11 @@ impl Surface {
         Self::of_checked(vertices, faces, Look::default())
     }
 
-    /// Returns this surface with the faces of each part turned alike, as most of them are turned. Surfaces read from
-    /// files are turned in the same way.
+    /// Returns this surface with the faces of each part oriented consistently, as most of them are. Surfaces read from
+    /// files are oriented in the same way.
     ///
     /// # Errors
-    /// Returns why there is no surface.
+    /// Returns the reason why there is no surface.
     pub fn turned_alike(&self) -> Result<Self, ArrayError> {
         let look = Look { crease: None, is_two_sided: true };
         Self::of_checked(self.vertices.clone(), self.faces.clone(), look)

@@ -1,5 +1,4 @@
-//! The normals with which a mesh looks smooth: the means of the normals of the faces around a corner, up to edges that
-//! are creases.
+//! The normals of a smoothed mesh: the means of the face normals around each corner, up to creases.
 
 use super::edges::Edges;
 use super::read::AtCorners;
@@ -8,13 +7,13 @@ use crate::world::accuracy::Exact;
 use glam::DVec3;
 use tabray_exact::double_double::{exponent_to_one, times_power_of_two};
 
-/// The unit normals of a mesh that looks smooth, one for each corner. A normal is 0 where the normals of the faces
-/// cancel.
+/// The unit normals of a smoothed mesh, one for each corner. A normal is 0 where the normals of the faces cancel.
 pub(super) type Normals = AtCorners<[f32; 3]>;
 
 impl Normals {
-    /// Computes the normals at the corners of faces, whose edges are these: the sums of the normals of the faces that hang
-    /// together around a corner by edges at which they differ by at most `crease` degrees, weighted by their angles there.
+    /// Computes the normals at the corners of faces with these edges. Each is the sum of the normals of the faces
+    /// around the corner that are connected by edges with at most `crease` degrees between their faces, weighted by the
+    /// faces' angles at the corner.
     pub(super) fn of(vertices: &[DVec3], faces: &[[u32; 3]], edges: &Edges, crease: f64) -> Self {
         let flat: Vec<DVec3> = faces.iter().map(|face| flat_normal(vertices, *face)).collect();
         let least = libm::cos(crease.to_radians());
@@ -40,7 +39,7 @@ impl Normals {
             corners.push([0, 1, 2].map(|side| {
                 let corner = 3 * index + side;
                 let first = above[corner] as usize;
-                // An earlier corner's place already holds the index of its normal.
+                // The entry of an earlier corner already holds the index of its normal.
                 let normal = if first == corner { sums.len() as u32 } else { above[first] };
                 if first == corner {
                     sums.push(DVec3::ZERO);
@@ -55,7 +54,7 @@ impl Normals {
     }
 }
 
-/// Returns the normal of a face, 0 if it has none.
+/// Returns the unit normal of a face, or 0 if it has none.
 pub(super) fn flat_normal(vertices: &[DVec3], face: [u32; 3]) -> DVec3 {
     let triangle = Triangle::<Exact>::new(face.map(|corner| vertices[corner as usize]));
     triangle.map_or(DVec3::ZERO, |triangle| triangle.plane.normal)
@@ -63,7 +62,7 @@ pub(super) fn flat_normal(vertices: &[DVec3], face: [u32; 3]) -> DVec3 {
 
 /// Returns the angle of a triangle at a corner, in radians.
 fn angle(corners: &[DVec3; 3], side: usize) -> f64 {
-    // By powers of two, so that products of tiny or huge edges neither underflow nor overflow.
+    // Scaling by powers of two keeps products of tiny or huge edges from underflow and overflow.
     let edge = |to: usize| {
         let edge = corners[(side + to) % 3] - corners[side];
         edge * times_power_of_two(1.0, exponent_to_one(edge.abs().max_element()))
@@ -89,7 +88,7 @@ mod tests {
 
     const SIDES: u32 = 24;
 
-    /// Returns a cylinder around z of so many sides, 15 degrees each, with a corner in the middle of each end.
+    /// Returns a cylinder around z with `SIDES` sides, 15 degrees each, and a corner in the middle of each end.
     fn cylinder() -> (Vec<DVec3>, Vec<[u32; 3]>) {
         let rim = |z: f64| {
             (0..SIDES).map(move |side| {
@@ -116,7 +115,7 @@ mod tests {
     #[test]
     fn edges_beyond_the_crease_stay_sharp() {
         let (vertices, faces, Normals { values: normals, faces: corners }) = normals(30.0);
-        // Each corner of a rim has one for the sides and one for the end.
+        // Each corner of a rim has one normal for the sides and one for the end.
         assert_eq!(normals.len(), vertices.len() + 2 * SIDES as usize);
         for (face, normal) in faces.iter().zip(&*corners) {
             let is_end = face.iter().any(|corner| *corner >= 2 * SIDES);

@@ -1,10 +1,10 @@
-//! The edges of a mesh, and the faces beside each.
+//! The edges of a mesh, and the faces beside each edge.
 
-/// The sides of all faces, in the order of the edges on which they lie.
+/// The sides of all faces, sorted by edge.
 pub(super) struct Edges {
-    /// For each vertex the index of the first side whose end of the lesser index it is, and the number of all sides.
+    /// For each vertex, the index of the first side with this vertex as its lower end. The number of all sides follows.
     starts: Vec<u32>,
-    /// The other end, the face, and whether the side runs from the other end.
+    /// The upper end, the face, and whether the side starts at the upper end.
     sides: Vec<Side>,
 }
 
@@ -18,14 +18,14 @@ impl Side {
         (self.0 >> 1) as usize & ((1 << 28) - 1)
     }
 
-    /// Tells whether the side runs from the end of the greater index.
+    /// Tells whether the side starts at the end with the higher index.
     pub fn is_back(self) -> bool {
         self.0 & 1 == 1
     }
 }
 
 impl Edges {
-    /// Sorts the sides of faces between so many vertices. There are at most 2^28 faces, and 2^31 vertices.
+    /// Sorts the sides of faces between `vertices` vertices. There are at most 2^28 faces, and 2^31 vertices.
     pub fn of(faces: &[[u32; 3]], vertices: usize) -> Self {
         let sides_of = |[a, b, c]: [u32; 3]| [(a, b), (b, c), (c, a)];
         let mut starts = vec![0_u32; vertices + 1];
@@ -37,7 +37,7 @@ impl Edges {
             sum += *start;
             *start = sum;
         }
-        // Each place is filled from its end, which makes it its start.
+        // Each range is filled from its end, which leaves its start in `starts`.
         let mut sides = vec![Side(0); 3 * faces.len()];
         for (face, corners) in faces.iter().enumerate().rev() {
             for (from, to) in sides_of(*corners) {

@@ -1,4 +1,4 @@
-//! One face of a mesh: what plain arithmetic tells of a ray's hit, and its equation.
+//! One face of a mesh: a ray's hit in `f64` arithmetic, and the equation of the face.
 
 use crate::geometry::aabb::{Aabb, larger};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayError};
@@ -12,26 +12,27 @@ use tabray_exact::scalar::{Scalar, dot, per_axis};
 /// A bound of the error of the dot product of a face's normal and the vector from a ray's origin to a corner, as a
 /// fraction of the product of the largest components of two edges and of that vector.
 ///
-/// Units of 2^-53: a component of the normal is off by 9 of the product of the edges, so that the dot product is off by
-/// 10 + 2 * 4 of that product and the sum of the vector's components, which is at most 3 times the largest: 54, less
-/// than 64.
+/// In units of 2^-53: the error of a component of the normal is 9 times the product of the edges. The error of the dot
+/// product is 10 + 2 * 4 times this product and the sum of the vector's components, at most 3 times the largest one.
+/// This gives 54, less than 64.
 const AWAY_ERROR: f64 = 32.0 * f64::EPSILON;
 
-/// A bound on the rounding error of the dot product with the ray's direction, as a fraction of the product of the edges: a camera ray's
-/// direction is off by 3, and components of a direction add up to at most 1.74: 1.74 * (10 + 2 * 6) = 39, less than 48.
+/// A bound of the rounding error of the dot product of the normal and the ray's direction, as a fraction of the product
+/// of the edges. The error of a camera ray's direction is 3, and its components add up to at most 1.74. This gives 1.74
+/// * (10 + 2 * 6) = 39, less than 48.
 const TOWARD_ERROR: f64 = 24.0 * f64::EPSILON;
 
-/// What a ray may leave: bounds on the distance of its origin from the point that it stands for, in world units. The
-/// ray leaves the faces within that distance.
+/// Bounds of the distance between a ray's origin and the exact point that it was rounded from, in world units. The ray
+/// leaves the faces within that distance.
 #[derive(Clone, Copy)]
 pub(super) struct Leaving {
-    /// It is at least this.
+    /// The lower bound.
     pub least: f64,
-    /// It is at most this; negative where the ray leaves nothing.
+    /// The upper bound. It is negative if the ray leaves no face.
     pub most: f64,
 }
 
-/// What all rays have in common that are tested against a face.
+/// Values of a face that do not depend on the ray.
 pub(super) struct Flat {
     corners: [DVec3; 3],
     normal: DVec3,
@@ -51,26 +52,26 @@ impl Flat {
         Self { corners, normal, size: normal.length(), edges }
     }
 
-    /// Returns the product of the normal and the vector from a ray's origin to the face, and bounds on the errors of that
-    /// and of the product with the direction.
+    /// Returns the dot product of the normal and the vector from a ray's origin to the face, a bound of its error, and
+    /// a bound of the error of the dot product with the direction.
     #[inline(always)]
     fn away(&self, ray: &Ray, drift: RayError) -> (f64, f64, f64) {
         let (between, edges) = (self.corners[0] - ray.origin, self.edges);
         let largest = largest(between);
         let (away_error, toward_error) =
             (AWAY_ERROR * edges * largest + UNDERFLOW * (1.0 + largest), TOWARD_ERROR * edges + UNDERFLOW);
-        // A normal is no longer than 3 times the product of the edges' largest components, as an edge is no longer than
-        // the root of 3 times its largest component.
+        // A normal is at most 3 times as long as the product of the edges' largest components, because an edge is at
+        // most √3 times as long as its largest component.
         let (away_error, toward_error) =
             (away_error + 3.0 * edges * drift.origin, toward_error + 3.0 * edges * drift.dir);
         (self.normal.dot(between), away_error, toward_error)
     }
 
-    /// Returns the bracket of a ray that certainly leaves the face, or may leave it; `None` for any other.
+    /// Returns the bracket of a ray that leaves the face or may leave it, or `None` for any other ray.
     #[inline(always)]
     pub(super) fn left(&self, ray: &Ray, leaving: Leaving, drift: RayError) -> Option<Bracket> {
         let (away, away_error, toward_error) = self.away(ray, drift);
-        // The length is off by less than an error of a direction.
+        // The error of the length is less than that of the product with a direction.
         let offset = |error: f64| error * (self.size - toward_error);
         let bounds = Aabb::around(&self.corners);
         let holds = |error: f64| {
@@ -85,8 +86,8 @@ impl Flat {
         (away.abs() - away_error <= farthest && holds(leaving.most)).then_some(Bracket::UNKNOWN)
     }
 
-    /// Returns bounds of the distance before `end` at which a ray hits the face whose line does not certainly miss it,
-    /// and passes through it for certain where `is_passed`. The ray leaves other faces, if any.
+    /// Returns bounds of the distance, before `end`, at which a ray hits the face. Its line does not certainly miss the
+    /// face, and certainly crosses it if `is_passed`. The ray leaves other faces, if any.
     #[inline(always)]
     pub(super) fn t_bounds(
         &self,
@@ -103,7 +104,7 @@ impl Flat {
         let error = (away_error + distance.abs() * toward_error + larger(leaving.most, 0.0) * self.size)
             / least
             + 2.0 * f64::EPSILON * distance.abs();
-        // All comparisons are false where the distance is NaN, as that of a ray in the plane.
+        // All comparisons are false for a NaN, the distance of a ray in the plane.
         let is_known = (least > toward_error) & (error < MISS);
         let (low, high) = (distance - error, distance + error);
         let is_out = is_known & ((high <= 0.0) | (low >= end));
@@ -113,7 +114,7 @@ impl Flat {
     }
 }
 
-/// Returns bounds of the distance before `end` at which a ray hits a face; with a drift, of all rays within it.
+/// Returns bounds of the distance before `end` at which a ray, or any ray within its drift, hits a face.
 #[inline(always)]
 pub(super) fn t_bounds(
     corners: [DVec3; 3],
@@ -131,7 +132,7 @@ pub(super) fn t_bounds(
     left.unwrap_or_else(|| flat.t_bounds(ray, end, leaving, drift, passed == Some(true)))
 }
 
-/// Tells whether the corners of a face do not lie on one line.
+/// Tells whether a face has an area: its corners do not lie on one line.
 pub(super) fn has_area(corners: [DVec3; 3]) -> bool {
     let [a, b, c] = corners;
     let (one, other) = (b - a, c - a);
@@ -141,8 +142,7 @@ pub(super) fn has_area(corners: [DVec3; 3]) -> bool {
         || Triangle::<Exact>::new(corners).is_some()
 }
 
-/// A face as the solution of an equation, for proofs. Unlike a [`Triangle`] of its own, it is not cut off in front of
-/// the image plane.
+/// The equation of a face, for proofs. Unlike a [`Triangle`] object, it is not cut off in front of the image plane.
 pub(super) struct Face<A>(pub Triangle<A>);
 
 impl<A> Equation for Face<A> {
@@ -160,14 +160,14 @@ impl<A> Equation for Face<A> {
 
 /// Returns the distance from a point to a triangle, in world units.
 ///
-/// Where the point's projection onto the plane is on the same side of all edges, the result is the distance from the
-/// plane, and otherwise the distance from the nearest edge. Coordinates are relative to the point, and the normal is
-/// computed from the two shortest edges, so that a triangle that is far longer than it is wide costs few digits.
+/// This is the distance from the plane if the point's projection is on the same side of all edges, and otherwise the
+/// distance from the nearest edge. Coordinates are relative to the point, and the normal comes from the two shortest
+/// edges, which keeps the result precise for long, thin triangles.
 pub(super) fn distance_to(corners: [DVec3; 3], at: DVec3) -> f64 {
     let corners = [corners[0] - at, corners[1] - at, corners[2] - at];
     let size = larger(larger(largest(corners[0]), largest(corners[1])), largest(corners[2]));
     if !(1e-70..1e70).contains(&size) && size > 0.0 && size < MISS {
-        // Its fourth power would underflow or overflow.
+        // The fourth power of the size would underflow or overflow.
         let scale = times_power_of_two(1.0, exponent_to_one(size));
         return distance_to(corners.map(|corner| corner * scale), DVec3::ZERO) / scale;
     }

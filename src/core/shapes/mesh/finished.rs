@@ -1,4 +1,4 @@
-//! The looks that the file of a mesh gives its faces.
+//! Appearances of faces as given by a mesh's file.
 
 use super::read::{Finish, Map};
 use super::surface::Surface;
@@ -16,7 +16,7 @@ use tabray_exact::scalar::{Scalar, constants, per_axis};
 
 /// The materials, the images and the colours of a mesh's file.
 ///
-/// As for [`Painted`](super::Painted), a face is chosen by the point alone.
+/// As for [`Painted`](super::Painted), the point alone determines the face.
 pub struct Finished {
     surface: Arc<Surface>,
     has_images: bool,
@@ -41,7 +41,7 @@ impl Spot<'_> {
 }
 
 impl Finished {
-    /// Gives a surface the looks that its file has.
+    /// Makes the shader of a surface with the materials of its file.
     pub fn new(surface: Arc<Surface>) -> Self {
         let any = |is: fn(&Finish) -> bool| surface.finishes.iter().flatten().any(is);
         let has_images = any(|finish| finish.maps().next().is_some());
@@ -56,12 +56,12 @@ impl Finished {
         Spot { face, finish: self.finish(face), corners: self.surface.corners(face), at }
     }
 
-    /// Returns what the file says of a face's material.
+    /// Returns the material of a face in the file.
     fn finish(&self, face: usize) -> Option<&Finish> {
         self.surface.finish(*self.surface.slots.get(face)?)
     }
 
-    /// Returns where a spot lies in an image, and how far a patch reaches there, both in texels.
+    /// Returns the position of a spot in an image, and the extent of a patch there, both in texels.
     fn place(&self, spot: &Spot, map: &Map, patch: Option<Patch>) -> Option<[DVec2; 2]> {
         let corners = self.surface.uv.at(spot.face)?.map(|[u, v]| DVec2::new(u.into(), v.into()));
         let size = DVec2::from(map.texture.size().map(f64::from));
@@ -72,7 +72,7 @@ impl Finished {
         place.is_finite().then_some([place, (extent * map.scale).abs() * size])
     }
 
-    /// Returns the light of an image at a spot; white where there is no image.
+    /// Returns the colour of an image at a spot, or white without an image.
     fn light(&self, spot: &Spot, map: Option<&Map>, patch: Option<Patch>) -> Rgb {
         let Some(map) = map else { return Rgb::ONE };
         let Some([place, extent]) = self.place(spot, map, patch) else { return Rgb::ONE };
@@ -82,7 +82,7 @@ impl Finished {
         map.texture.blended(place, |column, row| map.texture.texel(column, row))
     }
 
-    /// Returns the colour of the corners of a face, blended at a spot; white where there is none.
+    /// Returns the corner colours of a face, blended at a spot, or white if it has none.
     fn tint(&self, spot: &Spot) -> Rgb {
         let Some(colours) = self.surface.colours.at(spot.face) else { return Rgb::ONE };
         let [a, b, c] = colours.map(|colour| Rgb::from(colour.map(f64::from)));
@@ -95,14 +95,14 @@ impl Finished {
         finish.colour * self.light(spot, finish.colours.as_ref(), patch) * self.tint(spot)
     }
 
-    /// Bounds the channels of the colours of corners.
+    /// Bounds the channels of all corner colours.
     fn brightest_tint(&self) -> Rgb {
         let colours = &self.surface.colours.values;
         let most = colours.iter().flatten().fold(0.0_f32, |most, channel| most.max(*channel));
         if colours.is_empty() { Rgb::ONE } else { Rgb::splat(most.max(1.0).into()) }
     }
 
-    /// Bounds the looks of all faces, where the mesh itself has the material `own`.
+    /// Bounds the appearances of all faces. The mesh itself has the material `own`.
     fn most(&self, own: &Material) -> Look {
         let tint = self.brightest_tint();
         let plain = Look {
@@ -122,8 +122,8 @@ impl Finished {
         })
     }
 
-    /// Returns the material of the mesh, `own`, with the shininess and the transparency of all of its faces' materials,
-    /// and a warning where these materials differ, or `own` is of another kind.
+    /// Returns the material of the mesh, `own`, with the shininess and the transparency that the materials of all faces
+    /// share. Returns a warning if these materials differ, or `own` is of another kind.
     pub fn material(&self, own: &Material) -> (Option<Material>, Option<Warning>) {
         let surface = &self.surface;
         let of = |slot: u16| surface.finish(slot).map_or([own.shininess, own.transparency], Finish::gloss);
@@ -153,7 +153,7 @@ impl Finished {
         (None, warning)
     }
 
-    /// Encloses the light of an image between such weights of a face's corners.
+    /// Encloses the colours of an image for these bounds of barycentric weights on a face.
     fn enclosed<F: Precise>(
         &self,
         face: usize,
@@ -169,7 +169,7 @@ impl Finished {
             let size = map.texture.size()[axis];
             let Interval { low, high } =
                 (at * n(map.scale[axis]) + n(map.offset[axis])) * n(size.into()) - n(0.5);
-            // Blended colours lie among those of the texels around.
+            // Blended colours lie between those of the surrounding texels.
             let (low, high) = (low.floor() as i64, (high.floor() as i64).saturating_add(1));
             (low..=high).map(move |at| at.rem_euclid(i64::from(size.max(1))) as u32)
         };
@@ -213,7 +213,7 @@ impl Shader for Finished {
         self.bends
     }
 
-    /// Along the texture coordinates as they run on the face, by its normal map.
+    /// Applies the normal map along the directions of the texture coordinates on the face.
     fn bend(&self, at: &SurfacePoint) -> DVec3 {
         let spot = self.spot(at.position);
         let Some((map, strength)) = spot.finish.and_then(|finish| finish.normals.as_ref()) else {
@@ -246,7 +246,7 @@ impl Shader for Finished {
         let map = spot.finish.and_then(|finish| finish.colours.as_ref());
         let place =
             map.and_then(|map| self.place(&spot, map, None)).map_or(DVec2::ZERO, |[place, _]| place.floor());
-        // The parts of a number that no image reaches tell materials apart.
+        // Multiples of 2^32, which no image reaches, tell materials apart.
         place + DVec2::new(f64::from(slot) * 4_294_967_296.0, 0.0)
     }
 
@@ -259,7 +259,7 @@ impl Shader for Finished {
         let face = self.surface.face_at(DVec3::from(coarse.map(Interval::middle)));
         if !self.surface.is_alone(coarse, |other| other == face) {
             let Look { ambient, diffuse, specular } = self.most(material);
-            // Ambient light and mirrors of the mesh's own may be negative.
+            // The mesh's own ambient and specular reflectivities may be negative.
             let within = |most: Rgb, own: Rgb| {
                 per_axis(|channel| {
                     n(0.0).hull(n(most[channel])).hull(n(own[channel] * self.brightest_tint()[channel]))
@@ -299,13 +299,13 @@ impl Shader for Finished {
         })
     }
 
-    /// Returns bounds for the looks of all faces, if the mesh's own material has no negative diffuse colour.
+    /// Returns bounds of the appearances of all faces, unless the mesh's own diffuse colour is negative.
     fn brightest(&self, material: &Material) -> Option<Look> {
         (material.diffuse.min_element() >= 0.0).then(|| self.most(material))
     }
 }
 
-/// Returns the directions in which u and v grow on a face, while the other one stays.
+/// Returns the directions on a face in which u grows at constant v, and v at constant u.
 fn along([a, b, c]: [DVec3; 3], uv: [[f32; 2]; 3]) -> Option<[DVec3; 2]> {
     let [from, to, other] = uv.map(|[u, v]| DVec2::new(u.into(), v.into()));
     let (one, two) = (to - from, other - from);

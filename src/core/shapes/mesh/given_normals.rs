@@ -1,4 +1,4 @@
-//! The normals of a file, as far as they are of use.
+//! Normals given by a mesh file.
 
 use super::creases::{Normals, flat_normal};
 use super::read::NO_VALUE;
@@ -7,10 +7,9 @@ use glam::DVec3;
 use std::sync::Arc;
 
 impl Normals {
-    /// Takes the normals that a file gives the corners of faces. The normals of `others` are taken where the file gives
-    /// none, or where its normal is 0, not finite or not within 90 degrees of the face's own. If the sum of a face's
-    /// normals points to the other side of the face, these normals are turned. Returns the number of corners whose
-    /// normals were not taken.
+    /// Takes the normals that a file gives for the corners of faces. Where a normal is missing, 0, not finite or not
+    /// within 90 degrees of the face's own, that of `others` replaces it. If the sum of a face's normals points to the
+    /// other side of the face, they are reversed. Returns the number of corners whose normals were not taken.
     pub(super) fn given(
         given: Self,
         vertices: &[DVec3],
@@ -21,7 +20,7 @@ impl Normals {
         let Self { mut values, faces: corners } = given;
         let mut corners = Arc::unwrap_or_clone(corners);
         values.iter_mut().for_each(|normal| *normal = placed(*normal, placement));
-        // For each normal, where it is turned, if it is.
+        // The index of each reversed normal, by the index of the original.
         let mut turned = Vec::new();
         let (mut left, mut refused, count) = (Vec::new(), 0, values.len());
         for (face, indices) in corners.iter_mut().enumerate() {
@@ -58,7 +57,7 @@ impl Normals {
     }
 }
 
-/// Transforms a normal to the world, where its length is 1. A normal without a direction becomes 0.
+/// Transforms a normal to world space, and normalizes it. A normal without a direction becomes 0.
 fn placed(normal: [f32; 3], placement: &ToWorld) -> [f32; 3] {
     let placed = placement.place_normal(DVec3::from(normal.map(f64::from)));
     let unit = if placed.is_finite() { placed.normalize_or_zero() } else { DVec3::ZERO };
@@ -74,7 +73,7 @@ mod tests {
     use glam::DVec3;
     use std::sync::Arc;
 
-    /// Returns a ball whose vertices have normals that this function makes of their places.
+    /// Returns a ball with vertex normals that a function computes from the positions.
     fn ball(normal: impl Fn(DVec3) -> DVec3) -> Model {
         let Model { vertices, faces, .. } = closed(&[1.0], 8);
         let values = vertices.iter().map(|at| normal(*at).to_array().map(|part| part as f32)).collect();
@@ -108,7 +107,7 @@ mod tests {
     fn normals_of_a_file_are_placed_with_it_and_agree_with_the_side_of_faces() {
         for scale in [DVec3::ONE, DVec3::new(1.0, 3.0, 0.5), DVec3::new(-1.0, 1e-3, 20.0)] {
             is_round(&surface(ball(|at| 7.0 * at), scale), scale);
-            // Normals may point inward, and faces may be turned without them.
+            // Normals may point inward, and faces may be reversed while their normals stay.
             is_round(&surface(ball(|at| -at), scale), scale);
             let mut model = ball(|at| at);
             model.faces.iter_mut().step_by(3).for_each(|face| face.swap(0, 1));

@@ -1,4 +1,4 @@
-//! First hits of rays with a mesh: brackets in plain arithmetic, distances, and proofs.
+//! First hits of rays with a mesh: brackets in `f64` arithmetic, distances, and proofs.
 
 use super::approach::{Approach, FAR};
 use super::face::{Face, Leaving, t_bounds};
@@ -21,7 +21,7 @@ use std::cell::Cell;
 use tabray_exact::interval::{Float, Fraction, Interval, Wide};
 
 impl Surface {
-    /// Finds a bracket of a ray's first hit in a range. If `is_any`, any certain hit in the range will do.
+    /// Finds a bracket of a ray's first hit in a range. If `is_any`, any certain hit in the range is enough.
     #[inline(always)]
     pub(super) fn first(
         &self,
@@ -46,7 +46,7 @@ impl Surface {
         nearest.known(ray, range.far, leaving, is_any)
     }
 
-    /// Returns the bracket of a ray's first hit in a range: of width 0, where plain arithmetic finds the distance.
+    /// Returns the bracket of a ray's first hit in a range. Its width is 0 if `f64` arithmetic finds the distance.
     #[inline(always)]
     pub(super) fn bracket<A: Bounded>(
         &self,
@@ -59,9 +59,9 @@ impl Surface {
         self.bracketed::<A>(known, self.crossing::<A>(known, ray), ray, range, leaving)
     }
 
-    /// Returns what [`bracket`](Self::bracket) does, given what is known of the hit and, where that is a face, the distance
-    /// of its plane. If the face is known, too, that [`face_along`](Self::face_along) returns for the bracket's distance,
-    /// it is returned.
+    /// Like [`bracket`](Self::bracket), given what is known of the hit and, if that is a face, the distance of its
+    /// plane. Also returns the face that [`face_along`](Self::face_along) finds at the bracket's distance, if it is
+    /// known.
     #[inline(always)]
     pub(super) fn bracketed<A: Bounded>(
         &self,
@@ -83,28 +83,28 @@ impl Surface {
         }
         let distance = distance.clamp(bracket.near, bracket.far);
         let close = if range.far < MISS { close(ray, range.far) } else { 0.0 };
-        // At the distance of another surface, the bracket is widened, so that more digits decide which comes first.
+        // At the distance of another surface, a wider bracket lets more digits decide which comes first.
         if (distance - range.far).abs() <= close {
             return (Bracket { near: distance - close, far: distance + close }, None);
         }
         (Bracket::exactly(distance), only)
     }
 
-    /// Returns a bracket of the first hits in a range of all rays that one stands for.
+    /// Returns a bracket of the first hits in a range, for all rays that `ray` stands for.
     #[inline(always)]
     pub(super) fn bracket_within<A: Bounded>(&self, cpu: Cpu, ray: &RayBall, range: &RayRange) -> Bracket {
         let known = self.first(cpu, ray, range, NOTHING, ray.drift, false);
         known.within(self.crossing::<A>(known, ray))
     }
 
-    /// Returns the distance of the plane of the face that a ray hits, if that is known; NaN where it takes more than plain
-    /// arithmetic.
+    /// Returns the distance of the plane of the face that a ray hits, if that is known. Returns NaN if `f64` arithmetic
+    /// is not enough.
     #[inline(always)]
     fn crossing<A: Bounded>(&self, known: Known, ray: &Ray) -> f64 {
         known.face().map_or(f64::NAN, |face| self.plane::<A>(face).quick_crossing(ray))
     }
 
-    /// Returns the distance of a certain hit with a bracket, or NaN where it takes more than plain arithmetic.
+    /// Returns the distance of a certain hit with a bracket, or NaN if `f64` arithmetic is not enough.
     #[inline(never)]
     pub(super) fn refined<A: Bounded>(
         &self,
@@ -124,7 +124,7 @@ impl Surface {
     }
 
     /// Calls a function with each face that a ray may hit in a range, and with the bracket of its distance. The
-    /// function returns the distance beyond which no more faces matter.
+    /// function returns the distance beyond which faces no longer matter.
     pub(super) fn each(
         &self,
         ray: &Ray,
@@ -146,8 +146,8 @@ impl Surface {
         });
     }
 
-    /// Returns the distance of a ray's first hit in a range, decided for the ray as it is rounded; [`MISS`] for none.
-    /// The ray leaves the faces within `leaves` world units of its origin; negative where it leaves none.
+    /// Returns the distance of a ray's first hit in a range, decided for the rounded ray, or [`MISS`] if there is none.
+    /// The ray leaves the faces within `leaves` world units of its origin, or no face if this is negative.
     pub(super) fn distance<A: Bounded>(&self, ray: &Ray, range: &RayRange, leaves: f64) -> f64 {
         let mut first = MISS;
         let leaving = if leaves < 0.0 { NOTHING } else { Leaving { least: leaves, most: leaves } };
@@ -159,15 +159,15 @@ impl Surface {
                     first = distance;
                 }
             }
-            // Brackets are bounds of rounded distances too, but for the last bits.
+            // Brackets bound rounded distances too, except for the last bits.
             if first < MISS { first * (1.0 + CLOSE) } else { range.far }
         });
         first
     }
 
     /// Returns the face that a ray hits at a distance in world units. If several faces contain the point up to
-    /// rounding, faces that are seen there come before hidden ones, then faces whose outside the ray hits, and then the
-    /// first in the file. At the outline of a closed mesh, a face that others hide would show light from within.
+    /// rounding, visible faces come before hidden ones, then faces hit from outside, and then the first in the file. At
+    /// the outline of a closed mesh, choosing a hidden face would show light from within.
     #[inline(always)]
     pub(super) fn face_along(&self, ray: &Ray, distance: f64) -> usize {
         let close = close(ray, distance);
@@ -190,17 +190,17 @@ impl Surface {
         }
     }
 
-    /// Tells whether a ray along a direction hits the outside of a face, in plain arithmetic.
+    /// Tells whether a ray in a direction hits the outside of a face, in `f64` arithmetic.
     fn is_outside_hit(&self, face: usize, dir: DVec3) -> bool {
         let [a, b, c] = self.corners(face);
         // An open mesh has no outside.
         !self.is_closed() || (b - a).cross(c - a).dot(dir) < 0.0
     }
 
-    /// Tells whether the part of a face of a closed mesh beside a point of it is certainly hidden from where a ray starts.
+    /// Tells whether a face of a closed mesh, beside one of its points, is certainly hidden from a ray's origin.
     fn is_hidden(&self, face: usize, ray: &Ray, at: DVec3) -> bool {
         let farthest = 64.0 * f64::EPSILON * (ray.origin.abs().max_element() + (at - ray.origin).length());
-        // From so far away, no face of the mesh is certainly nearer than another.
+        // From so far away, the order of the mesh's faces is uncertain.
         if !self.is_closed() || 4.0 * (self.bounds.high - self.bounds.low).length() < farthest {
             return false;
         }
@@ -214,7 +214,7 @@ impl Surface {
         matches!(first(), Known::Bracket(bracket) | Known::Face { bracket, .. } if bracket.far < far)
     }
 
-    /// Returns what is certain about a ray's first hit.
+    /// Returns the enclosure of a ray's first hit.
     pub(super) fn certify<A: Bounded>(&self, sight: &Sight, precision: Precision) -> Enclosure {
         let line = sight.line::<Interval>();
         let Aabb { low, high } = self.bounds;
@@ -223,7 +223,7 @@ impl Surface {
         if let Some(fine) = &fine {
             let Some((entry, _)) = fine.clip(low, high) else { return Enclosure::Misses };
             let at = fine.at(Wide::point(entry));
-            // The mesh is smaller than what is known of the line there.
+            // The mesh is smaller than the error of the line there.
             if (0..3).all(|axis| at[axis].width() > f256::from(high[axis] - low[axis])) {
                 return Enclosure::Doubtful(entry);
             }
@@ -240,7 +240,7 @@ impl Surface {
             None => line.clip(*low, *high).map(|(entry, _)| f256::from(entry)),
         };
         let end = Cell::new(f256::INFINITY);
-        // If the face that was found without a proof is hit, nothing behind it needs to be searched.
+        // Nothing needs to be searched behind a proven hit of the face that `f64` arithmetic found.
         let found = self.first(Cpu::best(), &sight.ray(), &RayRange::ALL, NOTHING, RayError::NONE, false);
         if let Some(face) = found.face()
             && let Enclosure::Hits(at) = certify::first_hit(&Face(self.triangle::<A>(face)), sight, precision)
@@ -269,12 +269,12 @@ impl Surface {
         let first = met.iter().copied().reduce(|one, other| if other.0 < one.0 { other } else { one });
         match first {
             None => Enclosure::Misses,
-            // The face is hit there, or a certain hit overlaps this one. Then the first hit lies in the union of both
-            // intervals.
+            // The face certainly has a hit there, or a certain hit overlaps this one. Then the first hit lies in the
+            // union of both intervals.
             Some((low, Enclosure::Edge(at) | Enclosure::Hits(at))) if end <= at.high => {
                 Enclosure::Hits(Wide { low, high: end })
             }
-            // Fractions see that a ray passes exactly through an edge, which belongs to the mesh.
+            // Fractions decide whether a ray goes exactly through an edge, which belongs to the mesh.
             Some((_, open @ Enclosure::Edge(_))) if precision == Precision::Octuple => {
                 match self.first_along::<A, Fraction>(&sight.line(), None).0 {
                     HitEnclosure::Hits(at) => Enclosure::Hits(at.wide()),
@@ -305,7 +305,7 @@ impl Surface {
     }
 }
 
-/// What a ray leaves that starts on no face.
+/// The bounds of a ray that starts on no face.
 pub(super) const NOTHING: Leaving = Leaving { least: -1.0, most: -1.0 };
 
 /// The distance between a point of a face and the point examined beside it, as a fraction of the distance to the middle

@@ -1,12 +1,12 @@
-//! What lies inside of a closed mesh: the points around which it winds.
+//! The inside of a closed mesh: the points with a nonzero winding number.
 //!
-//! The winding number of a point is the number of bodies of the mesh that contain it, where a body that is turned
-//! inside out counts as -1. Along any path to the outside, it is the number of faces that are passed from their inner
-//! to their outer side, minus the number passed the other way. A point lies inside where that is not 0: bodies that
-//! overlap or touch are one, and a cavity, turned inward in a body, is outside.
+//! The winding number of a point is the number of bodies of the mesh that contain the point, where an inside-out body
+//! counts as -1. Along any path to the outside, it is the number of faces crossed from their inner to their outer side,
+//! minus the number crossed the other way. Bodies that overlap or touch thus form one inside, and a cavity, a body that
+//! is turned inward in another one, is outside.
 //!
-//! The faces of most meshes are exactly the boundary of the inside. For other meshes, the space before each face is
-//! examined.
+//! The faces of most meshes are exactly the boundary of the inside. For other meshes, the winding number before each
+//! face is computed.
 
 use super::along::Met;
 use super::face::Face;
@@ -25,15 +25,15 @@ use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, constants, dot, per_axis};
 
 impl Surface {
-    /// Returns the winding numbers before the faces of a closed mesh, if any of them is not the outside's.
+    /// Returns the winding numbers before the faces of a closed mesh, unless the faces are the boundary of its inside.
     pub(super) fn depths(&self) -> Option<&Arc<[Depth]>> {
         self.depths.get_or_init(|| if self.is_star() { None } else { self.find_depths() }).as_ref()
     }
 
-    /// Tells whether a point lies inside of a closed mesh: whether the mesh winds around it. `None` where 237 bits do not
-    /// tell, as on the surface, or in the plane of a face and in the box around it.
+    /// Tells whether a point lies inside of a closed mesh: whether the mesh winds around it. Returns `None` if 237 bits
+    /// do not decide, as on the surface, or in both the plane of a face and its bounding box.
     ///
-    /// Faces must be turned alike, as [`turned_alike`](Self::turned_alike) turns them.
+    /// Faces must be oriented as by [`turned_alike`](Self::turned_alike).
     pub fn winds_around(&self, at: DVec3) -> Option<bool> {
         let mut may_be_on = false;
         self.tree.within(
@@ -47,7 +47,7 @@ impl Surface {
         Some(number != 0)
     }
 
-    /// Returns the winding number of a point; `None` where no direction tells.
+    /// Returns the winding number of a point, or `None` if no direction decides.
     fn number_at<F: Precise>(&self, at: DVec3) -> Option<i32> {
         let origin = constants::<Interval<F>>(at);
         let mut lines = directions().map(|dir| Line { origin, dir: constants(dir) });
@@ -63,7 +63,7 @@ impl Surface {
             let face = firsts[patch];
             self.depth::<f64>(face).or_else(|| self.depth::<f256>(face))
         });
-        // Where no direction tells, nothing is known to be wrong.
+        // Undecided winding numbers count as 0.
         if !overlaps.contains(&true) && found.iter().all(|depth| depth.unwrap_or(0) == 0) {
             return None;
         }
@@ -72,8 +72,8 @@ impl Surface {
         Some((0..self.face_count()).map(|face| depths[first_of[face]]).collect())
     }
 
-    /// Returns the winding number beside the outer side of a face that meets others only at shared edges and corners;
-    /// `None` where no examined direction decides.
+    /// Returns the winding number before the outer side of a face that meets others only at shared edges and corners.
+    /// Returns `None` if none of the tested directions decides.
     fn depth<F: Precise>(&self, face: usize) -> Depth {
         let third = Interval::constant(1.0) / Interval::constant(3.0);
         let triangle = self.triangle::<Exact>(face);
@@ -86,12 +86,13 @@ impl Surface {
         lines.find_map(|line| self.winding(&line, &self.met::<Exact, F>(&line, |other| other == face, false)))
     }
 
-    /// Tells whether a closed mesh is certainly the surface of a star-shaped body: whether all faces turn their inner sides
-    /// to one point, and a ray from there meets one face only.
+    /// Tells whether a closed mesh is certainly the surface of a star-shaped body: all faces turn their inner sides to
+    /// one point, and a ray from there hits one face only.
     ///
-    /// Then its faces meet only at edges and corners that they share, and bound its inside. Around an edge, a ray from the
-    /// point meets as many faces on the one side as on the other, as the mesh is closed and all faces are turned alike. So
-    /// all rays that meet no edge meet one face each; but where faces met elsewhere, some ray nearby would meet two.
+    /// The faces of such a mesh meet only at shared edges and corners, and bound its inside. A closed mesh has
+    /// consistently oriented faces. Around an edge, a ray from the point thus crosses as many faces on one side as on
+    /// the other, and all rays that avoid edges cross one face each. If faces met elsewhere, some ray nearby would
+    /// cross two.
     fn is_star(&self) -> bool {
         let middle = self.vertices.iter().sum::<DVec3>() / self.vertices.len() as f64;
         let is_behind = |face: usize| side_of_plane(self.corners(face), middle) == Ordering::Greater;
@@ -104,8 +105,8 @@ impl Surface {
             == Some(1)
     }
 
-    /// Returns for each face the first of those that hang together with it by edges of two faces, none of which overlaps
-    /// others: before all of them, the winding number is the same.
+    /// Returns for each face the first face of its patch. A patch consists of faces without overlaps, connected by
+    /// edges of two faces. Before all of them, the winding number is the same.
     fn patches(&self, overlaps: &[bool]) -> Vec<usize> {
         let edges = |face: usize| {
             let [a, b, c] = self.faces[face];
@@ -123,14 +124,14 @@ impl Surface {
         (0..self.face_count()).map(|face| top(&mut above, face)).collect()
     }
 
-    /// Returns the winding number of the points just after a line's start, given all faces that the line may meet; `None`
-    /// where one of them is not certain.
+    /// Returns the winding number of the points just after a line's start, given all faces that the line may hit, or
+    /// `None` if one of the hits is uncertain.
     pub(super) fn winding<F: Precise>(&self, line: &Line<Interval<F>>, met: &[Met<F>]) -> Option<i32> {
         met.iter().map(|met| self.enters(line, met).map(|enters| if enters { -1 } else { 1 })).sum()
     }
 
-    /// Tells whether a line passes a face from its outer to its inner side; `None` where it is not certain that it passes
-    /// through the face, off its edges.
+    /// Tells whether a line crosses a face from its outer to its inner side, or `None` if it does not certainly cross
+    /// the face off its edges.
     pub(super) fn enters<F: Precise>(
         &self,
         line: &Line<Interval<F>>,
@@ -149,7 +150,7 @@ fn directions() -> impl Iterator<Item = DVec3> {
     DIRECTIONS.into_iter().flat_map(|dir| [dir, -dir])
 }
 
-/// Returns the face that stands for the part to which a face belongs, and halves the path to it.
+/// Returns the face that represents the part of a face, and halves the path to it.
 fn top(above: &mut [usize], mut face: usize) -> usize {
     while above[face] != face {
         above[face] = above[above[face]];
@@ -162,7 +163,8 @@ fn top(above: &mut [usize], mut face: usize) -> usize {
 mod tests {
     use super::*;
 
-    /// Returns the vertices and the faces of a cube with its low corner at a place and a side of this length, turned outward.
+    /// Returns the vertices and the faces of a cube, given its low corner and its side length. The faces are turned
+    /// outward.
     fn cube(low: DVec3, side: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
         let corner = |index: usize| {
             low + side * DVec3::from([1, 2, 4].map(|bit| f64::from(u8::from(index & bit != 0))))

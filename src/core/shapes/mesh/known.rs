@@ -1,4 +1,4 @@
-//! What a search has found of a ray's first hit.
+//! Results of a search for a ray's first hit.
 
 use super::face::Leaving;
 use crate::geometry::aabb::smaller;
@@ -20,12 +20,12 @@ pub(super) struct Nearest {
     doubtful: f64,
 }
 
-/// What is known of a ray's first hit.
+/// The result of a search for a ray's first hit.
 #[derive(Clone, Copy)]
 pub(super) enum Known {
     /// A bracket of the distance.
     Bracket(Bracket),
-    /// The ray certainly hits this face first. Where `is_alone`, it is the face that [`Surface::face_along`] returns.
+    /// The ray certainly hits this face first. If `is_alone`, [`Surface::face_along`] returns the same face.
     ///
     /// [`Surface::face_along`]: super::Surface::face_along
     Face { face: usize, bracket: Bracket, is_alone: bool },
@@ -41,14 +41,12 @@ impl Known {
         }
     }
 
-    /// Returns a bracket of the first hits of all rays within a drift, given the distance of the plane of the face that is
-    /// hit.
+    /// Returns a bracket of the first hits of all rays within a drift, given the distance of the plane of the hit face.
     #[inline(always)]
     pub(super) fn within(self, crossing: f64) -> Bracket {
         match self {
             Self::Face { bracket, .. } => {
-                // A bracket that is far narrower than the distance between coincident surfaces counts as a known
-                // distance.
+                // A bracket far narrower than the distance between coincident surfaces counts as a known distance.
                 let is_narrow = bracket.far - bracket.near <= 0.125 * CLOSE * bracket.near;
                 let is_known = is_narrow & (bracket.near <= crossing) & (crossing <= bracket.far);
                 if is_known { Bracket::exactly(crossing) } else { bracket }
@@ -65,7 +63,7 @@ impl Nearest {
     #[inline(always)]
     pub(super) fn add(&mut self, face: u64, Bracket { near, far }: Bracket) {
         let is_first = near < self.near;
-        // Minima, which need no branches.
+        // Minima need no branches.
         self.second = smaller(self.second, if is_first { self.near } else { near });
         self.face = if is_first { face } else { self.face };
         self.near = smaller(near, self.near);
@@ -74,8 +72,8 @@ impl Nearest {
         self.far = smaller(far, self.far);
     }
 
-    /// Returns the distance beyond which no more faces matter to a ray that ends at `t_max`, in world units: where hits
-    /// are no longer found that rounding may not tell from the first one, or nothing if `is_any` certain hit will do.
+    /// Returns the distance beyond which faces no longer matter to a ray that ends at `t_max`, in world units: later
+    /// hits are certainly behind the first one. If `is_any`, a certain hit ends the search.
     #[inline(always)]
     pub(super) fn end(&self, ray: &Ray, t_max: f64, is_any: bool) -> f64 {
         let end = self.far + close(ray, self.far);
@@ -83,7 +81,7 @@ impl Nearest {
         if end < t_max { end } else { t_max }
     }
 
-    /// Returns what is known of the hit of a ray that ends at `end`. If `is_any`, any certain hit will do.
+    /// Returns the result for a ray that ends at `end`. If `is_any`, any certain hit is enough.
     #[inline(always)]
     pub(super) fn known(self, ray: &Ray, end: f64, leaving: Leaving, is_any: bool) -> Known {
         let Self { near, face, second, far, doubtful } = self;
@@ -101,7 +99,7 @@ impl Nearest {
     }
 }
 
-/// Returns more than the distance between two hits that [`Surface::face_along`] takes for the same, in world units.
+/// Returns more than the distance, in world units, within which [`Surface::face_along`] merges two hits.
 ///
 /// [`Surface::face_along`]: super::Surface::face_along
 #[inline(always)]
@@ -109,7 +107,7 @@ fn close(ray: &Ray, distance: f64) -> f64 {
     2.0 * coincidence::close(ray, distance)
 }
 
-/// What a search has found of eight rays.
+/// The hits of eight rays that a search has found so far.
 #[derive(Clone)]
 pub(super) struct Eight {
     near: [f64; LANES],
@@ -128,7 +126,7 @@ impl Eight {
         doubtful: [MISS; LANES],
     };
 
-    /// Returns what was found of one ray.
+    /// Returns the hits of one ray.
     #[inline(always)]
     pub(super) fn get(&self, lane: usize) -> Nearest {
         let Self { near, face, second, far, doubtful } = self;
@@ -141,7 +139,7 @@ impl Eight {
         }
     }
 
-    /// Sets what was found of one ray.
+    /// Sets the hits of one ray.
     #[inline(always)]
     pub(super) fn set(&mut self, lane: usize, nearest: Nearest) {
         let Nearest { near, face, second, far, doubtful } = nearest;

@@ -1,24 +1,22 @@
-//! The faces that a thread's last rays hit. The face that a search has found need not be searched for again when the
-//! hit is shaded.
+//! The faces hit by a thread's last rays. When a hit is shaded, its face need not be searched for again.
 //!
-//! A face is taken from here only for the very ray, distance and mesh for which it was found, so that no result depends
-//! on what was traced before.
+//! A noted face is only used for exactly the same ray, distance and mesh, and so results do not depend on earlier rays.
 
 use crate::geometry::ray::Ray;
 use crate::simd::soa::LANES;
 use std::cell::Cell;
 
-/// The number of last hits that are kept: enough for the rays of a packet with several meshes.
+/// The number of kept hits, enough for the rays of a packet with several meshes.
 const SIZE: usize = 1024;
 
-/// Faces by the rays that hit them, in the order in which they were noted.
+/// Faces by the rays that hit them, in the order of their notes.
 pub(super) struct Memo {
     /// The distances, as bits.
     distances: Box<[u64; SIZE]>,
     entries: Box<[Entry]>,
-    /// The place of the next hit to be noted.
+    /// The place of the next note.
     next: usize,
-    /// The place after the last hit that was asked for: hits are shaded in the order in which they were noted.
+    /// The place after the last hit that was found here. Hits are shaded in the order of their notes.
     after_last: usize,
 }
 

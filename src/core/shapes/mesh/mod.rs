@@ -1,13 +1,13 @@
 //! Meshes: surfaces of triangles from a file.
 //!
-//! Vertices are placed in the world and rounded once, when the file is read. The triangles through the rounded vertices
-//! are the surface: an edge belongs to the faces on both of its sides, so that no ray falls through between them. First
-//! hits are found face by face, as for single triangles: in plain arithmetic with bounds on its errors, and with more
-//! digits where the bounds leave open which face is hit, or whether any face is hit. If several faces are at the same
-//! distance, the first in the file is hit.
+//! Vertices are placed in world space and rounded once, when the file is read. The triangles of the rounded vertices
+//! are the surface. An edge belongs to the faces on both of its sides, and so no ray slips through between them. First
+//! hits are found face by face, as for single triangles: in `f64` arithmetic with error bounds, and with more digits
+//! where the bounds do not decide which face is hit, or whether any is hit. Of several faces at the same distance, the
+//! first in the file is hit.
 //!
-//! A closed mesh has an inside: the points around which it winds, so that its bodies may overlap and touch. Where some
-//! of its faces do not bound the inside, solids and glass use the boundary of the inside instead of the mesh.
+//! A closed mesh has an inside: the points with a nonzero winding number. Its bodies may overlap and touch. If some of
+//! its faces do not bound the inside, solids and glass use the boundary of the inside instead of the mesh.
 
 mod along;
 mod approach;

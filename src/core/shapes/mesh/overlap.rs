@@ -1,5 +1,5 @@
-//! Whether faces of a mesh have points in common other than the edges and corners that they share: decided exactly, as
-//! [`orientation`](crate::geometry::orientation) is.
+//! Exact decisions, like those of [`orientation`](crate::geometry::orientation), whether faces of a mesh have common
+//! points beyond shared edges and corners.
 
 use super::surface::Surface;
 use crate::geometry::aabb::Aabb;
@@ -11,8 +11,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::atomic::Ordering::Relaxed;
 
 impl Surface {
-    /// Tells for each face whether it has points in common with another face other than the edges and corners that they
-    /// share.
+    /// Tells for each face whether it has a common point with another face beyond shared edges and corners.
     pub(super) fn overlapping(&self) -> Vec<bool> {
         let found: Vec<_> = (0..self.face_count()).map(|_| AtomicBool::new(false)).collect();
         let around = |face: usize| Aabb::around(&self.corners(face));
@@ -32,15 +31,15 @@ impl Surface {
         found.into_iter().map(AtomicBool::into_inner).collect()
     }
 
-    /// Tells whether two faces have points in common other than an edge or a corner that they share.
+    /// Tells whether two faces have a common point beyond a shared edge or corner.
     fn do_overlap(&self, face: usize, other: usize) -> bool {
         let (pair, corners) =
             ([self.faces[face], self.faces[other]], [self.corners(face), self.corners(other)]);
         let is_loose = |of: usize, corner: usize| !pair[1 - of].contains(&pair[of][corner]);
         let loose = |of: usize| (0..3).filter(move |corner| is_loose(of, *corner));
-        // Faces with one corner in common. If they have another point in common, they share the whole line from that
-        // corner through the point, up to where the line leaves one of them: through the edge across from the corner.
-        // Many faces may meet at a corner.
+        // Many faces may meet at a corner. If two faces with one common corner have another common point, they share
+        // the line from the corner through that point, up to where it leaves one of them through the edge opposite the
+        // corner.
         let across =
             |of: usize| Aabb::around(&[0, 1].map(|edge| corners[of][loose(of).nth(edge).unwrap_or(0)]));
         let misses = |of: usize| !across(of).overlaps(&Aabb::around(&corners[1 - of]));
@@ -48,7 +47,7 @@ impl Surface {
             return false;
         }
         let side = |of: usize, corner: usize| side_of_plane(corners[1 - of], corners[of][corner]);
-        // Most pairs: one lies on one side of the other.
+        // In most pairs, one face lies on one side of the other.
         let is_apart = |of: usize| {
             let mut sides = loose(of).map(|corner| side(of, corner));
             sides.next().is_some_and(|first| first != Ordering::Equal && sides.all(|other| other == first))
@@ -57,7 +56,7 @@ impl Surface {
             return false;
         }
         match (loose(0).next(), loose(1).next(), loose(0).count()) {
-            // In one plane with an edge that they share, one lies on the other or not.
+            // Two faces in one plane with a shared edge overlap if they are on the same side of it.
             (Some(one), Some(two), 1) => {
                 let (edge, axis) = ([1, 2].map(|next| corners[0][(one + next) % 3]), axis_across(corners[0]));
                 turn(edge, corners[0][one], axis) == turn(edge, corners[1][two], axis)
@@ -72,7 +71,7 @@ impl Surface {
     }
 }
 
-/// Tells whether a segment and a triangle have a point in common.
+/// Tells whether a segment and a triangle have a common point.
 fn meets([from, to]: [DVec3; 2], triangle: [DVec3; 3]) -> bool {
     let [a, b, c] = triangle;
     let edges = [[a, b], [b, c], [c, a]];
@@ -86,13 +85,13 @@ fn meets([from, to]: [DVec3; 2], triangle: [DVec3; 3]) -> bool {
     }
 }
 
-/// Tells whether two segments in a plane have a point in common.
+/// Tells whether two segments in a plane have a common point.
 fn cross(one: [DVec3; 2], other: [DVec3; 2], axis: usize) -> bool {
     let is_split = |line: [DVec3; 2], [from, to]: [DVec3; 2]| {
         let (from, to) = (turn(line, from, axis), turn(line, to, axis));
         from != to || from == Ordering::Equal
     };
-    // The boxes of segments on one line tell.
+    // The boxes decide for segments on one line.
     is_split(one, other) && is_split(other, one) && Aabb::around(&one).overlaps(&Aabb::around(&other))
 }
 
@@ -117,7 +116,7 @@ mod tests {
         [(1, 2), (2, 0), (0, 1)].map(|(u, v)| one[u] * other[v] - one[v] * other[u])
     }
 
-    /// Tells whether two flat convex polygons have a point in common: whether no axis separates them.
+    /// Tells whether two flat convex polygons have a common point: whether no axis separates them.
     fn have_common_point(polygons: [&[Whole]; 2]) -> bool {
         let edges = |of: &[Whole]| -> Vec<Whole> {
             (0..of.len()).map(|at| minus(of[(at + 1) % of.len()], of[at])).collect()
@@ -157,7 +156,8 @@ mod tests {
         };
         let mut counts = [0; 4];
         for _ in 0..20_000 {
-            // Eight times the corners of a small grid, often in one plane; so large in the world that products are rounded.
+            // The corners are eight times those of a small grid, often in one plane. In world space, they are large
+            // enough for products to be rounded.
             let flat = below(4);
             let mut point = || [0, 1, 2].map(|axis| if axis == flat { 8 } else { 8 * below(4) as i64 });
             let points: Vec<_> = (0..6).map(|_| point()).collect();
@@ -171,7 +171,7 @@ mod tests {
                 assert_eq!(found, have_common_point([&[a, b, c], &[d, e, f]]), "{points:?}");
                 counts[usize::from(found)] += 1;
             }
-            // Without the corner that they share.
+            // The shared corner is cut off.
             if let Some(found) = do_faces_overlap(&points, [[0, 1, 2], [0, 3, 4]]) {
                 let rest = [cut(a, b), b, c, cut(a, c)];
                 assert_eq!(found, have_common_point([&rest, &[a, d, e]]), "{points:?}");

@@ -126,8 +126,8 @@ impl<A: Bounded> PacketIntersect for Shape<Mesh<A>, ByPackets, ByFaces> {
 }
 
 impl<A: Bounded> Mesh<A> {
-    /// Searches for the first hits of a packet's rays before their ends, and calls a function for each ray that ends
-    /// beyond 0, with its lane, what is known of its hit and, where that is a face, the distance of its plane.
+    /// Searches for the first hits of a packet's rays before their ends. Calls a function for each ray with an end
+    /// beyond 0, with its lane, the result and, if that is a face, the distance of its plane.
     #[inline(always)]
     fn search(
         &self,
@@ -160,7 +160,7 @@ impl<A: Bounded> Mesh<A> {
     }
 }
 
-/// Tells whether a ray of a packet is the one before it: arrays are padded with copies of the last ray.
+/// Tells whether a ray of a packet equals the previous one. Packets are padded with copies of the last ray.
 #[inline(always)]
 fn is_copy(rays: &RayPacket, lane: usize) -> bool {
     lane > 0 && {
@@ -170,13 +170,13 @@ fn is_copy(rays: &RayPacket, lane: usize) -> bool {
 }
 
 kernels! {
-    /// Computes the distances of the planes of eight faces, each along a ray of its own; NaN where that takes more than
-    /// plain arithmetic.
+    /// Computes the distances of the planes of eight faces, each along its own ray, or NaN if `f64` arithmetic is not
+    /// enough.
     fn cross[A: Bounded](mesh: &Mesh<A>, faces: &[usize; LANES], rays: RayPacket, distances: &mut [f64; LANES]) {
         crossings::<A>(&mesh.surface.corners_of(faces), rays, distances);
     }
 
-    /// Computes the points, normals and sides that rays hit at these distances, in world units.
+    /// Computes the hit points, normals and sides at these distances, in world units.
     fn interact[A: Bounded](
         mesh: &Mesh<A>, rays: RayPacket, distances: &[f64], memo: &mut Memo, sides: &mut [Side],
         cosines: &mut [f64], travelled: &mut [f64]
@@ -193,7 +193,7 @@ kernels! {
                     memo.face(surface.id, &ray, distance).unwrap_or_else(|| surface.face_along(&ray, distance))
                 };
             }
-            // Neighbouring rays often hit the same faces, and normals take many digits.
+            // Neighbouring rays often hit the same faces, and normals need many digits.
             if known.0 != faces {
                 known = (faces, unit_normals(&surface.corners_of(&faces)));
             }

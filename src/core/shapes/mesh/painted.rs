@@ -1,4 +1,4 @@
-//! The materials of a mesh whose file names them.
+//! Materials of a mesh with names in its file.
 
 use super::surface::Surface;
 use crate::text;
@@ -12,13 +12,13 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use tabray_exact::interval::Interval;
 
-/// The colours of a mesh whose faces have materials of their own.
+/// The colours of a mesh whose faces have their own materials.
 ///
-/// A face is chosen by the point alone: at an edge where two materials meet, the neighbouring face may be chosen.
+/// The point alone determines the face. At an edge between two materials, this may be the neighbouring face.
 pub struct Painted {
     /// The surface.
     pub surface: Arc<Surface>,
-    /// The materials in the order of the file's names; `None` for the material of the mesh itself.
+    /// The materials in the order of the file's names, or `None` for the material of the mesh itself.
     pub materials: Vec<Option<Arc<Material>>>,
 }
 
@@ -28,17 +28,17 @@ impl Painted {
         self.surface.slots[self.surface.face_at(at)]
     }
 
-    /// Returns the material of a slot; `own` is that of the mesh itself.
+    /// Returns the material of a slot. The mesh itself has the material `own`.
     fn material<'m>(&'m self, own: &'m Material, slot: u16) -> &'m Material {
         usize::from(slot).checked_sub(1).and_then(|index| self.materials[index].as_deref()).unwrap_or(own)
     }
 
-    /// Returns the material at a point; `own` is that of the mesh itself.
+    /// Returns the material at a point. The mesh itself has the material `own`.
     fn at<'m>(&'m self, own: &'m Material, at: DVec3) -> &'m Material {
         self.material(own, self.slot(at))
     }
 
-    /// Warns of materials that the scene, which has those `known`, does not have.
+    /// Warns of materials in the file that are not among the `known` ones of the scene.
     pub fn unknown_materials(&self, known: &BTreeMap<String, Arc<Material>>) -> Option<Warning> {
         let unknown: Vec<_> =
             self.surface.materials.iter().filter(|name| !known.contains_key(*name)).collect();
@@ -56,8 +56,8 @@ impl Painted {
         })
     }
 
-    /// Warns of materials whose shininess or transparency differs from those of the mesh's material, `own`, which hold
-    /// for all faces.
+    /// Warns of materials whose shininess or transparency differs from that of the mesh's material, `own`, which
+    /// applies to all faces.
     pub fn unlike_materials(&self, own: &Material) -> Option<Warning> {
         let is_unlike = |material: &Material| {
             material.shininess != own.shininess || material.transparency != own.transparency
@@ -115,7 +115,7 @@ impl Shader for Painted {
         Some(others.fold(material.into(), |all: LookBounds<F>, other| all.hull(&other)))
     }
 
-    /// The largest of all materials, if none has a negative diffuse colour.
+    /// Returns the largest reflectivities of all materials, unless one has a negative diffuse colour.
     fn brightest(&self, material: &Material) -> Option<Look> {
         let all = || self.materials.iter().flatten().map(|material| &**material).chain([material]);
         let most =

@@ -1,8 +1,8 @@
-//! All faces of a closed mesh that a ray passes through, in their order, decided exactly for the ray as it is rounded.
+//! Crossings of a ray with all faces of a closed mesh, in order, decided exactly for the rounded ray.
 //!
-//! A ray through an edge or a corner, or in the plane of a face, is decided as one beside it: as if its origin were moved by a
-//! number less than any other along x, by one far less than that along y, and by one far less again along z (Edelsbrunner and
-//! Mücke 1990). That ray meets no edge, and so passes into a closed mesh and out of it in turns as any other does. As for
+//! A ray through an edge or a corner, or in the plane of a face, is decided by symbolic perturbation (Edelsbrunner and
+//! Mücke 1990): as if its origin were moved by an infinitesimal number along x, by a far smaller one along y, and by an
+//! even smaller one along z. The moved ray meets no edge, and so enters and leaves a closed mesh alternately. As for
 //! [`orientation`](crate::geometry::orientation), products of coordinates must not underflow.
 
 use super::face::Leaving;
@@ -22,7 +22,7 @@ use tabray_exact::double_double::vectors::{cross, scaled_to_one};
 use tabray_exact::double_double::{exponent_to_one, times_power_of_two};
 use tabray_exact::scalar::per_axis;
 
-/// A face that a ray passes through.
+/// A crossing of a ray and a face.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Passage {
     pub face: usize,
@@ -32,25 +32,25 @@ pub(super) struct Passage {
     pub distance: f64,
 }
 
-/// A place where a ray passes the boundary of what lies inside of a closed mesh.
+/// A place where a ray crosses the boundary of the inside of a closed mesh.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Turn {
-    /// The first in the file of the faces that bound it there.
+    /// The first, in the order of the file, of the faces that form the boundary there.
     pub face: usize,
     /// The distance in world units.
     pub distance: f64,
 }
 
 impl Surface {
-    /// Returns the places where a ray passes the boundary of a closed mesh's inside, in their order. The ray leaves the faces
-    /// within `leaves` world units of its origin; negative where it leaves none.
+    /// Returns the places where a ray crosses the boundary of a closed mesh's inside, in order. The ray leaves the
+    /// faces within `leaves` world units of its origin, or no face if this is negative.
     pub(super) fn turns<A: Bounded>(&self, ray: &Ray, leaves: f64) -> Vec<Turn> {
         let passages = self.passages::<A>(ray, leaves);
         let mut winding = winding(&passages);
         let mut turns = Vec::new();
         for here in passages.chunk_by(|one, other| self.compared(ray, one, other).is_eq()) {
             let before = winding;
-            // Back from there, as much less.
+            // This undoes the winding of the faces here.
             winding -= self::winding(here);
             let bounding = here.iter().find(|passage| passage.enters == (winding > before));
             if (before == 0) != (winding == 0)
@@ -62,8 +62,8 @@ impl Surface {
         turns
     }
 
-    /// Returns the faces of a closed mesh that a ray passes through, in the order of their distances, and those at one
-    /// distance in the order of the file.
+    /// Returns the faces of a closed mesh that a ray crosses, by distance. Faces at the same distance are in the order
+    /// of the file.
     pub(super) fn passages<A: Bounded>(&self, ray: &Ray, leaves: f64) -> Vec<Passage> {
         let mut passages = Vec::new();
         let leaving = if leaves < 0.0 { NOTHING } else { Leaving { least: leaves, most: leaves } };
@@ -86,8 +86,8 @@ impl Surface {
         passages
     }
 
-    /// Tells whether plain arithmetic tells of each face up to a distance, in world units, whether a ray passes through it, as
-    /// it then does of the camera's ray that was rounded to this one.
+    /// Tells whether `f64` arithmetic decides for each face up to a distance, in world units, whether a ray crosses it.
+    /// The result then also holds for the exact camera ray that was rounded to this one.
     pub(super) fn is_off_edges(&self, ray: &Ray, far: f64) -> bool {
         let mut is_off = true;
         self.each(ray, &RayRange { far, ..RayRange::ALL }, NOTHING, |face, _| {
@@ -106,12 +106,12 @@ impl Surface {
     }
 }
 
-/// Returns the winding number where a ray starts that passes through these faces.
+/// Returns the winding number at the start of a ray with these crossings.
 pub(super) fn winding(passages: &[Passage]) -> i32 {
     passages.iter().map(|passage| if passage.enters { -1 } else { 1 }).sum()
 }
 
-/// Tells whether the line of a ray passes a face from its outer to its inner side; `None` where it passes by.
+/// Tells whether the line of a ray crosses a face from its outer to its inner side, or `None` if it misses the face.
 fn enters(corners: [DVec3; 3], ray: &Ray) -> Option<bool> {
     let [a, b, c] = corners;
     match passed(corners, ray, RayError::NONE) {
@@ -119,16 +119,16 @@ fn enters(corners: [DVec3; 3], ray: &Ray) -> Option<bool> {
         Some(true) => Some((a - ray.origin).cross(b - ray.origin).dot(ray.dir) < 0.0),
         None => {
             let sides = [(a, b), (b, c), (c, a)].map(|(from, to)| side(from, to, ray));
-            // On all sides alike. A ray along an edge is parallel to the face.
+            // The ray is on the same side of all edges. A ray along an edge is parallel to the face.
             (sides[0].is_ne() && sides[0] == sides[1] && sides[1] == sides[2]).then(|| sides[0].is_lt())
         }
     }
 }
 
-/// Tells on which side of the line from one point to another a ray passes that is moved as the module says; `Equal` for a
-/// parallel one.
+/// Tells on which side of the line from one point to another a ray passes, perturbed as the module describes. Returns
+/// `Equal` for a parallel ray.
 fn side(from: DVec3, to: DVec3, ray: &Ray) -> Ordering {
-    // The derivative along an axis is the component of the product of the direction and the edge.
+    // The derivative along an axis is the component of the cross product of the direction and the edge.
     let moved = || {
         let edge = scaled_to_one(per_axis(|axis| DoubleDouble::difference(to[axis], from[axis])));
         cross(ray.dir.to_array().map(DoubleDouble::from), edge).map(|part| sign(part.high))
@@ -143,7 +143,7 @@ fn sign(of: f64) -> Ordering {
     of.partial_cmp(&0.0).unwrap_or(Ordering::Equal)
 }
 
-/// Compares the distances along a ray of the planes of two faces, neither of which is parallel to it.
+/// Compares the distances, along a ray, of the planes of two faces. Neither is parallel to the ray.
 fn nearer(ray: &Ray, faces: [[DVec3; 3]; 2]) -> Ordering {
     let all = faces.as_flattened().iter().chain([&ray.origin]);
     let size = all.map(|at| at.abs().max_element()).fold(0.0, f64::max);
@@ -162,7 +162,7 @@ fn nearer(ray: &Ray, faces: [[DVec3; 3]; 2]) -> Ordering {
     if sign_of(&toward) == sign_of(&other_toward) { difference } else { difference.reverse() }
 }
 
-/// Returns the product of two numbers, less that of two others.
+/// Returns the difference of two products, `one times - other by`.
 fn less(one: &Exact, times: &Exact, other: &Exact, by: &Exact) -> Exact {
     Exact::sum(one.times(times).chain(other.times(by).map(|term| -term)))
 }

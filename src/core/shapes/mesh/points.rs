@@ -11,19 +11,19 @@ use glam::DVec3;
 use tabray_exact::interval::Interval;
 
 impl Surface {
-    /// Returns the face that is nearest to a point; if several are equally near up to rounding, the first in the file.
+    /// Returns the face nearest to a point. Of several that are equally near up to rounding, it is the first in the
+    /// file.
     pub(super) fn face_at(&self, at: DVec3) -> usize {
         self.first_at(at, |_| 0)
     }
 
-    /// Returns the face that is nearest to a point; if several are equally near up to rounding, the one with the least
-    /// rank, and among these the first in the file.
+    /// Returns the face nearest to a point. Of several that are equally near up to rounding, it is the one with the
+    /// lowest rank, and among these the first in the file.
     pub(super) fn first_at(&self, at: DVec3, rank: impl Fn(usize) -> u8) -> usize {
         self.first_of(self.nearest(at), at, rank)
     }
 
-    /// Returns what [`first_at`](Self::first_at) does, given the distance of the nearest face that may be returned, and that
-    /// face.
+    /// Like [`first_at`](Self::first_at), given the distance of the nearest admissible face, and that face.
     pub(super) fn first_of(
         &self,
         (distance, face): (f64, usize),
@@ -46,7 +46,8 @@ impl Surface {
         first
     }
 
-    /// Tells whether [`face_at`](Self::face_at) returns one of a mesh's `own` faces at each point of these faces in a box.
+    /// Tells whether [`face_at`](Self::face_at) returns one of a mesh's `own` faces at each point of these faces in a
+    /// box.
     pub(super) fn is_alone(&self, at: [Interval; 3], own: impl Fn(usize) -> bool) -> bool {
         let middle = DVec3::from(at.map(Interval::middle));
         let size = DVec3::from(at.map(Interval::width)).length();
@@ -59,14 +60,14 @@ impl Surface {
         is_alone
     }
 
-    /// Returns the distance of the nearest face to a point in world units, and the face.
+    /// Returns the distance from a point to the nearest face, in world units, and the face.
     pub(super) fn nearest(&self, at: DVec3) -> (f64, usize) {
         self.nearest_of(at, |_| true)
     }
 
     /// Returns the distance from a point to the nearest of the wanted faces, in world units, and the face.
     pub(super) fn nearest_of(&self, at: DVec3, is_meant: impl Fn(usize) -> bool) -> (f64, usize) {
-        // Most points are on the surface: few boxes are so near.
+        // Most points are on the surface, with only few boxes so close.
         for within in [CLOSE * (at.abs().max_element() + self.max_coordinate()), MISS] {
             let mut best = (within, None);
             self.near(at, within, |face, distance| {
@@ -79,12 +80,12 @@ impl Surface {
                 return (distance, face);
             }
         }
-        // The point is not finite.
+        // The coordinates are not all finite.
         (MISS, 0)
     }
 
     /// Calls a function with each face that may be within a distance of a point, and with its distance, in world units.
-    /// The function returns the distance beyond which no more faces matter.
+    /// The function returns the distance beyond which faces no longer matter.
     fn near(&self, at: DVec3, within: f64, mut call: impl FnMut(usize, f64) -> f64) {
         self.tree.around(at, within, &mut |face| call(face, distance_to(self.corners(face), at)));
     }

@@ -1,5 +1,5 @@
-//! The last proofs of a thread about lines and meshes. A caller that has the hits of a packet's rays proven asks for
-//! their faces next.
+//! The last proofs of a thread about lines and meshes. After a proof of the hits of a packet's rays, a caller asks for
+//! their faces.
 
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::geometry::sight::Line;
@@ -7,20 +7,20 @@ use crate::world::certify::HitEnclosure;
 use std::cell::Cell;
 use tabray_exact::interval::Interval;
 
-/// A line's first hit, and the face that is hit.
+/// A line's first hit, and the hit face.
 type Found = (HitEnclosure<f64>, usize);
 
 /// The mesh and the ends of the line's intervals, as bits. No mesh has the number 0.
 type Key = [u64; 13];
 
-/// The number of places, at each of which one line is kept: more than a packet has rays, so that few share a place.
+/// The number of places for a line each. There are more places than rays in a packet, and so few rays share one.
 const PLACES: usize = 4 * PACKET_SIZE;
 
 thread_local! {
     static KEPT: Cell<Vec<(Key, Option<Found>)>> = const { Cell::new(Vec::new()) };
 }
 
-/// Returns what was found for the very line and mesh, or finds it.
+/// Returns the stored result for exactly the same line and mesh, or finds it.
 pub(super) fn found(mesh: u64, line: &Line<Interval>, find: impl FnOnce() -> Option<Found>) -> Option<Found> {
     let mut key = [mesh; 13];
     let ends = line.origin.iter().chain(&line.dir).flat_map(|part| [part.low, part.high]);

@@ -17,7 +17,7 @@ use std::ops::Range;
 #[derive(Default)]
 pub(super) struct Scratch {
     pub stack: Stack,
-    /// The distances at which the rays of a packet end, in world units.
+    /// The ends of a packet's rays, as distances in world units.
     t_max: Vec<f64>,
     found: Vec<Eight>,
 }
@@ -37,12 +37,12 @@ impl Scratch {
     }
 }
 
-/// What the rays of a packet have in common.
+/// Properties that the rays of a packet share.
 #[derive(Clone, Copy)]
 pub(super) struct Aims {
     pub leaving: Leaving,
     pub drift: RayError,
-    /// Whether any certain hit of a ray will do.
+    /// Whether any certain hit of a ray is enough.
     pub is_any: bool,
 }
 
@@ -51,15 +51,15 @@ struct Search<'s> {
     cpu: Cpu,
     surface: &'s Surface,
     rays: RayPacket<'s>,
-    /// The distances at which the rays end, in world units.
+    /// The ends of the rays, as distances in world units.
     ends: &'s [f64],
     aims: Aims,
     found: &'s mut [Eight],
 }
 
 impl Surface {
-    /// Searches for the first hits of a packet's rays before their ends, and calls a function for each eight rays, with
-    /// the first lane and what is found.
+    /// Searches for the first hits of a packet's rays before their ends. Calls a function for each eight rays, with the
+    /// first lane and the hits.
     #[inline(always)]
     pub(super) fn search(
         &self,
@@ -129,10 +129,10 @@ kernels! {
     }
 }
 
-/// The brackets of eight rays with a face that they leave or may leave; `None` for other rays.
+/// The brackets of eight rays with a face that they leave or may leave, or `None` for other rays.
 type Left = [Option<Bracket>; LANES];
 
-/// Returns the brackets of those rays that leave a face or may leave it, except for those that miss it.
+/// Returns the brackets of the rays that leave a face or may leave it, except for rays that miss it.
 #[inline(never)]
 fn left(
     flat: &Flat,

@@ -30,16 +30,16 @@ use tabray_exact::interval::Interval;
 /// A mesh of triangles.
 pub struct Mesh<A> {
     pub(super) surface: Arc<Surface>,
-    /// Whether rays that leave the mesh may hit it again; in the notes, rays that leave an object do not.
+    /// Whether rays that leave the mesh may hit it again. In the notes, rays that leave an object do not.
     pub(super) can_hit_itself: bool,
     accuracy: PhantomData<A>,
 }
 
-/// The number of vertices up to which they are mapped to find the box of a copy: a million copies of so many take two
-/// seconds.
+/// The maximum number of vertices that are mapped to find the box of a copy. A million copies with that many vertices
+/// take two seconds.
 const MOST_MAPPED: usize = 1000;
 
-/// Marks a shape that consists of faces, whose hits are proven face by face.
+/// Marks a shape that consists of faces, with hits proven face by face.
 pub struct ByFaces;
 
 impl<A: Bounded> Mesh<A> {
@@ -54,7 +54,7 @@ impl<A: Bounded> Mesh<A> {
         self.surface.is_two_sided || self.surface.is_closed()
     }
 
-    /// Returns what a ray leaves that starts on the mesh, or may start on it.
+    /// Returns the distances within which a ray leaves faces, if it starts or may start on the mesh.
     #[inline(always)]
     pub(super) fn leaving(&self, origin_side: Option<Side>, origin_error: f64) -> Leaving {
         match origin_side {
@@ -89,13 +89,13 @@ impl<A: Bounded> Hittable for Mesh<A> {
         if !self.can_hit_itself {
             return MISS;
         }
-        // The ray starts at the nearest face, however far that is from the rounded origin.
+        // The ray starts at the nearest face, however far this is from the rounded origin.
         let nearest = 2.0 * self.surface.nearest(ray.origin).0;
         let leaves = range.origin_error.max(ROUNDING * self.surface.max_coordinate()).max(nearest);
         self.surface.distance::<A>(ray, range, leaves)
     }
 
-    /// The normal of the nearest face.
+    /// Returns the normal of the nearest face.
     fn normal(&self, at: DVec3) -> DVec3 {
         self.surface.triangle::<A>(self.surface.face_at(at)).plane.normal
     }

@@ -8,21 +8,21 @@ use crate::world::accuracy::Bounded;
 use crate::world::coincidence::ROUNDING;
 use glam::DVec3;
 
-/// The least cosine between a direction and the normal of a face that tells its sides apart.
+/// The minimum cosine between a direction and the normal of a face at which the side of the face is trusted.
 const LEAST_COSINE: f64 = 1e-3;
 
-/// The largest number of faces of a convex mesh that is compared with the planes of all of them.
+/// The maximum number of faces of a convex mesh whose inside is tested by planes.
 const MOST_PLANES: usize = 64;
 
-/// Returns a bound on the rounding error of the distance of a point from a plane through another one.
+/// Returns a bound of the rounding error of the distance between a point and a plane through another point.
 fn rounding(point: DVec3, at: DVec3) -> f64 {
     ROUNDING * (point.abs() + at.abs()).element_sum()
 }
 
-/// Tells whether a point lies above a plane; `None` where the plane may pass through the box that extends an error from the
-/// point along each axis.
+/// Tells whether a point lies above a plane, or `None` if the plane may pass through the box that extends `error` from
+/// the point along each axis.
 fn is_above([normal, point]: [DVec3; 2], at: DVec3, error: f64) -> Option<bool> {
-    // The box reaches no farther along a normal.
+    // The box extends at most √3 times as far along a normal.
     let (above, error) = (normal.dot(at - point), 1.75 * error + rounding(point, at));
     if above > error {
         Some(true)
@@ -33,7 +33,7 @@ fn is_above([normal, point]: [DVec3; 2], at: DVec3, error: f64) -> Option<bool> 
     }
 }
 
-/// Tells whether a point lies below all of these planes; `None` where it may lie on one of them.
+/// Tells whether a point lies below all planes, or `None` if it may lie on one of them.
 fn inside(planes: &[[DVec3; 2]], at: DVec3, error: f64) -> Option<bool> {
     let mut inside = Some(true);
     for plane in planes {
@@ -47,13 +47,13 @@ fn inside(planes: &[[DVec3; 2]], at: DVec3, error: f64) -> Option<bool> {
 }
 
 impl Surface {
-    /// Tells whether a point lies in a closed mesh; `None` where the surface may be within an error in world units, and
-    /// where no face tells.
+    /// Tells whether a point lies in a closed mesh, or `None` if the surface may be within `error`, in world units, or
+    /// if no direction decides.
     pub(super) fn contains<A: Bounded>(&self, at: DVec3, error: f64) -> Option<bool> {
         if let Some(planes) = self.planes.get_or_init(|| self.convex::<A>()) {
             return inside(planes, at, error);
         }
-        // As above: the box reaches no farther.
+        // As in `is_above`, the box extends at most √3 times as far.
         if self.is_on_surface::<A>(at, 1.75 * error) {
             return None;
         }
@@ -72,8 +72,9 @@ impl Surface {
         None
     }
 
-    /// Returns the facet in whose plane all of a closed mesh's surface within an error in world units of a point lies;
-    /// `None` where there are several, where it is not across an axis, and where the mesh is not convex.
+    /// Returns the facet in whose plane the whole surface within `error`, in world units, of a point lies. Returns
+    /// `None` if there are several such planes or none, if the plane is not across an axis, or if the mesh is not known
+    /// to be convex.
     pub(super) fn facet<A: Bounded>(&self, at: DVec3, error: f64) -> Option<Facet> {
         let planes = self.planes.get_or_init(|| self.convex::<A>()).as_ref()?;
         let mut facet = None;
@@ -92,8 +93,8 @@ impl Surface {
         facet
     }
 
-    /// Returns the planes of the faces of a closed mesh that is certainly convex: a normal and a point of each plane.
-    /// `None` for other meshes, and for meshes with many faces.
+    /// Returns the planes of the faces of a certainly convex closed mesh, each as a normal and a point. Returns `None`
+    /// for other meshes, and for meshes with many faces.
     fn convex<A: Bounded>(&self) -> Option<Box<[[DVec3; 2]]>> {
         if self.face_count() > MOST_PLANES {
             return None;

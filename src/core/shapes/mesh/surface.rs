@@ -1,4 +1,4 @@
-//! The surface of a mesh: its vertices, its faces, and the tree in which rays find them.
+//! The surface of a mesh: its vertices, its faces, and the bounding volume hierarchy.
 
 use super::creases::Normals;
 use super::edges::Edges;
@@ -20,72 +20,72 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
-/// The largest number of faces.
+/// The maximum number of faces.
 const MAX_FACES: usize = 1 << 28;
 
-/// The number of surfaces that have been made.
+/// The number of surfaces made so far.
 static SURFACES: AtomicU64 = AtomicU64::new(0);
 
-/// The winding number of the points beside a face, on its outer side; on the inner side, it is greater by 1. `None` for a
-/// face that meets others elsewhere than at edges and corners that they share, as it may differ from point to point, and
-/// where it is not known.
+/// The winding number just outside of a face. On its inner side, it is greater by 1. It is `None` if unknown, and for a
+/// face that meets others beyond shared edges and corners, because it may differ from point to point there.
 pub(super) type Depth = Option<i32>;
 
-/// The triangles of a mesh in the world.
+/// The triangles of a mesh in world space.
 ///
-/// Vertices are placed and rounded once; the triangles through the rounded vertices are the surface, so that faces that
-/// share an edge share it exactly.
+/// Vertices are placed and rounded once. The triangles of the rounded vertices are the surface, and so faces with a
+/// common edge share it exactly.
 pub struct Surface {
-    /// A number that no other surface of this process has; not 0.
+    /// A number that is unique in this process, and not 0.
     pub(super) id: u64,
-    /// The vertices in world coordinates, each once.
+    /// The vertices in world coordinates, without duplicates.
     pub(super) vertices: Vec<DVec3>,
     /// Whether the vertices were computed from those of a file or of the scene, and rounded.
     pub are_rounded: bool,
     /// The corners of each face, in the order of the tree, counterclockwise as seen from the outside.
     pub(super) faces: Vec<[u32; 3]>,
-    /// For each face, its index in the file, or that of the flat side of which it is a part.
+    /// For each face, its index in the file, or that of the flat polygon that it is a part of.
     pub(super) order: Vec<u32>,
-    /// For each face, the index of its material plus 1; 0 for none. Empty where no face has any.
+    /// For each face, the index of its material plus 1, or 0 for none. It is empty if no face has a material.
     pub(super) slots: Vec<u16>,
-    /// The normals at the corners of faces, where the mesh looks smooth.
+    /// The normals at the corners of faces of a smoothed mesh.
     pub(super) normals: Normals,
-    /// The texture coordinates and the colours at the corners of faces, where they are read.
+    /// The texture coordinates and the colours at the corners of faces, if they are read.
     pub(super) uv: AtCorners<[f32; 2]>,
     pub(super) colours: AtCorners<[f32; 3]>,
     pub(super) tree: Bvh,
     /// A bounding box of the vertices, in world coordinates.
     pub(super) bounds: Aabb,
-    /// The planes of the faces, where the mesh is convex and has few; found when it is first asked for.
+    /// The planes of the faces, if the mesh is convex and has few. Found on first use.
     pub(super) planes: OnceLock<Option<Box<[[DVec3; 2]]>>>,
-    /// What lies before the faces of a closed mesh, if that is not the outside; found when it is first asked for.
+    /// The winding numbers before the faces of a closed mesh, unless the faces are the boundary of its inside. Found on
+    /// first use.
     pub(super) depths: OnceLock<Option<Arc<[Depth]>>>,
     /// The edges that keep the surface from being closed.
     pub why_not_closed: Openness,
     /// Whether both sides of an open surface are lit.
     pub(super) is_two_sided: bool,
-    /// What was not taken as the file says it.
+    /// Deviations from what the file says.
     pub remarks: Vec<Remark>,
-    /// The names of materials, as the file gives them.
+    /// The names of the file's materials.
     pub materials: Vec<String>,
-    /// What the file says of them, where that is read.
+    /// The materials of the file, if they are read.
     pub(super) finishes: Vec<Option<Finish>>,
-    /// The files that its file names, whether they exist or not.
+    /// The files that the mesh's file names, whether they exist or not.
     pub files: Vec<PathBuf>,
 }
 
-/// How the triangles of a file become a surface.
+/// Options for making a surface from triangles.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Look {
-    /// The angle between faces, in degrees, up to which their edge looks smooth; `None` where faces are flat. With the
-    /// normals of a file, it is that for corners without one.
+    /// The maximum angle between faces, in degrees, at which their edge is smoothed, or `None` for flat faces. With
+    /// normals from a file, it applies to corners without one.
     pub crease: Option<f64>,
-    /// Whether faces are turned to agree, and are lit on both sides. Otherwise, an open surface is lit on the side from which
-    /// the corners of a face run counterclockwise.
+    /// Whether faces are reoriented consistently, and lit on both sides. Otherwise, an open surface is lit on the side
+    /// from which the corners of a face run counterclockwise.
     pub is_two_sided: bool,
 }
 
-/// The reason why no surface can be made of a file's triangles.
+/// The reason why the triangles of a file do not make a surface.
 pub enum SurfaceError {
     /// A coordinate is so large that its square overflows.
     TooLarge,
@@ -96,7 +96,7 @@ pub enum SurfaceError {
 }
 
 impl SurfaceError {
-    /// Returns what is wrong, to follow the mesh's name, and its cure.
+    /// Returns the error, phrased to follow the mesh's name, and its correction.
     pub fn message(&self) -> (&'static str, &'static str) {
         match self {
             Self::TooLarge => (
@@ -113,7 +113,7 @@ impl Surface {
     /// Makes the surface of a file's triangles.
     ///
     /// # Errors
-    /// Returns why there is no surface.
+    /// Returns the reason why there is no surface.
     pub fn new(model: Model, placement: &ToWorld, look: Look) -> Result<Self, SurfaceError> {
         if model.faces.len() > MAX_FACES {
             return Err(SurfaceError::TooMany);
@@ -212,22 +212,22 @@ impl Surface {
         })
     }
 
-    /// Tells whether the file says how its faces look, as far as that is read.
+    /// Tells whether the file gives the appearance of its faces, as far as this is read.
     pub fn has_looks(&self) -> bool {
         !self.colours.is_empty() || self.finishes.iter().any(Option::is_some)
     }
 
-    /// Returns what the file says of a material, given by its index plus 1.
+    /// Returns a material of the file, given by its index plus 1.
     pub(super) fn finish(&self, slot: u16) -> Option<&Finish> {
         self.finishes.get(usize::from(slot).checked_sub(1)?)?.as_ref()
     }
 
-    /// Returns the images that its materials show, each as often as it is shown.
+    /// Returns the images of the materials. An image that is used several times is repeated.
     fn maps(&self) -> impl Iterator<Item = &Map> {
         self.finishes.iter().flatten().flat_map(Finish::maps)
     }
 
-    /// Tells whether each edge joins faces in pairs that are turned alike.
+    /// Tells whether each edge joins faces in pairs of consistent orientation.
     #[inline]
     pub fn is_closed(&self) -> bool {
         self.why_not_closed == Openness::default()
@@ -238,7 +238,7 @@ impl Surface {
         [self.bounds.low, self.bounds.high]
     }
 
-    /// Counts the parts of the surface: faces hang together by edges of two faces.
+    /// Counts the parts of the surface. Faces of a part are connected by edges of two faces.
     pub fn count_parts(&self) -> usize {
         winding::count_parts(&self.faces, self.vertices.len())
     }
@@ -248,7 +248,7 @@ impl Surface {
         self.faces.len()
     }
 
-    /// Returns the memory that the surface takes, in bytes.
+    /// Returns the memory of the surface, in bytes.
     pub fn bytes(&self) -> u64 {
         let Self { vertices, faces, order, slots, normals, uv, colours, tree, .. } = self;
         let arrays = [
@@ -265,7 +265,7 @@ impl Surface {
         (arrays.iter().sum::<usize>() + tree.bytes()) as u64 + textures.values().sum::<u64>()
     }
 
-    /// Passes on all that the surface was made of, as bytes.
+    /// Calls a function with all data that the surface was made from, as bytes.
     pub(super) fn bytes_of(&self, each: &mut dyn FnMut(&[u8])) {
         let Self { vertices, faces, order, slots, normals, uv, colours, materials, .. } = self;
         vertices.iter().flat_map(|at| at.to_array()).for_each(|part| each(&part.to_le_bytes()));
@@ -292,7 +292,7 @@ impl Surface {
         [self.vertices[a as usize], self.vertices[b as usize], self.vertices[c as usize]]
     }
 
-    /// Returns the corners of eight faces in world coordinates: all first corners, all second and all third ones.
+    /// Returns the corners of eight faces in world coordinates: all first corners, all second ones, and all third ones.
     #[inline(always)]
     pub(super) fn corners_of(&self, faces: &[usize; LANES]) -> [Vectors<LANES>; 3] {
         let mut corners = [Vectors::ZERO, Vectors::ZERO, Vectors::ZERO];
@@ -306,7 +306,7 @@ impl Surface {
     }
 }
 
-/// Places the vertices of faces, and merges those at the same place. Vertices without a face are left out.
+/// Places the vertices of faces, and merges those at the same position. Drops vertices without a face.
 fn merge(vertices: Vec<DVec3>, faces: &mut [[u32; 3]], placement: &ToWorld) -> Vec<DVec3> {
     const UNKNOWN: u32 = u32::MAX;
     let mut merged: Vec<DVec3> = Vec::with_capacity(vertices.len());
@@ -336,7 +336,7 @@ fn merge(vertices: Vec<DVec3>, faces: &mut [[u32; 3]], placement: &ToWorld) -> V
     merged
 }
 
-/// Tells of faces without an area, if there are any.
+/// Returns a remark about faces without an area, if there are any.
 fn degenerate(count: usize) -> Option<Remark> {
     (count > 0).then(|| Remark {
         message: format!("leaves out {} without an area", text::count(count, "face")),
@@ -344,7 +344,7 @@ fn degenerate(count: usize) -> Option<Remark> {
     })
 }
 
-/// Tells of normals of the file that are not used, if there are any.
+/// Returns a remark about unused normals of the file, if there are any.
 fn unfit(count: usize) -> Option<Remark> {
     (count > 0).then(|| Remark {
         message: format!("does not use the file's normals at {}", text::count(count, "corner")),
@@ -353,7 +353,7 @@ fn unfit(count: usize) -> Option<Remark> {
     })
 }
 
-/// Tells of faces that were turned, if any were.
+/// Returns a remark about reversed faces, if there are any.
 fn turned(count: usize, all: usize) -> Option<Remark> {
     (count > 0).then(|| Remark {
         message: format!("turns {count} of {}", text::count(all, "face")),

@@ -1,4 +1,4 @@
-//! Properties of meshes: their hits are those of their triangles, and no ray escapes from a closed one.
+//! Properties of meshes: they have the hits of their triangles, and no ray escapes from a closed mesh.
 
 use super::face::{Leaving, distance_to};
 use super::hits::NOTHING;
@@ -93,7 +93,7 @@ proptest! {
         let (inside, shape) = (placement.place(DVec3::ZERO), shape(&surface));
         for (index, part, dir) in toward {
             let [a, b, c] = surface.corners(index.index(surface.face_count()));
-            // To a vertex, to an edge, to the middle of a face and anywhere.
+            // The targets are a vertex, an edge, the middle of a face, and any point.
             for at in [a, a.lerp(b, part), b, (a + b + c) / 3.0, inside + dir] {
                 let Some(dir) = (at - inside).try_normalize() else { continue };
                 let ray = Ray { origin: inside, dir };
@@ -137,7 +137,7 @@ proptest! {
                     _ => {}
                 }
                 if right < MISS {
-                    // A ray that goes on inside leaves the mesh, as it is closed.
+                    // A ray that continues inside leaves a closed mesh.
                     let (at, normal) = (ray.at(right), shape.normal(ray.at(right)));
                     let origin_error = coincidence::error(&ray, right, normal, shape.facts().max_coordinate);
                     let side = Side::seen_along(dir, normal).opposite();
@@ -164,7 +164,7 @@ fn a_ray_through_a_vertex_hits_the_first_face_of_the_file() {
         let ray = Ray { origin: DVec3::Z, dir: -DVec3::Z };
         assert_eq!(shape(&surface).distance(&ray, &RayRange::ALL), 1.0);
         assert_eq!(shape(&surface).part(&ray, 1.0).as_deref(), Some("face 1"));
-        // The edge to vertex 2 belongs to the two faces on its sides.
+        // The edge to vertex 2 belongs to the two faces beside it.
         let ray = Ray { origin: DVec3::new(0.0, 0.5, 1.0), dir: -DVec3::Z };
         let beside = faces.iter().position(|face| face.contains(&2)).expect("one");
         assert_eq!(shape(&surface).part(&ray, 1.0), Some(format!("face {}", beside + 1)));
@@ -173,7 +173,7 @@ fn a_ray_through_a_vertex_hits_the_first_face_of_the_file() {
 
 #[test]
 fn equal_vertices_are_one_and_faces_without_an_area_are_left_out() {
-    // Each face with vertices of its own, as in an STL, one of them on a line, and one of one point.
+    // Each face has its own vertices, as in an STL. One more face lies on a line, and one is a single point.
     let Model { vertices, faces, .. } = closed(&[1.0], 4);
     let corners = faces.iter().flatten().map(|corner| vertices[*corner as usize]);
     let extra = [DVec3::X, 2.0 * DVec3::X, 3.0 * DVec3::X, DVec3::Y, DVec3::Y, DVec3::Y];
@@ -198,7 +198,7 @@ proptest! {
         let surface = surface(closed(&bumps, rows), &ToWorld::new(scale, Rotation::NONE, DVec3::ZERO));
         let mut known = 0;
         for (from, to, along) in ways {
-            // Toward an edge, a vertex or the inside of a face.
+            // The targets are an edge, a vertex and the inside of a face.
             let [a, b, c] = surface.corners(to.index(surface.face_count()));
             let at = if along < 0.3 { a } else if along < 0.6 { a.lerp(b, along) } else { (a + b + c) / 3.0 };
             let origin = 3.0 * surface.max_coordinate() * from;
@@ -213,7 +213,7 @@ proptest! {
                 }
             }
         }
-        // Where a mesh is so thin that its sides lie together up to rounding, no face may be known.
+        // In a mesh so thin that its sides coincide up to rounding, no face may be known.
         prop_assert!(known > 0 || scale != DVec3::ONE);
     }
 
@@ -231,7 +231,8 @@ proptest! {
         let (mut origin, mut dir) = (Vectors::<PACKET_SIZE>::ZERO, Vectors::<PACKET_SIZE>::ZERO);
         let mut ends = vec![0.0; count];
         for lane in 0..count {
-            // Toward an edge, a vertex or the inside of a face, from almost the same point, from anywhere or from there.
+            // The targets are an edge, a vertex and the inside of a face. The origins are almost the same, or
+            // arbitrary, or the target.
             let (aside, to, along) = &ways[lane.min(ways.len() - 1)];
             let [a, b, c] = surface.corners(to.index(surface.face_count()));
             let at = if *along < 0.3 { a } else if *along < 0.6 { a.lerp(b, *along) } else { (a + b + c) / 3.0 };
@@ -256,7 +257,7 @@ proptest! {
                     let (Known::Face { bracket: alone, .. } | Known::Bracket(alone)) = alone;
                     let known = found.get(lane - first).known(&ray, ends[lane], leaving, is_any);
                     let (Known::Face { bracket, .. } | Known::Bracket(bracket)) = known;
-                    // A face that only its bounds cannot rule out may be visited or not.
+                    // A face that only its bounds cannot exclude may be visited or not.
                     let contradicts = |one: Bracket, other: Bracket| one.far < MISS && other.near == MISS;
                     assert!(!contradicts(bracket, alone) && !contradicts(alone, bracket), "{bracket:?} {alone:?}");
                     let overlap = bracket.near <= alone.far && alone.near <= bracket.far;
@@ -295,7 +296,7 @@ fn a_placement_scales_then_rotates_then_moves() {
     assert!(!placement.is_mirrored());
     assert!(ToWorld::new(DVec3::new(1.0, 1.0, -1.0), Rotation::NONE, DVec3::ZERO).is_mirrored());
     let turned = ToWorld::new(PLAIN, Rotation::Angles(DVec3::new(90.0, 90.0, 0.0)), DVec3::ZERO);
-    // Around x first: y becomes z, which becomes x around y.
+    // The first rotation, around x, turns y into z. The second, around y, turns z into x.
     assert_eq!(turned.place(DVec3::Y), DVec3::X);
 }
 
@@ -352,7 +353,7 @@ fn no_doubled_face_at_an_outline_is_seen_from_behind() {
 fn faces_of_which_none_lies_beside_another_are_found() {
     const COUNT: usize = 100_000;
     let size = |index: usize| (400.0 * (index as f64 / COUNT as f64 - 0.5)).exp2();
-    /// Returns the place and the size of a face.
+    /// Returns the position and the size of a face.
     type Of<'o> = &'o dyn Fn(usize) -> (f64, f64);
     let all: [(&str, Of); 4] = [
         ("equal", &|_| (0.0, 1.0)),
@@ -369,7 +370,7 @@ fn faces_of_which_none_lies_beside_another_are_found() {
         let faces = (0..COUNT as u32).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]).collect();
         let model = Model { vertices: vertices.collect(), faces, ..Model::default() };
         let surface = surface(model, &ToWorld::new(PLAIN, Rotation::NONE, DVec3::ZERO));
-        // Toward the middles of some faces, each from a place that is as far away as the face is large.
+        // The targets are the middles of some faces, each from a distance that equals the size of the face.
         let (mut origin, mut dir) = (Vectors::<LANES>::ZERO, Vectors::<LANES>::ZERO);
         for lane in 0..LANES {
             let [a, b, c] = surface.corners((2 * lane + 1) * surface.face_count() / (2 * LANES));
@@ -429,7 +430,7 @@ proptest! {
             let above = inside + height * normal.normalize();
             prop_assert!((distance_to([a, b, c], above) - height.abs()).abs() < 1e-12);
         }
-        // It is not too small either: the nearest point is on the plane or on an edge.
+        // The distance is not too small either: the nearest point is on the plane or on an edge.
         let from_plane = (at - a).dot(normal.normalize()).abs();
         prop_assert!(distance >= from_plane - 1e-12);
     }

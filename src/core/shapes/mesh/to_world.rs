@@ -1,4 +1,4 @@
-//! Where a mesh is placed: scaled, rotated and moved.
+//! The placement of a mesh: scale, rotation and translation.
 
 use crate::geometry::placement::{Placement, Rotation};
 use glam::{DMat3, DVec3};
@@ -8,10 +8,10 @@ use glam::{DMat3, DVec3};
 pub struct ToWorld {
     /// Rotation and scale.
     linear: DMat3,
-    /// The inverse of the transpose of that, times a number.
+    /// The inverse transpose of `linear`, times a number.
     of_normals: DMat3,
     translation: DVec3,
-    /// Whether there is neither a rotation nor a scale, so that coordinates stay as they are.
+    /// Whether there is neither a rotation nor a scale, and coordinates keep their digits.
     is_plain: bool,
 }
 
@@ -27,11 +27,11 @@ impl ToWorld {
     /// Transforms a point of a file to world coordinates.
     pub fn place(&self, at: DVec3) -> DVec3 {
         let turned = if self.is_plain { at } else { self.linear * at };
-        // The sum makes -0 to 0, so that equal coordinates have equal bits.
+        // The sum turns -0 into 0, which gives equal coordinates equal bits.
         turned + self.translation + 0.0
     }
 
-    /// Transforms a normal of a file to world coordinates, up to its length.
+    /// Transforms a normal of a file to world coordinates, with another length.
     pub fn place_normal(&self, normal: DVec3) -> DVec3 {
         self.of_normals * normal
     }
@@ -41,7 +41,7 @@ impl ToWorld {
         self.is_plain && self.translation == DVec3::ZERO
     }
 
-    /// Tells whether the mesh is mirrored, so that its faces turn the other way.
+    /// Tells whether the mesh is mirrored, which reverses its faces.
     pub fn is_mirrored(&self) -> bool {
         self.linear.determinant() < 0.0
     }

@@ -1,5 +1,4 @@
-//! The coordinates u and v on a mesh: the coordinates in its file where they are read, and otherwise coordinates of
-//! each face.
+//! The coordinates u and v on a mesh: those of its file if they are read, and otherwise those of each face.
 
 use super::surface::Surface;
 use crate::shapes::uv;
@@ -8,7 +7,7 @@ use tabray_exact::interval::Interval;
 use tabray_exact::scalar::Scalar;
 
 impl Surface {
-    /// Returns u and v at a point of a face. Coordinates of a file repeat beyond 0 and 1.
+    /// Returns u and v at a point of a face. Coordinates of a file repeat outside of 0 to 1.
     pub(super) fn uv_of(&self, face: usize, at: DVec3) -> DVec2 {
         let weights = uv::on_triangle(self.corners(face), at);
         if self.uv.is_empty() {
@@ -19,7 +18,8 @@ impl Surface {
         (a + weights.x * (b - a) + weights.y * (c - a)).to_array().map(repeated).into()
     }
 
-    /// Encloses [`uv_of`](Self::uv_of), as mathematics has it, for the points of a face in a box; `None` where that is open.
+    /// Encloses the exact [`uv_of`](Self::uv_of) for the points of a face in a box, or returns `None` if that is
+    /// undecided.
     pub(super) fn uv_bounds(&self, face: usize, at: [Interval; 3]) -> Option<[Interval; 2]> {
         let weights = uv::bounds_on_triangle(self.corners(face), at);
         if self.uv.is_empty() {
@@ -38,7 +38,7 @@ impl Surface {
     }
 }
 
-/// Returns where a coordinate lies in a pattern that repeats. Its end is not the next one's beginning.
+/// Returns the position of a coordinate in a repeating pattern. From 0 to 1, both ends included, it is unchanged.
 fn repeated(along: f64) -> f64 {
     if (0.0..=1.0).contains(&along) { along } else { along - along.floor() }
 }

@@ -1,5 +1,5 @@
-//! How the faces of a mesh are turned: those that hang together by edges of two faces are made to agree, and closed parts
-//! to have their outer sides outside.
+//! The orientation of a mesh's faces. Faces connected by edges of two faces are made consistent, and the outer sides of
+//! closed parts are turned outside.
 
 use super::edges::Edges;
 use crate::geometry::aabb::Aabb;
@@ -9,8 +9,8 @@ use glam::DVec3;
 use std::cmp::Ordering;
 use tabray_exact::double_double::{exponent_to_one, times_power_of_two};
 
-/// Directions in which it is looked for the face that tells whether a point lies inside; along none of them do the edges
-/// of made-up shapes run.
+/// Directions of the rays that decide whether a point lies inside. They are irregular, unlike the edges of artificial
+/// shapes.
 pub(super) const DIRECTIONS: [DVec3; 4] = [
     DVec3::new(0.615_947, 0.359_214, 0.701_135),
     DVec3::new(-0.271_803, 0.857_241, -0.437_365),
@@ -18,31 +18,32 @@ pub(super) const DIRECTIONS: [DVec3; 4] = [
     DVec3::new(-0.733_019, -0.226_591, 0.641_357),
 ];
 
-/// The volume of a part that rounding leaves open, as a fraction of the sum of the products of three edges each.
+/// The volume of a part that is undecided because of rounding, as a fraction of the sum of the products of three edges
+/// each.
 const FLAT: f64 = 1e-12;
 
-/// The number of faces that are tested to find out which parts lie in others: a second.
+/// The maximum number of faces that are tested to find which parts lie in others, which takes about a second.
 const MOST_TESTED: usize = 1 << 27;
 
-/// Which edges keep a mesh from being closed.
+/// The edges that keep a mesh from being closed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Openness {
     /// The number of edges that do not join faces in pairs.
     pub open: usize,
-    /// The number of other edges whose faces are turned against each other.
+    /// The number of other edges between faces of inconsistent orientation.
     pub clashing: usize,
 }
 
-/// What hangs together by edges of two faces.
+/// A part: faces connected by edges of two faces.
 struct Part {
     /// The first face in the file.
     first: usize,
-    /// The number of faces that are turned as the first one, and that of others.
+    /// The number of faces oriented like the first one, and that of the others.
     counts: [usize; 2],
-    /// Which of them are turned; none where they cannot agree.
+    /// Which of the two are reversed, or `None` if the faces cannot be made consistent.
     turned: Option<usize>,
     is_closed: bool,
-    /// The volume inside, once faces are turned, and what bounds its rounding error, in any unit.
+    /// The enclosed volume after faces are reversed, and a number in the same unit that bounds its rounding error.
     volume: [f64; 2],
     bounds: Aabb,
 }
@@ -64,14 +65,14 @@ pub(super) fn why_not_closed(edges: &Edges) -> Openness {
     found
 }
 
-/// Counts the parts of faces that hang together by edges of two faces.
+/// Counts the parts: faces of a part are connected by edges of two faces.
 pub(super) fn count_parts(faces: &[[u32; 3]], vertices: usize) -> usize {
     parts(faces.len(), &Edges::of(faces, vertices)).0.len()
 }
 
-/// Turns faces so that the faces of each part agree. They are turned as most of them are; where the part is closed, and
-/// lies in no other part, the outer sides are turned outside. A body that is inside out as a whole is turned with its
-/// cavities. Returns the number of faces that were turned.
+/// Orients the faces of each part consistently, as most of them are. If a part is closed and lies in no other part, its
+/// outer side is turned outside. A body that is inside out as a whole is reversed with its cavities. Returns the number
+/// of reversed faces.
 pub(super) fn turn(vertices: &[DVec3], faces: &mut [[u32; 3]], edges: &Edges) -> usize {
     let (mut parts, part_of) = parts(faces.len(), edges);
     measure(&mut parts, &part_of, vertices, faces);
@@ -88,10 +89,10 @@ pub(super) fn turn(vertices: &[DVec3], faces: &mut [[u32; 3]], edges: &Edges) ->
     count
 }
 
-/// Returns the parts of so many faces, and for each face twice the index of its part, plus 1 where it is turned against the
-/// part's first face.
+/// Returns the parts of `count` faces. For each face, also returns twice the index of its part, plus 1 if its
+/// orientation differs from that of the part's first face.
 fn parts(count: usize, edges: &Edges) -> (Vec<Part>, Vec<u32>) {
-    // Twice a face of the same part that comes earlier, or the face itself, plus 1 where they are turned against each other.
+    // Twice an earlier face of the same part, or the face itself, plus 1 if the orientations differ.
     let mut above: Vec<u32> = (0..count as u32).map(|face| face << 1).collect();
     let mut torn = Vec::new();
     for sides in edges.iter() {
@@ -147,8 +148,8 @@ fn parts(count: usize, edges: &Edges) -> (Vec<Part>, Vec<u32>) {
     (parts, above)
 }
 
-/// Returns twice the first face of the part to which a face is known to belong, plus 1 where they are turned against each
-/// other, and halves the way to it.
+/// Returns twice the first face of a face's part, as far as known, plus 1 if the orientations differ. Halves the path
+/// to it.
 fn top(above: &mut [u32], face: usize) -> u32 {
     let (mut face, mut against) = (face, 0);
     loop {
@@ -166,7 +167,7 @@ fn top(above: &mut [u32], face: usize) -> u32 {
 /// Computes the volumes and the boxes of closed parts.
 fn measure(parts: &mut [Part], part_of: &[u32], vertices: &[DVec3], faces: &[[u32; 3]]) {
     let bounds = Aabb::around(vertices);
-    // By a power of two, so that products neither overflow nor underflow.
+    // Scaling by a power of two keeps products from overflow and underflow.
     let scale = times_power_of_two(1.0, exponent_to_one((bounds.high - bounds.low).max_element()));
     let origins: Vec<_> = parts.iter().map(|part| vertices[faces[part.first][0] as usize]).collect();
     for (face, of) in faces.iter().zip(part_of) {
@@ -184,7 +185,7 @@ fn measure(parts: &mut [Part], part_of: &[u32], vertices: &[DVec3], faces: &[[u3
     }
 }
 
-/// Turns those parts as a whole that are inside out.
+/// Reverses the parts that are inside out as a whole.
 fn turn_out(parts: &mut [Part], part_of: &[u32], vertices: &[DVec3], faces: &[[u32; 3]]) {
     let closed: Vec<_> = (0..parts.len()).filter(|part| parts[*part].is_closed).collect();
     let size = |part: &usize| parts[*part].volume[0].abs();
@@ -229,7 +230,7 @@ fn turn_out(parts: &mut [Part], part_of: &[u32], vertices: &[DVec3], faces: &[[u
     }
 }
 
-/// Tells whether closed faces hold a point: whether a way out of their box passes an odd number of them.
+/// Tells whether closed faces contain a point: whether a path out of their box crosses an odd number of them.
 fn holds(faces: impl Iterator<Item = [DVec3; 3]>, at: DVec3, bounds: &Aabb) -> bool {
     let out = at + 2.0 * (bounds.high - bounds.low).length() * DIRECTIONS[0];
     let is_passed = |[a, b, c]: &[DVec3; 3]| {
@@ -249,7 +250,7 @@ mod tests {
     use crate::shapes::mesh::tests::closed;
     use crate::shapes::mesh::{Look, Surface, ToWorld};
 
-    /// Makes a surface of models, each scaled and moved, whose faces are turned where the test says so.
+    /// Makes a surface of models, each scaled and moved. `is_turned` selects the faces to reverse.
     fn surface(of: &[(f64, DVec3)], rows: u32, is_turned: impl Fn(usize, usize) -> bool) -> Surface {
         let mut all = Model::default();
         for (number, (scale, at)) in of.iter().enumerate() {
@@ -274,7 +275,7 @@ mod tests {
         surface.remarks.iter().map(|remark| &remark.message[..]).collect()
     }
 
-    /// Tells for each of the bodies of a surface whether all of its faces have their outer sides outside.
+    /// Tells for each body of a surface whether the outer sides of all of its faces are outside.
     fn is_outward(surface: &Surface, of: &[(f64, DVec3)]) -> Vec<bool> {
         let is_of =
             |at: DVec3, (scale, middle): &(f64, DVec3)| ((at - *middle).length() - scale).abs() < 0.2 * scale;
@@ -305,7 +306,7 @@ mod tests {
             assert_eq!(is_outward(&surface, &body), [true]);
             let message = format!("turns {count} of {all} faces");
             assert_eq!(told(&surface), Vec::from_iter((count > 0).then_some(&message[..])));
-            // Smooth normals are those of the turned faces.
+            // Smooth normals follow the reversed faces.
             let is_outward = |face: usize| {
                 let corners = surface.corners(face).into_iter().zip(surface.corner_normals(face));
                 corners.map(|(at, normal)| DVec3::from(normal).dot(at - body[0].1)).all(|out| out > 0.0)
@@ -321,7 +322,7 @@ mod tests {
         for (turned, outward, count) in [
             ([false, true, false], [true, false, true], 0),
             ([false, false, false], [true, true, true], 0),
-            // A body that is inside out with its cavity.
+            // The body and its cavity are inside out.
             ([true, false, false], [true, false, true], 2),
             ([true, true, false], [true, false, true], 1),
             ([false, true, true], [true, false, true], 1),
@@ -333,13 +334,13 @@ mod tests {
         }
     }
 
-    /// Returns a grid of faces around a ring, which is closed with its rows upside down if it is `twisted`.
+    /// Returns a grid of faces around a ring. If `is_twisted`, it closes upside down.
     fn ring(columns: u32, rows: u32, is_closed: bool, is_twisted: bool) -> Model {
         let at = |column: u32, row: u32| {
             let row = if column == columns && is_twisted { rows - row } else { row };
             (column % columns) * (rows + 1) + if is_closed { row % rows } else { row }
         };
-        // Where it lies is of no matter, as long as faces have areas.
+        // Positions do not matter, as long as faces have areas.
         let place = |index: u32| {
             DVec3::new(
                 libm::sin(f64::from(index)),

@@ -21,7 +21,7 @@ use tabray_exact::dual::Dual;
 use tabray_exact::interval::{Float, Fraction, Interval};
 use tabray_exact::scalar::{cross, dot};
 
-/// The most parts in which normals are enclosed.
+/// The maximum number of parts in which normals are enclosed.
 const MOST_NORMALS: usize = 256;
 
 impl ParametricShape {
@@ -29,7 +29,7 @@ impl ParametricShape {
     where
         dyn Patches: PatchesIn<F>,
     {
-        // The one solution whose t may be 0 is the start of the line. If there is another one, either may be it.
+        // The only solution that may have t = 0 is the start of the line. Of several, any may be the start.
         let start: Cell<Option<Rectangle<F>>> = Cell::new(None);
         let is_left_out = |t: Interval<F>, place: &Rectangle<F>, is_certain: bool| {
             if !(leaves && is_certain && t.has_zero()) {
@@ -52,8 +52,8 @@ impl ParametricShape {
         }
     }
 
-    /// Encloses the normals, of any length, of the points of a leaf and of what is beside it that are in a box; `None` if that
-    /// takes too many parts.
+    /// Encloses the normals, of any length, at those points of a leaf and its margin that are in a box. Returns `None`
+    /// if that takes too many parts.
     fn normals<F: Float>(&self, at: &[Interval<F>; 3], leaf: usize) -> Option<[Interval<F>; 3]>
     where
         dyn Patches: PatchesIn<F>,
@@ -103,7 +103,7 @@ macro_rules! proofs {
                 false
             }
 
-            /// There is no equation: the value is not known, and the slopes are parts of a normal.
+            /// There is no equation. The value is unknown, and the slopes are components of a normal.
             fn slope(&self, at: [Dual<Interval<$F>>; 3], part: usize) -> Dual<Interval<$F>> {
                 let normal = self.normals(&at.map(|axis| axis.value), part);
                 let along = |normal| dot(normal, at.map(|axis| axis.slope));

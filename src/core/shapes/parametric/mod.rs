@@ -1,8 +1,8 @@
-//! Parametric surfaces: the points P(u, v) of a rectangle of u and v.
+//! Parametric surfaces: the points P(u, v) for a rectangle of u and v.
 //!
-//! A plugin gives the formula, once for every number type. A ray's hits are the solutions of two equations in u and v,
-//! which come from two planes through the ray. A tree of boxes finds the parts of the rectangle that a ray may meet;
-//! there, Krawczyk's test proves that there is no solution, or exactly one.
+//! A plugin gives the formula, generic over the number type. A ray's hits are the solutions of two equations in u and
+//! v, for two planes through the ray. A tree of boxes finds the parts of the rectangle that a ray may hit. There,
+//! Krawczyk's test proves that there is no solution, or exactly one.
 //!
 //! Source: R. Krawczyk, "Newton-Algorithmen zur Bestimmung von Nullstellen mit Fehlerschranken", Computing 4 (1969);
 //! D. Toth, "On Ray Tracing Parametric Surfaces", SIGGRAPH 1985.
@@ -30,12 +30,12 @@ use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{constants, per_axis};
 use tree::Tree;
 
-/// Marks a shape whose hits are proven by Krawczyk's test.
+/// Marks a shape with hits proven by Krawczyk's test.
 pub(crate) struct ByPatches;
 
 impl Body {
-    /// Makes an object of a parametric surface with the reflectivities of its material; `None` where no box contains
-    /// it, or where the surface turns so often that boxes around its parts do not help to locate them.
+    /// Makes an object of a parametric surface. The material gives the reflectivities. Returns `None` if the surface is
+    /// unbounded, or turns so often that the boxes of its parts do not locate them.
     pub fn parametric(formula: impl Parametric + 'static) -> Option<Self> {
         let ends = formula.ends();
         let patches: Box<dyn Patches> = Box::new(formula);
@@ -46,9 +46,9 @@ impl Body {
     }
 }
 
-/// The hit that a search finds for a single ray.
+/// The first hit of a single ray.
 struct FirstHit {
-    /// Its distance, or [`MISS`].
+    /// The distance of the hit, or [`MISS`].
     distance: f64,
     /// Whether Krawczyk's test proves that this is the first hit, or that there is none.
     is_certain: bool,
@@ -81,8 +81,7 @@ impl ParametricShape {
 }
 
 impl Hittable for ParametricShape {
-    /// Returns the distance of the first hit. Where Krawczyk's test does not decide whether there is a hit, as at a pole, there
-    /// is one.
+    /// Returns the distance of the first hit. Where Krawczyk's test is not conclusive, as at a pole, there is a hit.
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         self.first_hit(ray, range).distance
     }

@@ -1,4 +1,4 @@
-//! What a plugin says of a parametric surface, and parts of it.
+//! The interface between a plugin and its parametric surface, and parts of the surface.
 
 use f256::f256;
 use glam::DVec3;
@@ -6,12 +6,12 @@ use tabray_exact::dual::Dual;
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::Scalar;
 
-/// A surface that is given by two parameters.
+/// A surface given by two parameters.
 pub trait Parametric: Send + Sync {
-    /// Returns the point of u and v, in world coordinates.
+    /// Returns the point at u and v, in world coordinates.
     fn point<N: Scalar>(&self, uv: [N; 2]) -> [N; 3];
 
-    /// Returns the least and the greatest u and v.
+    /// Returns the minimum and the maximum of u and of v.
     fn ends(&self) -> [[f64; 2]; 2];
 }
 
@@ -49,7 +49,7 @@ impl<T: Parametric, F: Float> PatchesIn<F> for T {
     }
 }
 
-/// A surface in each precision, and at single points.
+/// A surface in both precisions, and at single points.
 pub(super) trait Patches: PatchesIn<f64> + PatchesIn<f256> + Send + Sync {
     /// Returns a point, and its derivatives with respect to u and to v.
     fn at(&self, uv: [f64; 2]) -> [DVec3; 3];
@@ -65,7 +65,7 @@ impl<T: Parametric> Patches for T {
 }
 
 /// Returns the unit normal at u and v: along the cross product of the directions in which u and v grow. At a pole,
-/// which has no normal, the normal of a point beside the pole is returned.
+/// which has no normal, returns the normal of a point beside it.
 pub(super) fn normal(patches: &dyn Patches, [u, v]: [f64; 2]) -> DVec3 {
     let beside = [0.0, 1e-7, -1e-7].into_iter().map(|step| {
         let [_, along_u, along_v] = patches.at([u + step, v + step]);

@@ -11,17 +11,18 @@ use tabray_exact::double_double::power_of_two;
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::Scalar;
 
-/// The most parts of the rectangle that are judged for a line.
+/// The maximum number of examined parts of the rectangle for a line.
 const MOST: usize = 2048;
 
-/// The margin by which a part is enlarged on each side before it is judged, as a fraction of its width. So a solution
+/// The margin by which a part is enlarged on each side before the test, as a fraction of its width. With it, a solution
 /// at a side of a part is proven like any other.
 const MARGIN: f64 = 0.125;
 
-/// The most steps that make the enclosure of a solution narrower.
+/// The maximum number of steps to narrow the enclosure of a solution.
 const STEPS: usize = 40;
 
-/// The width of the t of a place, as a fraction of the coordinates, up to which it is shown as a hit where its hits are not decided.
+/// The maximum width of the t of an undecided place at which the place counts as a hit, as a fraction of the
+/// coordinates.
 const NARROW: f64 = 1e-6;
 
 pub(super) type LeavesOut<'s, F> = dyn Fn(Interval<F>, &Rectangle<F>, bool) -> bool + 's;
@@ -30,7 +31,8 @@ pub(super) type LeavesOut<'s, F> = dyn Fn(Interval<F>, &Rectangle<F>, bool) -> b
 pub(super) struct Search<'s, F: Float> {
     pub shape: &'s ParametricShape,
     pub line: &'s Line<Interval<F>>,
-    /// Tells that a hit at these t does not count, given the place of its u and v, and whether the place certainly has one.
+    /// Tells whether a hit does not count, given its t, the place of its u and v, and whether the place certainly has a
+    /// hit.
     pub is_left_out: &'s LeavesOut<'s, F>,
 }
 
@@ -38,28 +40,28 @@ pub(super) struct Search<'s, F: Float> {
 #[derive(Clone, Copy)]
 pub(super) struct Hit<F> {
     pub t: Interval<F>,
-    /// Its u and v.
+    /// The u and v of the hit.
     pub place: Rectangle<F>,
-    /// The index of the leaf in which it was found.
+    /// The index of the leaf with the hit.
     pub leaf: usize,
-    /// Whether the ends of u and v, where the surface ends, decide whether the hit exists.
+    /// Whether the hit may be beyond the ends of u and v, where the surface ends.
     pub is_edge: bool,
 }
 
-/// What a search has found.
+/// The result of a search.
 pub(super) struct Found<F> {
-    /// The first hit that is proven.
+    /// The first proven hit.
     pub hit: Option<Hit<F>>,
-    /// The t from which on there may be hits that are not.
+    /// The t from which on there may be unproven hits.
     pub undecided: Option<F>,
-    /// The t of the first place that may have a hit and is cut no further.
+    /// The t of the first place that may have a hit and is not cut further.
     pub narrow: Option<Interval<F>>,
 }
 
-/// A part that is to be judged.
+/// A part waiting for its test.
 struct Part<F> {
     from: f64,
-    /// The order in which parts were made, so that equal parts are judged in a fixed order.
+    /// The order in which parts were made. It decides between equal parts.
     number: usize,
     leaf: usize,
     part: Rectangle<F>,
@@ -85,13 +87,13 @@ impl<F> PartialEq for Part<F> {
 
 impl<F> Eq for Part<F> {}
 
-/// What is known of a part.
+/// The result of the test of a part.
 enum Judged<F> {
-    /// It has no hit.
+    /// The part has no hit.
     Free,
-    /// The part has at most one hit, and that hit is in this narrower place, within or beside the part.
+    /// The part has at most one hit, in this narrower place, which may extend beyond the part.
     One(Rectangle<F>),
-    /// Hits of the part are in this place.
+    /// All hits of the part are in this place.
     In(Rectangle<F>),
 }
 
@@ -101,7 +103,7 @@ where
 {
     pub fn first(&self) -> Found<F> {
         let (mut waiting, mut number) = (BinaryHeap::new(), 0);
-        // What doubles tell is quicker told by them.
+        // Tests in `f64` are faster, and come first.
         let line = Line { origin: self.line.origin.map(nearly), dir: self.line.dir.map(nearly) };
         let quick = Search { shape: self.shape, line: &line, is_left_out: &|_, _, _| false };
         let clip = |around: &Aabb| line.clip(around.low, around.high);
@@ -155,8 +157,8 @@ where
         found
     }
 
-    /// Notes where a place may have a hit that is not decided, if its points are nearly as far from the line's start as each other:
-    /// a pole is a single point, however wide its u is.
+    /// Notes a place with undecided hits if its points are at nearly the same distance from the line's start. A pole is
+    /// a single point, however wide its u is.
     fn note_narrow(&self, found: &mut Found<F>, t: Interval<F>, place: &Rectangle<F>) {
         let is_narrow = t.width().to_f64() <= NARROW * (t.high.to_f64().abs() + self.shape.size());
         if is_narrow && t.high > F::of(0.0) && !(self.is_left_out)(t, place, false) {
@@ -164,7 +166,7 @@ where
         }
     }
 
-    /// Adds the one solution of a place, if it is a hit.
+    /// Adds the only solution of a place, if it is a hit.
     fn add(&self, found: &mut Found<F>, leaf: usize, place: Rectangle<F>) {
         let ends = self.shape.ends().map(Interval::<F>::from_f64);
         let is_in = |axis: usize| ends[axis].low <= place[axis].low && place[axis].high <= ends[axis].high;
@@ -179,7 +181,7 @@ where
         found.hit = Some(match found.hit {
             Some(known) if known.t.low <= t.high && t.low <= known.t.high => {
                 if !meet(&known.place, &place) {
-                    // Two sheets, of which either may be hit first.
+                    // Either of the two sheets may be hit first.
                     found.doubt(known.t.low.min(t.low));
                 }
                 let t = Interval { low: known.t.low.min(t.low), high: known.t.high.min(t.high) };
@@ -196,7 +198,7 @@ where
         (0..2).any(|axis| place[axis].high < ends[axis].low || ends[axis].high < place[axis].low)
     }
 
-    /// Encloses the points of a narrow place by their slopes.
+    /// Encloses the points of a narrow place by the mean value form.
     fn near(&self, place: &Rectangle<F>) -> Patch<F> {
         let mut patch = self.shape.patches.patch(place);
         let middle = place.map(|side| Interval::point(side.middle()));
@@ -210,7 +212,7 @@ where
         patch
     }
 
-    /// Returns the axis along which the line is steepest, and the two others.
+    /// Returns the axis with the largest component of the line's direction, and the two others.
     fn axes(&self) -> [usize; 3] {
         let size = |axis: usize| self.line.dir[axis].middle().to_f64().abs();
         let steepest = (0..3).fold(0, |most, axis| if size(axis) > size(most) { axis } else { most });
@@ -223,19 +225,19 @@ where
         (at[axis] - self.line.origin[axis]) / self.line.dir[axis]
     }
 
-    /// Returns the values of the equations of two planes through the line.
+    /// Returns the left sides of the equations of two planes through the line.
     fn off(&self, at: &[Interval<F>; 3]) -> [Interval<F>; 2] {
         let from = [0, 1, 2].map(|axis| at[axis] - self.line.origin[axis]);
         self.across(&from)
     }
 
-    /// Returns the parts of a vector along the normals of these planes.
+    /// Returns the components of a vector along the normals of these planes.
     fn across(&self, vector: &[Interval<F>; 3]) -> [Interval<F>; 2] {
         let ([axis, one, other], dir) = (self.axes(), &self.line.dir);
         [one, other].map(|side| vector[side] * dir[axis] - vector[axis] * dir[side])
     }
 
-    /// Judges a part by Krawczyk's test, and makes it narrower as long as that helps.
+    /// Tests a part by Krawczyk's test, and narrows it as long as that helps.
     fn judged(&self, part: &Rectangle<F>) -> Judged<F> {
         let mut place = *part;
         for _ in 0..STEPS {
@@ -244,7 +246,7 @@ where
                 side + Interval { low: -margin, high: margin }
             });
             let patch = self.shape.patches.patch(&wide);
-            // Written so that what is not defined beside the ends of u and v is not free.
+            // The comparisons are false for NaN, where the surface is undefined beyond the ends of u and v.
             if self.off(&patch.at).iter().any(|value| value.low > F::of(0.0) || value.high < F::of(0.0)) {
                 return Judged::Free;
             }
@@ -271,7 +273,7 @@ where
         Judged::In(place)
     }
 
-    /// Makes the enclosure of a solution that is the only one in it narrower.
+    /// Narrows the enclosure of a single solution.
     fn narrowed(&self, mut place: Rectangle<F>) -> Rectangle<F> {
         for _ in 0..STEPS {
             let patch = self.shape.patches.patch(&place);
@@ -290,13 +292,13 @@ where
         place
     }
 
-    /// Returns the image of a place by Krawczyk's operator: all solutions in the place are in it, and if it is inside of the
-    /// place there is exactly one. `None` where the derivatives have no inverse.
+    /// Returns the image of a place by Krawczyk's operator. All solutions in the place are in the image. If the image
+    /// is inside the place, there is exactly one. Returns `None` if the matrix of derivatives has no inverse.
     fn image(&self, place: &Rectangle<F>, patch: &Patch<F>) -> Option<Rectangle<F>> {
         let n = Interval::<F>::constant;
         let middle = place.map(|side| Interval::point(side.middle()));
         let value = self.off(&self.shape.patches.points(&middle));
-        // The columns are the derivatives with respect to u and to v.
+        // The columns are the derivatives with respect to u and v.
         let [by_u, by_v] = [0, 1].map(|side| self.across(&patch.along[side]));
         let [[a, c], [b, d]] = [by_u, by_v].map(|of| of.map(|value| value.middle().to_f64()));
         let determinant = a * d - b * c;
@@ -322,7 +324,7 @@ where
         (0..2).any(|axis| place[axis].width() > least * F::of(ends[axis].width()))
     }
 
-    /// Returns the side of a place along which it is longer, as a part of the rectangle.
+    /// Returns the longer side of a place, relative to the rectangle.
     fn longer(&self, place: &Rectangle<F>) -> usize {
         let part = |axis: usize| place[axis].width().to_f64() / self.shape.ends()[axis].width();
         usize::from(part(1) > part(0))
@@ -330,7 +332,7 @@ where
 }
 
 impl Search<'_, f64> {
-    /// Tells whether the line may pass through what is around a leaf.
+    /// Tells whether the line may pass through the bounds of a leaf.
     fn may_meet(&self, flat: &Flat) -> bool {
         let n = Interval::<f64>::constant;
         let around = |of: [f64; 3]| self.across(&of.map(|value| Interval { low: -value, high: value }));
@@ -339,24 +341,24 @@ impl Search<'_, f64> {
         (0..2).all(|plane| {
             let reach = sides[0][plane].magnitude() + sides[1][plane].magnitude() + error[plane].magnitude();
             let apart = middle[plane].low.max(-middle[plane].high);
-            // What is not bounded is not missed.
+            // The comparison is false for NaN: unbounded leaves are not missed.
             let is_missed = apart > reach * (1.0 + ROUNDED);
             !is_missed
         })
     }
 }
 
-/// More than the error of a sum of three numbers, as a fraction of it.
+/// More than the error of a sum of three numbers, as a fraction of the sum.
 const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
-/// Encloses numbers in doubles, which are the numbers themselves where these are doubles.
+/// Encloses numbers in doubles, exactly if they are doubles.
 fn nearly<F: Float>(of: Interval<F>) -> Interval {
     let nearest = Interval { low: of.low.to_f64(), high: of.high.to_f64() };
     let is_same = F::of(nearest.low) == of.low && F::of(nearest.high) == of.high;
     if is_same { nearest } else { of.coarse() }
 }
 
-/// Tells whether two places may have a point in common.
+/// Tells whether two places may have a common point.
 pub(super) fn meet<F: Float>(one: &Rectangle<F>, other: &Rectangle<F>) -> bool {
     (0..2).all(|axis| one[axis].low <= other[axis].high && other[axis].low <= one[axis].high)
 }

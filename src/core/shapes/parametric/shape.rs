@@ -1,4 +1,4 @@
-//! A parametric surface and the boxes around its parts.
+//! A parametric surface with the boxes of its parts.
 
 use super::locate::Located;
 use super::patch::{Patches, Rectangle};
@@ -14,12 +14,12 @@ pub(super) struct ParametricShape {
 }
 
 impl ParametricShape {
-    /// Returns the greatest magnitude of a coordinate, in world units.
+    /// Returns the maximum magnitude of a coordinate, in world units.
     pub fn size(&self) -> f64 {
         self.bounds.low.abs().max(self.bounds.high.abs()).max_element()
     }
 
-    /// Returns what finds u and v of a point.
+    /// Returns the search for u and v of a point.
     pub fn located(&self) -> Located<'_> {
         Located { patches: &*self.patches, tree: &self.tree }
     }

@@ -1,27 +1,27 @@
-//! A tree of boxes around the parts of a parametric surface.
+//! A tree of bounding boxes of the parts of a parametric surface.
 
 use super::patch::{Patches, PatchesIn, Rectangle};
 use crate::geometry::aabb::Aabb;
 use glam::DVec3;
 use tabray_exact::interval::Interval;
 
-/// The number of times that the rectangle is halved.
+/// The number of halvings of the rectangle.
 const HALVINGS: u32 = 12;
 
-/// Boxes around the parts that halving the rectangle of u and v makes, each as often.
+/// The bounding boxes of the parts from repeated halving of the rectangle of u and v.
 pub(super) struct Tree {
     ends: Rectangle<f64>,
-    /// The boxes of all parts, the box of the whole surface first. The boxes of the halves of the part with index i are
-    /// at 2 i + 1 and 2 i + 2.
+    /// The boxes of all parts, beginning with the whole surface. The halves of the part with the index i have the
+    /// indices 2 i + 1 and 2 i + 2.
     boxes: Vec<Aabb>,
-    /// The parts of the last halving, in their order.
+    /// The parts of the last halving, in order.
     leaves: Vec<Rectangle<f64>>,
-    /// What is around each of them.
+    /// The bounds of each leaf.
     flats: Vec<Flat>,
 }
 
-/// The bounds of a leaf: a parallelogram, widened by an error along each axis. A box around a nearly flat leaf would
-/// hold much more.
+/// The bounds of a leaf: a parallelogram, widened by an error along each axis. For a nearly flat leaf, a box would be
+/// much larger.
 pub(super) struct Flat {
     pub middle: [f64; 3],
     /// Half of each side.
@@ -55,17 +55,17 @@ impl Tree {
         (low.is_finite() && high.is_finite()).then_some(self.boxes[0])
     }
 
-    /// Tells whether the boxes of the leaves are smaller than a box around all of them: a quarter, by the mean of their
-    /// longest sides. Where halving locates the surface well, the ratio is near a 64th.
+    /// Tells whether the boxes of the leaves are smaller than a quarter of the whole box, by the mean of their longest
+    /// sides. If halving locates the surface well, the ratio is near 1/64.
     pub fn tells_apart(&self, whole: &Aabb) -> bool {
         let leaves = &self.boxes[self.boxes.len() - self.leaves.len()..];
         let side = |of: &Aabb| (of.high - of.low).max_element();
         let sum: f64 = leaves.iter().map(|leaf| side(leaf) / leaves.len() as f64).sum();
-        // Written so that what is infinite, and a NaN, tell nothing.
+        // The comparison is false for infinity and NaN.
         sum < 0.25 * side(whole)
     }
 
-    /// Calls a function with the leaves for which all boxes around them meet a condition, in order, each with its box.
+    /// Calls a function with the leaves, in order, and their boxes, if these and all boxes above them meet a condition.
     pub fn visit(&self, meets: &dyn Fn(&Aabb) -> bool, each: &mut dyn FnMut(usize, &Rectangle<f64>, &Aabb)) {
         let mut waiting = vec![0];
         let inner = self.boxes.len() - self.leaves.len();
@@ -80,19 +80,19 @@ impl Tree {
         }
     }
 
-    /// Returns the leaf of an index.
+    /// Returns the leaf with an index.
     pub fn leaf(&self, index: usize) -> &Rectangle<f64> {
         &self.leaves[index]
     }
 
-    /// Returns what is around the leaf of an index.
+    /// Returns the bounds of the leaf with an index.
     pub fn flat(&self, index: usize) -> &Flat {
         &self.flats[index]
     }
 }
 
-/// Returns a box around a part: the values of the formula, and the values that its slopes allow around the middle. Also
-/// returns what these slopes tell about the part.
+/// Returns the box around a part, by the values of the formula and by the mean value form, and the part's
+/// parallelogram.
 fn around(patches: &dyn Patches, part: &Rectangle<f64>) -> (Aabb, Flat) {
     let whole = PatchesIn::<f64>::patch(patches, part);
     let middle = part.map(|side| Interval::point(side.middle()));
@@ -103,7 +103,7 @@ fn around(patches: &dyn Patches, part: &Rectangle<f64>) -> (Aabb, Flat) {
         let by_slopes = centre[axis]
             + whole.along[0][axis] * (part[0] - middle[0])
             + whole.along[1][axis] * (part[1] - middle[1]);
-        // Written so that a slope that is not known leaves the values.
+        // An unknown slope leaves the bounds from the values.
         low[axis] = whole.at[axis].low.max(by_slopes.low);
         high[axis] = whole.at[axis].high.min(by_slopes.high);
         flat.middle[axis] = centre[axis].middle();
@@ -123,7 +123,7 @@ fn around(patches: &dyn Patches, part: &Rectangle<f64>) -> (Aabb, Flat) {
     (Aabb { low, high }, flat)
 }
 
-/// Returns the halves of a part, cut across the side along which the surface is longer.
+/// Returns the halves of a part, cut across its longer side on the surface.
 pub(super) fn halves(patches: &dyn Patches, part: Rectangle<f64>) -> [Rectangle<f64>; 2] {
     let [_, along_u, along_v] = patches.at(part.map(|side| side.middle()));
     let axis = usize::from(along_v.length() * part[1].width() > along_u.length() * part[0].width());

@@ -1,4 +1,4 @@
-//! Copies as objects, and their colours.
+//! Copies as objects, and their reflectivities.
 
 use super::shape::{ByPlacement, Placed};
 use crate::geometry::placement::Placement;
@@ -14,7 +14,8 @@ use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
 
 impl Placed {
-    /// Makes a copy of an object with this material, which ends at a z of the world if the object is cut off as planes are.
+    /// Makes a copy of an object with this material. If the object ends like planes do, the copy ends at `max_z`, in
+    /// world space.
     pub fn body(body: &Arc<Body>, (placement, max_z): (Placement, Option<f64>), material: &Material) -> Body {
         let shape = Self::new(body, placement).up_to(max_z);
         let shape = Shape::new(shape).by::<ByPackets, ByPlacement>();
@@ -40,19 +41,19 @@ impl Placed {
     }
 }
 
-/// The reflectivities of an object at its own points.
+/// The reflectivities of an object, in object space.
 struct PlacedShader {
     placed: Placed,
-    /// The shader of the copy; `None` for that of the object.
+    /// The shader of the copy, or `None` for the object's shader.
     shader: Option<AnyShader>,
-    /// Takes normals from the world to the object's own coordinates, up to their length.
+    /// The map of normals from world space to object space, up to their length.
     normal_to_own: DMat3,
 }
 
 impl PlacedShader {
     fn new(body: &Arc<Body>, placement: Placement, shader: Option<AnyShader>) -> Self {
         let placed = Placed::new(body, placement);
-        // The inverse of the transposed matrix, which takes them to the world.
+        // Normals are mapped to world space by the transposed matrix, and back by its inverse.
         let normal_to_own = placed.to_object_space.transpose().inverse();
         Self { placed, shader, normal_to_own }
     }
@@ -61,7 +62,7 @@ impl PlacedShader {
         self.shader.as_deref().unwrap_or(&*self.placed.body.shader)
     }
 
-    /// Takes a point from the world to the object's own coordinates.
+    /// Maps a point from world space to object space.
     fn object_point(&self, at: &SurfacePoint) -> SurfacePoint {
         let normal = (self.normal_to_own * at.normal).normalize_or_zero();
         let own = |tangent: DVec3| (self.placed.to_object_space * tangent).normalize_or_zero();
@@ -102,7 +103,7 @@ impl Shader for PlacedShader {
         (self.placed.to_object_space.transpose() * own).try_normalize().unwrap_or(at.normal)
     }
 
-    // What the shader of the object cuts out, its shape does not have.
+    // The holes of the object's shader are already holes of its shape.
     fn cuts_out(&self) -> bool {
         self.shader.as_ref().is_some_and(|shader| shader.cuts_out())
     }

@@ -1,4 +1,4 @@
-//! The hits of copies along lines with interval coefficients.
+//! Hits of copies along lines with interval coefficients.
 
 use super::shape::Placed;
 use crate::geometry::sight::Line;

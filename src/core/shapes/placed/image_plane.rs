@@ -1,7 +1,7 @@
-//! Where copies of planes end: at the z of the world beyond which the camera cuts off planes.
+//! The ends of copies of planes: the z in world space beyond which the camera cuts off planes.
 //!
-//! The object itself does not end there, because its coordinates are not the world's. A ray hits a plane at most once,
-//! so no other hit lies behind a hit that is cut off.
+//! The object itself does not end there, because it has other coordinates. A ray hits a plane at most once, and so no
+//! other hit lies behind a hit that is cut off.
 
 use crate::geometry::ray::{Bracket, MISS, Ray};
 use crate::geometry::sight::{Line, Sight};
@@ -10,23 +10,23 @@ use tabray_exact::affine::Affine;
 use tabray_exact::interval::{Float, Interval, Wide};
 use tabray_exact::scalar::Scalar;
 
-/// The z, in world units, beyond which a copy is not there, if there is one.
+/// The z, in world units, at which a copy ends, if it does.
 #[derive(Clone, Copy)]
 pub struct MaxZ(pub Option<f64>);
 
 impl MaxZ {
-    /// Tells whether a hit of a ray is beyond, as far as `f64` tells.
+    /// Tells whether a hit of a ray is cut off, in `f64` arithmetic.
     pub fn cuts_off(self, ray: &Ray, distance: f64) -> bool {
         self.0.is_some_and(|max_z| ray.at(distance).z > max_z)
     }
 
-    /// Returns the bracket of a ray's hit where the copy is kept. The ray's origin may be off by `origin_error` world units.
+    /// Returns the bracket of a ray's hit before the end. The ray's origin may be off by `origin_error` world units.
     pub fn kept_bracket(self, ray: &Ray, bracket: Bracket, origin_error: f64) -> Bracket {
         let Some(max_z) = self.0.filter(|_| bracket.near < MISS) else { return bracket };
         let Bracket { near, far } = bracket;
         let z = |distance: f64| ray.origin.z + distance * ray.dir.z;
-        // Units of 2^-53: a component of a camera ray's direction is off by 3, the product and the sum by 1 each; these 5 are
-        // less than the 8 here.
+        // In units of 2^-53, the error of a component of a camera ray's direction is 3, and that of the product and of
+        // the sum 1 each. Their sum, 5, is less than 8 units.
         let error = |distance: f64| origin_error + 4.0 * f64::EPSILON * (ray.origin.z.abs() + distance);
         let is_beyond = |distance: f64| z(distance) - error(distance) > max_z;
         let is_before = |distance: f64| z(distance) + error(distance) < max_z;
@@ -40,7 +40,7 @@ impl MaxZ {
         }
     }
 
-    /// Returns what is proven about a line's hit where the copy is kept.
+    /// Returns the enclosure of a line's hit before the end.
     pub fn kept_hit<F: Float>(self, line: &Line<Interval<F>>, found: HitEnclosure<F>) -> HitEnclosure<F> {
         let (HitEnclosure::Hits(at) | HitEnclosure::Edge(at)) = found else { return found };
         match self.is_kept(|| line.origin[2] + at * line.dir[2]) {
@@ -50,7 +50,7 @@ impl MaxZ {
         }
     }
 
-    /// Returns what is proven about the hit of a ray in the world where the copy is kept.
+    /// Returns the enclosure of a ray's hit before the end, in world space.
     pub fn kept_enclosure(self, sight: &Sight, found: Enclosure) -> Enclosure {
         let (Enclosure::Hits(at) | Enclosure::Edge(at)) = found else { return found };
         let z = || {
@@ -64,7 +64,7 @@ impl MaxZ {
         }
     }
 
-    /// Returns what is proven about the hits of the lines of a footprint where the copy is kept; `None` where it is not.
+    /// Returns the hits of the lines of a footprint before the end, or `None` if there are none.
     pub fn kept_footprint(self, line: &Line<Affine>, found: FootprintHit) -> Option<FootprintHit> {
         let (FootprintHit::Hits(at) | FootprintHit::Perhaps(at)) = found else { return Some(found) };
         match self.is_kept(|| (line.origin[2] + at * line.dir[2]).range()) {
@@ -74,7 +74,7 @@ impl MaxZ {
         }
     }
 
-    /// Tells whether the copy is kept at a z of the world; `None` where the enclosure leaves that open.
+    /// Tells whether a z in world space is before the end, or `None` if its enclosure does not decide.
     fn is_kept<F: Float>(self, z: impl FnOnce() -> Interval<F>) -> Option<bool> {
         let Some(max_z) = self.0 else { return Some(true) };
         let left = Interval::<F>::constant(max_z) - z();

@@ -1,8 +1,8 @@
-//! Copies of objects in other places, which share the object's shape.
+//! Copies of objects in other places. Copies share the object's shape.
 //!
-//! A ray is taken to the object's own coordinates, and its hit back to the world. A `RayError` bounds the rounding of
-//! both, and the shape returns a bracket of the hits of all rays within the drift. Where the bracket leaves a hit in
-//! doubt, the ray as the scene gives it decides, with the sines and cosines of the angles enclosed in intervals.
+//! A ray is mapped to object space, and its hit back to world space. A `RayError` bounds the rounding of both maps, and
+//! the shape returns a bracket of the hits of all rays within the drift. If the bracket leaves a hit in doubt, the
+//! exact ray decides, with the sines and cosines of the angles enclosed in intervals.
 
 mod body;
 mod hit_proofs;

@@ -1,4 +1,4 @@
-//! Rays taken to a copy's own coordinates, and hits taken back to the world.
+//! Rays mapped to a copy's object space, and hits mapped back to world space.
 
 use super::shape::{Placed, in_world};
 use crate::geometry::ray::{Bracket, RayRange};
@@ -8,22 +8,22 @@ use crate::simd::soa::Vectors;
 use crate::world::coincidence::CLOSE;
 use glam::DVec3;
 
-/// Rays in an object's own coordinates.
+/// Rays in object space.
 pub struct ObjectSpaceRays<const N: usize> {
     /// The origins.
     pub origin: Vectors<N>,
     /// The directions.
     pub dir: Vectors<N>,
-    /// The lengths of a world unit along each ray.
+    /// The length of a world unit along each ray.
     pub lengths: [f64; N],
-    /// The distances at which the rays end.
+    /// The ends of the rays, as distances in object space.
     pub ends: [f64; N],
-    /// A bound on the error of their origins.
+    /// A bound of the error of the origins.
     pub origin_error: f64,
 }
 
 impl<const N: usize> ObjectSpaceRays<N> {
-    /// Rays that are yet to be set.
+    /// Rays before [`set`](Self::set).
     pub const NONE: Self = Self {
         origin: Vectors::ZERO,
         dir: Vectors::ZERO,
@@ -32,8 +32,8 @@ impl<const N: usize> ObjectSpaceRays<N> {
         origin_error: 0.0,
     };
 
-    /// Becomes at most `N` rays in a copy's coordinates, which end at these distances in world units. The rays are not
-    /// returned, because returning large values may copy them.
+    /// Sets at most `N` rays in object space, with ends given as distances in world units. The rays are not returned,
+    /// because returning large values may copy them.
     #[inline(always)]
     pub fn set(&mut self, cpu: Cpu, placed: &Placed, rays: RayPacket, ends: &[f64]) {
         let count = ends.len();
@@ -53,8 +53,7 @@ impl<const N: usize> ObjectSpaceRays<N> {
 }
 
 kernels! {
-    /// Takes rays, and the distances at which they end, to a copy's coordinates. Returns the largest coordinate of their
-    /// origins in the world.
+    /// Maps rays and their ends to object space. Returns the largest coordinate of their origins in world space.
     fn take_in(
         placed: &Placed, rays: RayPacket, ends: &[f64], lengths: &mut [f64], own_ends: &mut [f64]
     ) => origins, dirs -> f64 {
@@ -75,7 +74,7 @@ kernels! {
         largest
     }
 
-    /// Takes brackets to world units, as [`in_world`] does.
+    /// Maps brackets to world units, like [`in_world`].
     pub fn to_world(
         error: f64, lengths: &[f64], rays: RayPacket, ends: &[f64], near: &mut [f64], far: &mut [f64]
     ) {
@@ -89,7 +88,7 @@ kernels! {
         }
     }
 
-    /// Takes hits to the world.
+    /// Maps hits to world space.
     pub fn take_out(
         placed: &Placed, rays: RayPacket, distances: &[f64], cosines: &mut [f64], travelled: &mut [f64]
     ) => points, normals, geometric_normals {
@@ -101,7 +100,8 @@ kernels! {
         for lane in 0..count {
             let is_turned = is_two_sided && cosines[lane] >= 0.0;
             let turned = |normal: DVec3| if is_turned { -normal } else { normal };
-            // Turned only after it is taken to the world, as single rays do: so even zeros have the same sign.
+            // The normal is turned after it is mapped to world space, as for single rays. This gives even zeros the
+            // same sign.
             let there = |normal: DVec3| (to_world * turned(normal)).normalize();
             let shaded = normals.get(lane);
             let normal = there(if is_smooth { geometric_normals.get(lane) } else { shaded });

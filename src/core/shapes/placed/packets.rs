@@ -1,5 +1,5 @@
-//! Packets of rays that may hit a copy: they are taken to the object's own coordinates together, so that the shape is
-//! tested against packets there, too.
+//! Packets of rays that may hit a copy. They are mapped to object space together, and the shape is tested against
+//! packets there, too.
 
 use super::object_space::{ObjectSpaceRays, take_out, to_world};
 use super::shape::{ByPlacement, Placed, entered};
@@ -12,7 +12,7 @@ use crate::world::hittable::{ByPackets, Hittable, Shape};
 use crate::world::packets::brackets;
 use crate::world::packets::shape::{self, PacketIntersect};
 
-/// The number of rays that are taken to an object's own coordinates together, where there are more than [`LANES`].
+/// The number of rays that are mapped to object space together, if there are more than [`LANES`].
 const PART: usize = 64;
 
 impl Placed {
@@ -35,7 +35,7 @@ impl Placed {
         }
         let mut own = ObjectSpaceRays::<N>::NONE;
         own.set(cpu, self, rays, &ends[..count]);
-        // Rays that continue from a surface are taken as they are.
+        // Rays that continue from a surface count as exact.
         let mut own_drift = RayError::NONE;
         if is_from_camera {
             let origins = (0..count).map(|lane| rays.origin.get(lane));
@@ -67,8 +67,8 @@ impl Placed {
         }
     }
 
-    /// Searches again in the object's own coordinates, as for a single ray: a root depends on its bracket in the last bits,
-    /// and a bracket that was taken to the world depends on the drift.
+    /// Searches again in object space, as for a single ray. A root depends on its bracket in the last bits, and a
+    /// bracket mapped to world space depends on the drift.
     fn few_refine(&self, cpu: Cpu, rays: RayPacket, (near, far): (&[f64], &[f64]), out: &mut [f64]) {
         let (count, shape) = (out.len(), self.body.shape.packets());
         let mut own = ObjectSpaceRays::<PART>::NONE;
@@ -77,7 +77,7 @@ impl Placed {
         let (low, high) = (&mut low[..count], &mut high[..count]);
         let own_rays = own.rays(count).leaving(rays.leaving);
         shape.brackets(cpu, own_rays, &own.ends[..count], (&mut *low, &mut *high));
-        // A ray by itself decides what is doubtful.
+        // A single ray decides doubtful hits.
         let mut is_open = [false; PART];
         for lane in 0..count {
             is_open[lane] = low[lane] < MISS && high[lane] == MISS;
@@ -112,7 +112,7 @@ impl Placed {
         own.set(cpu, self, rays, t_max);
         let mut ends_within = false;
         for lane in 0..count {
-            // Where a ray ends in the copy's box, rounding may decide whether it is blocked before that.
+            // If a ray ends in the copy's box, rounding may decide whether it is blocked before its end.
             let end = rays.get(lane).at(t_max[lane]);
             if bounds.low.cmple(end).all() && end.cmple(bounds.high).all() {
                 own.ends[lane] = -1.0;
@@ -180,7 +180,7 @@ impl PacketIntersect for Shape<Placed, ByPackets, ByPlacement> {
         doubt: &mut [u64],
     ) -> bool {
         let (placed, count) = (&self.shape, t_max.len());
-        // The shape does not know where its copy ends.
+        // The shape does not know the end of its copy.
         let is_whole = placed.max_z.0.is_none() && !placed.body.shape.packets().is_of_the_notes();
         let Some(bounds) = placed.bounds.filter(|_| is_whole) else {
             let rays = rays.first(t_max.len());

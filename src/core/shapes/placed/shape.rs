@@ -1,4 +1,4 @@
-//! The shape of a copy: rays and hits of single rays in the coordinates of its object.
+//! The shape of a copy: single rays and their hits in object space.
 
 use super::image_plane::MaxZ;
 use crate::geometry::aabb::{Aabb, SLACK};
@@ -22,28 +22,28 @@ pub struct Placed {
     pub(super) to_object_space: DMat3,
     /// A bounding box in world coordinates.
     pub(super) bounds: Option<Aabb>,
-    /// Where a copy of a plane ends.
+    /// The end of a copy of a plane.
     pub(super) max_z: MaxZ,
 }
 
-/// Marks a shape whose hits are proven in the coordinates of the object that it is a copy of.
+/// Marks a copy of an object, with hits proven in object space.
 pub struct ByPlacement;
 
-/// A bound of the error of [`Placed::to_object_space`] as a map of unit vectors, times the least scale, and of the
-/// rounding of a point or a direction that it maps.
+/// A bound of the error of [`Placed::to_object_space`] as a map of unit vectors, times the minimum scale, and of the
+/// rounding of a mapped point or direction.
 ///
-/// Units of 2^-53: an angle of up to 2 pi is off by 3 roundings, 19 units, and its sine and cosine by 20; a component of
-/// the product of three rotations by 3 * 20 * sqrt(2) and by the rounding of the products, together less than 100. A
-/// matrix of nine such components is off by 300, and a product with it by 8 more: less than 512. Around an axis, a
-/// component of which is off by 4 once it has length 1, the three terms are off by 21, by 25 and by 40, and their sum by 3
-/// more: less than 100, too.
+/// In units of 2^-53: an angle of up to 2 pi has 3 roundings, an error of 19, and its sine and cosine have an error of
+/// 20. The error of a component of the product of three rotations is 3 * 20 * sqrt(2) and the rounding of the products,
+/// together less than 100. The error of a matrix of nine such components is 300, and a product with it adds 8: less
+/// than 512. For a rotation around an axis, the error of a component of the normalized axis is 4. The errors of the
+/// three terms are 21, 25 and 40, and their sum adds 3: also less than 100.
 const TURN: f64 = 256.0 * f64::EPSILON;
 
-/// The drift of a camera ray in the world: a component of its direction is off by 3 units of 2^-53 at most.
+/// The drift of a camera ray in world space: the error of a component of its direction is at most 3 units of 2^-53.
 const CAMERA: RayError = RayError { origin: 0.0, dir: 3.0 * f64::EPSILON };
 
-/// The largest drift of a direction for which brackets are computed. Lengths are off by as much, and must be known far
-/// better than the distance at which two hits count as coincident.
+/// The maximum drift of a direction for which brackets are computed. The relative error of lengths is as large, and
+/// must be far below the distance at which two hits count as coincident.
 const MOST_DRIFT: f64 = CLOSE / 16.0;
 
 impl Placed {
@@ -59,19 +59,18 @@ impl Placed {
         }
     }
 
-    /// Returns the copy without what lies beyond a z, in world units, if one is given and the object is cut off as planes
-    /// are.
+    /// Ends the copy at a z, in world units, if one is given and the object ends like planes do.
     pub(super) fn up_to(self, max_z: Option<f64>) -> Self {
         Self { max_z: MaxZ(max_z.filter(|_| self.body.shape.facts().ends_as_planes)), ..self }
     }
 
-    /// Takes a point from the world to the object's own coordinates.
+    /// Maps a point from world space to object space.
     #[inline(always)]
     pub(super) fn object_point(&self, at: DVec3) -> DVec3 {
         self.to_object_space * (at - self.placement.translation)
     }
 
-    /// Takes a ray from the world to the object's own coordinates. Returns it with the length there of a world unit.
+    /// Maps a ray from world space to object space. Also returns the length of a world unit along the ray there.
     #[inline(always)]
     pub(super) fn object_ray(&self, ray: &Ray) -> (Ray, f64) {
         let dir = self.to_object_space * ray.dir;
@@ -79,15 +78,15 @@ impl Placed {
         (Ray { origin: self.object_point(ray.origin), dir: dir / length }, length)
     }
 
-    /// Returns a bound on the error in the object's own coordinates of a point with this error in the world, the
-    /// rounding of the transformation included.
+    /// Returns a bound of the error of a point in object space, given its error in world space. It includes the
+    /// rounding of the map.
     pub(super) fn object_error(&self, at: DVec3, error: f64) -> f64 {
         let size = at.abs().max_element() + self.placement.translation.abs().max_element();
         (error + ROUNDING * size) / self.placement.scale.min_element()
     }
 
-    /// Returns the drift in the object's own coordinates of rays from these origins with a drift in the world. `None`
-    /// where it is so large that brackets would say little.
+    /// Returns the drift in object space of rays with these origins and a drift in world space. Returns `None` if it is
+    /// too large for useful brackets.
     pub(super) fn object_drift(
         &self,
         origins: impl Iterator<Item = DVec3>,
@@ -96,17 +95,16 @@ impl Placed {
         let Placement { scale, translation, .. } = self.placement;
         let away = origins.map(|origin| (origin - translation).abs().element_sum()).fold(0.0, f64::max);
         let (least, most) = (scale.min_element(), scale.max_element());
-        // A camera ray of the world stands for itself, but for its own rounding.
+        // A camera ray in world space has only its own rounding error.
         let drift = if drift.is_none() { CAMERA } else { drift };
-        // Making two vectors unit vectors at most doubles the difference between them, relative to the shorter one,
-        // which is as long as 1 / `most` at least.
+        // Normalizing two vectors at most doubles the difference between them, relative to the shorter one. That is at
+        // least 1 / `most` long.
         let dir = 2.0 * (drift.dir + TURN) * (most / least);
         let own = RayError { origin: (drift.origin + TURN * away) / least, dir };
         (dir < MOST_DRIFT && own.origin < MISS).then_some(own)
     }
 
-    /// Returns a range in the object's own coordinates, for a ray along which a world unit has the length `length`
-    /// there.
+    /// Returns a range in object space. `length` is the length of a world unit along the ray there.
     #[inline(always)]
     fn object_range(&self, ray: &Ray, range: &RayRange, length: f64) -> RayRange {
         let RayRange { near, far, origin_side, origin_error } = *range;
@@ -118,7 +116,7 @@ impl Placed {
         }
     }
 
-    /// Returns a lower bound on the distance to a bounding box, or `None` where a ray misses it.
+    /// Returns a lower bound of the distance to a bounding box, or `None` if a ray misses it.
     pub(super) fn entry(bounds: Option<Aabb>, ray: &Ray) -> Option<f64> {
         let Some(Aabb { low, high }) = bounds else { return Some(0.0) };
         let slack = SLACK * (ray.origin.abs().max_element() + low.abs().max(high.abs()).max_element());
@@ -126,15 +124,15 @@ impl Placed {
         for axis in 0..3 {
             let (origin, dir) = (ray.origin[axis], ray.dir[axis]);
             let (one, other) = ((low[axis] - slack - origin) / dir, (high[axis] + slack - origin) / dir);
-            // Of a NaN, where a ray lies in a side of the box, the other number is taken.
+            // For a ray in a side of the box, `min` and `max` ignore a NaN.
             (from, to) = (from.max(one.min(other)), to.min(one.max(other)));
         }
         let from = from * (1.0 - SLACK);
         (from <= to * (1.0 + SLACK)).then_some(from)
     }
 
-    /// Returns a bracket of the first hits of all rays that one stands for. A ray that continues from a surface is taken as
-    /// it is.
+    /// Returns a bracket of the first hits, for all rays that `ray` stands for. A ray that continues from a surface
+    /// counts as exact.
     pub(super) fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         if self.body.shape.packets().is_of_the_notes() {
             return Bracket::exactly(self.distance(ray, range));
@@ -179,8 +177,8 @@ fn bounds(body: &Body, placement: Placement, to_object_space: DMat3) -> Option<A
     Some(Aabb { low: translation + turned.low - slack, high: translation + turned.high + slack })
 }
 
-/// Returns a bracket in world units of one in an object's own, in which a world unit has a length that may be off by
-/// `error`, as a fraction.
+/// Converts a bracket from object space to world units. `error` bounds the relative error of `length`, the length of a
+/// world unit.
 #[inline(always)]
 pub(super) fn in_world(
     Bracket { near, far }: Bracket,
@@ -192,7 +190,7 @@ pub(super) fn in_world(
     if near == far {
         let close = if range.far < MISS { close(ray, range.far) } else { 0.0 };
         let distance = RayRange { far: range.far + close, ..*range }.keep(near / length);
-        // At the distance of another surface, the bracket is widened, so that more digits decide which comes first.
+        // At the distance of another surface, a wider bracket lets more digits decide which comes first.
         return if (distance - range.far).abs() <= close {
             Bracket { near: distance - close, far: distance + close }
         } else {
@@ -203,8 +201,7 @@ pub(super) fn in_world(
     Bracket { near: near / length * (1.0 - error), far: far / length * (1.0 + error) }
 }
 
-/// Where a hit is in doubt, returns a bracket that is no nearer than a bounding box, given where the ray enters the
-/// box.
+/// Raises the bracket of a doubtful hit to the distance at which the ray enters the bounding box.
 #[inline(always)]
 pub(super) fn entered(bracket: Bracket, entry: impl FnOnce() -> Option<f64>) -> Bracket {
     if bracket.is_doubtful() {
@@ -229,9 +226,9 @@ impl Hittable for Placed {
     fn facts(&self) -> Facts {
         let Placement { scale, translation, .. } = self.placement;
         let own = self.body.shape.facts();
-        // A rotation moves what lies in a corner of a cube onto an axis.
+        // A rotation can move a corner of a cube onto an axis.
         let reach = 3_f64.sqrt() * scale.max_element() * own.max_coordinate;
-        // Twice as much, for the rounding of the ray's way there and back.
+        // The factor 2 covers the rounding of the ray's maps to object space and back.
         let max_coordinate = 2.0 * (translation.abs().max_element() + reach);
         Facts { bounds: self.bounds, max_coordinate, plane: None, ..own }
     }
@@ -258,7 +255,7 @@ impl Hittable for Placed {
         self.body.shape.uv(self.object_point(at))
     }
 
-    /// That of the object itself, as its shader sees the object's own coordinates.
+    /// Returns the object's own curvature, as the object's shader works in object space.
     fn curvature(&self, at: DVec3) -> Option<Curvature> {
         self.body.shape.curvature(self.object_point(at))
     }
@@ -280,7 +277,7 @@ impl Hittable for Placed {
     }
 }
 
-/// Tells whether a point in the world lies on a copy, up to an error in world units.
+/// Tells whether a point in world space lies on a copy, up to an error in world units.
 fn is_on_surface(placed: &Placed, at: DVec3, error: f64) -> bool {
     placed.body.shape.is_on_surface(placed.object_point(at), placed.object_error(at, error))
 }
@@ -291,7 +288,7 @@ impl HitQueries for Shape<Placed, ByPackets, ByPlacement> {
     }
 
     fn contains(&self, at: DVec3, error: f64) -> Option<bool> {
-        // A cube that is turned reaches as far along an axis as from its middle to its corners.
+        // A rotated cube extends as far along an axis as from its middle to its corners.
         let error = 1.001 * 3_f64.sqrt() * error;
         self.shape.body.shape.contains(self.shape.object_point(at), self.shape.object_error(at, error))
     }

@@ -1,4 +1,4 @@
-//! The distance of a ray's intersection with a plane, by the methods of each accuracy.
+//! The distance at which a ray crosses a plane, by the methods of each accuracy.
 
 use super::products::quotient;
 use super::surface::Plane;
@@ -11,8 +11,8 @@ use tabray_exact::double_double::{DoubleDouble, dot, power_of_two, two_product, 
 use tabray_exact::scalar::per_axis;
 
 impl<A> Plane<A> {
-    /// Returns whether a ray intersects the plane on the viewer's side of the image plane: whether z, which is the
-    /// origin's plus `away / toward` of the direction's, is beyond it.
+    /// Returns whether a ray crosses the plane on the viewer's side of the image plane: whether the z of the crossing
+    /// is beyond it. This z is the origin's plus `away / toward` times the direction's.
     #[inline(never)]
     fn is_before_image_plane(&self, ray: &Ray) -> bool {
         let (away, toward) = self.exact_products(ray);
@@ -21,13 +21,13 @@ impl<A> Plane<A> {
             away * DoubleDouble::from(ray.dir.z),
         );
         let beyond = (one + other).high * toward.high.signum();
-        // Double-double products and sums are off by 2^-103 of their terms; an intersection as near as that is on the
-        // image plane itself.
+        // The relative error of double-double products and sums is 2^-103. A crossing within that error is on the image
+        // plane itself.
         beyond > power_of_two(-98) * (one.high.abs() + other.high.abs())
     }
 
-    /// Computes the dot product of the normal and the vector from the ray's origin to the plane, off by a few ulps and
-    /// 2^-102 of the size of its terms.
+    /// Computes the dot product of the normal and the vector from the ray's origin to the plane, with an error of a few
+    /// ulps plus 2^-102 of the size of its terms.
     #[inline(always)]
     fn compensated_away(&self, ray: &Ray) -> f64 {
         let (x, x_low) = two_sum(self.point.x, -ray.origin.x);
@@ -36,8 +36,8 @@ impl<A> Plane<A> {
         dot(self.rounded_normal().to_array(), [x, y, z], [x_low, y_low, z_low], self.normal_error([x, y, z]))
     }
 
-    /// Computes the dot product of the normal and the ray's direction, off by a few ulps and 2^-102 of the size of its
-    /// terms.
+    /// Computes the dot product of the normal and the ray's direction, with an error of a few ulps plus 2^-102 of the
+    /// size of its terms.
     #[inline(always)]
     fn compensated_toward(&self, ray: &Ray) -> f64 {
         dot(
@@ -48,13 +48,13 @@ impl<A> Plane<A> {
         )
     }
 
-    /// Computes the dot product of a vector and the rounding error of the normal: 0 except for triangles.
+    /// Computes the dot product of a vector and the rounding error of the normal, which is 0 except for triangles.
     #[inline(always)]
     fn normal_error(&self, of: [f64; 3]) -> f64 {
         self.upright[0].low * of[0] + self.upright[1].low * of[1] + self.upright[2].low * of[2]
     }
 
-    /// Computes both dot products, each rounded once however much of it cancels: 0 only where they are exactly 0.
+    /// Computes both dot products, each rounded once regardless of cancellation. They are 0 only if they are exactly 0.
     fn exact_products(&self, ray: &Ray) -> (DoubleDouble, DoubleDouble) {
         let product = |of: [DoubleDouble; 3]| {
             exact_sum((0..3).flat_map(|axis| {
@@ -69,7 +69,7 @@ impl<A> Plane<A> {
         (product(between), product(ray.dir.to_array().map(DoubleDouble::from)))
     }
 
-    /// Returns the distance that [`crossing`](Self::crossing) rounds, as a double-double.
+    /// Returns the unrounded distance of [`crossing`](Self::crossing) as a double-double.
     #[inline(never)]
     pub fn exact_crossing(&self, ray: &Ray) -> DoubleDouble {
         let (away, toward) = self.exact_products(ray);
@@ -78,7 +78,7 @@ impl<A> Plane<A> {
 }
 
 impl<A: AccuracyTag> Plane<A> {
-    /// Returns the distance in world units at which a ray intersects the plane, forward or backward; [`MISS`] for a
+    /// Returns the distance in world units at which a ray crosses the plane, forward or backward, or [`MISS`] for a
     /// parallel ray.
     #[inline(always)]
     pub fn crossing(&self, ray: &Ray) -> f64 {
@@ -92,7 +92,7 @@ impl<A: AccuracyTag> Plane<A> {
         if quick.is_nan() { self.exact_crossing(ray).high } else { quick }
     }
 
-    /// Computes [`crossing`](Self::crossing), or NaN where that takes more than plain or compensated arithmetic.
+    /// Computes [`crossing`](Self::crossing), or NaN if plain and compensated arithmetic are not enough.
     #[inline(always)]
     pub fn quick_crossing(&self, ray: &Ray) -> f64 {
         match A::ACCURACY {
@@ -125,7 +125,7 @@ impl<A: AccuracyTag> Plane<A> {
         }
     }
 
-    /// Computes [`quick_crossing`](Self::quick_crossing) for eight rays, each with a plane of its own.
+    /// Computes [`quick_crossing`](Self::quick_crossing) for eight rays, each with its own plane.
     #[inline(always)]
     pub fn quick_crossings(plane: impl Fn(usize) -> Self, rays: RayPacket, out: &mut [f64; LANES]) {
         match A::ACCURACY {
@@ -134,8 +134,8 @@ impl<A: AccuracyTag> Plane<A> {
         }
     }
 
-    /// Computes the distances of eight rays from a plane each; a dot product that cancels for any of them is computed with
-    /// compensation as well.
+    /// Computes the distances of eight rays from a plane each. If a dot product cancels for any of them, all are also
+    /// computed with compensation.
     #[inline(always)]
     fn compensated(plane: impl Fn(usize) -> Self, rays: RayPacket, out: &mut [f64]) {
         let (rays, out) = (rays.first(LANES), &mut out[..LANES]);
@@ -167,7 +167,7 @@ impl<A: AccuracyTag> Plane<A> {
         }
     }
 
-    /// Returns the method of intersection, in a few words.
+    /// Returns a short description of the method.
     pub fn method(&self) -> &'static str {
         match A::ACCURACY {
             Accuracy::Classic => "the notes' formula",
@@ -178,8 +178,8 @@ impl<A: AccuracyTag> Plane<A> {
         }
     }
 
-    /// Returns the distance if it is in the range, else [`MISS`]; also [`MISS`] on the viewer's side of the image
-    /// plane, and for a ray that leaves the plane.
+    /// Returns the distance, or [`MISS`] if it is outside of the range or on the viewer's side of the image plane, or
+    /// if the ray leaves the plane.
     #[inline(always)]
     pub fn keep(&self, distance: f64, ray: &Ray, range: &RayRange) -> f64 {
         if A::IS_CLASSIC {
@@ -196,13 +196,13 @@ impl<A: AccuracyTag> Plane<A> {
         }
     }
 
-    /// Computes [`keep`](Self::keep), or NaN where the point is on the image plane to within rounding. Returns NaN for
+    /// Computes [`keep`](Self::keep), or NaN if the point is on the image plane up to rounding, or if the distance is
     /// NaN.
     #[inline(always)]
     pub fn quick_keep(&self, distance: f64, ray: &Ray, range: &RayRange) -> f64 {
         let z = ray.at(distance).z;
-        // Units of 2^-53: a plain dot product is off by 5 of terms that add up to at most 1.3 times it, so that the
-        // distance is off by 14; the product and the sum here are off by 1 each.
+        // In units of 2^-53: the error of a plain dot product is 5 times the sum of its terms, at most 1.3 times the
+        // product. The error of the distance is thus 14, and the product and the sum here add 1 each.
         let error = 8.0 * f64::EPSILON * ((distance * ray.dir.z).abs() + self.max_z);
         let origin_side = range.origin_side.is_some();
         let kept = if (z > self.max_z) | origin_side { MISS } else { range.keep(distance) };

@@ -1,4 +1,4 @@
-//! Shapes that are all or a part of a plane, for packets of rays.
+//! Shapes that are a plane or a part of one, for packets of rays.
 
 use super::surface::Plane;
 use crate::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
@@ -7,15 +7,15 @@ use crate::world::accuracy::{Accuracy, AccuracyTag, Bounded};
 use crate::world::hittable::{Bracketed, Shape};
 use crate::world::packets::shape::ScalarIntersect;
 
-/// A bracketed shape that is all or a part of a plane.
+/// A bracketed shape that is a plane or a part of one.
 pub trait Flat: Bracketed {
-    /// The accuracy of intersections with the plane.
+    /// The accuracy of hits with the plane.
     type Accuracy: Bounded;
 
     /// Returns the plane.
     fn flat(&self) -> Plane<Self::Accuracy>;
 
-    /// Tells whether eight rays certainly miss the shape, where that is known in less time than their brackets.
+    /// Tells whether eight rays certainly miss the shape, if that is faster to find than their brackets.
     #[inline(always)]
     fn is_missed_by(&self, _rays: RayPacket) -> bool {
         false
@@ -55,12 +55,12 @@ impl<T: Flat, P> ScalarIntersect for Shape<T, ByPlane, P> {
         self.shape.is_missed_by(rays)
     }
 
-    /// Refines by the plane alone: a hit that is certain is in the plane, whatever is cut out of it.
+    /// Refines by the plane alone: a certain hit is in the plane, regardless of cut-outs.
     #[inline(always)]
     fn refine_each(&self, rays: RayPacket, out: &mut [f64]) {
         let plane = self.shape.flat();
         match T::Accuracy::ACCURACY {
-            // With a normal along an axis, dot products have one term, and nothing cancels.
+            // With a normal along an axis, each dot product has one term, and nothing cancels.
             Accuracy::Draft | Accuracy::Exact if plane.is_upright => plane.refine_plain(rays, out),
             Accuracy::Draft | Accuracy::Exact => plane.refine_compensated(rays, out),
             _ => out.fill(f64::NAN),

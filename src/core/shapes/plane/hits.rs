@@ -1,4 +1,4 @@
-//! Hits of planes, and what is certain about them.
+//! Hits of planes, and their certainty.
 
 use super::{Flat, Plane};
 use crate::geometry::aabb::{Aabb, SLACK};

@@ -1,10 +1,10 @@
-//! Ray-plane intersection: the arithmetic behind planes and shapes that are cut out of them.
+//! Ray-plane intersection: the arithmetic behind planes and their parts.
 //!
-//! The course notes' form subtracts two numbers that grow with the distance from the world's origin, and takes a ray
-//! for parallel where the dot product is 0, which it hardly ever is after rounding. Here the ray's origin is subtracted
-//! first, a dot product that cancels is computed with compensation for its rounding errors (Ogita, Rump and Oishi
-//! 2005), and where that is not enough, it is computed exactly. A distance does not depend on the length of the normal,
-//! so it comes from the scene's own normal, not from the rounded unit vector.
+//! The course notes subtract two numbers that grow with the distance from the world's origin. They treat a ray as
+//! parallel if the dot product is 0, which is rare after rounding. Here, the ray's origin is subtracted first. A dot
+//! product that cancels is computed with compensation for its rounding errors (Ogita, Rump and Oishi 2005), and if that
+//! is not enough, exactly. A distance does not depend on the length of the normal, and so it comes from the scene's own
+//! normal, not from the rounded unit vector.
 
 mod crossing;
 mod flat;

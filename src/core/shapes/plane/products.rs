@@ -1,8 +1,8 @@
-//! The quotients of dot products that cancel, and what rounding makes of them.
+//! Quotients of dot products that may cancel, and their rounding errors.
 
 use crate::geometry::ray::MISS;
 
-/// The dot products whose quotient is the distance of an intersection, in plain arithmetic.
+/// Two dot products in plain arithmetic. Their quotient is the distance of a hit.
 pub(super) struct Products {
     /// The dot product of the normal and the vector from the ray's origin to the plane's point, and the sum of the
     /// absolute values of its terms.
@@ -14,8 +14,8 @@ pub(super) struct Products {
 }
 
 /// Returns the quotient of two dot products computed by [`dot`](tabray_exact::double_double::dot), each given with the
-/// size of its terms. The result is [`MISS`] where the divisor is 0, and NaN where a dot product is less than 2^-44 of
-/// its terms: it could then be off by more than half an ulp, or have the other sign.
+/// size of its terms. The result is [`MISS`] if the divisor is 0. It is NaN if a dot product is less than 2^-44 of its
+/// terms, because its error may exceed half an ulp, or its sign may be wrong.
 #[inline(always)]
 pub(super) fn quotient((away, away_size): (f64, f64), (toward, toward_size): (f64, f64)) -> f64 {
     const MAX_RATIO: f64 = (1_u64 << 44) as f64;
@@ -31,7 +31,7 @@ impl Products {
         quotient((away, self.away_size), (toward, self.toward_size))
     }
 
-    /// Returns the quotient of the dot products in plain arithmetic; NaN where one is less than 1/64 of its terms.
+    /// Returns the quotient of the dot products in plain arithmetic, or NaN if one is less than 1/64 of its terms.
     #[inline(always)]
     pub fn plain_quotient(&self) -> f64 {
         const MAX_RATIO: f64 = 64.0;
@@ -54,16 +54,16 @@ impl Products {
     }
 }
 
-/// The `toward` below which a ray is parallel to the plane to within rounding: 34 units of 2^-53, more than three times
-/// the error of 9 that [`rough`](super::Plane::rough) derives.
+/// The minimum `toward` for a ray that is not parallel to the plane up to rounding: 34 units of 2^-53, more than three
+/// times the error of 9 that [`rough_crossing`](super::Plane::rough_crossing) derives.
 pub(super) const MIN_TOWARD: f64 = 17.0 * f64::EPSILON;
 
-/// A bound of the relative error of [`reciprocal`]. The initial guess is off by at most 2^-23, two roundings to single
-/// precision; a step of Newton's method squares that.
+/// A bound of the relative error of [`reciprocal`]. The error of the initial guess is at most 2^-23, two roundings to
+/// single precision. A Newton step squares it.
 pub(super) const RECIPROCAL_ERROR: f64 = 1.0 / (1_u64 << 44) as f64;
 
-/// Returns the reciprocal of a number in the range of single precision, to within a few ulps: one step of Newton's
-/// method from the reciprocal in single precision, which takes a third of the time of a division.
+/// Returns the reciprocal of a number in the range of single precision, with an error of a few ulps: a Newton step from
+/// the reciprocal in single precision. This takes a third of the time of a division.
 #[inline(always)]
 pub(super) fn reciprocal(of: f64) -> f64 {
     let start = f64::from(1.0 / of as f32);

@@ -1,4 +1,4 @@
-//! A plane, and what plain arithmetic tells of its intersections.
+//! A plane, and its crossings in plain arithmetic.
 
 use super::products::{MIN_TOWARD, Products, RECIPROCAL_ERROR, reciprocal};
 use crate::geometry::aabb::{Aabb, SLACK, larger};
@@ -9,34 +9,35 @@ use std::marker::PhantomData;
 use tabray_exact::double_double::{DoubleDouble, scaled};
 use tabray_exact::scalar::{Scalar, dot, per_axis};
 
-/// A z beyond all hits, in world units, whose products with differences of coordinates are finite.
+/// A z beyond all hits, in world units. Its products with differences of coordinates are finite.
 const NO_END: f64 = 1e200;
 
-/// An infinite plane; its type selects the accuracy of intersections.
+/// An infinite plane. Its type selects the accuracy of crossings.
 #[derive(Clone, Copy, Debug)]
 pub struct Plane<A> {
-    /// The unit normal, rounded; it points to the lit side.
+    /// The unit normal, rounded. It points to the lit side.
     pub normal: DVec3,
-    /// The normal as the scene gives it, scaled by a power of two so that its largest component is between 1/2 and 1.
+    /// The normal of the scene, scaled by a power of two to a largest component between 1/2 and 1.
     pub upright: [DoubleDouble; 3],
     /// A point of the plane, in world coordinates.
     pub point: DVec3,
-    /// Whether the normal is along an axis: dot products with it have one term then, and nothing cancels.
+    /// Whether the normal is along an axis. Each dot product with it then has one term, and nothing cancels.
     pub is_upright: bool,
-    /// The z, in world units, beyond which the plane is not there: the viewer's side of the image plane (the course
-    /// notes' "wrong side").
+    /// The z, in world units, at which the plane ends: on the viewer's side of the image plane (the course notes'
+    /// "wrong side").
     pub max_z: f64,
     accuracy: PhantomData<A>,
 }
 
-/// A ray's intersection with a plane in plain arithmetic.
+/// A ray's crossing of a plane in plain arithmetic.
 #[derive(Clone, Copy, Debug)]
 pub struct RoughCrossing {
     /// The distance along the ray, in world units.
     pub distance: f64,
-    /// A bound of the distance's error, in world units; infinite where the ray is parallel to within rounding.
+    /// A bound of the distance's error, in world units, or infinity if the ray is parallel up to rounding.
     pub error: f64,
-    /// A bound of how far the points at one distance along the rays that the ray stands for are from its own.
+    /// A bound of the distance between points at the same distance along this ray and along the rays that it stands
+    /// for.
     pub aside: f64,
     /// Whether the ray is parallel to the plane.
     pub is_parallel: bool,
@@ -49,34 +50,34 @@ impl<A> Plane<A> {
         Self::new(normal.normalize(), normal.to_array().map(DoubleDouble::from), point)
     }
 
-    /// Returns the plane through a point with a rounded unit normal, and a vector along the normal as exact as it is
-    /// known.
+    /// Returns the plane through a point with a rounded unit normal, and a vector along the normal in the best known
+    /// precision.
     #[inline(always)]
     pub fn new(normal: DVec3, upright: [DoubleDouble; 3], point: DVec3) -> Self {
         let is_upright = upright.iter().filter(|part| part.high == 0.0).count() == 2;
         Self { normal, upright, point, is_upright, max_z: NO_END, accuracy: PhantomData }
     }
 
-    /// Returns the same plane, given by its point nearest to the world's origin where its normal is along an axis: a point
-    /// far away within the plane would cost digits.
+    /// Returns the same plane, given by its point nearest to the world's origin if its normal is along an axis. A
+    /// distant point in the plane would cost digits.
     pub fn from_nearest_point(self) -> Self {
         let along = |axis: usize| if self.upright[axis].high == 0.0 { 0.0 } else { self.point[axis] };
         let point = if self.is_upright { DVec3::new(along(0), along(1), along(2)) } else { self.point };
         Self { point, ..self }
     }
 
-    /// Returns the plane without what lies beyond a z, in world units, if one is given.
+    /// Returns the plane, ending at a z, in world units, if one is given.
     pub fn up_to(self, max_z: Option<f64>) -> Self {
         Self { max_z: max_z.unwrap_or(NO_END), ..self }
     }
 
-    /// Returns the normal that the scene gives, times a power of two, without rounding.
+    /// Returns the normal of the scene, times a power of two, without rounding.
     pub fn given_normal<N: Scalar>(&self) -> [N; 3] {
         per_axis(|axis| N::constant(self.upright[axis].high))
     }
 
-    /// Returns whether a point is on the plane to within `error` world units and the rounding error of its distance
-    /// from the plane, which is at most 4 EPSILON of the terms: half an ulp each for three operations on each term, and
+    /// Returns whether a point is on the plane up to `error`, in world units, and the rounding error of its distance
+    /// from the plane. That is at most 4 EPSILON of the terms: half an ulp each for three operations on each term, and
     /// for the normal.
     #[inline(always)]
     pub fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
@@ -85,17 +86,17 @@ impl<A> Plane<A> {
         self.normal.dot(between).abs() <= error + 4.0 * f64::EPSILON * size
     }
 
-    /// Computes the intersection to within a few ulps, and a bound of its error, which includes that of the ray's
-    /// origin, and the distance of the intersections of all rays that it stands for.
+    /// Computes the crossing with an error of a few ulps, and bounds. These include the error of the ray's origin, and
+    /// the crossings of all rays that `ray` stands for.
     ///
-    /// Units of 2^-53: the normal's components are off by 1 against each other, the vector between the points by 1, a
-    /// product by 1 and the sum of three by 2, so that `away` is off by 5 of its size and `toward` by 4; by 5 more
-    /// because a camera ray's direction is off by 3 in each component, which add up to at most 1.74. As `toward` is
-    /// more than 3 times its error of 9, these 9 become at most 14 in the quotient, less than the 16 here. Where the
-    /// ray runs exactly along the plane, the reciprocal is infinite or NaN, and so are the results.
+    /// In units of 2^-53: the relative error between the normal's components is 1, that of the vector between the
+    /// points 1, of a product 1, and of a sum of three 2. The error of `away` is thus 5 times its size, and that of
+    /// `toward` 4 times. A camera ray's direction adds 5, because the error of each component is 3, and these add up to
+    /// at most 1.74. As `toward` is more than 3 times its error of 9, this becomes at most 14 in the quotient, less
+    /// than the 16 here. For a ray exactly along the plane, the reciprocal is infinite or NaN, and so are the results.
     ///
-    /// A drift moves `away` by as much as the origin and `toward` by as much as the direction. `toward` is more than 3
-    /// times that, too, so that it is less than doubled in the quotient.
+    /// A drift changes `away` by at most the drift of the origin, and `toward` by at most that of the direction.
+    /// `toward` is more than 3 times that drift, too, which less than doubles it in the quotient.
     #[inline(always)]
     pub fn rough_crossing(&self, ray: &RayBall, origin_error: f64) -> RoughCrossing {
         let Products { away, away_size, toward, .. } = self.products(self.normal, ray);
@@ -104,7 +105,7 @@ impl<A> Plane<A> {
         // The reciprocal's own error is relative to the distance, which is at most `away_size` times the reciprocal.
         const ERROR: f64 = RECIPROCAL_ERROR + 8.0 * f64::EPSILON;
         let error = inverse.abs() * (ERROR * (away_size + distance.abs()) + origin_error);
-        // For a normal along an axis, `toward` is one component of the direction, in which nothing cancels.
+        // For a normal along an axis, `toward` is one component of the direction, and nothing cancels.
         let is_parallel = (toward == 0.0) & self.is_upright;
         if ray.is_single() {
             let error = if inverse.abs() >= MIN_TOWARD.recip() { f64::INFINITY } else { error };
@@ -130,23 +131,23 @@ impl<A> Plane<A> {
         }
     }
 
-    /// Returns the scene's normal, rounded.
+    /// Returns the normal of the scene, rounded.
     #[inline(always)]
     pub(super) fn rounded_normal(&self) -> DVec3 {
         DVec3::new(self.upright[0].high, self.upright[1].high, self.upright[2].high)
     }
 
-    /// Returns bounds of the distance of an intersection in a range.
+    /// Returns bounds of the distance of a crossing in a range.
     #[inline(always)]
     pub fn t_bounds(&self, rough: &RoughCrossing, ray: &Ray, range: &RayRange) -> Bracket {
         let RoughCrossing { distance, error, aside, is_parallel } = *rough;
         let (low, high) = (distance - error, distance + error);
         let z = ray.origin.z + distance * ray.dir.z;
-        // The error of z: that of the distance, and of the sum. The error of the product is far less than a
+        // The error of z comes from the distance and from the sum. The error of the product is far less than a
         // reciprocal's.
         let z_error = error + aside + 4.0 * f64::EPSILON * ray.origin.z.abs();
-        // If the error is infinite or the distance is NaN, all of these are false but `is_parallel`: neither a hit nor
-        // a miss is certain.
+        // If the error is infinite or the distance is NaN, only `is_parallel` can be true: neither a hit nor a miss is
+        // certain.
         let is_missed = is_parallel | (high <= range.near) | (z - z_error > self.max_z);
         let is_there = (low > range.near) & (z + z_error < self.max_z);
         Bracket {
@@ -155,15 +156,15 @@ impl<A> Plane<A> {
         }
     }
 
-    /// Returns whether the plane does not intersect a region.
+    /// Returns whether the plane certainly misses a region.
     #[inline(always)]
     pub fn is_clear_of(&self, region: &Aabb) -> bool {
-        // The signed distances of the region's nearest and farthest corners in front of the plane, and the sizes of
-        // their terms.
+        // The signed distances of the region's nearest and farthest corners from the plane, and the sizes of their
+        // terms.
         let (mut nearest, mut near_size, mut farthest, mut far_size) = (0.0, 0.0, 0.0, 0.0);
         for axis in 0..3 {
             let (normal, point) = (self.normal[axis], self.point[axis]);
-            // Regions may be infinite along an axis, which is of no matter where the plane is parallel to it.
+            // Regions may be infinite along an axis, which does not matter if the plane is parallel to the axis.
             if normal != 0.0 {
                 let low = normal * (region.low[axis] - point);
                 let high = normal * (region.high[axis] - point);

@@ -1,4 +1,4 @@
-//! Hits of a quadric computed exactly, except for the rounding of the roots.
+//! Exact hits of a quadric, except for the rounding of the roots.
 
 use super::surface::{DD_ERROR, OwnRay, Quadratic};
 use tabray_exact::double_double::{DoubleDouble, exact::Exact};
@@ -15,7 +15,7 @@ impl PreciseHit {
 }
 
 impl Quadratic {
-    /// Computes both hits from the exact polynomial, rounding only the roots; NaN where there are none.
+    /// Computes both hits from the exact polynomial, rounding only the roots, or NaN for missing hits.
     #[cold]
     pub(super) fn exact_hits(&self, ray: &OwnRay) -> [PreciseHit; 2] {
         let [a, b, c] = self.exact_polynomial(ray);
@@ -26,12 +26,12 @@ impl Quadratic {
             return [PreciseHit::NONE; 2];
         }
         if a.high == 0.0 {
-            // A line in the quadric, or one that does not meet it anywhere, has no hits.
+            // A line that lies in the quadric, or does not meet it, has no hits.
             return [if b.high == 0.0 { PreciseHit::NONE } else { fine(-c / (b + b)) }, PreciseHit::NONE];
         }
         let root = discriminant.sqrt();
         let larger = if b.high > 0.0 { -b - root } else { root - b };
-        // Both roots are 0 where b and c are.
+        // Both roots are 0 if b and c are.
         let other = if larger.high == 0.0 { larger } else { c / larger };
         [fine(larger / a), fine(other)]
     }

@@ -1,4 +1,4 @@
-//! Hits of a quadric in double-double arithmetic, and the decisions that need it.
+//! Hits of a quadric in double-double arithmetic, and the decisions that depend on it.
 
 use super::exact::PreciseHit;
 use super::surface::{DD_ERROR, OwnRay, Quadratic};
@@ -9,13 +9,13 @@ use tabray_exact::double_double::{DoubleDouble, exponent_to_one, times_power_of_
 use tabray_exact::scalar::{Scalar, per_axis};
 
 impl Quadratic {
-    /// Returns the unit normal at a point of the world.
+    /// Returns the unit normal at a point in world space.
     pub fn normal(&self, at: DVec3, center: DVec3) -> DVec3 {
         let OwnRay { from, .. } = self.own(at, DVec3::ZERO, center);
         let place = DVec3::from(from.map(|part| part.high));
         let gradient = 2.0 * (self.square * place) + self.linear;
         let size = (2.0 * self.sizes * place.abs().max_element() + self.linear.abs()).max_element();
-        // A few roundings of its terms are then less than 1e-12 of it.
+        // The rounding errors of the terms are then less than 1e-12 of the gradient.
         if gradient.abs().max_element() > 1e-3 * size {
             return gradient.normalize();
         }
@@ -25,16 +25,16 @@ impl Quadratic {
         let gradient = [part(0), part(1), part(2)].map(|part| part.high);
         let exponent = exponent_to_one(gradient.iter().fold(0.0, |largest, part| part.abs().max(largest)));
         let gradient = DVec3::from(gradient.map(|part| times_power_of_two(part, exponent)));
-        // A cone's apex has no normal, and any unit vector will do; a double plane has this one.
+        // A cone's apex has no normal, and any unit vector will do. A double plane has this one.
         let longest = (0..3)
             .map(|axis| self.square.col(axis))
             .max_by(|one, other| one.length().total_cmp(&other.length()));
         gradient.try_normalize().or(longest.and_then(DVec3::try_normalize)).unwrap_or(DVec3::Y)
     }
 
-    /// Computes the first hit beyond `near` in double-double arithmetic, and exactly where rounding could decide that.
-    /// A hit that is as near to the box as the precision resolves touches it, and a tangent line hits the quadric where
-    /// it touches.
+    /// Computes the first hit beyond `near` in double-double arithmetic, or exactly if rounding could affect the
+    /// decision. A hit whose distance from the box is below the precision touches the box, and a tangent line hits the
+    /// quadric at the touching point.
     #[inline(never)]
     pub fn exact_hit(&self, ray: &OwnRay, near: f64) -> f64 {
         let near = DoubleDouble::from(near * self.scale);
@@ -43,8 +43,8 @@ impl Quadratic {
         times_power_of_two(hits.unwrap_or(MISS), -self.exponent)
     }
 
-    /// Returns the first of two hits that is beyond `near` and in the box. `None` where that is in doubt, unless the
-    /// answer is final.
+    /// Returns the first of two hits that is beyond `near` and in the box, or `None` if that is in doubt and the answer
+    /// is not final.
     fn first_kept(
         &self,
         ray: &OwnRay,
@@ -56,7 +56,7 @@ impl Quadratic {
             hits.swap(0, 1);
         }
         for PreciseHit { at: hit, error } in hits {
-            // NaN is no hit.
+            // NaN is not a hit.
             if !hit.high.is_finite() {
                 continue;
             }
@@ -73,11 +73,11 @@ impl Quadratic {
         Some(MISS)
     }
 
-    /// Returns the other hit of a ray that starts on one hit and leaves to a side; [`MISS`] where it is behind the ray
+    /// Returns the other hit of a ray that starts on one hit and leaves to a side, or [`MISS`] if it is behind the ray
     /// or outside of the box.
     pub fn other_hit(&self, ray: &OwnRay, side: Side) -> f64 {
         let (a, [b, ..]) = (self.bend(ray), self.at(ray, DoubleDouble::from(0.0)));
-        // On the outside the values rise from the origin on, on the inside they fall, whatever rounding says.
+        // From the origin on, the values rise outside and fall inside, regardless of rounding.
         let zero = DoubleDouble::from(0.0);
         let b = match side {
             Side::Outside => Scalar::max(b, zero),
@@ -89,8 +89,8 @@ impl Quadratic {
         if is_kept { times_power_of_two(hit.high, -self.exponent) } else { MISS }
     }
 
-    /// Computes both hits in double-double arithmetic, NaN where there are none; `None` where rounding could decide
-    /// that.
+    /// Computes both hits in double-double arithmetic, or NaN for missing hits. Returns `None` if rounding could affect
+    /// their existence.
     fn fine_hits(&self, ray: &OwnRay) -> Option<[PreciseHit; 2]> {
         let a = self.bend(ray);
         let dir = ray.dir.abs();
@@ -104,14 +104,14 @@ impl Quadratic {
                 + DD_ERROR * (square.high + product.high.abs());
             (square - product, error)
         };
-        // The polynomial from the ray's origin, and if that does not decide, from the midpoint of both hits.
+        // The polynomial is expanded at the ray's origin and, if that is not conclusive, at the midpoint of both hits.
         let [b, c, b_error, c_error] = self.at(ray, DoubleDouble::from(0.0));
         let (whole, whole_error) = discriminant(b, c, b_error.high, c_error.high);
         if whole.high < -whole_error {
             return Some([PreciseHit::NONE; 2]);
         }
-        // Decided if a number exceeds its error by this factor; `quadrics_are_found` in `tests/shapes/arithmetic.rs` holds
-        // the results to 4 ulps.
+        // A number is decisive if it exceeds its error by this factor. `quadrics_are_found` in
+        // `tests/shapes/arithmetic.rs` checks the results to 4 ulps.
         let is_clear = whole.high > 1e15 * whole_error;
         // The polynomial is linear along this ray: the quadric is a plane, or a paraboloid along its axis.
         if a_error == 0.0 {
@@ -141,15 +141,15 @@ impl Quadratic {
         Some([one?, other?])
     }
 
-    /// Returns a hit after a step of Newton's method; `None` where that could make it worse.
+    /// Returns a hit after a Newton step, or `None` if the step could make it worse.
     fn polished(&self, ray: &OwnRay, hit: DoubleDouble) -> Option<PreciseHit> {
         let [b, c, b_error, c_error] = self.at(ray, hit);
         let error = c_error.high / b.high.abs() + DD_ERROR * hit.high.abs();
         (b.high.abs() > 1e15 * b_error.high).then(|| PreciseHit { at: hit - c / (b + b), error })
     }
 
-    /// Returns the depth in the box of the point of a ray at a distance that may be off by `error`, in units of the
-    /// depth's error; below 0 outside.
+    /// Returns the depth in the box of the point at a distance along a ray, in units of the depth's error. It is
+    /// negative outside. The distance may be off by `error`.
     fn depth(&self, ray: &OwnRay, distance: DoubleDouble, error: f64) -> f64 {
         let depths = (0..3).map(|axis| {
             let place = ray.from[axis] + distance * DoubleDouble::from(ray.dir[axis]);
@@ -161,13 +161,14 @@ impl Quadratic {
         depths.fold(f64::INFINITY, f64::min)
     }
 
-    /// Returns `a` of a ray's polynomial.
+    /// Returns the coefficient `a` of a ray's polynomial.
     fn bend(&self, ray: &OwnRay) -> DoubleDouble {
         let dir = ray.dir.to_array().map(DoubleDouble::from);
         product(dir, self.square_times(dir))
     }
 
-    /// Returns `b` and `c` of a ray's polynomial around its point at a distance, and bounds of their errors.
+    /// Returns the coefficients `b` and `c` of a ray's polynomial around its point at a distance, and bounds of their
+    /// errors.
     fn at(&self, ray: &OwnRay, distance: DoubleDouble) -> [DoubleDouble; 4] {
         let dir = ray.dir.to_array().map(DoubleDouble::from);
         let place = per_axis(|axis| ray.from[axis] + distance * dir[axis]);
@@ -175,7 +176,7 @@ impl Quadratic {
         let b = product(place, self.square_times(dir)) + DoubleDouble::from(0.5) * product(linear, dir);
         let size = DVec3::from(place.map(|part| part.high.abs()));
         let linear = self.linear.abs();
-        // The point itself is off by a fraction of the numbers that it was computed from.
+        // The error of the point itself is a fraction of the numbers that it was computed from.
         let moved = (0..3).map(|axis| ray.from[axis].high.abs() + (distance.high * ray.dir[axis]).abs());
         let moved = moved.sum::<f64>();
         let (dir, at_size) = (ray.dir.abs(), self.sizes.dot(size * size));
@@ -190,12 +191,12 @@ impl Quadratic {
 
     #[inline(always)]
     pub(super) fn square_times(&self, vector: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
-        // The matrix is symmetric: its columns are its rows.
+        // The matrix is symmetric.
         let row = |row: usize| product(self.square.col(row).to_array().map(DoubleDouble::from), vector);
         [row(0), row(1), row(2)]
     }
 
-    /// Returns the left side of the equation at a point, relative to the center: 0 on the quadric.
+    /// Returns the left side of the equation, which is 0 on the quadric, at a point relative to the center.
     #[inline(always)]
     fn value(&self, place: [DoubleDouble; 3]) -> DoubleDouble {
         let linear = self.linear.to_array().map(DoubleDouble::from);

@@ -1,4 +1,4 @@
-//! Hits of quadrics, and what is certain about them.
+//! Hits of quadrics, and their certainty.
 
 use super::Quadric;
 use crate::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
@@ -9,7 +9,7 @@ use glam::DVec3;
 use tabray_exact::scalar::Scalar;
 
 impl<A: AccuracyTag> Hittable for Quadric<A> {
-    /// Returns the nearer of the two roots that lies in the box.
+    /// Returns the nearer of the roots in the box.
     #[inline(always)]
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         if A::IS_CLASSIC {
@@ -27,7 +27,7 @@ impl<A: AccuracyTag> Hittable for Quadric<A> {
     #[inline]
     fn facts(&self) -> Facts {
         Facts {
-            // The box only clips, and may be far larger than the visible part of the surface, so its corners do not
+            // The box only clips, and may be far larger than the visible part of the surface. Its corners thus do not
             // count.
             max_coordinate: self.center.abs().max_element(),
             can_hit_itself: Sides::both_if(!A::IS_CLASSIC),

@@ -1,8 +1,9 @@
 //! Ray-quadric intersection.
 //!
-//! The polynomial along a ray is expanded around the midpoint of its two hits: neither the viewer nor the origin of the
-//! equation need be near. Every number has a bound of its rounding error. Where that could decide whether there is a
-//! hit, which one is first or whether a box keeps it, everything is computed again in double-double arithmetic.
+//! The polynomial along a ray is expanded around the midpoint of its two hits, which keeps precision far from the
+//! viewer and from the origin of the equation. Each number has a bound of its rounding error. If the error could affect
+//! whether there is a hit, which hit is first or whether it is in the box, the computation is repeated in double-double
+//! arithmetic.
 
 mod exact;
 mod fine;

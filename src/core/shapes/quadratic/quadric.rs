@@ -11,7 +11,7 @@ use glam::{DMat3, DVec3};
 use std::marker::PhantomData;
 use tabray_exact::scalar::{Scalar, per_axis};
 
-/// A bound of the error of a camera ray, whose direction is off by 3 units of 2^-53 in each component.
+/// A bound of the error of a camera ray: 3 units of 2^-53 in each component of the direction.
 const CAMERA: RayError = RayError { origin: 0.0, dir: 1.5 * f64::EPSILON };
 
 /// A quadric `p·Sp + l·p + c = 0`, for points `p` relative to the center, in a box.
@@ -22,9 +22,9 @@ pub struct Quadric<A> {
     constant: f64,
     /// The origin of the equation's coordinates, in world coordinates.
     pub center: DVec3,
-    /// The low corner of the box that the quadric is kept in, relative to the center.
+    /// The low corner of the clipping box, relative to the center.
     pub low: DVec3,
-    /// The high corner of the box, relative to the center.
+    /// The high corner of the clipping box, relative to the center.
     pub high: DVec3,
     /// The quadric's coefficients, scaled for the solver.
     own: Quadratic,
@@ -32,7 +32,7 @@ pub struct Quadric<A> {
 }
 
 impl<A> Quadric<A> {
-    /// Returns the quadric `Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J`, kept in a box; the coordinates of
+    /// Returns the quadric `Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J`, clipped by a box. The coordinates of
     /// both are relative to the center.
     pub fn new(coefficients: [f64; 10], center: DVec3, [low, high]: [DVec3; 2]) -> Self {
         let [a, b, c, d, e, f, g, h, i, j] = coefficients;
@@ -54,13 +54,13 @@ impl<A> Quadric<A> {
         }
     }
 
-    /// Returns the box in world coordinates that the quadric is kept in.
+    /// Returns the clipping box in world coordinates.
     pub fn around(&self) -> Aabb {
         Aabb { low: self.center + self.low, high: self.center + self.high }
     }
 
-    /// Returns a lower bound of the distance from a point to the quadric in world units, as far as the equation tells:
-    /// at a distance `r` from the point, its value differs by at most `|gradient| r + |square| r^2`.
+    /// Returns a lower bound of the distance from a point to the quadric, in world units, by the equation: at a
+    /// distance `r` from the point, its value differs by at most `|gradient| r + |square| r^2`.
     pub fn clearance_by_value(&self, from: DVec3) -> f64 {
         let at = from - self.center;
         let abs = DMat3::from_cols_array(&self.square.to_cols_array().map(f64::abs));
@@ -71,17 +71,17 @@ impl<A> Quadric<A> {
         let gradient = (2.0 * (self.square * at) + self.linear).length() + rounding;
         let square = (abs * DVec3::ONE).length();
         let radius = 2.0 * value / (gradient + (gradient * gradient + 4.0 * square * value).sqrt());
-        // The factor keeps the radius a lower bound: it is far more than the rounding of the lines above.
+        // The factor covers the rounding above, and keeps the radius a lower bound.
         if value > 0.0 && radius.is_finite() { radius * (1.0 - 1e-6) } else { 0.0 }
     }
 
-    /// Returns a lower bound of the distance from a point to the quadric in world units, as far as its box tells.
+    /// Returns a lower bound of the distance from a point to the quadric, in world units, by its box.
     pub fn clearance_by_box(&self, from: DVec3) -> f64 {
         let around = self.around();
         clearance(from, Some(around), |region| !around.overlaps(region))
     }
 
-    /// Tells whether the quadric is an ellipsoid that lies in its box, with values below 0 inside.
+    /// Tells whether the quadric is an ellipsoid in its box, with negative values inside.
     pub fn is_closed(&self) -> bool {
         let Self { square, linear, constant, low, high, .. } = self;
         let minors = [square.x_axis.x, square.x_axis.x * square.y_axis.y - square.x_axis.y * square.x_axis.y];
@@ -96,7 +96,7 @@ impl<A> Quadric<A> {
         level > 0.0 && low.cmplt(middle - half).all() && (middle + half).cmplt(*high).all()
     }
 
-    /// Returns the left side of the equation at a point of the world: 0 on the quadric.
+    /// Returns the left side of the equation at a point in world space, which is 0 on the quadric.
     pub fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         let from_center = per_axis(|axis| at[axis] - N::constant(self.center[axis]));
         let sum = |part: &dyn Fn(usize) -> N| part(0) + part(1) + part(2);
@@ -107,7 +107,7 @@ impl<A> Quadric<A> {
         sum(&row) + N::constant(self.constant)
     }
 
-    /// Returns a number above 0 for a point of the world in the box, and below 0 outside.
+    /// Returns a number that is positive at points in the box, in world space, and negative outside.
     pub fn inside_box<N: Scalar>(&self, at: [N; 3]) -> N {
         let inside = |axis: usize| {
             let from_center = at[axis] - N::constant(self.center[axis]);
@@ -119,7 +119,7 @@ impl<A> Quadric<A> {
 }
 
 impl<A: AccuracyTag> Quadric<A> {
-    /// The description of how hits are found, in a few words.
+    /// A short description of the method for hits.
     pub const METHOD: &str = match A::ACCURACY {
         Accuracy::Classic => "the notes' formula",
         Accuracy::Strict => "a closed form in twice the precision",
@@ -155,14 +155,14 @@ impl<A: AccuracyTag> Quadric<A> {
         self.own.exact_hit(&self.own_ray(ray), near)
     }
 
-    /// Returns the distance of the first hit of a ray that leaves the quadric. The ray starts on one hit, so that the
-    /// other one is left.
+    /// Returns the distance of the first hit of a ray that leaves the quadric. The ray starts on one hit, and only the
+    /// other one remains.
     #[inline(never)]
     fn other_distance(&self, ray: &Ray, side: Side, range: &RayRange) -> f64 {
         range.keep(self.own.other_hit(&self.own_ray(ray), side))
     }
 
-    /// Returns the distance of the first hit in a range, or NaN where that takes more than plain arithmetic.
+    /// Returns the distance of the first hit in a range, or NaN if plain arithmetic is not enough.
     #[inline(always)]
     pub fn fast_distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         if let Some(side) = range.origin_side {
@@ -179,7 +179,7 @@ impl<A: AccuracyTag> Quadric<A> {
         if quick.is_missed { MISS } else { hit }
     }
 
-    /// Returns bounds of the distances at which all rays that one stands for first hit the quadric in a range.
+    /// Returns bounds of the distances of the first hits in a range, for all rays that `ray` stands for.
     #[inline(always)]
     pub fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         if let Some(side) = range.origin_side {
@@ -198,12 +198,12 @@ impl<A: AccuracyTag> Quadric<A> {
             return self.own.normal(at, self.center);
         }
         let normal = 2.0 * (self.square * (at - self.center)) + self.linear;
-        // A cone's apex has no normal; any unit vector will do.
+        // A cone's apex has no normal, and any unit vector will do.
         normal.try_normalize().unwrap_or(DVec3::Y)
     }
 }
 
-/// Returns the roots by the well-known formula, which is the course notes': it loses digits, and double roots.
+/// Returns the roots by the well-known formula of the course notes, which loses digits and double roots.
 #[inline(always)]
 fn classic_roots(a: f64, half_b: f64, c: f64) -> [f64; 2] {
     let b = 2.0 * half_b;

@@ -1,4 +1,4 @@
-//! Hits of a quadric in plain arithmetic without branches, for many rays at a time.
+//! Hits of a quadric in plain arithmetic without branches, for many rays at once.
 
 use super::surface::{DD_ERROR, OwnRay, Quadratic};
 use crate::geometry::aabb::smaller;
@@ -11,7 +11,7 @@ use tabray_exact::double_double::{two_product, two_sum};
 pub struct QuickHit {
     /// Whether there certainly is no hit.
     pub is_missed: bool,
-    /// Whether rounding could decide the hit, unless it is missed.
+    /// Whether rounding could affect the hit, unless it is missed.
     pub is_unknown: bool,
     /// The distance of the hit if it is neither missed nor unknown, in world units.
     pub distance: f64,
@@ -35,9 +35,9 @@ struct RayPolynomial {
 }
 
 impl Quadratic {
-    /// Computes the polynomial along a ray whose origin and direction may be off by these errors in each component.
+    /// Computes the polynomial along a ray. The components of its origin and direction may have these errors.
     ///
-    /// Units of 2^-53: a point is off by 1; a product of three factors and the sums that it enters are off by 8, and
+    /// In units of 2^-53: the error of a point is 1. The error of a product of three factors and of its sums is 8, and
     /// the point enters it at most twice: less than 16. An error of the point or the direction adds to this, multiplied
     /// by the gradient.
     #[inline(always)]
@@ -48,8 +48,8 @@ impl Quadratic {
         let turned = self.square * dir;
         let (a, a_size) = (dir.dot(turned), self.sizes.dot(dir * dir));
         let slope = 0.5 * self.linear.dot(dir);
-        // Any base will do, as the errors below are computed for the base that is taken. Where the chord has no
-        // midpoint, or a distant one, the base is the point closest to the center.
+        // The errors below are valid for any base. If the chord has no midpoint, or a distant one, the base is the
+        // point closest to the center.
         let is_bent = a.abs() > 1e-9 * a_size;
         let middle = -(high.dot(turned) + slope) / a;
         let base = if is_bent { middle } else { -high.dot(dir) };
@@ -81,8 +81,7 @@ impl Quadratic {
         }
     }
 
-    /// Computes the first hit beyond `near` in plain arithmetic without branches, for a ray whose origin and direction
-    /// may be off by as much as a drift in each component.
+    /// Computes the first hit beyond `near` in plain arithmetic without branches, for all rays within a drift of `ray`.
     #[inline(always)]
     pub fn quick_hit(&self, ray: &OwnRay, near: f64, drift: RayError) -> QuickHit {
         let along = self.along(ray, drift.origin * self.scale, drift.dir);
@@ -93,7 +92,7 @@ impl Quadratic {
             + a.abs() * c_error
             + a_error * (c.abs() + c_error)
             + 2.0 * f64::EPSILON * (square + product.abs());
-        // The bounds of the roots' errors in `judge` are good if the discriminant and `a` exceed their errors by this
+        // The bounds of the roots' errors in `judge` are valid if the discriminant and `a` exceed their errors by this
         // factor. `quadrics_are_found` and `brackets_hold_the_hits_of_the_real_rays_of_a_camera` in
         // `tests/shapes/arithmetic.rs` test both.
         const SPARE: f64 = 1024.0;
@@ -114,13 +113,12 @@ impl Quadratic {
         }
     }
 
-    /// Judges whether one of two hits counts: whether it is beyond `near` and in the box. In the quadric's own unit of
-    /// length.
+    /// Tells whether one of two hits is beyond `near` and in the box. Lengths are in the quadric's own unit.
     #[inline(always)]
     fn judge(&self, along: &RayPolynomial, ray: &OwnRay, near: f64, hit: f64, root: f64) -> QuickHit {
         let RayPolynomial { base, at, at_error, a, a_error, b_error, c_error, .. } = *along;
-        // The polynomial's error divided by half its slope: twice the error of a linear function's root, as this one is
-        // curved.
+        // This is the polynomial's error divided by half its slope, which is twice the error of the root of a linear
+        // function, because the polynomial is curved.
         let off = a_error * hit * hit + 2.0 * b_error * hit.abs() + c_error;
         let hit_error = off / root + 4.0 * f64::EPSILON * hit.abs();
         let distance = base + hit;
@@ -140,8 +138,8 @@ impl Quadratic {
         QuickHit { is_missed: is_certain & is_missed, is_unknown: !is_certain, distance, error }
     }
 
-    /// Returns a quick hit, corrected by a step of Newton's method in double-double arithmetic to half an ulp; NaN
-    /// where one step is not enough.
+    /// Returns a quick hit, corrected to half an ulp by a Newton step in double-double arithmetic, or NaN if one step
+    /// is not enough.
     #[inline(always)]
     pub fn corrected(&self, ray: &OwnRay, quick: f64) -> f64 {
         let t = quick * self.scale;
@@ -153,7 +151,7 @@ impl Quadratic {
         let ((x, x_low), (y, y_low), (z, z_low)) = (place(0), place(1), place(2));
         let (at, low) = (DVec3::new(x, y, z), DVec3::new(x_low, y_low, z_low));
         let (s, l) = (&self.square, self.linear);
-        // The equation as x (Ax + Dy + Ez + G) + y (By + Fz + H) + z (Cz + I) - J, each sum with its rounding error.
+        // The equation is x (Ax + Dy + Ez + G) + y (By + Fz + H) + z (Cz + I) - J. Each sum has its rounding error.
         let (of_x, of_x_low) = compensated([s.x_axis.x, 2.0 * s.y_axis.x, 2.0 * s.z_axis.x], [x, y, z], l.x);
         let (of_y, of_y_low) = compensated([s.y_axis.y, 2.0 * s.z_axis.y, 0.0], [y, z, 0.0], l.y);
         let (of_z, of_z_low) = compensated([s.z_axis.z, 0.0, 0.0], [z, 0.0, 0.0], l.z);

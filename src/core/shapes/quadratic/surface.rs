@@ -6,38 +6,38 @@ use tabray_exact::scalar::per_axis;
 
 /// The part of the quadric `p·Sp + l·p + c = 0` in a box, scaled.
 ///
-/// Lengths are multiplied by one power of two and the equation by another, so that its numbers are around 1: this loses
-/// no digits, and squares neither overflow nor underflow.
+/// Lengths are multiplied by one power of two and the equation by another, which brings its numbers to about 1. This
+/// loses no digits, and keeps squares from overflow and underflow.
 #[derive(Clone, Debug)]
 pub struct Quadratic {
     pub(super) square: DMat3,
     pub(super) linear: DVec3,
     pub(super) constant: f64,
-    /// The sums of the magnitudes of each row of `square`, or column: `|x|·|S||y|` is at most the square root of the
+    /// The sums of the magnitudes of each row, or column, of `square`: `|x|·|S||y|` is at most the square root of the
     /// product of the sums of `size x^2` and of `size y^2`.
     pub(super) sizes: DVec3,
     pub(super) low: DVec3,
     pub(super) high: DVec3,
-    /// The exponent of the power of two that lengths in world units are multiplied by.
+    /// The exponent of `scale`.
     pub(super) exponent: i32,
-    /// The power of two that lengths in world units are multiplied by, and its reciprocal.
+    /// The power of two that converts lengths from world units, and its reciprocal.
     pub(super) scale: f64,
     pub(super) unscale: f64,
 }
 
-/// A ray, in the quadric's own unit of length and relative to its center.
+/// A ray in the quadric's own unit of length, relative to its center.
 #[derive(Clone, Copy, Debug)]
 pub struct OwnRay {
     pub(super) from: [DoubleDouble; 3],
     pub(super) dir: DVec3,
 }
 
-/// A bound of the relative error of about ten operations in double-double arithmetic, each of which is off by less than
+/// A bound of the relative error of about ten operations in double-double arithmetic. The error of each is less than
 /// 2^-102 of its terms.
 pub(super) const DD_ERROR: f64 = 1.0 / (1_u128 << 98) as f64;
 
 impl Quadratic {
-    /// Returns the quadric `Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J`, kept in a box.
+    /// Returns the quadric `Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J`, clipped by a box.
     pub fn new(coefficients: [f64; 10], low: DVec3, high: DVec3) -> Self {
         let exponent_of = |of: &[f64]| {
             let largest = of.iter().fold(0.0, |largest: f64, part| largest.max(part.abs()));
@@ -45,7 +45,7 @@ impl Quadratic {
         };
         let (square, linear) = (exponent_of(&coefficients[..6]), exponent_of(&coefficients[6..9]));
         let constant = exponent_of(&coefficients[9..]);
-        // The lengths at which two of the three terms are about the same.
+        // At this length, two of the three terms are about equal.
         let length = match (square, linear, constant) {
             (Some(square), linear, constant) => {
                 let of_linear = linear.map(|linear| linear - square);
@@ -54,7 +54,8 @@ impl Quadratic {
             (None, Some(linear), Some(constant)) => Some(constant - linear),
             _ => None,
         };
-        // Lengths of 1e150 and 1e-150 leave numbers of 1e90 and 1e-90, whose squares neither overflow nor underflow.
+        // Lengths of 1e150 and 1e-150 become numbers of 1e90 and 1e-90, and their squares neither overflow nor
+        // underflow.
         let length = length.unwrap_or(0).clamp(-200, 200);
         let sizes = [square.map(|of| of + 2 * length), linear.map(|of| of + length), constant];
         let factor = -sizes.into_iter().flatten().max().unwrap_or(0);
@@ -80,7 +81,7 @@ impl Quadratic {
         }
     }
 
-    /// Returns a ray of the world in the quadric's own unit of length, relative to its center.
+    /// Converts a ray in world space to the quadric's own unit of length, relative to its center.
     #[inline(always)]
     pub fn own(&self, origin: DVec3, dir: DVec3, center: DVec3) -> OwnRay {
         let from = per_axis(|axis| {

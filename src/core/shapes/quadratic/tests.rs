@@ -42,7 +42,7 @@ fn coefficients_of_every_size_make_the_same_ball() {
         let found = hit(sphere, BOX, DVec3::new(0.6, 0.0, 3.0), DVec3::NEG_Z);
         assert!((found - 2.2).abs() < 1e-14, "1e{exponent}: {found:e}");
     }
-    // A sphere of radius 3e150, no part of which is in the box.
+    // A sphere of radius 3e150, entirely outside of the box.
     let huge = [1e-301, 1e-301, 1e-301, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
     assert_eq!(hit(huge, BOX, DVec3::new(0.6, 0.0, 3.0), DVec3::NEG_Z), MISS);
 }
@@ -64,7 +64,7 @@ fn straight_lines_and_planes_are_hit_once() {
     let plane = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.0, 1.0];
     assert_eq!(hit(plane, BOX, DVec3::Z, DVec3::NEG_Z), 0.5);
     assert_eq!(hit(plane, BOX, DVec3::Z, DVec3::X), MISS);
-    // A paraboloid, hit along its axis.
+    // A ray hits a paraboloid along its axis.
     let bowl = [1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0];
     assert_eq!(hit(bowl, BOX, DVec3::new(1.0, 0.0, 3.0), DVec3::NEG_Z), 2.0);
 }

@@ -1,10 +1,10 @@
 //! Brackets of the first hits of rays, slab by slab for all rays at once, in plain arithmetic without branches.
 //!
-//! In a slab the surface lies between two quadrics, the parabola's with its error added and subtracted. A ray that
-//! misses the nearer one misses the surface; a ray that crosses both while its distance from the surface falls all the
-//! way has one root between them, bracketed by the error. Where a ray grazes the shell between them, starts in it, runs
-//! parallel or perpendicular to the axis, or crosses the surface where slabs meet, the bracket only says where that
-//! begins, and the ray is traced alone (`walk`), through the same slabs.
+//! In a slab, the surface lies in a shell between two quadrics: that of the parabola, with its error added and
+//! subtracted. A ray that misses the nearer one misses the surface. A ray that crosses both, while its distance from
+//! the surface falls all the way, has one root between them, bracketed by the error. In other cases, the bracket only
+//! has a lower end, and the ray is traced alone through the same slabs (`walk`): the ray grazes the shell or starts in
+//! it, runs parallel or perpendicular to the axis, or crosses the surface where slabs meet.
 
 use super::lanes::{Crossing, Lanes};
 use super::quadratic::Quadratic;
@@ -16,23 +16,23 @@ use crate::geometry::ray::{MISS, Ray};
 use crate::geometry::ray_packet::RayPacket;
 use crate::simd::cpu::{Cpu, kernels};
 
-/// A unit direction whose component along the axis, or perpendicular to it, is below this is traced alone.
+/// Rays with a smaller component of the unit direction along the axis, or perpendicular to it, are traced alone.
 const MIN_COMPONENT: f64 = 1e-9;
 
 /// The margin of a slab's largest square, as a multiple of a ray's rounding error.
 const MARGIN: f64 = 4.0;
 
-/// The largest distance of rays from the one that stands for them, as a fraction of the surface's radius. Those that
-/// are farther away are traced alone.
+/// The maximum distance between the rays that one stands for and this one, as a fraction of the surface's radius. Rays
+/// with a larger spread are traced alone.
 const MOST_OFF: f64 = 1e-4;
 
-/// The largest number of rays that are bracketed together: few enough for their data to stay in the cache, and for
-/// slabs that none of them reaches to be skipped.
+/// The maximum number of rays that are bracketed together. It is small enough for their data to stay in the cache, and
+/// for slabs to be skipped that none of them reaches.
 pub(super) const MAX_RAYS: usize = 64;
 
 impl Revolution {
-    /// Computes the brackets of the first hits of all rays that each ray of up to `N` stands for. Hits beyond `ends`, in
-    /// world units, are of no interest.
+    /// Computes brackets of the first hits, for all rays that each of up to `N` rays stands for. Hits beyond `ends`, in
+    /// world units, do not matter.
     pub(super) fn t_bounds<const N: usize>(
         &self,
         cpu: Cpu,
@@ -62,20 +62,21 @@ impl Revolution {
         leave(cpu, lanes, rays.len());
     }
 
-    /// Returns the height of the surface and its largest distance from the axis, in world units.
+    /// Returns the height of the surface and its maximum distance from the axis, in world units.
     pub(super) fn size(&self) -> [f64; 2] {
         [self.height, self.slabs.widest()]
     }
 
-    /// Returns a slab. The lowest and the highest slab are extended to infinity, so that rounding cuts nothing off.
+    /// Returns a slab. The lowest and the highest slab extend to infinity, so that rounding cuts nothing off.
     pub(super) fn slab(&self, index: usize) -> Slab {
         self.slabs.extended(self.slabs.get(index), index..index + 1)
     }
 }
 
 kernels! {
-    /// Sets how far all rays within a drift of each ray are from it, as far as any of them may be on the surface. From the
-    /// point closest to the axis, that is no farther than the radius divided by the direction's part across the axis.
+    /// Sets the maximum distance of all rays within a drift from their ray, in the range of the surface. Counted from
+    /// the point closest to the axis, this range is at most the radius divided by the direction's component across the
+    /// axis.
     fn spread<const N>(lanes: &mut Lanes<N>, frame: &Frame, rays: RayPacket, size: [f64; 2]) {
         let count = rays.len().min(N);
         let (rays, [height, widest]) = (rays.first(count), size);
@@ -89,9 +90,9 @@ kernels! {
         }
     }
 
-    /// Sets up rays relative to a base near the axis, and clips them to the bounding cylinder, whose squared radius
-    /// `reach` includes the shell of the error. Returns the smallest and the largest height of any ray in it; `None`
-    /// where all rays miss it.
+    /// Sets up rays relative to a base near the axis, and clips them to the bounding cylinder. Its squared radius,
+    /// `reach`, includes the shell of the error. Returns the minimum and the maximum height of all rays in it, or
+    /// `None` if all miss it.
     fn enter<const N>(
         lanes: &mut Lanes<N>, frame: &Frame, rays: RayPacket, size: [f64; 2], reach: f64, ends: &[f64]
     ) -> Option<(f64, f64)> {
@@ -106,16 +107,16 @@ kernels! {
             let closest = -(origin.x * dir.x + origin.z * dir.z) * inverse_a;
             let base = if is_free & (closest > 0.0) { closest } else { 0.0 };
             let moved = origin + base * dir;
-            // The rounding error of that point, in units of EPSILON. Each coordinate of the origin: 1/2 in its
-            // difference from the frame's, 3 in the axes, 3/2 in the rotation; sqrt(3) of these 5 across three axes are
-            // below 9. The direction: sqrt(3) of 3 in the axes and 3/2 in the rotation, 1 for a camera ray's rounded
-            // direction, and 1 for the point along the ray: below 10.
+            // The rounding error of that point, in units of EPSILON. The errors of each coordinate of the origin are
+            // 1/2 in its difference from the frame's, 3 in the axes, and 3/2 in the rotation: 5, times sqrt(3) for
+            // three axes, is below 9. The errors of the direction are sqrt(3) of 3 in the axes and 3/2 in the rotation,
+            // 1 for a camera ray's rounded direction, and 1 for the point along the ray: below 10.
             let off = 12.0 * f64::EPSILON * (origin.abs().element_sum() + base) + lanes.off[lane];
             let is_wide = lanes.off[lane] > MOST_OFF * widest;
 
             let inverse_dy = 1.0 / dir.y;
             let (bottom, top) = (-moved.y * inverse_dy, (height - moved.y) * inverse_dy);
-            // The hits in `tests/slow/truth.rs` hold this margin.
+            // The hits in `tests/slow/truth.rs` test this margin.
             let end_error = 2.0 * off * inverse_dy.abs() + 16.0 * f64::EPSILON * (bottom.abs() + top.abs() + base);
             let (first, last) = if bottom < top { (bottom, top) } else { (top, bottom) };
             let (first, last) = (first - end_error, last + end_error);
@@ -150,7 +151,7 @@ kernels! {
         any != 0
     }
 
-    /// Merges the hits in a slab into the brackets, for a surface of this size.
+    /// Merges the hits in a slab into the brackets. `size` is the height and the maximum radius of the surface.
     pub(super) fn cross<const N>(
         lanes: &mut Lanes<N>, slab: &Slab, size: [f64; 2], origin_error: f64, count: usize
     ) {
@@ -188,7 +189,7 @@ kernels! {
             let (near, far, margin) = (lanes.near[lane], lanes.far[lane], 2.0 * lanes.end_error[lane]);
             let (low, high) = lanes.counted_from_origin(lane, (near, far));
             let is_met = near < MISS;
-            // Rounding may have mistaken an end of the cylinder for a part of the surface.
+            // Rounding may have confused an end of the cylinder with a part of the surface.
             let is_certain = (far < MISS) & (near > lanes.from[lane] + margin) & (far < lanes.to[lane] - margin);
             lanes.near[lane] = if is_met { low } else { MISS };
             lanes.far[lane] = if is_certain & (low > 0.0) { high } else { MISS };

@@ -2,11 +2,11 @@
 
 use tabray_exact::formula::Formula;
 
-/// The number of formula operations that one profile may take, a function counted as eight: half a second's worth in a
-/// program built without optimization, a tenth of that in an optimized one.
+/// The maximum number of formula operations for one profile, a function counted as eight: half a second in a build
+/// without optimization, a tenth of that in an optimized one.
 pub const OPERATIONS: u64 = 60_000_000;
 
-/// The number of operations that are left.
+/// The number of operations left.
 pub(super) struct Budget(u64);
 
 impl Budget {
@@ -14,7 +14,7 @@ impl Budget {
         Self(OPERATIONS)
     }
 
-    /// Charges the cost of evaluating a formula's value this many times; returns whether the budget sufficed.
+    /// Charges the cost of evaluating a formula's value this many times. Returns whether the budget sufficed.
     pub fn charge(&mut self, formula: &Formula, times: u64) -> bool {
         let cost = formula.cost() * times;
         let can = cost <= self.0;

@@ -8,7 +8,7 @@ use tabray_exact::interval::Interval;
 use tabray_exact::roots::bisection::bisect;
 use tabray_exact::scalar::Scalar;
 
-/// A surface of revolution around the y axis, as the course notes' program finds it.
+/// A surface of revolution around the y axis, with the hits of the course notes' program.
 pub struct ClassicRevolution {
     /// The profile that is revolved.
     pub line: ProfileLine,
@@ -17,8 +17,8 @@ pub struct ClassicRevolution {
 }
 
 impl ClassicRevolution {
-    /// Returns the distance of a ray's hit: bisection to 1e-4 world units between the ray's origin and its point
-    /// closest to the axis. Grazing rays are lost, and so is the inner wall.
+    /// Returns the distance of a ray's hit by bisection to 1e-4 world units, between the ray's origin and its point
+    /// closest to the axis. Grazing rays and the inner wall are lost.
     pub fn first_hit(&self, ray: &Ray, range: &RayRange) -> f64 {
         let outside = |at: DVec3| {
             let radius = self.line.radius.at(at.y);
@@ -44,7 +44,7 @@ impl ClassicRevolution {
     }
 }
 
-/// The surface that the course notes mean, not the one that their program finds.
+/// The surface that the course notes define, which differs from the hits of their program.
 impl Equation for ClassicRevolution {
     fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
         x.powi(2) + z.powi(2) - self.line.radius.squared().at(y)

@@ -1,11 +1,11 @@
-//! The state of rays that are intersected with a surface, slab by slab: any number of lanes, including one.
+//! The state of rays during the search of a surface, slab by slab, in any number of lanes, including one.
 
 use super::quadratic::Quadratic;
 use super::slab::Slab;
 use crate::geometry::aabb::{larger, smaller};
 use crate::geometry::ray::{MISS, Ray, Side};
 
-/// Rays, each parametrized from a base: a point of the ray near the surface. Lengths are in world units.
+/// Rays, each with a base: a point of the ray near the surface, where its parameter is 0. Lengths are in world units.
 pub(super) struct Lanes<const N: usize> {
     /// The height of the base, the direction's component along the axis, and its reciprocal.
     pub y: [f64; N],
@@ -19,18 +19,18 @@ pub(super) struct Lanes<const N: usize> {
     /// The part of the ray in the surface's bounding cylinder.
     pub from: [f64; N],
     pub to: [f64; N],
-    /// The distance of the base from the ray's origin, and a bound of the base's rounding error. Before the base is set,
-    /// a bound of the distance of the rays that the ray stands for.
+    /// The distance of the base from the ray's origin, and a bound of the base's rounding error. Before the base is
+    /// set, `off` bounds the distance of the rays that the ray stands for.
     pub base: [f64; N],
     pub off: [f64; N],
-    /// Bounds of the rounding errors of the quadratic, and of the places where the ray reaches the cylinder's ends.
+    /// Bounds of the rounding errors of the quadratic, and of the places of the cylinder's ends.
     pub rounding: [f64; N],
     pub end_error: [f64; N],
-    /// 1 where the ray is outside of the surface, -1 where it is inside.
+    /// 1 outside of the surface, and -1 inside.
     pub side: [f64; N],
-    /// 1 where the ray does not start on the surface, else 0.
+    /// 1 for a ray that does not start on the surface, and else 0.
     pub is_free: [f64; N],
-    /// The bracket so far, from the base; in the end, from the ray's origin.
+    /// The bracket so far, counted from the base, and finally from the ray's origin.
     pub near: [f64; N],
     pub far: [f64; N],
 }
@@ -60,8 +60,7 @@ impl<const N: usize> Lanes<N> {
         }
     }
 
-    /// Prepares `count` lanes for rays that leave the surface to these sides, or start elsewhere, and stand for
-    /// themselves.
+    /// Prepares `count` lanes for exact rays. They leave the surface to these sides, or start elsewhere.
     pub fn prepare(&mut self, count: usize, sides: Option<&[Side]>) {
         self.off[..count].fill(0.0);
         match sides {
@@ -82,8 +81,8 @@ impl<const N: usize> Lanes<N> {
         self.far[..count].fill(MISS);
     }
 
-    /// Sets a lane to a ray whose origin is the base, at a distance of `base` along the ray with a rounding error of
-    /// `off`; the ray is searched between two places.
+    /// Sets a lane to a ray with the base as its origin. The base is at a distance of `base` along the original ray,
+    /// with a rounding error of `off`. The search is limited to the part between two places.
     #[inline(always)]
     pub fn set(
         &mut self,
@@ -98,9 +97,9 @@ impl<const N: usize> Lanes<N> {
         (self.a[lane], self.b[lane], self.c[lane], self.middle[lane]) = (a, b, c, -b * (1.0 / a));
         (self.base[lane], self.off[lane]) = (base, off);
         (self.from[lane], self.to[lane]) = (from, to);
-        // The coefficients and the value go through about ten roundings of half an EPSILON of terms that add up to at
-        // most `2 (c + a s^2)`, which makes 10 EPSILON of that sum. A base that is off by `off` changes the squared
-        // distance by `2 widest off` on the surface.
+        // The coefficients and the value have about ten roundings of half an EPSILON of terms that add up to at most `2
+        // (c + a s^2)`: 10 EPSILON of that sum. An error `off` of the base changes the squared distance on the surface
+        // by `2 widest off`.
         let farthest = larger(from.abs(), to.abs());
         self.rounding[lane] =
             16.0 * f64::EPSILON * (c + a * farthest * farthest + widest * widest) + 4.0 * widest * off;
@@ -115,7 +114,7 @@ impl<const N: usize> Lanes<N> {
     }
 
     /// Converts a bracket to distances from the ray's origin, widened by the rounding errors of the base and of the
-    /// sums. The hits in `tests/slow/truth.rs` hold this margin.
+    /// sums. The hits in `tests/slow/truth.rs` test this margin.
     #[inline(always)]
     pub fn counted_from_origin(&self, lane: usize, (near, far): (f64, f64)) -> (f64, f64) {
         let base = self.base[lane];
@@ -129,8 +128,8 @@ impl<const N: usize> Lanes<N> {
         Quadratic { a: self.a[lane], b: self.b[lane], c: self.c[lane] }
     }
 
-    /// Returns whether a ray may hit a slab's surface before its hit so far, on its part from `from` to `to`. The
-    /// square is taken to be larger by `margin` times the rounding error.
+    /// Returns whether a ray, from `from` to `to`, may hit a slab's surface before its hit so far. The square is
+    /// increased by `margin` times the rounding error.
     #[inline(always)]
     pub fn may_meet(&self, lane: usize, slab: &Slab, (from, to): (f64, f64), margin: f64) -> bool {
         let closest = smaller(larger(self.middle[lane], from), to);
@@ -138,8 +137,8 @@ impl<const N: usize> Lanes<N> {
         (from < to) & (self.near[lane] > from) & (is_near | (self.side[lane] < 0.0))
     }
 
-    /// Returns a slab's surface along a ray's part from `from` to `to`. The surface has this height and largest radius,
-    /// and the ray's origin may be off by `origin_error`, all in world units.
+    /// Returns a slab's surface along a ray, from `from` to `to`. The surface has this height and maximum radius, and
+    /// the ray's origin may be off by `origin_error`, all in world units.
     #[inline(always)]
     pub fn shell(
         &self,
@@ -153,8 +152,8 @@ impl<const N: usize> Lanes<N> {
         let v = self.y[lane] - slab.middle;
         let farthest = larger(larger((v + from * dy).abs(), (v + to * dy).abs()), v.abs());
         let slope = slab.c1.abs() + 2.0 * slab.c2.abs() * farthest;
-        // A height that is off by `off` changes the parabola by `slope off`. The parabola's value goes through about
-        // ten roundings of half an EPSILON of its terms, in which `v` is off by half an EPSILON of the height.
+        // An error `off` of the height changes the parabola by `slope off`. The parabola's value has about ten
+        // roundings of half an EPSILON of its terms, and the error of `v` is half an EPSILON of the height.
         let rounding = self.rounding[lane]
             + 4.0 * self.off[lane] * slope
             + 16.0
@@ -167,12 +166,12 @@ impl<const N: usize> Lanes<N> {
             b: b - (0.5 * slab.c1 + slab.c2 * v) * dy,
             c: c - slab.parabola(v),
         };
-        // The side is seen where the ray enters the cylinder.
+        // The side is determined where the ray enters the cylinder.
         let at_start = outside.at(from);
         let is_start = (from == self.from[lane]) & (self.is_free[lane] != 0.0);
         let side = if is_start { 1.0_f64.copysign(at_start) } else { self.side[lane] };
-        // In the shell, the ray may be on either side; and as rising and falling rays go through slabs in the same
-        // order, some reach a slab before their side is known.
+        // In the shell, the ray may be on either side. Rising and falling rays visit slabs in the same order, and so
+        // some reach a slab before their side is known.
         let start_error = error + 4.0 * origin_error * (widest + slope);
         let is_side_unknown = (is_start & (at_start.abs() <= start_error)) | (side * at_start < -error);
         let slope_error = slab.slope_error * dy.abs();
@@ -180,27 +179,27 @@ impl<const N: usize> Lanes<N> {
     }
 }
 
-/// A slab's surface along a ray: between two quadrics, the parabola's with its error added and subtracted.
+/// A slab's surface along a ray: a shell between the parabola's quadric with its error added and subtracted.
 #[derive(Clone, Copy)]
 pub(super) struct Shell {
-    /// The distance from the parabola's quadric on the ray's side, in squared world units: the ray crosses the surface
-    /// where this falls through 0, to within `error`. `slope_error` bounds the difference of the slopes, apart from
+    /// The distance from the parabola's quadric on the ray's side, in squared world units. The ray crosses the surface
+    /// where this falls through 0, up to `error`. `slope_error` bounds the difference of the slopes, except for
     /// `rounding`.
     ahead: Quadratic,
     error: f64,
     slope_error: f64,
     rounding: f64,
-    /// The ray's part in the slab.
+    /// The part of the ray in the slab.
     from: f64,
     to: f64,
-    /// The side that the ray is on at first (1 outside, -1 inside), and whether it may be the other one.
+    /// The first side of the ray (1 outside, -1 inside), and whether it may be the other one.
     pub side: f64,
     pub is_side_unknown: bool,
 }
 
 /// The hit of a ray in a slab.
 pub(super) struct Crossing {
-    /// Whether the ray enters the shell, and where.
+    /// Whether the ray enters the shell, at `near`.
     pub is_met: bool,
     pub near: f64,
     /// Whether the ray then certainly crosses the surface exactly once before it leaves the shell at `far`.
@@ -214,7 +213,7 @@ impl Shell {
     pub fn crossing(&self) -> Crossing {
         let Self { ahead, error, slope_error, rounding, from, to, is_side_unknown, .. } = *self;
         let Quadratic { a, b, .. } = ahead;
-        // At a crossing to the other side, `ahead` falls: begin where it can.
+        // At a crossing to the other side, `ahead` falls. The search starts where it can.
         let rises = 2.0 * (a * from + b) - slope_error - rounding;
         let begin = if rises > 0.0 { from - rises / (2.0 * a) } else { from };
         let never_falls = (rises > 0.0) & ((a >= 0.0) | (begin >= to));
@@ -236,7 +235,7 @@ impl Shell {
         Crossing { is_met, near, is_certain, far: origin_side }
     }
 
-    /// Returns where a ray that enters the shell at `near` leaves it again, and whether it is on the other side then.
+    /// Returns where a ray that enters the shell at `near` leaves it, and whether it is then on the other side.
     pub fn end(&self, near: f64) -> (f64, bool) {
         if self.is_side_unknown {
             return (self.to, false);

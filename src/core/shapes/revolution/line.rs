@@ -10,7 +10,7 @@ use tabray_exact::roots::taylor::FunctionOnLine;
 use tabray_exact::roots::twice;
 use tabray_exact::scalar::{Scalar, per_axis};
 
-/// The left side of the surface's equation along a ray, in any number type: above 0 outside, below 0 inside.
+/// The left side of the surface's equation along a ray: positive outside, negative inside.
 pub(super) struct ProfileOnRay<'s> {
     pub surface: &'s Revolution,
     pub local: &'s Local,
@@ -26,7 +26,7 @@ impl FunctionOnLine for ProfileOnRay<'_> {
         !self.local.ray.is_single()
     }
 
-    /// The second derivative of the squared distance from the axis is constant; the first one is not needed.
+    /// Returns bounds of the second derivative only. That of the squared distance from the axis is constant.
     fn slopes(&self, piece: Interval) -> Option<[Interval; 2]> {
         let dir = self.local.dir.to_array().map(|part| Interval::about(part, self.local.turn));
         let height = self.local.place(1, piece);
@@ -35,11 +35,12 @@ impl FunctionOnLine for ProfileOnRay<'_> {
         Some([Interval::whole(), second])
     }
 
-    /// Decides a piece in double-double arithmetic from the ray in the world and the axis as the scene gives it, which
-    /// tells nearly all touches from misses.
+    /// Decides a piece in double-double arithmetic from the ray in world space and the axis of the scene, which
+    /// distinguishes nearly all touches from misses.
     fn undecided(&self, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
         let Self { surface, local } = *self;
-        // The rounding error along this ray alone, however far apart the rays are that it may have been rounded from.
+        // This is the rounding error along this ray alone, however far apart the rays are that may have been rounded to
+        // it.
         let hidden = |along: f64| {
             let along = Interval::<f64>::constant(along);
             let place = per_axis(|axis| local.own_place(axis, along));
@@ -51,8 +52,8 @@ impl FunctionOnLine for ProfileOnRay<'_> {
     }
 }
 
-/// The surface along a ray like [`ProfileOnRay`], but with a negative profile taken for 0: other methods know nothing
-/// of slabs, and have no parts to leave out.
+/// The surface along a ray like [`ProfileOnRay`], but with 0 in place of a negative profile. Other methods do not use
+/// slabs, and cannot skip parts.
 pub(super) struct Uncut<'s> {
     pub surface: &'s Revolution,
     pub local: &'s Local,

@@ -1,5 +1,4 @@
-//! A ray clipped to a surface's bounding cylinder and relative to a base near it, so that no large numbers are left in
-//! the arithmetic.
+//! A ray clipped to a surface's bounding cylinder and relative to a nearby base, which keeps the numbers small.
 
 use super::quadratic::Quadratic;
 use crate::geometry::frame::{self, BLUR, Frame};
@@ -18,7 +17,7 @@ pub struct Local {
     pub dir: DVec3,
     /// A bound of the rounding error of each coordinate of the base, for all rays that the ray stands for.
     pub blur: f64,
-    /// A bound of that of each component of the direction.
+    /// A bound of the rounding error of each component of the direction.
     pub turn: f64,
     /// The distances from the base at which the part begins and ends.
     pub from: f64,
@@ -29,19 +28,19 @@ pub struct Local {
     pub base: f64,
     /// The distance from the ray's origin at which the search ends.
     pub far: f64,
-    /// The ray in the world, and the surface's frame.
+    /// The ray in world space, and the surface's frame.
     pub ray: RayBall,
     pub frame: Frame,
 }
 
 impl Local {
-    /// Clips a ray of the world to heights from 0 to `height` and to the radius `widest` around a frame's y axis.
+    /// Clips a ray in world space to heights from 0 to `height` and to the radius `widest` around a frame's y axis.
     #[inline(always)]
     pub fn new(frame: &Frame, ray: &RayBall, range: &RayRange, height: f64, widest: f64) -> Option<Self> {
         let Ray { origin, dir } = frame.ray(ray);
         let a = dir.x * dir.x + dir.z * dir.z;
-        // Far from the ray's origin, ulps are larger than the details of the surface: these ends only place the base,
-        // and all others are relative to it. The end of the range has no part in it, so that a hit is the same in every
+        // Far from the ray's origin, ulps are larger than the details of the surface. These ends thus only place the
+        // base, and all others are relative to it. The end of the range is not used, so that a hit is the same in each
         // range that contains it.
         let (mut near, mut far) = (range.near, f64::INFINITY);
         if dir.y != 0.0 {
@@ -50,19 +49,19 @@ impl Local {
             far = far.min(bottom.max(top));
         }
         let closest = -(origin.x * dir.x + origin.z * dir.z) / a;
-        // For a ray within 1e-15 of the direction of the axis, rounding decides which point is closest.
+        // For a ray within 1e-15 of the axis direction, rounding determines the closest point.
         let base = if a > 1e-30 { closest.min(far).max(near) } else { near };
         if !base.is_finite() {
             return None;
         }
-        // Offset in the world before it is rotated: the rotated vector is as small as the surface.
+        // The offset is computed before the rotation, and so the rotated vector is as small as the surface.
         let moved = frame.direction(frame.from_origin(ray, base));
         let blur = frame::blur(moved, base) + ray.drift.origin + ray.drift.dir * base.abs();
         let turn = BLUR + ray.drift.dir;
         let mut stretch = Stretch::from(range.near - base..f64::INFINITY);
         stretch.cut((moved.y, dir.y), [0.0, height], [blur, turn], 2.0 * (height + widest));
         let (mut from, mut to) = (stretch.outer.start, stretch.outer.end);
-        // Wider than needed, so that rounding does not cut anything off.
+        // The cylinder is widened so that rounding cuts nothing off.
         let widest = widest + 2.0 * (blur + turn * (height + widest));
         let widest = widest * widest * (1.0 + 1e-9);
         let inside = Quadratic::around(moved, dir).lowered(widest);
@@ -89,26 +88,26 @@ impl Local {
         self.origin.y + along * self.dir.y
     }
 
-    /// Returns a coordinate of the place along the ray. An interval encloses the coordinate for every ray that this one
-    /// may have been rounded from.
+    /// Returns a coordinate of the place along the ray. An interval encloses the coordinate for all rays that may have
+    /// been rounded to this one.
     #[inline(always)]
     pub fn place<N: Scalar>(&self, axis: usize, along: N) -> N {
         N::about(self.origin[axis], self.blur) + along * N::about(self.dir[axis], self.turn)
     }
 
-    /// Returns the coordinate of a place along only this ray.
+    /// Returns a coordinate of the place along this ray alone.
     #[inline(always)]
     pub fn own_place<N: Scalar>(&self, axis: usize, along: N) -> N {
         N::constant(self.origin[axis]) + along * N::constant(self.dir[axis])
     }
 
-    /// Returns a bound of the rounding error of each coordinate of any point of this part of the ray.
+    /// Returns a bound of the rounding error of each coordinate of any point on this part of the ray.
     #[inline(always)]
     pub fn moved(&self) -> f64 {
         self.blur + self.turn * self.from.abs().max(self.to.abs())
     }
 
-    /// Returns the tolerance of full precision along this part of the ray: 2 EPSILON of its largest distance from the
+    /// Returns the tolerance of full precision along this part of the ray: 2 EPSILON of its maximum distance from the
     /// base.
     #[inline(always)]
     pub fn tolerance(&self) -> f64 {

@@ -8,21 +8,21 @@ pub enum NoSurface {
         /// A height near which the profile is unbounded, in world units.
         near: f64,
     },
-    /// The profile is nowhere above 0.
+    /// The profile is positive nowhere.
     Nowhere,
-    /// The parts where the profile is negative cannot be separated within the budget of operations.
+    /// The ranges with a negative profile cannot be separated within the budget of operations.
     Signs {
         /// The height above which they are not separated, in world units.
         from: f64,
     },
-    /// The profile bends more often than can be bounded within the budget of operations.
+    /// The bends of the profile cannot be bounded within the budget of operations.
     Bends {
-        /// The height above which it is not bounded, in world units.
+        /// The height above which they are not bounded, in world units.
         from: f64,
     },
-    /// Rounding hides where the profile is negative.
+    /// Rounding hides the sign of the profile.
     Rounding {
-        /// A height near which rounding hides it, in world units.
+        /// A height near which rounding hides the sign, in world units.
         near: f64,
         /// A bound of the profile there, in world units.
         hidden: f64,
@@ -30,7 +30,7 @@ pub enum NoSurface {
 }
 
 impl NoSurface {
-    /// Returns the error of the profile and its correction, for messages: "has a profile ...".
+    /// Returns the error of the profile and its correction, for messages such as "has a profile ...".
     pub fn message(self) -> (String, &'static str) {
         match self {
             Self::Unbounded { near } => (

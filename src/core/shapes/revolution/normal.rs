@@ -1,4 +1,4 @@
-//! The normals of a surface of revolution.
+//! Normals of a surface of revolution.
 
 use super::surface::Revolution;
 use crate::geometry::frame::Frame;
@@ -11,7 +11,7 @@ use tabray_exact::dual::Dual;
 use tabray_exact::interval::Interval;
 
 impl Revolution {
-    /// Returns the unit normal at a point of the surface, away from the axis; at an apex, along the axis.
+    /// Returns the unit normal at a point of the surface, away from the axis. At an apex, it is along the axis.
     pub fn normal(&self, at: DVec3) -> DVec3 {
         if let Some(up_or_down) = self.ledge(at.y) {
             return up_or_down;
@@ -20,39 +20,38 @@ impl Revolution {
         if slope.is_finite() {
             return normal_at_slope(at, slope);
         }
-        // The profile ends there, as a sphere's does at its poles, with an infinite slope; the slope of its square is
-        // finite.
+        // The profile ends with an infinite slope, like a sphere's at its poles, but the slope of its square is finite.
         let twice = self.square.at(Dual::variable(at.y)).slope;
         let DVec3 { x, z, .. } = outward(at);
         DVec3::new(x * value, -0.5 * twice, z * value).try_normalize().unwrap_or(DVec3::Y)
     }
 
-    /// Returns the unit normal in the world at a point of the world.
+    /// Returns the unit normal at a point, both in world space.
     #[inline(always)]
     pub(super) fn normal_in(&self, frame: &Frame, at: DVec3) -> DVec3 {
         (frame.axes * self.normal(frame.point(at))).normalize()
     }
 
-    /// Returns the normal of the ledge at a height where the profile jumps, upward where it is narrower above; `None`
-    /// where it does not jump.
+    /// Returns the normal of the ledge at a height where the profile jumps, pointing to the narrower side, or `None` if
+    /// there is no jump.
     fn ledge(&self, y: f64) -> Option<DVec3> {
-        // Slopes without a bound are in few slabs, if in any.
+        // Only few slabs, if any, have unbounded slopes.
         if self.slabs.get(self.slabs.index(y)).slope_error.is_finite() {
             return None;
         }
         let near = 1e-9 * self.height;
         let slope = self.profile.at(Dual::variable(Interval { low: y - near, high: y + near })).slope;
         let (below, above) = (self.profile.at(y - near), self.profile.at(y + near));
-        // A ledge is far wider than what a slope makes of so small a step.
+        // A ledge is far wider than such a small step allows for a slope.
         let is_ledge = !slope.is_bounded() && (above - below).abs() > 1e3 * near;
         is_ledge.then_some(if above < below { DVec3::Y } else { -DVec3::Y })
     }
 }
 
-/// Returns the unit vector from the axis to a point; 0 on the axis.
+/// Returns the unit vector from the axis to a point, or 0 on the axis.
 #[inline(always)]
 fn outward(at: DVec3) -> DVec3 {
-    // Scaled where squares would underflow.
+    // The scale keeps squares from underflow.
     let is_tiny = (at.x.abs() < 1e-100) & (at.z.abs() < 1e-100);
     let scale = if is_tiny { 1e200 } else { 1.0 };
     let (x, z) = (scale * at.x, scale * at.z);
@@ -70,7 +69,7 @@ fn normal_at_slope(at: DVec3, slope: f64) -> DVec3 {
 }
 
 kernels! {
-    /// Computes where rays hit a surface at these distances; both sides of the surface are lit.
+    /// Computes the hits of rays with a surface at these distances. Both sides of the surface are lit.
     pub(super) fn interact(
         surface: &Revolution,
         frame: &Frame,

@@ -1,4 +1,4 @@
-//! The slabs of a profile: in each, its square is a parabola to within a proven error.
+//! The slabs of a profile. In each, its square is a parabola up to a proven error.
 
 use super::budget::Budget;
 use super::no_surface::NoSurface;
@@ -10,16 +10,17 @@ use std::collections::BinaryHeap;
 use std::ops::Range;
 use tabray_exact::formula::Formula;
 
-/// The error that slabs are cut for, in square world units. Between 1/100 and 1/10000 it makes no difference to the
-/// time per ray; a smaller error costs memory and time.
+/// The target error of slabs, in square world units. Between 1/100 and 1/10000, it does not affect the time per ray. A
+/// smaller error costs memory and time.
 const ERROR: f64 = 1e-3;
 
-/// The largest number of halvings of a range for that error. Where the profile is not smooth, as at a kink, the error
+/// The maximum number of halvings of a range for that target. Where the profile is not smooth, as at a kink, the error
 /// stays larger.
 const HALVINGS: u32 = 12;
 
-/// Bounds of the error, however many halvings they take: as a fraction of the slab's largest square, so that thin parts
-/// get slabs of their own; and as a fraction of the surface's largest square, below which the error does not matter.
+/// Upper bounds of the error, regardless of the number of halvings: as a fraction of the slab's largest square, which
+/// gives thin parts their own slabs, and as a fraction of the surface's largest square, below which the error does not
+/// matter.
 const COARSE: f64 = 1.0 / 16.0;
 const COARSEST: f64 = 1.0 / 1_048_576.0;
 
@@ -30,7 +31,7 @@ const HIDDEN: f64 = 1.0 / 4_294_967_296.0;
 pub struct Slabs {
     slabs: Vec<Slab>,
     runs: Runs,
-    /// The index of the slab at the bottom of each of equal parts of the height.
+    /// The index of the lowest slab in each of equal parts of the height.
     table: Vec<u32>,
     parts_per_unit: f64,
     widest: f64,
@@ -40,7 +41,7 @@ pub struct Slabs {
 }
 
 impl Slabs {
-    /// Cuts a profile, whose square is also given, into slabs for heights from 0 to `height`.
+    /// Cuts a profile into slabs for heights from 0 to `height`. `square` is the square of the profile.
     pub fn new(profile: &Formula, square: &Formula, height: f64) -> Result<Self, NoSurface> {
         let mut budget = Budget::new();
         let ranges = Ranges::new(profile, height, &mut budget)?;
@@ -73,31 +74,31 @@ impl Slabs {
         })
     }
 
-    /// Returns the surface's largest distance from the axis, in world units.
+    /// Returns the surface's maximum distance from the axis, in world units.
     #[inline(always)]
     pub fn widest(&self) -> f64 {
         self.widest
     }
 
-    /// Returns the square of a distance from the axis at which every ray is outside of the parabolas and their errors.
+    /// Returns the square of a distance from the axis beyond which a ray is outside of all parabolas and their errors.
     #[inline(always)]
     pub fn reach(&self) -> f64 {
         self.reach
     }
 
-    /// Returns the largest error of a slab, in square world units.
+    /// Returns the maximum error of a slab, in square world units.
     #[inline(always)]
     pub fn coarsest(&self) -> f64 {
         self.coarsest
     }
 
-    /// Returns whether the profile's slope is bounded everywhere, so that the profile does not jump.
+    /// Returns whether the profile's slope is bounded everywhere, and so the profile does not jump.
     #[inline(always)]
     pub fn is_smooth(&self) -> bool {
         self.is_smooth
     }
 
-    /// Returns whether every slab has the error that slabs are cut for, so that few rays take a search.
+    /// Returns whether each slab reaches the target error, and so few rays need a search.
     pub fn is_tight(&self) -> bool {
         self.is_smooth && self.coarsest <= ERROR
     }
@@ -114,7 +115,7 @@ impl Slabs {
         self.slabs.len()
     }
 
-    /// Returns a range of heights that consists of these slabs, extended to infinity at the surface's ends, so that
+    /// Returns a range of heights that consists of these slabs. It extends to infinity at the surface's ends, so that
     /// rounding cuts nothing off.
     #[inline(always)]
     pub fn extended(&self, slab: &Slab, slabs: Range<usize>) -> Slab {
@@ -125,8 +126,8 @@ impl Slabs {
         }
     }
 
-    /// Returns the number of slabs, from one on, upward or downward, that lie in a range and that no ray may meet
-    /// according to `may_meet`; 0 if that is not known of more than one.
+    /// Returns the number of slabs that can be skipped, from `index` upward or downward: they lie in a range, and no
+    /// ray hits them according to `may_meet`. Returns 0 if no run of slabs can be skipped.
     #[inline(always)]
     pub fn skipped(
         &self,
@@ -145,7 +146,7 @@ impl Slabs {
     /// Returns the index of the slab at a height.
     #[inline(always)]
     pub fn index(&self, y: f64) -> usize {
-        // The cast takes numbers below 0 and NaN to 0.
+        // The cast converts negative numbers and NaN to 0.
         let part = (y * self.parts_per_unit) as usize;
         let mut index = self.table[part.min(self.table.len() - 1)] as usize;
         while index + 1 < self.slabs.len() && y > self.slabs[index].to {
@@ -158,7 +159,7 @@ impl Slabs {
     }
 }
 
-/// A slab and the number of halvings of its range; compared by the slabs' errors.
+/// A slab and the number of halvings of its range, ordered by the slab's error.
 struct HalvedSlab {
     slab: Slab,
     halvings: u32,
@@ -184,8 +185,8 @@ impl Ord for HalvedSlab {
     }
 }
 
-/// Cuts the ranges of heights where the profile is not negative into slabs: first until every thin part has slabs of
-/// its own, then where the error is largest.
+/// Cuts the ranges of heights where the profile is not negative into slabs: first until thin parts have their own
+/// slabs, then where the error is largest.
 fn cut(
     square: &Formula,
     height: f64,
@@ -205,7 +206,7 @@ fn cut(
         let Slab { middle, error, max_square, .. } = slab;
         let is_finite = error.is_finite() && max_square.is_finite();
         let is_stuck = middle <= from || middle >= to;
-        // Where the slope has no bound, as at a jump, halving does not reduce the error.
+        // Where the slope is unbounded, as at a jump, halving does not reduce the error.
         let is_steep = !slab.slope_error.is_finite() && halvings >= HALVINGS;
         let enough = ERROR.max(COARSE * max_square).max(COARSEST * widest);
         if is_stuck && !is_finite {
@@ -223,7 +224,7 @@ fn cut(
             Slab::fit(square, slab.from, slab.middle, budget),
             Slab::fit(square, slab.middle, slab.to, budget),
         );
-        // A slab that is left as it is costs time for the rays that reach it, and nothing else.
+        // An unrefined slab only costs time for the rays that reach it.
         let (Some(one), Some(other)) = (one, other) else {
             slabs.push(slab);
             break;

@@ -28,7 +28,7 @@ impl Quadratic {
         (self.a * s + 2.0 * self.b) * s + self.c
     }
 
-    /// Returns the polynomial less a constant.
+    /// Returns the polynomial minus a constant.
     #[inline(always)]
     pub fn lowered(&self, by: f64) -> Self {
         Self { c: self.c - by, ..*self }
@@ -40,8 +40,8 @@ impl Quadratic {
         Self { a: by * self.a, b: by * self.b, c: by * self.c }
     }
 
-    /// Returns the places between which the polynomial is below 0, and its discriminant, which is negative if there are
-    /// none. `a` must be positive, and its reciprocal is given.
+    /// Returns the places between which the polynomial is negative, and its discriminant, which is negative if there
+    /// are none. `a` must be positive, and `inverse_a` is its reciprocal.
     #[inline(always)]
     pub fn between(&self, inverse_a: f64) -> (f64, f64, f64) {
         let discriminant = self.b * self.b - self.a * self.c;
@@ -50,20 +50,21 @@ impl Quadratic {
     }
 
     /// Returns the first place between `from` and `to` where the polynomial is not positive, computed without
-    /// cancellation, and whether there is one; it must be positive at `from`.
+    /// cancellation, and whether there is one. The polynomial must be positive at `from`.
     #[inline(always)]
     pub fn first_not_positive(&self, from: f64, to: f64) -> (f64, bool) {
         let Self { a, b, c } = *self;
         let discriminant = b * b - a * c;
         let root = if discriminant > 0.0 { discriminant } else { 0.0 }.sqrt();
         let s = if b > 0.0 { -(b + root) } else { c } / if b > 0.0 { a } else { root - b };
-        // A polynomial that opens downward or is linear stays below 0 once it is there.
+        // A polynomial that opens downward or is linear stays negative from there on.
         let is_there =
             if a > 0.0 { (discriminant >= 0.0) & (s >= from) & (s <= to) } else { self.at(to) <= 0.0 };
         (smaller(larger(s, from), to), is_there)
     }
 
-    /// Returns where the polynomial is positive again after a place where it is not, `to` at the latest.
+    /// Returns the next place where the polynomial is positive, after a place where it is not, or `to` if that comes
+    /// first.
     pub fn next_positive(&self, from: f64, to: f64) -> f64 {
         let Self { a, b, c } = *self;
         if a <= 0.0 {
@@ -71,7 +72,7 @@ impl Quadratic {
         }
         let root = (b * b - a * c).max(0.0).sqrt();
         let s = if b < 0.0 { (root - b) / a } else { c / (-b - root) };
-        // Written so that a NaN gives `to`.
+        // The comparison is false for NaN, which gives `to`.
         if s < to { s.max(from) } else { to }
     }
 }

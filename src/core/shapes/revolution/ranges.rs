@@ -1,8 +1,8 @@
 //! The ranges of heights where a profile is negative and where it is not, proven by bounds of its value and slope.
 //!
-//! A range is halved until bounds show that the profile has one sign there, or that it is monotone, so that it changes
-//! its sign at most once: between two neighbouring numbers. Where rounding hides the sign however short the piece is,
-//! the computed sign stands, and a bound of the profile there is kept, which has to be negligible.
+//! A range is halved until bounds show that the profile has one sign there, or is monotonic and thus changes its sign
+//! at most once, between two neighbouring numbers. Where rounding hides the sign on any shorter piece, too, the
+//! computed sign counts. A bound of the profile there is kept, and must be negligible.
 
 use super::budget::Budget;
 use super::no_surface::NoSurface;
@@ -16,10 +16,10 @@ use tabray_exact::scalar::Scalar;
 pub(super) struct Ranges {
     /// The ends of each range in world units, and whether the profile is negative there.
     pub list: Vec<(f64, f64, bool)>,
-    /// A bound of the profile where it is wrongly taken for negative, and of its absolute value where it is wrongly
-    /// taken for not negative, in world units.
+    /// A bound, in world units, of the profile where it counts as negative by mistake, and of its absolute value where
+    /// it counts as not negative by mistake.
     pub hidden: f64,
-    /// The height of the largest of those, in world units.
+    /// The height with the largest such value, in world units.
     pub hidden_at: f64,
 }
 
@@ -29,7 +29,8 @@ impl Ranges {
         let mut ranges = Self { list: Vec::new(), hidden: 0.0, hidden_at: 0.0 };
         let mut waiting = vec![(0.0, height)];
         while let Some((low, high)) = waiting.pop() {
-            // Bounds of the value and the slope, and of the value again: about 16 times the cost of the plain value.
+            // Bounds of the value and the slope, and of the value again, take about 16 times as long as the plain
+            // value.
             if !budget.charge(profile, 16) {
                 return Err(NoSurface::Signs { from: low });
             }
@@ -52,11 +53,11 @@ impl Ranges {
             } else if slope.is_bounded() && !slope.has_zero() {
                 ranges.push_monotone(profile, low, high);
             } else if middle <= low || middle >= high {
-                // The ends are neighbouring numbers: the void, if there is one, ends there.
+                // The ends are neighbouring numbers, and the void ends there, if there is one.
                 let is_void = ranges.is_void(profile, low) | ranges.is_void(profile, high);
                 ranges.push(low, high, is_void);
             } else if thin.has_zero() && value.magnitude() <= 4.0 * thin.magnitude() {
-                // The bounds are little more than rounding error: shorter pieces would not help.
+                // The bounds are little more than rounding error, and shorter pieces would not help.
                 let is_void = profile.at(middle) < 0.0;
                 ranges.keep_hidden(value, is_void, middle);
                 ranges.push(low, high, is_void);
@@ -75,7 +76,7 @@ impl Ranges {
         }
     }
 
-    /// Adds a piece on which the profile is monotone.
+    /// Adds a piece on which the profile is monotonic.
     fn push_monotone(&mut self, profile: &Formula, from: f64, to: f64) {
         let (at_from, at_to) = (self.is_void(profile, from), self.is_void(profile, to));
         if at_from == at_to {
@@ -90,17 +91,17 @@ impl Ranges {
         self.push(change, to, at_to);
     }
 
-    /// Returns whether the profile is negative at a height, as computed; keeps how far it may be beyond 0.
+    /// Returns whether the profile is negative at a height, as computed, and keeps a bound of a mistake.
     fn is_void(&mut self, profile: &Formula, y: f64) -> bool {
         let is_void = profile.at(y) < 0.0;
         self.keep_hidden(profile.at(Interval::constant(y)), is_void, y);
         is_void
     }
 
-    /// Keeps how far the profile may be beyond 0 on the side that it is not taken for.
+    /// Keeps a bound of the profile on the other side of 0 than it counts.
     fn keep_hidden(&mut self, bounds: Interval, is_void: bool, y: f64) {
         let beyond = if is_void { bounds.high } else { -bounds.low };
-        // Without a bound there is no surface, which is found out when it is cut into slabs.
+        // An unbounded profile makes no surface, which is found when it is cut into slabs.
         if beyond > self.hidden && beyond.is_finite() {
             (self.hidden, self.hidden_at) = (beyond, y);
         }

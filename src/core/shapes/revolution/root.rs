@@ -1,4 +1,4 @@
-//! The first hits of rays, each in its bracket: Newton's method for one ray or for eight at a time.
+//! The first hits of rays in their brackets: Newton's method for one ray or for eight at once.
 
 use super::surface::{Refinement, Revolution};
 use crate::geometry::frame::Frame;
@@ -19,9 +19,9 @@ struct BracketedRays<'s, N> {
     dir: [N; 3],
 }
 
-// The square is an argument, as closures are not reliably inlined into kernels.
+// The square is an argument, because closures are not reliably inlined into kernels.
 impl<N: Scalar> BracketedRays<'_, N> {
-    /// Returns the heights at these places, clamped to the surface's: beyond its ends the profile may be anything.
+    /// Returns the heights at these places, clamped to the surface's. Beyond the ends, the profile may have any value.
     #[inline(always)]
     fn heights(&self, along: N) -> N {
         let height = self.from[1] + along * self.dir[1];
@@ -58,7 +58,7 @@ impl Functions<LANES> for BracketedRays<'_, F64x8> {
 }
 
 impl Revolution {
-    /// Computes the distances of hits between two distances each; the distances of other rays stay unchanged.
+    /// Computes the distances of hits, each between two distances. The distances of other rays stay unchanged.
     pub(super) fn roots(
         &self,
         cpu: Cpu,
@@ -81,14 +81,13 @@ impl Revolution {
         if self.finish == Refinement::Bracket {
             return 0.5 * (near + far);
         }
-        // Offset in the world before it is rotated: the rotated vector is as small as the surface.
+        // The offset is computed before the rotation, and so the rotated vector is as small as the surface.
         let from = frame.direction(frame.from_origin(ray, near)).to_array();
         let bracketed = BracketedRays { surface: self, from, dir: frame.direction(ray.dir).to_array() };
         near + newton::roots(&bracketed, self.start([far - near]))[0]
     }
 
-    /// Returns the start of Newton's method in brackets of these widths. In a bracket, the function falls all the way,
-    /// or rises all the way.
+    /// Returns the start of Newton's method in brackets of these widths. In each bracket, the function is monotonic.
     #[inline(always)]
     fn start<const N: usize>(&self, width: [f64; N]) -> Start<N> {
         let tolerance = 2.0 * f64::EPSILON * self.slabs.widest();
@@ -108,7 +107,7 @@ kernels! {
         for first in (0..count).step_by(LANES) {
             let (origin, dir) = (eight_vectors(&rays.origin, first), eight_vectors(&rays.dir, first));
             let (near, far) = (eight(near, first), eight(far, first));
-            // Offset in the world before it is rotated: the rotated vector is as small as the surface.
+            // The offset is computed before the rotation, and so the rotated vector is as small as the surface.
             let from = frame.origin.to_array();
             let from = per_axis(|axis| {
                 each!(origin = origin[axis], near = near, dir = dir[axis] => offset(origin, near, dir, from[axis]))

@@ -1,11 +1,12 @@
-//! Runs of slabs, which a ray that passes outside of them skips at once.
+//! Runs of slabs. A ray that passes outside of a run skips all of its slabs at once.
 //!
-//! A profile with thousands of waves has tens of thousands of slabs, and each ray would be tested against all of them.
+//! A profile with thousands of waves has tens of thousands of slabs, and testing each ray against all of them would be
+//! slow.
 
 use super::slab::Slab;
 use std::ops::Range;
 
-/// The number of slabs in the runs of each level.
+/// The number of slabs in a run of each level.
 const LENGTHS: [usize; 3] = [16, 256, 4096];
 
 /// The runs of slabs, on levels of increasing lengths.
@@ -17,8 +18,8 @@ impl Runs {
         Self(LENGTHS.map(|length| slabs.chunks_exact(length).map(around).collect()))
     }
 
-    /// Returns the runs that begin with a slab upward, or end with it downward, and lie within a range: the slabs of
-    /// each, and their heights and largest square. The shortest comes first.
+    /// Returns the runs that start at a slab, upward or downward, and lie within a range, shortest first. Each has the
+    /// indices of its slabs, their heights and their maximum square.
     #[inline(always)]
     pub fn starting(
         &self,
@@ -38,7 +39,7 @@ impl Runs {
     }
 }
 
-/// Returns the heights and the largest square of a run of slabs.
+/// Returns the heights and the maximum square of a run of slabs.
 fn around(slabs: &[Slab]) -> Slab {
     let max_square = slabs.iter().map(|slab| slab.max_square).fold(0.0, f64::max);
     Slab { max_square, is_void: false, ..Slab::void(slabs[0].from, slabs[slabs.len() - 1].to) }

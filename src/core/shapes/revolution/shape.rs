@@ -114,7 +114,7 @@ impl Hittable for InFrame<Revolution> {
 impl Certified for InFrame<Revolution> {
     fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
         // Transforming the point into the frame rounds it once more. `every_plugin_keeps_its_contract` in
-        // `tests/shapes/contract.rs` tests that hits are touched.
+        // `tests/shapes/contract.rs` tests that hits are on the surface.
         let moved = 8.0 * f64::EPSILON * (at - self.frame.origin).abs().max_element();
         self.surface.is_on_surface(self.frame.point(at), error + moved)
     }

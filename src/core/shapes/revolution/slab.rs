@@ -1,4 +1,4 @@
-//! A slab: a range of heights in which a profile's square is a parabola to within a proven error.
+//! A slab: a range of heights in which a profile's square is a parabola up to a proven error.
 
 use super::budget::Budget;
 use tabray_exact::formula::Formula;
@@ -12,8 +12,8 @@ pub struct Slab {
     pub from: f64,
     pub to: f64,
     pub middle: f64,
-    /// In the slab, the square of the profile is `c0 + c1 v + c2 v^2` to within `error`, with `v` measured from the
-    /// middle; its slope is the parabola's to within `slope_error`.
+    /// In the slab, the square of the profile is `c0 + c1 v + c2 v^2` up to `error`, with `v` measured from the middle.
+    /// Its slope is the parabola's up to `slope_error`.
     pub c0: f64,
     pub c1: f64,
     pub c2: f64,
@@ -21,7 +21,7 @@ pub struct Slab {
     pub slope_error: f64,
     /// An upper bound of the square, in square world units.
     pub max_square: f64,
-    /// Whether the profile is negative, so that there is no surface.
+    /// Whether the profile is negative, and there is no surface.
     pub is_void: bool,
 }
 
@@ -49,7 +49,8 @@ impl Slab {
         }
     }
 
-    /// Fits the parabola through three Chebyshev nodes, and proves its error; `None` if the budget does not suffice.
+    /// Fits the parabola through three Chebyshev nodes, and proves its error. Returns `None` if the budget does not
+    /// suffice.
     pub fn fit(square: &Formula, from: f64, to: f64, budget: &mut Budget) -> Option<Self> {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         let node = 0.75_f64.sqrt();
@@ -58,7 +59,7 @@ impl Slab {
         let c2 = (above - 2.0 * at + below) / (2.0 * node * node * half * half);
         let mut slab = Self { c0: at, c1, c2, is_void: false, ..Self::void(from, to) };
         slab.certify(square, budget)?;
-        // Where the square has no bounded slope, a constant is as good as any parabola.
+        // Without a bounded slope, a constant is as good as any parabola.
         if !slab.error.is_finite() {
             slab = Self { c0: 0.5 * slab.max_square, c1: 0.0, c2: 0.0, ..slab };
             slab.certify(square, budget)?;
@@ -66,11 +67,11 @@ impl Slab {
         Some(slab)
     }
 
-    /// Proves bounds of the difference between the square and the parabola, on eight parts of the slab; `None` if the
-    /// budget does not suffice.
+    /// Proves bounds of the difference between the square and the parabola, on eight parts of the slab. Returns `None`
+    /// if the budget does not suffice.
     fn certify(&mut self, square: &Formula, budget: &mut Budget) -> Option<()> {
         const PARTS: usize = 8;
-        // Two evaluations in each part, with bounds of two derivatives, each of which is charged as nine of the value alone.
+        // Each part takes two evaluations with bounds of two derivatives, each charged as nine plain values.
         if !budget.charge(square, 2 * PARTS as u64 * 9) {
             return None;
         }
@@ -92,7 +93,7 @@ impl Slab {
             let (_, thin) = at(Interval::constant(middle));
             let (value, wide) = at(Interval { low, high });
             let thin_value = thin.value.magnitude();
-            // Taylor's theorem of second and of first order, and the values themselves: the tightest bound counts.
+            // The tightest bound counts: by Taylor's theorem of second or first order, or by the values.
             let second =
                 thin_value + thin.first.magnitude() * reach + 0.5 * wide.second.magnitude() * reach * reach;
             let first = thin_value + wide.first.magnitude() * reach;
@@ -107,7 +108,7 @@ impl Slab {
     }
 }
 
-/// Returns the larger of two numbers; infinity if the second is NaN.
+/// Returns the larger of two numbers, or infinity if the second is NaN.
 fn larger_or_infinite(a: f64, b: f64) -> f64 {
     if b.is_nan() { f64::INFINITY } else { a.max(b) }
 }

@@ -12,7 +12,7 @@ use tabray_exact::formula::Formula;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::Scalar;
 
-/// The number of pieces of a profile that are examined to find out whether it crosses the axis.
+/// The maximum number of examined pieces of a profile to decide whether it crosses the axis.
 const MOST_PIECES: usize = 10_000;
 
 /// A surface of revolution around the y axis, from the origin upward.
@@ -26,10 +26,10 @@ pub struct Revolution {
     pub(super) finish: Refinement,
 }
 
-/// The way in which the distance of a hit is refined.
+/// The refinement of the distance of a hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refinement {
-    /// Not refined: the midpoint of the bracket, off by about 1/1000 of a world unit.
+    /// Not refined: the midpoint of the bracket, with an error of about 1/1000 of a world unit.
     Bracket,
     /// Refined to full precision by Newton's method.
     Root,
@@ -39,23 +39,23 @@ impl Revolution {
     /// Returns the surface of a profile.
     ///
     /// # Errors
-    /// Returns why there is no surface: the profile is unbounded, is nowhere above 0, or takes too long to analyze.
+    /// Fails if the profile is unbounded, is positive nowhere, or takes too long to analyze.
     pub fn new(profile: &Formula, height: f64, finish: Refinement) -> Result<Self, NoSurface> {
         let square = profile.squared();
         let slabs = Slabs::new(profile, &square, height)?;
         Ok(Self { profile: profile.clone(), square, height, slabs, finish })
     }
 
-    /// Returns whether the surface may intersect the cube of half size `error` around a point. Beyond the surface's
-    /// ends the profile may be anything, and is not evaluated.
+    /// Returns whether the surface may intersect the cube of half size `error` around a point. The profile may have any
+    /// value beyond the surface's ends, and is not evaluated there.
     pub fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
         let [x, y, z] = at.to_array().map(|place| Interval { low: place - error, high: place + error });
         let y = Interval { low: y.low.max(0.0), high: y.high.min(self.height) };
         y.low <= y.high && self.value([x, y, z]).has_zero()
     }
 
-    /// Says why the surface is not that of a solid; `None` for a profile that begins and ends on the axis, and nowhere
-    /// crosses it, up to rounding.
+    /// Returns the reason why the surface does not bound a solid, or `None` if the profile begins and ends on the axis
+    /// and does not cross it, up to rounding.
     pub fn why_not_closed(&self) -> Option<&'static str> {
         let rounding = SLACK * self.slabs.widest();
         let radius = |low: f64, high: f64| self.profile.at(Interval { low, high });
@@ -85,7 +85,7 @@ impl Revolution {
     }
 }
 
-/// Displays the method by which hits are found.
+/// Displays the method for hits.
 impl fmt::Display for Revolution {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let error = self.slabs.coarsest();
@@ -99,8 +99,8 @@ impl fmt::Display for Revolution {
 }
 
 impl Equation for Revolution {
-    /// Clamps the height to the surface's: beyond its ends the profile may be anything, and rounding must not evaluate
-    /// it there.
+    /// Clamps the height to the surface's. The profile may have any value beyond the ends, and rounding must not lead
+    /// there.
     fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
         let height = y.max(N::constant(0.0)).min(N::constant(self.height));
         x.powi(2) + z.powi(2) - self.square.at(height)

@@ -1,4 +1,4 @@
-//! Profiles of all kinds: what loads, what is refused, and that no part is lost or invented.
+//! Profiles of all kinds: some load, others are refused, and no part is lost or invented.
 
 use super::no_surface::NoSurface;
 use super::*;
@@ -52,7 +52,7 @@ impl Random {
     }
 }
 
-/// Returns heights where something may be wrong: random ones, and some next to where slabs meet.
+/// Returns critical heights: random ones, and some at the ends of slabs.
 fn heights(surface: &Revolution, random: &mut Random) -> Vec<f64> {
     let mut heights: Vec<f64> = (0..300).map(|_| random.between(0.0, surface.height)).collect();
     for index in 0..surface.slabs.count() {
@@ -176,13 +176,13 @@ fn runs_contain_their_slabs() {
         }
     }
     assert_eq!(longest, 4096);
-    // A run that reaches beyond the slabs of interest is not skipped.
+    // A run that extends beyond the given slabs is not skipped.
     assert_eq!(slabs.skipped(0, true, 0..20, |_| false), 16);
     assert_eq!(slabs.skipped(0, true, 0..15, |_| false), 0);
     assert_eq!(slabs.skipped(0, true, all, |run| run.to > slabs.get(255).to), 256);
 }
 
-/// Without a limit on all slabs together, one ray took minutes.
+/// Without a limit for all slabs together, one ray took minutes.
 #[test]
 fn a_search_ends_however_many_slabs_have_no_good_bounds() {
     let profile = "0.3 + abs(min(y, exp(sqrt(9.6^7 - y^3))))";
@@ -197,8 +197,8 @@ fn a_search_ends_however_many_slabs_have_no_good_bounds() {
     }
 }
 
-/// The bounds of far rays are as wide at a jump as on a piece around it: to cut on would take thousands of pieces, and
-/// the last slabs would not be searched at all.
+/// The bounds of far rays are as wide at a jump as on a piece around it. Further halving would take thousands of
+/// pieces, and the last slabs would not be searched at all.
 #[test]
 fn a_jump_takes_few_pieces_however_far_a_ray_comes_from() {
     let surface = surface("0.001*(0.5 + 0.25*floor(y/0.001))", 0.00628).expect("a surface");

@@ -1,4 +1,4 @@
-//! The search along one ray whose first hit plain arithmetic leaves in doubt.
+//! The search along one ray with a first hit that plain arithmetic leaves in doubt.
 //!
 //! The ray goes through the slabs again, from a base near the surface that is accurate to the last digit. Where it
 //! grazes a slab's shell, bounds of the second derivative decide on that short piece.
@@ -19,14 +19,14 @@ use tabray_exact::roots::Method;
 use tabray_exact::roots::stretch::Stretch;
 use tabray_exact::roots::taylor::{self, FirstRoot, SignChange};
 
-/// A unit direction whose component along the axis is below this stays in one slab, and is not divided by.
+/// A ray with a smaller direction component along the axis stays in one slab, and is not divided by this component.
 const LEVEL: f64 = 1e-200;
 
-/// The largest number of pieces that are judged along one ray, in all slabs together: some milliseconds' worth. Beyond
-/// them, the ray's hits are not proven.
+/// The maximum number of examined pieces along one ray, in all slabs together, which takes some milliseconds. With more
+/// pieces, the ray's hits are not proven.
 const MAX_PIECES: usize = 1024;
 
-/// The number of plain rays that take as long as a piece, what bounds in `f64` leave undecided included.
+/// The number of plain rays that take as long as a piece, including pieces that bounds in `f64` leave undecided.
 const RAYS_PER_PIECE: usize = 4;
 
 /// The number of slabs that count as one plain ray.
@@ -36,21 +36,21 @@ const SLABS_PER_RAY: usize = 256;
 struct SearchResult {
     /// The distance of the first hit, in world units.
     distance: f64,
-    /// Whether it is certain for all rays that this one may have been rounded from.
+    /// Whether the distance is certain for all rays that may have been rounded to this one.
     is_certain: bool,
-    /// The number of pieces that were judged.
+    /// The number of examined pieces.
     pieces: usize,
 }
 
 impl Revolution {
-    /// Returns the distance of a ray's first hit in a range, and whether that is certain for all rays that this one may
-    /// have been rounded from.
+    /// Returns the distance of a ray's first hit in a range, and whether it is certain for all rays that may have been
+    /// rounded to this one.
     pub fn first_hit(&self, frame: &Frame, ray: &Ray, range: &RayRange) -> (f64, bool) {
         let SearchResult { distance, is_certain, .. } = self.search(frame, ray, range);
         (distance, is_certain)
     }
 
-    /// Returns a bracket of the first hits in a range of all rays that one stands for.
+    /// Returns a bracket of the first hits in a range, for all rays that `ray` stands for.
     pub fn bracket(&self, frame: &Frame, ray: &RayBall, range: &RayRange) -> Bracket {
         let lanes = self.alone(frame, ray, range.origin_side);
         let (near, far) = (lanes.near[0], lanes.far[0]);
@@ -91,15 +91,16 @@ impl Revolution {
         lanes
     }
 
-    /// Returns how many plain rays take as long as the search for the first hit of a ray that may leave the surface to
-    /// a side. It depends on nothing else, so that what a pixel may cost is the same however its rays are traced.
+    /// Returns the number of plain rays that take as long as the search for the first hit of a ray that may leave the
+    /// surface to a side. It depends on nothing else, so that a pixel's cost limit is the same however its rays are
+    /// traced.
     pub fn search_cost(&self, frame: &Frame, ray: &Ray, origin_side: Option<Side>) -> u32 {
         let range = RayRange { origin_side, ..RayRange::ALL };
         if self.local(frame, &ray.into(), &range).is_none() {
             return 0;
         }
         let pieces = if self.slabs.is_tight() { 0 } else { self.search(frame, ray, &range).pieces };
-        // The search of a plain hit takes as long as a plain ray, and is made twice.
+        // The search for a plain hit takes as long as a plain ray, and is done twice.
         (self.slabs.count() / SLABS_PER_RAY + RAYS_PER_PIECE * pieces).max(1) as u32
     }
 
@@ -126,8 +127,8 @@ impl Revolution {
         }
     }
 
-    /// Finds the first hit of [`first_hit`](Self::first_hit) by another method in the same bounding cylinder. Only the
-    /// course notes' steps search all of the ray between the surface's heights, as in the notes.
+    /// Finds the same first hit as [`first_hit`](Self::first_hit) by another method in the same bounding cylinder. Only
+    /// the course notes' steps search all of the ray between the surface's heights, as in the notes.
     pub fn first_hit_by(&self, method: Method, frame: &Frame, ray: &Ray, range: &RayRange) -> f64 {
         let widest = if method == Method::Steps { f64::INFINITY } else { self.slabs.widest() };
         let Some(local) = Local::new(frame, &ray.into(), range, self.height, widest) else { return MISS };
@@ -139,9 +140,9 @@ impl Revolution {
         }
     }
 
-    /// Returns the distance of the first crossing of the surface, and whether that is certain for all rays that this
-    /// one may have been rounded from. For a ray that leaves the surface to a side, only crossings from that side
-    /// count. At most `left` pieces of the ray are judged, and `left` is reduced by their number.
+    /// Returns the distance of the first crossing of the surface, and whether it is certain for all rays that may have
+    /// been rounded to this one. For a ray that leaves the surface to a side, only crossings from that side count.
+    /// Examines at most `left` pieces of the ray, and subtracts their number from `left`.
     fn walk(
         &self,
         local: &Local,
@@ -165,7 +166,7 @@ impl Revolution {
             }
             let (from, to) = lanes.part(&slab, 0);
             if slab.is_void {
-                // Where the surface narrows down to the axis, rounding may decide on which side of its end a ray is.
+                // Where the surface narrows to the axis, rounding may decide on which side of its end a ray is.
                 let margin = self.slabs.coarsest() + lanes.rounding[0];
                 is_certain &= lanes.around(0).at(from) > margin && lanes.around(0).at(to) > margin;
                 wanted = None;
@@ -198,8 +199,8 @@ impl Revolution {
         }
     }
 
-    /// Returns the first crossing on a short piece, only from one side if a side is given. It is left unknown where no
-    /// more pieces may be judged.
+    /// Returns the first crossing on a short piece, only from one side if a side is given. It stays unknown if no
+    /// pieces are left.
     fn first_crossing(
         &self,
         local: &Local,
@@ -210,7 +211,7 @@ impl Revolution {
         if *left == 0 {
             return FirstRoot { root: None, is_certain: false };
         }
-        // The ends of the piece may themselves be crossings, as shells begin and end there, unless the ray begins
+        // The ends of the piece may themselves be crossings, because shells begin and end there, unless the ray begins
         // there.
         let (from, to) = (from.next_down().max(local.from), to.next_up());
         let line = ProfileOnRay { surface: self, local };

@@ -1,4 +1,4 @@
-//! Surfaces that a closed object clips: cut open, or capped by the faces of that object.
+//! Surfaces clipped by a closed object: cut open, or capped by the faces of that object.
 
 use super::make::NoSolid;
 use crate::geometry::aabb::Aabb;
@@ -8,8 +8,8 @@ use crate::world::solid::{Operation, Tree};
 use glam::DVec3;
 use std::sync::Arc;
 
-/// The margin of a surface's box around the object that clips it, as a fraction of the object's size. The visible part
-/// of the surface lies within the box.
+/// The margin of a surface's box around its clip object, as a fraction of the object's size. The box contains the
+/// visible part of the surface.
 const MARGIN: f64 = 1.0 / 1024.0;
 
 /// A closed object that clips a surface.
@@ -23,10 +23,10 @@ fn refusal(message: String, help: &'static str) -> Refusal {
 }
 
 impl Clip {
-    /// Makes a clip of a named object.
+    /// Makes a clip from a named object.
     ///
     /// # Errors
-    /// If the object is open, or has no bounds.
+    /// Fails if the object is open, or has no bounds.
     pub fn of(object: &NamedBody) -> Result<Self, Refusal> {
         let Some(object) = object.get() else {
             let message = "is clipped by an object that has not been made".to_owned();
@@ -52,18 +52,17 @@ impl Clip {
         }
     }
 
-    /// Returns the low and the high corner of a box, relative to a point, that contains the object, and so the visible
+    /// Returns the low and the high corner, relative to `from`, of a box that contains the object, and thus the visible
     /// part of the surface.
     pub fn corners(&self, from: DVec3) -> [DVec3; 2] {
         let margin = MARGIN * 2.0 * self.bounds.half_size().max_element();
         [self.bounds.low - margin - from, self.bounds.high + margin - from]
     }
 
-    /// Clips an entity's surface, which is cut open, or with `is_capped` closed by the faces of the object. These faces
-    /// have the material and the look of the object. The surface must have an equation that is below 0 inside of it.
+    /// Clips an entity's surface, which is cut open, or closed by the faces of the object if `is_capped`. These faces
+    /// keep the material and the appearance of the object. The surface must have an equation that is negative inside.
     ///
-    /// # Errors
-    /// Returns why the surface cannot be capped, or why the two make no solid.
+    /// # Errors Returns the reason why the surface cannot be capped, or why the two make no solid.
     pub fn cut(self, args: &Args, mut surface: Body, is_capped: bool) -> Result<Body, Refusal> {
         if is_capped && let Some(why) = surface.shape.why_not_closed() {
             return Err(Refusal {

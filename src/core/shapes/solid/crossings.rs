@@ -1,4 +1,4 @@
-//! All crossings of a line and a closed shape, proven one after the other.
+//! Proven crossings of a line and a closed shape, in order.
 
 use crate::geometry::sight::Line;
 use crate::world::certify::{HitEnclosure, Precise, ProofMethods};
@@ -12,7 +12,7 @@ use tabray_exact::scalar::Scalar;
 pub struct Crossing<F> {
     /// The position of the crossing on the line.
     pub at: Interval<F>,
-    /// The part of the shape that is crossed.
+    /// The part of the shape that the line crosses.
     pub part: usize,
     /// Whether the line enters the shape there.
     pub enters: bool,
@@ -22,29 +22,29 @@ pub struct Crossing<F> {
 pub struct Crossings<'l, F> {
     shape: &'l dyn ProofMethods,
     line: &'l Line<Interval<F>>,
-    /// The hits from the line's start, where the shape knows them at once. If each were searched from the one before, the
-    /// errors of their places would add up.
+    /// The hits from the line's start, where the shape knows them at once. Searching each from the one before would
+    /// accumulate errors of position.
     listed: Option<vec::IntoIter<HitEnclosure<F>>>,
     start: Line<Interval<F>>,
     gone: Interval<F>,
     leaves: Option<usize>,
     known: Vec<Crossing<F>>,
-    /// The t from which on nothing is known; infinite if all crossings are known.
+    /// The t from which on nothing is known, or infinity if all crossings are known.
     end: Option<F>,
 }
 
 impl<'l, F: Precise> Crossings<'l, F> {
-    /// Prepares the search along a line, whose true start lies on this part of the shape, if it lies on the shape.
+    /// Prepares the search along a line. If its exact start lies on the shape, `leaves` is the part it lies on.
     pub fn new(shape: &'l dyn ProofMethods, line: &'l Line<Interval<F>>, leaves: Option<usize>) -> Self {
         let (gone, listed) =
             (Interval::constant(0.0), F::proofs(shape).all_hits(line, leaves).map(Vec::into_iter));
         Self { shape, line, listed, start: *line, gone, leaves, known: Vec::new(), end: None }
     }
 
-    /// Returns the crossing of an index, counted from the start of the line.
+    /// Returns the crossing with an index, counted from the start of the line.
     ///
     /// # Errors
-    /// Returns the t beyond which nothing is known; infinity if there are no more crossings.
+    /// Returns the t beyond which nothing is known, or infinity if there are no more crossings.
     pub fn get(&mut self, index: usize) -> Result<Crossing<F>, F> {
         while self.known.len() <= index {
             if let Some(end) = self.end {
@@ -80,8 +80,8 @@ impl<'l, F: Precise> Crossings<'l, F> {
         Ok(Crossing { at, part, enters: slope.high < F::of(0.0) })
     }
 
-    /// Tells whether the line is in the shape just before and just after a place on it; `None` where that is open. With
-    /// few digits, two crossings that may be at the same place leave it open.
+    /// Tells whether the line is in the shape just before and just after a place, or `None` if that is undecided. In
+    /// low precision, a crossing at the place leaves it undecided.
     pub fn around(&mut self, place: Interval<F>) -> Option<[bool; 2]> {
         for index in 0.. {
             match self.get(index) {

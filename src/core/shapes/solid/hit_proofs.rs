@@ -15,7 +15,7 @@ impl SolidPart {
         self.parts[part].body.shape.proven()
     }
 
-    /// Tells whether a line is in a part just before and just after a place on it; `None` where that is open.
+    /// Tells whether a line is in a part just before and just after a place, or `None` if that is undecided.
     fn beside<'l, F: Precise>(
         &'l self,
         part: usize,
@@ -31,10 +31,10 @@ impl SolidPart {
         crossings.get_or_insert_with(|| Crossings::new(shape, line, None)).around(place)
     }
 
-    /// Returns the first hit that is seen, and its part.
+    /// Returns the first visible hit, and its part.
     ///
     /// # Errors
-    /// Returns the t beyond which nothing is known; infinity if there is no hit.
+    /// Returns the t beyond which nothing is known, or infinity if there is no hit.
     fn proven_hit<F: Precise>(
         &self,
         line: &Line<Interval<F>>,
@@ -66,7 +66,7 @@ impl SolidPart {
                         None => is_known = false,
                     }
                 }
-                // Nothing ends the visit, so that no part is passed over.
+                // `None` keeps the evaluation from ending early, and so each part is visited.
                 None
             });
             if !is_known {
@@ -123,7 +123,7 @@ impl<F: Precise> HitProofs<F> for SolidPart {
     }
 }
 
-/// Where a hit of the part may be hidden, the hits behind it are not known.
+/// Behind a hit that may be hidden, further hits are unknown.
 impl OverFootprint for SolidPart {
     fn hits(&self, line: &Line<Affine>, leaves: Option<usize>, met: &mut dyn FnMut(FootprintHit, usize)) {
         if let Some(around) = self.around()

@@ -1,4 +1,4 @@
-//! Solids as objects: one for each part whose surface is seen.
+//! Solids as objects: one for each part with a visible surface.
 
 use super::shader::PartShader;
 use super::solid_part::{ByParts, SolidPart};
@@ -15,10 +15,10 @@ use crate::world::material::Material;
 use crate::world::solid::{Operation, Tree, common};
 use std::sync::Arc;
 
-/// The largest number of parts of a solid. Each of them may have to be compared with all others.
+/// The maximum number of parts of a solid. Each of them may have to be compared with all others.
 const MOST_PARTS: usize = 1024;
 
-/// The maximum depth to which solids may be nested. The name of a part contains the names of all solids around it.
+/// The maximum nesting depth of solids. The name of a part contains the names of all solids around it.
 const DEEPEST: usize = 256;
 
 /// The objects that make up a solid.
@@ -39,7 +39,7 @@ pub fn combined(args: &Args, objects: &Pparm<Objects>, operation: Operation) -> 
 
 /// The reason why objects cannot be combined.
 pub(super) enum NoSolid {
-    /// An object of this name is open, for this reason.
+    /// The object of this name is open, for this reason.
     Open(Arc<str>, String),
     /// There are too many parts.
     TooMany,
@@ -50,7 +50,7 @@ pub(super) enum NoSolid {
 }
 
 impl NoSolid {
-    /// Returns the error and its correction, for messages: "is empty".
+    /// Returns the error and its correction, for messages such as "is empty".
     pub(super) fn message(self) -> (String, &'static str) {
         match self {
             Self::Open(name, why) => (
@@ -78,7 +78,7 @@ impl Solid {
     /// Returns a named object as a solid.
     ///
     /// # Errors
-    /// If it is open.
+    /// Fails if the object is open.
     pub(super) fn of(object: &Arc<Body>) -> Result<Self, NoSolid> {
         let name = object.name.clone().unwrap_or_default();
         if let Some(solid) = &object.solid {
@@ -104,7 +104,7 @@ impl Solid {
         Ok(Self { parts: vec![part], tree: Tree::Part(0), is_open: false })
     }
 
-    /// Returns a copy of a solid.
+    /// Returns the solid with each of its parts placed.
     fn placed(&self, placement: Placement) -> Self {
         let place = |part: &Part| Part {
             body: Arc::new(Placed::body(&part.body, (placement, None), &part.material)),
@@ -115,7 +115,7 @@ impl Solid {
 }
 
 impl Body {
-    /// Makes a solid of named objects, with this material or that of each.
+    /// Makes a solid of named objects. Without a material, each object keeps its own.
     ///
     /// # Errors
     /// Returns the reason why the objects make no solid.
@@ -128,7 +128,7 @@ impl Body {
         Self::of_solid(Solid::combined(operation, solids?), material)
     }
 
-    /// Makes the union of closed shapes, each with its name and its material. An object may be made of several shapes.
+    /// Makes the union of closed shapes, each with its name and material. An object may consist of several shapes.
     ///
     /// # Errors
     /// Returns the reason why the shapes make no solid.
@@ -144,8 +144,8 @@ impl Body {
         })
     }
 
-    /// Makes a copy of an object, which may be a solid, with this material or its own. A copy of a plane ends at a z of the
-    /// world, if one is given.
+    /// Makes a copy of an object, which may be a solid, with the given material or its own. A copy of a plane ends at
+    /// `max_z`, in world space, if given.
     pub fn placed(
         object: &Arc<Self>,
         (placement, max_z): (Placement, Option<f64>),
@@ -177,7 +177,7 @@ impl Body {
     }
 }
 
-/// Returns a body with the look of an object, and another shape.
+/// Returns a body with another shape and the appearance of an object.
 fn seen_as(object: &Arc<Body>, shape: impl Into<AnyShape>) -> Body {
     let own = object.clone();
     let to_object_space = move |shader| match &own.to_object_space {
@@ -192,7 +192,7 @@ fn seen_as(object: &Arc<Body>, shape: impl Into<AnyShape>) -> Body {
     }
 }
 
-/// Returns the bodies of the parts whose surface may be seen.
+/// Returns the bodies of the parts whose surface may be visible.
 fn seen(solid: &Solid) -> Vec<Body> {
     let parts: Arc<[Part]> = solid.parts.clone().into();
     let bounds = parts.iter().map(|part| Some(part.body.shape.facts().bounds?.with_slack(0.0)));

@@ -10,7 +10,7 @@ use crate::world::packets::brackets;
 use crate::world::packets::shape::{self, PacketIntersect};
 
 impl SolidPart {
-    /// Calls a function with rays that leave the solid as rays that leave the part.
+    /// Calls a function with the rays, with the sides of the solid that they leave converted to sides of the part.
     fn with_own_sides<R>(&self, rays: RayPacket, call: impl FnOnce(RayPacket) -> R) -> R {
         let own = rays.leaving.map(|of| {
             let mut own = [Side::Outside; PACKET_SIZE];
@@ -20,8 +20,8 @@ impl SolidPart {
         call(rays.leaving(own.as_ref().map(|own| &own[..rays.len()])))
     }
 
-    /// Computes brackets of the first hits of up to [`BEAM`] rays, which end at `ends`. The part's own hits are searched together,
-    /// each between the places where its ray enters and leaves other parts.
+    /// Computes brackets of the first hits of up to [`BEAM`] rays, which end at `ends`. The hits of the part's shape
+    /// are searched together, each between the places where its ray enters and leaves other parts.
     fn brackets_within(&self, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {
         let (mut ranges, mut firsts) = ([RayRange::ALL; BEAM], [Bracket::MISS; BEAM]);
         let mut within = [Bracket { near: 0.0, far: 0.0 }; BEAM];
@@ -58,7 +58,7 @@ impl PacketIntersect for Shape<SolidPart, ByPackets, ByParts> {
         if part.is_whole() {
             return;
         }
-        // Where a hit of the part is certain, its distance is that of a single ray, to the last bit.
+        // A certain hit has the same distance as for a single ray, to the last bit.
         let mut distances = [f64::NAN; PACKET_SIZE];
         let is_wide = |lane: usize| near[lane] < far[lane] && far[lane] < MISS;
         if rays.drift.is_none() && (0..count).any(is_wide) {

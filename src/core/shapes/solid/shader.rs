@@ -8,7 +8,7 @@ use crate::world::surface_point::{PointBounds, ShaderInputs, SurfacePoint};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
-/// The reflectivities of the object that is a part.
+/// The reflectivities of the object that a part comes from.
 pub struct PartShader(pub Arc<Body>);
 
 impl Shader for PartShader {

@@ -15,51 +15,51 @@ use glam::{DVec2, DVec3};
 use std::sync::Arc;
 use tabray_exact::double_double::DoubleDouble;
 
-/// The largest number of hits of a part along a ray that are visited.
+/// The maximum number of hits of a part that are visited along a ray.
 const MOST_HITS: usize = 1024;
 
-/// The distance from a surface, which may coincide with another one, at which both of its sides are examined, as a
-/// multiple of the error of the point.
+/// The distance from a possibly coincident surface at which both of its sides are examined, as a multiple of the error
+/// of the point.
 const BESIDE: f64 = 256.0;
 
-/// The distance before a hit at which a ray is tested for being in the solid, as a fraction of the numbers that the hit
-/// is computed from.
+/// The distance before a hit at which a ray is tested for being in the solid, as a fraction of the magnitude of the
+/// coordinates involved.
 const SHORTLY: f64 = 1e-6;
 
-/// Marks a shape that is seen only in part. Hits of the part are proven as hits of the shape.
+/// Marks a shape that is only partly visible. Hits of the part are proven as hits of the shape.
 pub struct ByParts;
 
-/// What is known of a ray before it is searched for a part of a solid.
+/// Known facts about a ray before its search for a part of a solid.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Known {
-    /// Bounds of the distances at which it is in other parts.
+    /// Bounds of the distances at which the ray is in other parts.
     pub within: Option<Bracket>,
-    /// A bracket of its first hit of the part.
+    /// A bracket of the ray's first hit of the part.
     pub first: Option<Bracket>,
 }
 
-/// The surface of a part, where it is that of the solid.
+/// The surface of a part, where it is the surface of the solid.
 pub struct SolidPart {
-    /// All parts of the solid, and a box around each.
+    /// All parts of the solid.
     pub(super) parts: Arc<[Part]>,
     around: Arc<[Option<Aabb>]>,
     /// The index of the part whose surface this is.
     pub(super) index: usize,
     /// Whether the solid lies on the outer side of the part.
     pub(super) is_outer: bool,
-    /// The condition on the parts that contain a point near this surface, by which the point lies in the solid.
+    /// The condition under which a point near this surface lies in the solid, given the parts that contain it.
     pub(super) tree: Tree,
-    /// The condition by which any point lies in the solid.
+    /// The same condition for any point.
     whole: Tree,
-    /// The way to the part through the tree.
+    /// The path to the part through the tree.
     path: Vec<usize>,
     facts: Facts,
-    /// Whether the part is a clipped surface that is not seen outside of all other parts.
+    /// Whether the part is a clipped surface that is invisible outside of all other parts.
     is_within_others: bool,
 }
 
 impl SolidPart {
-    /// Makes the surface of the part of an index.
+    /// Makes the surface of a part, given by its index.
     pub(super) fn new(
         parts: &Arc<[Part]>,
         around: &Arc<[Option<Aabb>]>,
@@ -80,7 +80,7 @@ impl SolidPart {
         Self { parts, around, index, is_outer, tree, whole, path, facts, is_within_others }
     }
 
-    /// Tells whether single rays are searched between the places where they enter and leave other parts.
+    /// Tells whether the search of single rays is limited to where they are in other parts.
     pub(super) fn is_within_others(&self) -> bool {
         self.is_within_others
     }
@@ -100,13 +100,13 @@ impl SolidPart {
         self.path.is_empty()
     }
 
-    /// Returns a side of the solid as a side of the part, and the other way round.
+    /// Converts a side of the solid to a side of the part, or the other way round.
     #[inline]
     pub(super) fn side(&self, of: Side) -> Side {
         if self.is_outer { of.opposite() } else { of }
     }
 
-    /// Tells whether a point lies in a part; `None` where its surface may be within an error in world units.
+    /// Tells whether a point lies in a part, or `None` if the part's surface may be within `error`, in world units.
     fn contains(&self, part: usize, at: DVec3, error: f64) -> Option<bool> {
         if let Some(Aabb { low, high }) = self.around[part]
             && ((low - error).cmpgt(at).any() || at.cmpgt(high + error).any())
@@ -116,19 +116,19 @@ impl SolidPart {
         self.parts[part].body.shape.contains(at, error)
     }
 
-    /// Tells whether a point lies in the solid; `None` where its surface may be within an error in world units.
+    /// Tells whether a point lies in the solid, or `None` if its surface may be within `error`, in world units.
     fn holds(&self, at: DVec3, error: f64) -> Option<bool> {
         self.whole.holds(&mut |part| self.contains(part, at, error))
     }
 
-    /// Tells whether a hit of the part is the solid's; `None` where the surface of another part may be within an error in
-    /// world units.
+    /// Tells whether a hit of the part is a hit of the solid, or `None` if the surface of another part may be within
+    /// `error`, in world units.
     fn is_on_solid(&self, at: DVec3, error: f64) -> Option<bool> {
         self.tree.is_on_solid(&self.path, &mut |part| self.contains(part, at, error))
     }
 
-    /// Tells whether a hit of the part is the solid's where other surfaces within an error in world units lie in the plane of
-    /// its own, as the numbers of the scene say; `None` where that is open.
+    /// Tells whether a hit of the part is a hit of the solid if all other surfaces within `error`, in world units, lie
+    /// in the part's own plane by the numbers of the scene. Returns `None` if that is undecided.
     fn is_on_solid_in_plane(&self, at: DVec3, error: f64) -> Option<bool> {
         let own = self.own().facet(at, error)?;
         let (mut outside, mut inside) = (vec![false; self.parts.len()], vec![false; self.parts.len()]);
@@ -143,14 +143,14 @@ impl SolidPart {
                     None => is_known = false,
                 }
             }
-            // Nothing ends the visit, so that no part is passed over.
+            // `None` keeps the evaluation from ending early, and so each part is visited.
             None
         });
         is_known.then(|| self.tree.owner(&outside, &inside) == Some(self.index))
     }
 
-    /// Tells whether a hit of the part is the solid's by examining both sides of it, at a distance that is a multiple
-    /// of an error in world units: along the normal, or where another part has an edge there, along the ray.
+    /// Tells whether a hit of the part is a hit of the solid by examining both sides of the surface, at a multiple of
+    /// `error`, in world units: along the normal, or along the ray where another part has an edge.
     fn is_on_solid_by_sides(&self, ray: &Ray, at: DVec3, normal: DVec3, error: f64) -> bool {
         let step = BESIDE * (error + ROUNDING * at.abs().max_element());
         let ahead = if ray.dir.dot(normal) < 0.0 { -ray.dir } else { ray.dir };
@@ -170,22 +170,22 @@ impl SolidPart {
         known.or_else(|| beside(normal, true)).unwrap_or(false)
     }
 
-    /// Tells whether a hit of the part is the solid's; `None` where that is open. `size` is the size of the numbers
-    /// from which the hit is computed.
+    /// Tells whether a hit of the part is a hit of the solid, or `None` if that is undecided. `size` is the magnitude
+    /// of the coordinates involved.
     fn is_certainly_on_solid(&self, ray: &Ray, distance: f64, size: f64) -> Option<bool> {
         let at = ray.at(distance);
-        // The error of any hit first, then that of this one, which takes its normal.
+        // The first error holds for any hit. The second, for this hit, needs the normal.
         self.is_on_solid(at, ROUNDING / LEAST_COSINE * size).or_else(|| {
             let error = coincidence::error(ray, distance, self.own().normal(at), self.facts.max_coordinate);
             self.is_on_solid(at, error).or_else(|| self.is_on_solid_in_plane(at, error))
         })
     }
 
-    /// Tells whether a ray is certainly in the solid shortly before a hit. If so, and if the ray enters the part there,
-    /// coincident surfaces do not make it enter the solid.
+    /// Tells whether a ray is certainly in the solid shortly before a hit. If so, and if the ray enters the part at the
+    /// hit, it does not enter the solid there, even where surfaces coincide.
     fn is_within(&self, ray: &Ray, distance: f64, size: f64) -> bool {
         let before = ray.at(distance - SHORTLY * size);
-        // What lies far from this surface is not in its tree.
+        // The tree omits parts far from this surface.
         let is_near = self
             .facts
             .bounds
@@ -195,8 +195,8 @@ impl SolidPart {
             && self.tree.holds(&mut |part| self.contains(part, before, ROUNDING * size)) == Some(true)
     }
 
-    /// Returns bounds of the distances, in world units, at which a ray is in another part; `None` if it certainly passes
-    /// all of them by.
+    /// Returns bounds of the distances, in world units, at which a ray is in another part, or `None` if it certainly
+    /// misses all of them.
     pub(super) fn within_others(&self, ray: &Ray) -> Option<Bracket> {
         let mut within: Option<Bracket> = None;
         for part in (0..self.parts.len()).filter(|part| *part != self.index) {
@@ -206,11 +206,11 @@ impl SolidPart {
             if ahead.near == MISS {
                 continue;
             }
-            // The ray that comes back from beyond the part first hits it where this one leaves it.
+            // A ray back from beyond the part first hits it where this ray leaves it.
             let beyond = (around.middle() - ray.origin).length() + 2.0 * around.half_size().length();
             let back = Ray { origin: ray.at(beyond), dir: -ray.dir };
             let behind = shape.t_bounds(&back.into(), &RayRange::ALL);
-            // A surface that meets the part's surface is seen there.
+            // The slack includes surfaces that touch the part.
             let slack = CLOSE * (ray.origin.abs().max_element() + beyond);
             let is_outside = self.contains(part, ray.origin, slack) == Some(false);
             let near = if is_outside { (ahead.near - slack).max(0.0) } else { 0.0 };
@@ -221,15 +221,15 @@ impl SolidPart {
         within
     }
 
-    /// Returns the range in which the part's own first hit is searched of a ray that is within other parts in these bounds.
+    /// Returns the range to search for the part's own first hit of a ray, given bounds of its distances within other
+    /// parts.
     pub(super) fn first_range(&self, range: &RayRange, within: &Bracket) -> RayRange {
         let far = if range.far < MISS { (1.0 + CLOSE) * range.far } else { MISS };
         let (near, far) = (within.near.max(0.0), far.min(within.far));
         RayRange { near, far, ..self.own_range(range) }
     }
 
-    /// Returns the distance of the first hit that is seen, and whether it is certain. `known` is a bracket of the part's own first
-    /// hit, if that is known.
+    /// Returns the distance of the first visible hit, and whether it is certain.
     pub(super) fn first_hit(&self, ray: &Ray, range: &RayRange, known: Known) -> (f64, bool) {
         let Known { within, mut first } = known;
         let (shape, max_coordinate) = (self.own(), self.facts.max_coordinate);
@@ -245,7 +245,7 @@ impl SolidPart {
             false => Some(Bracket { near: 0.0, far: MISS }),
         };
         let Some(within) = within else { return (MISS, true) };
-        // The side from which the next hit comes: inside and outside alternate.
+        // The side of the part from which the next hit comes. The sides alternate.
         let mut from = leaves.or(is_apart.then_some(Side::Outside));
         for _ in 0..MOST_HITS {
             if leaves.is_some_and(|side| !shape.can_hit_itself(side)) {
@@ -261,7 +261,7 @@ impl SolidPart {
             let is_exact = bracket.near == bracket.far;
             let onward = if is_exact { bracket.near } else { shape.distance(&start, &left) };
             if onward == MISS {
-                // What is doubtful of a ray that starts on the surface is that start.
+                // For a ray that starts on the surface, the start itself is doubtful.
                 is_certain &= !bracket.is_doubtful() || leaves == Some(Side::Outside) && far == MISS;
                 break;
             }
@@ -269,7 +269,7 @@ impl SolidPart {
             let at = ray.at(distance);
             let size = ray.origin.abs().max_element() + distance + max_coordinate;
             let sure = self.is_certainly_on_solid(ray, distance, size);
-            // Which side is seen does not matter then, and takes a normal.
+            // The visible side, which needs a normal, does not matter then.
             if sure == Some(true) && !bracket.is_doubtful() {
                 return (range.keep(distance), is_certain);
             }
@@ -297,7 +297,7 @@ impl SolidPart {
             }
             leaves = Some(side.opposite());
             from = leaves;
-            // The hit is off along the ray by more than that, but not off the surface.
+            // The hit may be further off along the ray, but not off the surface.
             error = ROUNDING * size;
             (start.origin, gone) = (at, distance);
         }
@@ -309,7 +309,7 @@ impl SolidPart {
         self.t_bounds_from(ray, range, Known::default())
     }
 
-    /// Returns a bracket of the first hit of one ray, of which something is known.
+    /// Returns a bracket of the first hit of one ray, given known facts about it.
     pub(super) fn t_bounds_from(&self, ray: &RayBall, range: &RayRange, known: Known) -> Bracket {
         if self.is_whole() {
             return self.own().packets().t_bounds(ray, &self.own_range(range));
@@ -380,7 +380,7 @@ impl Hittable for SolidPart {
 
     fn search_cost(&self, ray: &Ray, origin_side: Option<Side>) -> u32 {
         let own = self.own().search_cost(ray, origin_side.map(|side| self.side(side)));
-        // That for the first hit, and as much for those after it.
+        // The hits after the first cost as much again.
         if self.is_whole() { own } else { 2 * own }
     }
 

@@ -1,4 +1,4 @@
-//! Hits of triangles, and what is certain about them.
+//! Hits of triangles, and their certainty.
 
 use super::loose::LooseTriangle;
 use crate::geometry::aabb::Aabb;

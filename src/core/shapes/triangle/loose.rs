@@ -11,30 +11,30 @@ use glam::DVec3;
 use std::marker::PhantomData;
 use tabray_exact::double_double::DoubleDouble;
 
-/// A triangle with little of what follows from its corners: 104 bytes, as reading them from memory takes longer than all tests
-/// of a ray.
+/// A triangle with few precomputed values, in 104 bytes. Reading more from memory would take longer than all tests of a
+/// ray.
 #[derive(Clone, Copy, Debug)]
 pub struct LooseTriangle<A> {
     /// The corners in world coordinates, counterclockwise as seen from the lit side.
     pub corners: [DVec3; 3],
-    /// The unit normal, rounded; it points to the lit side.
+    /// The unit normal, rounded. It points to the lit side.
     pub(super) normal: DVec3,
-    /// The z, in world units, beyond which the triangle is not there.
+    /// The z, in world units, at which the triangle ends.
     max_z: f64,
     accuracy: PhantomData<A>,
 }
 
 impl LooseTriangle<Classic> {
-    /// Returns the triangle with these corners, without what lies beyond a z, in world units, if one is given; `None` where
-    /// `f64` cannot tell the corners from collinear ones.
+    /// Returns the triangle with these corners, ending at a z, in world units, if one is given. Returns `None` if `f64`
+    /// cannot distinguish the corners from collinear ones.
     pub fn classic(corners: [DVec3; 3], max_z: Option<f64>) -> Option<Self> {
         Triangle::classic(corners).map(|triangle| Self::of(&triangle, max_z))
     }
 }
 
 impl<A: Bounded> LooseTriangle<A> {
-    /// Returns the triangle with these corners, without what lies beyond a z, in world units, if one is given; `None` where
-    /// the corners are collinear.
+    /// Returns the triangle with these corners, ending at a z, in world units, if one is given. Returns `None` if the
+    /// corners are collinear.
     pub fn new(corners: [DVec3; 3], max_z: Option<f64>) -> Option<Self> {
         Triangle::new(corners).map(|triangle| Self::of(&triangle, max_z))
     }
@@ -46,7 +46,7 @@ impl<A: AccuracyTag> LooseTriangle<A> {
         Self { corners: *corners, normal: plane.normal, max_z, accuracy: PhantomData }
     }
 
-    /// Returns the triangle with all that follows from its corners.
+    /// Returns the triangle with all values computed from its corners.
     #[inline]
     pub(super) fn whole(&self) -> Triangle<A> {
         let mut plane = Plane::new(self.normal, remembered_normal(self.corners), self.corners[0]);
@@ -54,12 +54,11 @@ impl<A: AccuracyTag> LooseTriangle<A> {
         Triangle { plane, corners: self.corners }
     }
 
-    /// Returns the plane of the triangle as far as brackets need it: without the exact normal, which takes longer than
-    /// everything else.
+    /// Returns the plane of the triangle for brackets, without the exact normal, which is the slowest part.
     #[inline(always)]
     pub(super) fn rough_plane(&self) -> Plane<A> {
         let [a, b, c] = self.corners;
-        // The normal is along an axis exactly where the corners have one coordinate in common.
+        // The normal is along an axis exactly if the corners have one coordinate in common.
         let is_level = |axis: usize| (a[axis] == b[axis]) & (a[axis] == c[axis]);
         let mut plane = Plane::new(self.normal, [DoubleDouble { high: 0.0, low: 0.0 }; 3], a);
         plane.is_upright = is_level(0) | is_level(1) | is_level(2);
@@ -82,7 +81,7 @@ impl<A: Bounded> LooseTriangle<A> {
         }
     }
 
-    /// Tells whether eight rays certainly miss the triangle, or pass beside it.
+    /// Tells whether eight rays certainly miss the triangle.
     #[inline(always)]
     pub(super) fn is_missed_by(&self, rays: RayPacket) -> bool {
         passed_by_eight(self.corners, rays, RayError::NONE).0 == [1; LANES]

@@ -1,29 +1,29 @@
-//! Normals of triangles that take many digits, of which each thread remembers the last ones: rays that hit several triangles
-//! of one plane compare all of them.
+//! Normals of triangles that need many digits. Each thread remembers the last ones, because rays that hit several
+//! triangles of one plane compare all of them.
 
 use super::{quick_normal, slow_normal};
 use glam::DVec3;
 use std::cell::Cell;
 use tabray_exact::double_double::DoubleDouble;
 
-/// The number of normals that are remembered.
+/// The number of remembered normals.
 const SIZE: usize = 64;
 
-/// The corners of a triangle, and the normal that follows from them.
+/// The corners of a triangle, and its normal.
 type Entry = ([DVec3; 3], [DoubleDouble; 3]);
 
 thread_local! {
     static KNOWN: Cell<Option<Box<[Entry; SIZE]>>> = const { Cell::new(None) };
 }
 
-/// Returns what [`exact_normal`](super::exact_normal) does.
+/// Returns the result of [`exact_normal`](super::exact_normal).
 #[inline]
 pub(super) fn remembered_normal(corners: [DVec3; 3]) -> [DoubleDouble; 3] {
     let (normal, is_known) = quick_normal(corners);
     if is_known { normal } else { slow_or_remembered(corners) }
 }
 
-/// Returns the normal that takes many digits. Corners of the same bits have the same one.
+/// Returns a normal that needs many digits. Corners with the same bits have the same normal.
 #[inline(never)]
 fn slow_or_remembered(corners: [DVec3; 3]) -> [DoubleDouble; 3] {
     let bits = |of: &[DVec3; 3]| of.map(|at| at.to_array().map(f64::to_bits));

@@ -1,4 +1,4 @@
-//! On which sides of a triangle's edges a ray passes, in plain arithmetic.
+//! The sides on which a ray passes a triangle's edges, in plain arithmetic.
 
 use crate::geometry::aabb::larger;
 use crate::geometry::ray::{Ray, RayError};
@@ -6,9 +6,9 @@ use crate::geometry::ray_packet::RayPacket;
 use crate::simd::soa::LANES;
 use glam::DVec3;
 
-/// Far more than the loss of products that are too small to have all digits: the sum of a few of 5e-324. A product with
-/// such a sum loses as many times more as the other factor is. It is a normal number, as processors take a hundred
-/// times longer for products with others.
+/// Far more than the loss of products that are too small to have all digits: the sum of a few of 5e-324. Multiplication
+/// by a number scales the loss by the same factor. This is a normal number, because products with subnormal ones take a
+/// hundred times longer.
 pub(crate) const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 
 /// Returns the largest magnitude of a component.
@@ -18,21 +18,21 @@ pub(crate) fn largest(vector: DVec3) -> f64 {
     larger(larger(x, y), z)
 }
 
-/// Returns the error of a product of two corners, as seen from a ray's origin, and its direction: as a fraction of the
-/// product of the corners' largest components, and how much is to be added to each of these first.
+/// Returns the error of the triple product of two corners, relative to a ray's origin, and its direction. It is a
+/// fraction of the product of the corners' largest components, after the second number is added to each of them.
 #[inline(always)]
 pub(crate) fn side_error(drift: RayError) -> (f64, f64) {
-    // Units of 2^-53 of the product of the largest components: a component of the cross product is off by 4 of its two
-    // terms, the direction of a camera ray by 3 and the product by 4; components of the direction add up to at most 1.74,
-    // so that the sum is off by 14 + 6 * 3 + 14 = 46, less than 64.
-    // A drift of the direction changes a product by 3 of the drift and of the two largest components, and one of the
-    // origin by 2 of it and of their sum.
+    // In units of 2^-53 of the product of the largest components: the error of a component of the cross product is 4 of
+    // its two terms, of the direction of a camera ray 3 and of the product 4. The components of the direction add up to
+    // at most 1.74. The error of the sum is thus 14 + 6 * 3 + 14 = 46, less than 64. A drift of the direction changes a
+    // product by 3 times the drift and the two largest components, and a drift of the origin by twice the drift and
+    // their sum.
     let error = 32.0 * f64::EPSILON + 3.0 * drift.dir;
     (error, 2.0 * drift.origin / error)
 }
 
-/// Tells whether the lines of all rays within a drift of one, extended both ways, pass every edge on the same side; `None`
-/// where that is open, or where rounding could have changed a sign.
+/// Tells whether the lines of all rays within a drift of one, extended both ways, pass all edges on the same side, or
+/// `None` if that is undecided, or if rounding could have changed a sign.
 ///
 /// For an edge that two triangles share, both compute the same number except for its sign.
 #[inline(always)]
@@ -58,8 +58,8 @@ pub(crate) fn passed(corners: [DVec3; 3], ray: &Ray, drift: RayError) -> Option<
     if is_inside | is_outside { Some(is_inside) } else { None }
 }
 
-/// Tells which of eight rays certainly miss a triangle, and which certainly pass through it, as [`passed`] does; 1 for
-/// those.
+/// Tells which of eight rays certainly miss a triangle, and which certainly cross it, like [`passed`]. 1 stands for
+/// such rays.
 #[inline(always)]
 pub(crate) fn passed_by_eight(
     corners: [DVec3; 3],
@@ -75,7 +75,7 @@ pub(crate) fn passed_by_eight(
         let sides = [a.cross(b).dot(dir), b.cross(c).dot(dir), c.cross(a).dot(dir)];
         let errors =
             [error * one * two + UNDERFLOW, error * two * three + UNDERFLOW, error * three * one + UNDERFLOW];
-        // Signs of differences, not comparisons, which the compiler would take one by one. Nothing is NaN, as
+        // Signs of differences replace comparisons, which the compiler would not vectorize. Nothing is NaN, because
         // coordinates are at most 1e152.
         let plus = |side: usize| (errors[side] - sides[side]).to_bits();
         let minus = |side: usize| (errors[side] + sides[side]).to_bits();

@@ -1,4 +1,4 @@
-//! Rays of a beam are hit where each alone is.
+//! Rays of a beam have the same hits as single rays.
 
 use super::*;
 use crate::geometry::frame::Frame;
@@ -9,7 +9,7 @@ use std::sync::Arc;
 use tabray_exact::formula::Formula;
 use tabray_exact::formula::field::Field;
 
-/// The half of the box.
+/// Half of the side of the box.
 const HALF: f64 = 3.0;
 
 struct Surface(Field);
@@ -38,7 +38,7 @@ fn shape(text: &str) -> ImplicitShape<Surface> {
     ImplicitShape { formula, degree: None, frame, low, high, parts: Parts::new(low, high), nodes: None }
 }
 
-/// Returns numbers from -0.5 to 0.5 that look random.
+/// Returns pseudorandom numbers from -0.5 to 0.5.
 fn numbers(seed: usize) -> impl Iterator<Item = f64> {
     (1..).map(move |step: usize| {
         let mixed = (step + 977 * seed).wrapping_mul(0x9E37_79B9_7F4A_7C15);
@@ -47,7 +47,7 @@ fn numbers(seed: usize) -> impl Iterator<Item = f64> {
     })
 }
 
-/// Compares the brackets of a beam's rays with those of each ray alone. Returns the distances of hits.
+/// Compares the brackets of a beam's rays with those of single rays. Returns the distances of the hits.
 fn compare(shape: &ImplicitShape<Surface>, rays: &[Ray; BEAM], ranges: &[RayRange; BEAM]) -> [f64; BEAM] {
     let (mut origin, mut dir) = (Vectors::<BEAM>::ZERO, Vectors::<BEAM>::ZERO);
     for (lane, ray) in rays.iter().enumerate() {
@@ -91,7 +91,7 @@ fn rays_of_a_beam_are_hit_where_each_alone_is() {
             let near = distances[0].min(14.0);
             compare(&shape, &rays, &[RayRange { near: near - 0.3 * size, ..RayRange::ALL }; BEAM]);
             compare(&shape, &rays, &[RayRange { far: near + 0.3 * size, ..RayRange::ALL }; BEAM]);
-            // Rays that start before and behind where they hit, as where a ball cuts a surface.
+            // Rays that start before or behind their hits, as where a ball cuts a surface.
             let beside = vector(1.0).abs();
             let starts = from_fn(|lane| {
                 let part = [-0.5, 0.1, 1.0, 3.0][lane % 4] * beside.x;
@@ -99,7 +99,7 @@ fn rays_of_a_beam_are_hit_where_each_alone_is() {
                 RayRange { near, ..RayRange::ALL }
             });
             compare(&shape, &rays, &starts);
-            // Rays from where these hit.
+            // Rays that start at these hits.
             let toward = vector(20.0);
             let leaving = |lane: usize| {
                 let origin = rays[lane].at(if distances[lane] < MISS { distances[lane] } else { near });

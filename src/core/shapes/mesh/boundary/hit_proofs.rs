@@ -1,6 +1,7 @@
-//! Proofs of where a line passes the boundary of the inside of a closed mesh.
+//! Proofs of where a line crosses the boundary of the inside of a closed mesh.
 //!
-//! A part of the boundary is a face: twice its index, plus 1 where the inside lies before the outer side of the face.
+//! A part of the boundary is a face. Its index is twice that of the face, plus 1 where the inside lies on the face's
+//! outer side.
 
 use super::Boundary;
 use crate::geometry::orientation::side_of_plane;
@@ -15,15 +16,15 @@ use tabray_exact::interval::Interval;
 use tabray_exact::scalar::dot;
 
 impl<A: Bounded> Boundary<A> {
-    /// Tells whether two faces lie in one plane: a line that passes both does so at the same place.
+    /// Tells whether two faces lie in one plane, where a line crosses both at the same place.
     fn are_in_plane(&self, one: usize, other: usize) -> bool {
         let plane = self.mesh.surface.corners(one);
         let is_in_it = |corner| side_of_plane(plane, corner) == Ordering::Equal;
         one == other || self.mesh.surface.corners(other).into_iter().all(is_in_it)
     }
 
-    /// Returns the winding number of the points just after a line's start, given all faces that the line may meet and the
-    /// part on which its true start lies, if it does; `None` where that is not certain.
+    /// Returns the winding number of the points just after a line's start, or `None` if it is uncertain. `met` are all
+    /// faces that the line may hit. If the line's exact start lies on the boundary, `leaves` is the part it lies on.
     fn winding_at_start<F: Precise>(
         &self,
         line: &Line<Interval<F>>,
@@ -44,7 +45,7 @@ impl<A: Bounded> Boundary<A> {
         known.or_else(|| surface.winding(line, met))
     }
 
-    /// Returns what is certain about where a line first passes the boundary with t > 0, and the part.
+    /// Returns the enclosure of a line's first crossing of the boundary with t > 0, and the part.
     fn first_along<F: Precise>(
         &self,
         line: &Line<Interval<F>>,
@@ -77,7 +78,7 @@ impl<A: Bounded> Boundary<A> {
                     return (*found, 2 * face + usize::from(*enters != (before == 0)));
                 }
             } else if before - count(false) <= 0 && before + count(true) >= 0 {
-                // In some order of these faces, the line may come to the outside between them, or leave it.
+                // In some order of these faces, the line may reach or leave the outside between them.
                 return doubtful;
             }
             (winding, left) = (after, beyond);
@@ -86,7 +87,7 @@ impl<A: Bounded> Boundary<A> {
     }
 }
 
-/// Returns the number of the first of some hits, in their order, that may be at the same place, or between others that may.
+/// Returns how many of the first hits, in order, may share a place, directly or through others between them.
 fn together<F: Precise>(met: &[Met<F>]) -> usize {
     let high = |((_, found), _): &Met<F>| match found {
         HitEnclosure::Hits(at) | HitEnclosure::Edge(at) => at.high,

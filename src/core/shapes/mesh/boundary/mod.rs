@@ -1,8 +1,8 @@
-//! The boundary of the inside of a closed mesh whose bodies overlap, touch or lie in each other. Solids and glass need
-//! it, because they pass from one side of a surface to the other.
+//! The boundary of the inside of a closed mesh whose bodies overlap, touch or contain each other. Solids and glass need
+//! it, because a ray that crosses it must change sides.
 //!
-//! A ray passes the boundary where the winding number changes from 0 or to 0. Faces in the same place that are turned
-//! against each other cancel.
+//! A ray crosses the boundary where the winding number changes from 0 or to 0. Faces in the same place with opposite
+//! orientations cancel.
 
 mod hit_proofs;
 
@@ -27,19 +27,19 @@ use tabray_exact::double_double::DoubleDouble;
 /// The distance from a face at which its two sides are examined, as a multiple of the rounding error of a point.
 const BESIDE: f64 = 256.0;
 
-/// The boundary of what lies inside of a closed mesh.
+/// The boundary of the inside of a closed mesh.
 struct Boundary<A> {
     mesh: Mesh<A>,
-    /// What lies before its faces.
+    /// The winding numbers before its faces.
     depths: Arc<[Depth]>,
 }
 
-/// Marks a shape whose hits are proven by counting the faces that a ray passes.
+/// Marks a shape with hits proven by counting the faces that a ray crosses.
 struct ByWinding;
 
 impl Surface {
-    /// Makes the shape of the boundary of a closed surface's inside; `None` where the boundary is the whole surface,
-    /// and for a surface that is not closed.
+    /// Makes the shape of the boundary of a closed surface's inside. Returns `None` if the boundary is the whole
+    /// surface, or if the surface is open.
     pub fn boundary(self: &Arc<Self>, accuracy: Accuracy) -> Option<AnyShape> {
         let depths = if self.is_closed() { self.depths()?.clone() } else { return None };
         Some(match accuracy {
@@ -69,13 +69,14 @@ impl<A: Bounded> Boundary<A> {
         self.mesh.surface.is_on_one_of::<A>(at, error, |face| !self.is_hidden(face))
     }
 
-    /// Tells whether a point lies inside, for one that lies on no face.
+    /// Tells whether a point that lies on no face lies inside.
     fn is_inside(&self, at: DVec3) -> bool {
         let ray = Ray { origin: at, dir: DIRECTIONS[0].normalize() };
         winding(&self.mesh.surface.passages::<A>(&ray, -1.0)) != 0
     }
 
-    /// Tells whether the points beside a point of a face lie inside, on its outer side and on its inner one.
+    /// Tells whether the points beside a point of a face lie inside, first on its outer side and then on its inner
+    /// side.
     fn sides(&self, face: usize, at: DVec3) -> [bool; 2] {
         if let Some(depth) = self.depths[face] {
             return [depth != 0, depth != -1];
@@ -85,8 +86,8 @@ impl<A: Bounded> Boundary<A> {
         [self.is_inside(at + step), self.is_inside(at - step)]
     }
 
-    /// Returns the face of the boundary that is nearest to a point. If several are equally near up to rounding, the
-    /// first face in the file that has the outside on one side only is returned.
+    /// Returns the face of the boundary nearest to a point. Of several faces that are equally near up to rounding, it
+    /// is the first in the file with the outside on one side only.
     fn face_at(&self, at: DVec3) -> usize {
         let nearest = self.mesh.surface.nearest_of(at, |face| !self.is_hidden(face));
         self.mesh.surface.first_of(nearest, at, |face| {
@@ -95,7 +96,7 @@ impl<A: Bounded> Boundary<A> {
         })
     }
 
-    /// Returns the place where a ray passes the boundary, given its distance in world units.
+    /// Returns the place where a ray crosses the boundary near a distance, in world units.
     fn turn_at(&self, ray: &Ray, distance: f64) -> Option<Turn> {
         let turns = self.mesh.surface.turns::<A>(ray, -1.0).into_iter();
         let away = |turn: &Turn| (turn.distance - distance).abs();
@@ -111,7 +112,7 @@ impl<A: Bounded> Hittable for Boundary<A> {
         } else if !self.mesh.can_hit_itself {
             return MISS;
         } else {
-            // As for the mesh, the ray starts at the nearest face.
+            // Like the mesh's own hits, the ray starts at the nearest face.
             let nearest = 2.0 * surface.nearest_of(ray.origin, |face| !self.is_hidden(face)).0;
             range.origin_error.max(ROUNDING * surface.max_coordinate()).max(nearest)
         };
@@ -119,7 +120,7 @@ impl<A: Bounded> Hittable for Boundary<A> {
         turns.map(|turn| range.keep(turn.distance)).find(|distance| *distance < MISS).unwrap_or(MISS)
     }
 
-    /// The normal of the nearest face, turned to the outside.
+    /// Returns the normal of the nearest face, pointing outside.
     fn normal(&self, at: DVec3) -> DVec3 {
         let face = self.face_at(at);
         let normal = self.mesh.surface.triangle::<A>(face).plane.normal;
@@ -159,7 +160,7 @@ impl<A: Bounded> Hittable for Boundary<A> {
     }
 
     fn search_cost(&self, _ray: &Ray, _origin_side: Option<Side>) -> u32 {
-        // To the end of the ray.
+        // The search goes to the end of the ray.
         2 * RAYS_PER_SEARCH
     }
 
@@ -180,8 +181,7 @@ impl<A: Bounded> Hittable for Boundary<A> {
     }
 }
 
-/// A ray of the camera that goes through an edge according to plain arithmetic is decided with the numbers of the
-/// scene.
+/// A camera ray that meets an edge in `f64` arithmetic is decided with the numbers of the scene.
 impl<A: Bounded> Bracketed for Boundary<A> {
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         let Aabb { low, high } = self.mesh.surface.bounds;
@@ -190,7 +190,7 @@ impl<A: Bounded> Bracketed for Boundary<A> {
         let is_on_surface = || self.is_on_surface(ray.origin, range.origin_error);
         by_distance(ray, range, is_on_surface, |range| {
             let distance = self.distance(ray, range);
-            // The winding number is counted from the end of the ray, unless the ray starts outside.
+            // Unless the ray starts outside, its winding number is counted from the end of the ray.
             let far = if is_outside && distance < MISS { distance + close(ray, distance) } else { MISS };
             (!is_from_camera || self.mesh.surface.is_off_edges(ray, far)).then_some(distance)
         })

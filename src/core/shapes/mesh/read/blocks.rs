@@ -1,4 +1,4 @@
-//! Lines of a text, and blocks of lines that are read on all cores.
+//! Lines of a text, and blocks of lines for reading on all cores.
 
 use super::model::ReadError;
 use crate::parallel;
@@ -6,14 +6,15 @@ use memchr::{memchr, memchr_iter, memrchr};
 use std::mem::replace;
 use std::ops::Add;
 
-/// The length of a block in bytes, about.
+/// The approximate length of a block in bytes.
 const BLOCK: usize = 1 << 17;
 
-/// The number of blocks for each thread that are read before their contents are put together: few, so that little is
-/// held twice.
+/// The number of blocks for each thread that are read before their contents are merged. It is small, because these
+/// contents are held twice.
 const BLOCKS_PER_THREAD: usize = 2;
 
-/// Cuts a text into blocks of whole lines. A block does not end with a line that `continues` in the next one.
+/// Cuts a text into blocks of whole lines. The last line of a block does not continue in the next block, as `continues`
+/// tells.
 struct Blocks<'b> {
     rest: &'b [u8],
     continues: fn(&[u8]) -> bool,
@@ -38,8 +39,8 @@ impl<'b> Iterator for Blocks<'b> {
     }
 }
 
-/// Reads a text block by block, some at a time on all cores: `count` counts something in a block, `read` reads a block,
-/// given how much was counted before it, and `take` gets what was read, in the order of the text.
+/// Reads a text block by block on all cores. `count` counts elements in a block, `read` reads a block, given the count
+/// before it, and `take` receives the results in the order of the text.
 pub(super) fn read<T: Send, C: Add<Output = C> + Copy + Default + Send + Sync>(
     text: &[u8],
     continues: fn(&[u8]) -> bool,
@@ -88,15 +89,15 @@ pub(super) fn lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
     })
 }
 
-/// Tells whether a byte is white space; a vertical tab is, too.
+/// Tells whether a byte is white space, including a vertical tab.
 pub(super) fn is_blank(byte: &u8) -> bool {
     matches!(byte, b' ' | b'\t'..=b'\r')
 }
 
-/// The words of a text, between blanks.
+/// The words of a text, separated by white space.
 #[derive(Clone)]
 pub(super) struct Words<'w> {
-    /// What comes after the last word.
+    /// The text after the last word that was returned.
     pub rest: &'w [u8],
 }
 
@@ -118,7 +119,7 @@ pub(super) fn words(text: &[u8]) -> Words<'_> {
     Words { rest: text }
 }
 
-/// Turns carriage returns that stand alone, as old programs write them, into line ends.
+/// Replaces single carriage returns, the line ends of old programs, with newlines.
 pub(super) fn end_lines(text: &mut [u8]) {
     let mut at = 0;
     while let Some(next) = memchr(b'\r', &text[at..]) {

@@ -1,32 +1,32 @@
-//! Materials of a file, as far as they are shown.
+//! Materials of a file, as far as they are rendered.
 
 use crate::world::material::Rgb;
 use crate::world::texture::Texture;
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
-/// An image on a surface, by its texture coordinates. Beyond 0 and 1, it repeats.
+/// An image on a surface, by texture coordinates. Outside of 0 to 1, the image repeats.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
     /// The image.
     pub texture: Arc<Texture>,
-    /// What texture coordinates are multiplied by.
+    /// The factor of the texture coordinates.
     pub scale: DVec2,
-    /// What is added to them then.
+    /// The offset of the scaled texture coordinates.
     pub offset: DVec2,
 }
 
-/// Where a surface is not there.
+/// A mask that cuts holes into a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mask {
-    /// The image that gives the opacity of the surface; without an image, the surface is opaque everywhere.
+    /// The image with the opacity of the surface. Without an image, the surface is opaque.
     map: Option<Map>,
-    /// How far it must be opaque to be there.
+    /// The minimum opacity outside of holes.
     least: f64,
 }
 
 impl Mask {
-    /// Makes a mask from an image and the least opacity at which the surface is there; `None` where nothing is cut out.
+    /// Makes a mask from an image and the minimum opacity outside of holes, or `None` if there are no holes.
     pub fn new(map: Option<Map>, least: f64) -> Option<Self> {
         let [width, height] = map.as_ref().map_or([1, 1], |map| map.texture.size());
         let mask = Self { map, least };
@@ -44,7 +44,7 @@ impl Mask {
         }
     }
 
-    /// Tells whether a surface is not there. `place` returns where in an image, in texels.
+    /// Tells whether a point is in a hole. `place` returns its position in an image, in texels.
     pub fn cuts_out(&self, place: impl FnOnce(&Map) -> Option<DVec2>) -> bool {
         let blended = |map: &Map| {
             let opacity = |column, row| DVec3::splat(self.opacity(column, row));
@@ -57,17 +57,17 @@ impl Mask {
 /// A material of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finish {
-    /// The colour, or the factor of that of the image.
+    /// The colour, or the factor of the image's colours.
     pub colour: Rgb,
-    /// The image of its colours.
+    /// The image of the colours.
     pub colours: Option<Map>,
-    /// The part of the colour that is mirrored, not scattered.
+    /// The fraction of the colour that is reflected as by a mirror, not scattered.
     pub metal: f64,
-    /// What is mirrored beside that.
+    /// The further mirror reflectivity.
     pub specular: Rgb,
-    /// The light that it emits, or the factor of that of the image.
+    /// The emitted light, or the factor of the image's light.
     pub emission: Rgb,
-    /// The image of the light that it emits.
+    /// The image of the emitted light.
     pub emissions: Option<Map>,
     /// The normal map, and the factor of its slopes.
     pub normals: Option<(Map, f64)>,
@@ -75,7 +75,7 @@ pub struct Finish {
     pub shininess: f64,
     /// The fraction of light that passes through.
     pub transparency: f64,
-    /// Where it is cut out.
+    /// The mask with the holes of the surface.
     pub mask: Option<Mask>,
 }
 
@@ -97,14 +97,14 @@ impl Default for Finish {
 }
 
 impl Finish {
-    /// Returns the images that it shows.
+    /// Returns the images of the material.
     pub fn maps(&self) -> impl Iterator<Item = &Map> {
         let normals = self.normals.iter().map(|(map, _)| map);
         let masks = self.mask.iter().flat_map(|mask| &mask.map);
         self.colours.iter().chain(&self.emissions).chain(normals).chain(masks)
     }
 
-    /// Passes on all that it shows, as bytes.
+    /// Calls a function with the contents of the material, as bytes.
     pub fn bytes_of(&self, each: &mut dyn FnMut(&[u8])) {
         let Self { colour, metal, specular, emission, shininess, transparency, .. } = self;
         let colours = [colour, specular, emission].into_iter().flat_map(|colour| colour.to_array());
@@ -124,8 +124,8 @@ impl Finish {
         }
     }
 
-    /// Makes a metal from the fraction of the colour that a metal of this roughness mirrors. A rough metal mirrors
-    /// nothing clearly, and is shown as if it scattered the rest.
+    /// Sets the mirrored fraction of the colour for a metal of this roughness. A rough metal gives no clear mirror
+    /// images, and the rest of its light is rendered as scattered.
     pub fn forge(&mut self, metal: f64, roughness: f64) {
         let smoothness = 1.0 - roughness.clamp(0.0, 1.0);
         self.metal = metal.clamp(0.0, 1.0) * smoothness * smoothness;

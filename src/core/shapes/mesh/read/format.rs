@@ -1,10 +1,10 @@
-//! The formats of meshes, told apart by how files begin.
+//! Formats of mesh files, recognised by the beginnings of the files.
 
 use super::blocks::{self, words};
 use super::{gltf, obj, ply, stl};
 use memchr::memmem;
 
-/// A format that is read.
+/// A supported format.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Format {
     Obj,
@@ -13,7 +13,7 @@ pub(super) enum Format {
     Gltf,
 }
 
-/// How other files begin, what they are, and what to do about them.
+/// The beginnings of other files, with what they are and what to do about them.
 const OTHERS: [(&[u8], &str); 16] = [
     (b"\x1f\x8b", "it is compressed with gzip: decompress it first"),
     (b"BZh", "it is compressed with bzip2: decompress it first"),
@@ -40,8 +40,7 @@ const OTHERS: [(&[u8], &str); 16] = [
 ];
 
 impl Format {
-    /// Recognises the format of a file by its beginning or, where the beginning does not tell, by the ending of its
-    /// name in lower case.
+    /// Recognises the format of a file by its beginning, or else by the extension of its name, in lower case.
     pub fn of(bytes: &[u8], ending: &str) -> Result<Self, String> {
         let first = words(&bytes[..bytes.len().min(1 << 10)]).next().unwrap_or_default();
         if first.is_empty() && bytes.len() < 1 << 10 {
@@ -88,7 +87,7 @@ impl Format {
         }
     }
 
-    /// Says why a file without faces has none.
+    /// Returns the reason why a file has no faces.
     pub fn without_faces(self, bytes: &[u8], vertices: usize) -> String {
         match self {
             Self::Obj => obj::without_faces(bytes),
@@ -99,7 +98,7 @@ impl Format {
     }
 }
 
-/// Tells whether a text has two bytes for each letter, with a byte order mark or in plain English.
+/// Tells whether a text has two bytes for each character: it has a byte order mark, or begins with ASCII characters.
 fn is_utf_16(bytes: &[u8]) -> bool {
     let begins = bytes.get(..8).unwrap_or_default();
     let is_wide = |zero: usize| {
@@ -110,13 +109,13 @@ fn is_utf_16(bytes: &[u8]) -> bool {
     begins.starts_with(b"\xff\xfe") || begins.starts_with(b"\xfe\xff") || is_wide(0) || is_wide(1)
 }
 
-/// Tells whether a file is a GLB, or JSON of a glTF.
+/// Tells whether a file is a GLB, or the JSON of a glTF.
 fn is_gltf(bytes: &[u8]) -> bool {
     let is_json = bytes.trim_ascii_start().starts_with(b"{");
     bytes.starts_with(gltf::MAGIC) || is_json && memmem::find(bytes, b"\"asset\"").is_some()
 }
 
-/// Tells whether the first line of a text that is not a comment begins with a word of OBJ.
+/// Tells whether the first line of a text other than comments begins with a keyword of OBJ.
 fn is_obj(bytes: &[u8]) -> bool {
     const WORDS: [&[u8]; 9] = [b"v", b"vn", b"vt", b"f", b"o", b"g", b"s", b"mtllib", b"usemtl"];
     let mut firsts = blocks::lines(bytes).take(1000).filter_map(|line| words(line).next());

@@ -32,17 +32,16 @@ use bytesize::ByteSize;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// The message about a file without normals, if they are wanted.
+/// The message about a file without normals, if normals are wanted.
 pub const NO_NORMALS: &str = "has a file without normals";
 
-/// The message about a file without materials and colours, if they are wanted.
+/// The message about a file without materials and colours, if these are wanted.
 pub const NO_LOOKS: &str = "has a file without materials and colours";
 
-/// Reads a file: its triangles, and what else is wanted. The format is recognised by the beginning of the file or,
-/// where that does not tell, by the ending of its name. Takes no more memory than this many bytes, roughly.
+/// Reads the triangles of a file, and the wanted attributes. Recognises the format by the beginning of the file, or
+/// else by the extension of its name. Takes roughly at most `memory` bytes.
 ///
-/// # Errors
-/// Returns what is wrong, and where.
+/// # Errors Returns the error, with its place in the file.
 pub fn read(path: &Path, wanted: Wanted, memory: u64) -> Result<Model, ReadError> {
     let cannot = |error: io::Error| {
         let is_missing = error.kind() == io::ErrorKind::NotFound;
@@ -69,9 +68,9 @@ pub fn read(path: &Path, wanted: Wanted, memory: u64) -> Result<Model, ReadError
     model(bytes, &ending, folder, &budget)
 }
 
-/// Reads the bytes of a file in a folder, whose name has this ending, in lower case.
+/// Reads the bytes of a file in a folder. `ending` is the extension of the file's name, in lower case.
 fn model(mut bytes: Vec<u8>, ending: &str, folder: &Path, budget: &MemoryBudget) -> Result<Model, ReadError> {
-    // A byte order mark is no part of a text.
+    // A byte order mark is not part of a text.
     let start = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
     let bytes = &mut bytes[start..];
     let format = Format::of(bytes, ending).map_err(ReadError::file)?;

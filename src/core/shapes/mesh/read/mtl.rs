@@ -14,10 +14,10 @@ use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The longest material file, in bytes.
+/// The maximum length of a material file, in bytes.
 const LONGEST: u64 = 1 << 26;
 
-/// The words of a material that are used, and those that do not affect how it looks here: ambient light is the scene's.
+/// The keywords of a material that are used, or that do not affect its appearance here: ambient light is the scene's.
 const KNOWN: [&str; 21] = [
     "newmtl",
     "illum",
@@ -42,23 +42,23 @@ const KNOWN: [&str; 21] = [
     "sharpness",
 ];
 
-/// What was found in material files.
+/// The contents of material files.
 #[derive(Default)]
 struct Found {
     finishes: BTreeMap<String, Finish>,
-    /// The words that are not shown.
+    /// The keywords that are not rendered.
     unseen: BTreeSet<String>,
-    /// What is wrong in lines.
+    /// The places of errors.
     wrong: Vec<String>,
 }
 
-/// Reads the material files that an OBJ names, with its lines, and gives the model's materials their looks.
+/// Reads the material files that an OBJ names in the given lines, and sets the appearances of the model's materials.
 pub fn furnish(model: &mut Model, libraries: &[(Vec<u8>, usize)], folder: &Path, budget: &MemoryBudget) {
     let mut found = Found::default();
     let (mut textures, mut missing) = (Textures::new(folder, budget), Vec::new());
     for (names, line) in libraries {
         for name in named(names, folder) {
-            // A file that is not where its name leads is looked for beside the model.
+            // A file that is not at its path is looked for beside the model.
             let (whole, beside) =
                 (folder.join(&name), folder.join(Path::new(&name).file_name().unwrap_or_default()));
             let path = if !whole.is_file() && beside.is_file() { beside } else { whole };
@@ -94,10 +94,10 @@ pub fn furnish(model: &mut Model, libraries: &[(Vec<u8>, usize)], folder: &Path,
     textures.finish(model);
 }
 
-/// The most words of a name with blanks.
+/// The maximum number of words in a name with blanks.
 const MOST_WORDS: usize = 16;
 
-/// Returns the names that follow `mtllib`. Words with blanks between them are one name if a file of that name exists.
+/// Returns the names that follow `mtllib`. Several words form one name if a file with that name exists.
 fn named(names: &[u8], folder: &Path) -> Vec<String> {
     let words = words(names)
         .take_while(|word| *word != b"#")
@@ -131,7 +131,7 @@ fn text_of(path: &Path) -> Result<Vec<u8>, String> {
     }
 }
 
-/// What a material says whose meaning depends on what else it says.
+/// The properties of a material as written. Their meaning depends on each other.
 #[derive(Default)]
 struct Raw {
     finish: Finish,
@@ -144,7 +144,7 @@ struct Raw {
 }
 
 impl Found {
-    /// Reads the text of a material file of this name.
+    /// Reads the text of a material file with this name.
     fn read(&mut self, bytes: &[u8], file: &str, textures: &mut Textures) {
         let mut current: Option<(String, Raw)> = None;
         for (index, line) in blocks::lines(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)).enumerate() {
@@ -159,7 +159,7 @@ impl Found {
                 current = Some((material(line), Raw::default()));
             } else if let Some((_, raw)) = &mut current {
                 if !KNOWN.contains(&keyword) {
-                    // Other words may be names of other programs.
+                    // Other words may be names from other programs.
                     self.unseen.insert(text::abridged(keyword).into_owned());
                 } else if raw.read(keyword, words, &place, textures, &mut self.unseen).is_none() {
                     self.wrong.push(place);
@@ -169,7 +169,7 @@ impl Found {
         self.add(current);
     }
 
-    /// Adds a material; of several of one name, the first is meant.
+    /// Adds a material. Of several with the same name, the first counts.
     fn add(&mut self, material: Option<(String, Raw)>) {
         let Some((name, raw)) = material else { return };
         let finish = raw.finish(&mut self.unseen);
@@ -178,7 +178,7 @@ impl Found {
 }
 
 impl Raw {
-    /// Reads what follows a word; `None` where that makes no sense.
+    /// Reads the values of a keyword, or returns `None` if they make no sense.
     fn read(
         &mut self,
         keyword: &str,
@@ -211,7 +211,7 @@ impl Raw {
             }
             "map_Bump" | "map_bump" | "bump" | "norm" => {
                 let bumps = map(words, place, textures)?;
-                // Programs write normal maps, too, as what the format means for heights.
+                // Programs also write normal maps where the format expects heights.
                 if bumps.as_ref().is_some_and(|(map, _)| keyword != "norm" && is_grey(&map.texture)) {
                     unseen.insert(format!("{keyword} (an image of heights)"));
                 } else {
@@ -223,11 +223,11 @@ impl Raw {
         Some(())
     }
 
-    /// Returns the look of the material, and tells what of it is not shown.
+    /// Returns the appearance of the material, and adds properties that are not rendered to `unseen`.
     fn finish(self, unseen: &mut BTreeSet<String>) -> Finish {
         let Self { mut finish, illumination, mirror, shininess, roughness, metal, has_index } = self;
         if finish.colours.is_some() && finish.colour == Rgb::ZERO {
-            // Some programs write black where an image gives the colours.
+            // Some programs write black if an image gives the colours.
             finish.colour = Rgb::ONE;
         }
         if finish.emissions.is_some() && finish.emission == Rgb::ZERO {
@@ -240,7 +240,7 @@ impl Raw {
             }
         };
         match mirror {
-            // The models from 3 on are those with mirror images.
+            // Illumination models from 3 on have mirror images.
             Some(mirror) if illumination >= 3.0 => (finish.specular, finish.shininess) = (mirror, shininess),
             _ => hide(
                 mirror.is_some_and(|mirror| mirror != Rgb::ZERO),
@@ -257,7 +257,7 @@ fn number(words: &mut Words) -> Option<f64> {
     number.is_finite().then_some(number)
 }
 
-/// Reads a colour of three numbers, or of one for all.
+/// Reads a colour of three numbers, or one number for all channels.
 fn colour(mut words: Words) -> Option<Rgb> {
     let red = number(&mut words)?;
     let colour = match words.clone().next() {
@@ -267,8 +267,8 @@ fn colour(mut words: Words) -> Option<Rgb> {
     Some(colour.clamp(Rgb::ZERO, Rgb::splat(1e6)))
 }
 
-/// Reads the options and the name of an image, and the factor of its bumps. `None` where there is no name; an image that
-/// cannot be read is told by the others.
+/// Reads the options and the name of an image, and the factor of its bumps. Returns `None` without a name, and
+/// `Some(None)` for an image that cannot be read.
 fn map(mut words: Words, place: &str, textures: &mut Textures) -> Option<Option<(Map, f64)>> {
     let (mut scale, mut offset, mut bumps) = (DVec2::ONE, DVec2::ZERO, 1.0);
     loop {
@@ -298,7 +298,7 @@ fn map(mut words: Words, place: &str, textures: &mut Textures) -> Option<Option<
         }
         words = ahead;
     }
-    // A name may have blanks and a `#`; one between blanks begins a comment.
+    // A name may contain blanks and a `#`. A `#` between blanks begins a comment.
     let mut after = blocks::words(words.rest);
     let is_comment = after.find(|word| *word == b"#").is_some();
     let end = if is_comment { words.rest.len() - after.rest.len() - 1 } else { words.rest.len() };
@@ -307,7 +307,7 @@ fn map(mut words: Words, place: &str, textures: &mut Textures) -> Option<Option<
     Some(texture.map(|texture| (Map { texture, scale, offset }, bumps)))
 }
 
-/// Tells whether an image has no colours.
+/// Tells whether an image is grey.
 fn is_grey(texture: &Arc<Texture>) -> bool {
     let [width, height] = texture.size();
     let mut texels = (0..height).flat_map(|row| (0..width).map(move |column| [column, row]));
@@ -317,7 +317,7 @@ fn is_grey(texture: &Arc<Texture>) -> bool {
     })
 }
 
-/// Returns the name that follows `usemtl` or `newmtl`. The name may contain a `#`, as in `Material #25`; a `#` between
+/// Returns the name that follows `usemtl` or `newmtl`. The name may contain a `#`, as in `Material #25`. A `#` between
 /// blanks begins a comment.
 pub(super) fn material(line: &[u8]) -> String {
     let name = words(line).skip(1).take_while(|word| *word != b"#");

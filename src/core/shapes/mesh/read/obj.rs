@@ -1,5 +1,5 @@
-//! Wavefront OBJ: vertices, faces, the names of their materials, and normals, texture coordinates and colours where they are
-//! wanted. All else is ignored.
+//! Wavefront OBJ: vertices, faces, the names of their materials and, if wanted, normals, texture coordinates and
+//! colours. Other contents are ignored.
 
 use super::at_corners::{AtCorners, Attributes, NO_VALUE};
 use super::blocks::{self, Words, words};
@@ -16,7 +16,7 @@ use std::ops::Add;
 use std::path::Path;
 use std::sync::Arc;
 
-/// What the lines `v`, `vt` and `vn` are, one and several.
+/// The elements of the lines `v`, `vt` and `vn`, in singular and plural.
 const NAMES: [[&str; 2]; 3] = [["vertex", "vertices"], ["`vt`", "`vt`"], ["`vn`", "`vn`"]];
 
 /// The numbers of lines `v`, `vt` and `vn`.
@@ -31,25 +31,25 @@ impl Add for Counts {
     }
 }
 
-/// What a block of a file holds.
+/// The contents of a block of a file.
 #[derive(Default)]
 struct Part {
     vertices: Vec<DVec3>,
     faces: Vec<[u32; 3]>,
     polygons: Polygons,
-    /// The names of materials, each with the number of the block's triangles before it and its line; an empty name
+    /// The names of materials, each with the number of the block's triangles before it and its line. An empty name
     /// stands for the mesh's own material.
     uses: Vec<(usize, String, usize)>,
-    /// What follows `mtllib`, and its line.
+    /// The names after `mtllib`, and their line.
     libraries: Vec<(Vec<u8>, usize)>,
     attributes: Attributes,
-    /// The colours of vertices as they are written, up to the last vertex with a colour; NaN for a vertex without one.
+    /// The colours of vertices as written, up to the last vertex with a colour, or NaN for a vertex without one.
     colours: Vec<[f32; 3]>,
-    /// For each of `v`, `vt` and `vn`, the largest number of an element that comes after a face that refers to it, and
-    /// the line.
+    /// For each of `v`, `vt` and `vn`, the largest index that a face refers to ahead of its element, and the line of
+    /// the face.
     ahead: [Option<(u32, usize)>; 3],
     lines: usize,
-    /// The first fault, with its line.
+    /// The first error, with its line.
     fault: Option<(usize, String)>,
 }
 
@@ -78,7 +78,7 @@ pub fn read(bytes: &[u8], folder: &Path, budget: &MemoryBudget) -> Result<Model,
         }
         libraries.extend(part.libraries.into_iter().map(|(names, number)| (names, line + number)));
         for (faces, name, number) in part.uses {
-            // Faces so far without a material keep none.
+            // Faces before the first material have none.
             model.slots.resize(before + faces, slot);
             if name.is_empty() {
                 slot = 0;
@@ -106,7 +106,7 @@ pub fn read(bytes: &[u8], folder: &Path, budget: &MemoryBudget) -> Result<Model,
     let Attributes { normals, uv, .. } = &model.attributes;
     let counts = [model.vertices.len(), uv.values.len(), normals.values.len()];
     for ((ahead, count), [name, _]) in ahead.into_iter().zip(counts).zip(NAMES) {
-        // Some programs refer to normals or texture coordinates in files that have none at all.
+        // Some programs refer to normals or texture coordinates in files without any.
         let is_told = count > 0 || name == NAMES[0][0];
         let mut ahead = ahead.into_iter().filter(|_| is_told);
         if let Some((index, line)) = ahead.find(|(index, _)| *index as usize >= count) {
@@ -126,11 +126,11 @@ pub fn read(bytes: &[u8], folder: &Path, budget: &MemoryBudget) -> Result<Model,
     Ok(model)
 }
 
-/// The colour of a vertex that has none.
+/// The colour of a vertex without one.
 const NO_COLOUR: [f32; 3] = [f32::NAN; 3];
 
-/// Returns the light that the colours of vertices stand for, as bytes of an image do: colours are from 0 to 1 or, if
-/// any number is above 1, from 0 to 255. A vertex without a colour is white.
+/// Converts the colours of vertices to light, like the bytes of an image. Colours are from 0 to 1 or, if any number is
+/// above 1, from 0 to 255. A vertex without a colour is white.
 fn lights(mut colours: Vec<[f32; 3]>, display: Display) -> Vec<[f32; 3]> {
     let greatest = colours.iter().flatten().fold(0.0, |most: f32, channel| most.max(*channel));
     let bytes = if greatest > 1.0 { 1.0 } else { 255.0 };
@@ -141,7 +141,7 @@ fn lights(mut colours: Vec<[f32; 3]>, display: Display) -> Vec<[f32; 3]> {
     colours
 }
 
-/// Says why a file without faces has none.
+/// Returns the reason why a file has no faces.
 pub fn without_faces(bytes: &[u8]) -> String {
     let of = |known: &[&str]| {
         let mut words = blocks::lines(bytes).filter_map(|line| words(line).next());
@@ -159,13 +159,13 @@ pub fn without_faces(bytes: &[u8]) -> String {
     }
 }
 
-/// Tells whether a line goes on in the next one: it ends with a backslash that is not in a comment.
+/// Tells whether a line continues in the next one: it ends with a backslash outside of a comment.
 fn continues(line: &[u8]) -> bool {
     line.strip_suffix(b"\r").unwrap_or(line).ends_with(b"\\") && memchr(b'#', line).is_none()
 }
 
-/// Calls `each` with the number of every line, from 1, and the line, until that fails. Continued lines count as one
-/// line, without a comment. Returns the number of lines.
+/// Calls `each` with the number of each line, from 1, and the line, until an error. Continued lines count as one line,
+/// without a comment. Returns the number of lines.
 fn each_line<'b, E>(
     block: &'b [u8],
     mut each: impl FnMut(usize, Cow<'b, [u8]>) -> Result<(), E>,
@@ -193,7 +193,7 @@ fn each_line<'b, E>(
     Ok(count)
 }
 
-/// Counts a block's lines `v`, `vt` and `vn`.
+/// Counts the lines `v`, `vt` and `vn` of a block.
 fn counts(block: &[u8]) -> Counts {
     let (mut counts, mut is_continued) = (Counts::default(), false);
     for line in blocks::lines(block) {
@@ -210,7 +210,7 @@ fn counts(block: &[u8]) -> Counts {
 }
 
 impl Part {
-    /// Reads a block with so much before it, up to the first fault.
+    /// Reads a block up to the first error, given the counts before it.
     fn read(block: &[u8], before: Counts, budget: &MemoryBudget) -> Self {
         let (mut part, mut counts) = (Self::default(), before);
         let mut corners = Default::default();
@@ -257,7 +257,7 @@ impl Part {
             Some(b"vt") => {
                 counts[1] += 1;
                 if wanted.materials.is_some() {
-                    // A texture may have one coordinate, or a third.
+                    // A texture coordinate may have one, two or three components.
                     let [u, v] = [part(&mut words)?, part(&mut words).unwrap_or(0.0)];
                     uv.values.push([u, v]);
                 }
@@ -313,15 +313,15 @@ fn after_first_word(line: &[u8]) -> &[u8] {
     words.rest
 }
 
-/// Reads a number that may be NaN, which some programs write where they divide by 0.
+/// Reads a number, which may be NaN: some programs divide by 0.
 fn part(words: &mut Words) -> Result<f32, String> {
     let word = words.next().ok_or("a number is missing")?;
     let number = str::from_utf8(word).ok().and_then(|word| word.parse().ok());
     number.ok_or_else(|| format!("`{}` is not a number", shown(word)))
 }
 
-/// Reads one of the parts of a corner of a face, `vertex/texture/normal`, each of which counts from 1, or backward from
-/// -1 for the last element so far. Elements may come after the faces that refer to them.
+/// Reads an index of a face's corner, `vertex/texture/normal`. Indices count from 1, or backward from -1, the last
+/// element so far. Elements may come after the faces that refer to them.
 fn index(word: &[u8], part: &[u8], counts: &[usize; 3], of: usize) -> Result<u32, String> {
     let (count, [one, several]) = (counts[of], NAMES[of]);
     let index: Option<i64> = str::from_utf8(part).ok().and_then(|part| part.parse().ok());

@@ -1,4 +1,4 @@
-//! PLY, in text and in bytes of either order.
+//! PLY, as text and as bytes of either order.
 
 use super::at_corners::{AtCorners, Attributes};
 use super::model::{MemoryBudget, Model, ReadError, Wanted};
@@ -15,7 +15,7 @@ pub fn read(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
         Encoding::BigEndian => ply_bytes::read::<true>(bytes, rest, &sections, budget),
     }?;
     polygons.cut(&mut model);
-    // So far, they are those of vertices.
+    // Until here, the attributes are those of vertices.
     let Attributes { normals, uv, colours } = take(&mut model.attributes);
     model.attributes = Attributes {
         normals: AtCorners::of_vertices(normals.values, &model.faces),

@@ -1,4 +1,4 @@
-//! The elements of a PLY in bytes of either order.
+//! The elements of a PLY as bytes of either order.
 
 use super::at_corners::Attributes;
 use super::model::{ENDS_EARLY, MemoryBudget, Model, ReadError};
@@ -7,7 +7,7 @@ use super::polygons::Polygons;
 use crate::parallel;
 use glam::DVec3;
 
-/// Reads the elements after the header of a file; the highest byte comes first if `BIG`.
+/// Reads the elements after the header of a file. If `BIG`, numbers are big-endian.
 pub(super) fn read<const BIG: bool>(
     file: &[u8],
     mut rest: &[u8],
@@ -95,7 +95,7 @@ pub(super) fn read<const BIG: bool>(
     Ok((model, polygons))
 }
 
-/// Takes so many bytes; `None` where there are fewer.
+/// Takes `count` bytes, or returns `None` if there are fewer.
 fn take<'b>(rest: &mut &'b [u8], count: usize) -> Option<&'b [u8]> {
     let (taken, after) = rest.split_at_checked(count)?;
     *rest = after;
@@ -103,13 +103,13 @@ fn take<'b>(rest: &mut &'b [u8], count: usize) -> Option<&'b [u8]> {
 }
 
 impl Section {
-    /// Returns the length of an element in bytes, if all have the same.
+    /// Returns the length of an element in bytes, if all elements have the same.
     fn size(&self) -> Option<usize> {
         let length = |field: &Field| match *field {
             Field::Number(number) | Field::Vertex(_, number) => Some(number.size()),
             Field::List(..) | Field::Corners(..) => None,
         };
-        // Elements without properties have no length; there are none of them.
+        // An element without properties has no length.
         self.fields.iter().map(length).sum::<Option<usize>>().filter(|size| *size > 0)
     }
 

@@ -1,4 +1,4 @@
-//! Headers of PLY files: the elements of a file, and what is read of each.
+//! Headers of PLY files: the elements of a file, and their properties that are read.
 
 use super::at_corners::Attributes;
 use super::blocks::{is_blank, words};
@@ -8,10 +8,10 @@ use glam::DVec3;
 use memchr::memchr;
 use std::ops::Range;
 
-/// The names that programs give to the corners of faces.
+/// The names of the property with the corners of a face, as different programs write it.
 const CORNERS: [&str; 3] = ["vertex_indices", "vertex_index", "vertex_indexes"];
 
-/// The names that programs give to the numbers of a vertex, in their order.
+/// The names of the numbers of a vertex, in their order.
 const NUMBERS: [&[&str]; NUMBERS_OF_VERTEX] = [
     &["x"],
     &["y"],
@@ -26,25 +26,25 @@ const NUMBERS: [&[&str]; NUMBERS_OF_VERTEX] = [
     &["t", "v", "texture_v"],
 ];
 
-/// Which of the numbers of a vertex are its coordinates, its normal, its colour and its texture coordinates.
+/// The ranges of a vertex's coordinates, normal, colour and texture coordinates among its numbers.
 const COORDINATES: Range<usize> = 0..3;
 const NORMAL: Range<usize> = 3..6;
 const COLOUR: Range<usize> = 6..9;
 const UV: Range<usize> = 9..11;
 
-/// The brightest light of a colour: beyond, products of colours may overflow.
+/// The maximum light of a colour. Products of larger ones may overflow.
 const MOST_LIGHT: f64 = 1e6;
 
-/// How many numbers of a vertex are read.
+/// The number of numbers that are read of a vertex.
 const NUMBERS_OF_VERTEX: usize = 11;
 
 /// The numbers of a vertex.
 pub(super) type Vertex = [f64; NUMBERS_OF_VERTEX];
 
-/// The longest header, in bytes.
+/// The maximum length of a header, in bytes.
 const LONGEST_HEADER: usize = 1 << 20;
 
-/// How the elements of a file are written.
+/// The encoding of the elements of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Encoding {
     Ascii,
@@ -55,9 +55,9 @@ pub(super) enum Encoding {
 /// The type of a number.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Number {
-    /// A whole number of so many bytes, from a negative one upward.
+    /// A signed integer of this many bytes.
     Signed(usize),
-    /// A whole number of so many bytes, from 0 upward.
+    /// An unsigned integer of this many bytes.
     Unsigned(usize),
     Float,
     Double,
@@ -80,7 +80,7 @@ impl Number {
         })
     }
 
-    /// Returns the greatest whole number that is one, as a colour counts to it.
+    /// Returns the integer that stands for 1 in a colour.
     fn greatest(self) -> Option<f64> {
         match self {
             Self::Signed(size) | Self::Unsigned(size) => Some(((1_u64 << (8 * size.min(4))) - 1) as f64),
@@ -103,20 +103,20 @@ impl Number {
     }
 }
 
-/// The part of a property that is read. An element has its properties one after the other.
+/// A property of an element. An element has its properties one after the other.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Field {
-    /// This one of the numbers of a vertex.
+    /// A number of a vertex, by its index.
     Vertex(usize, Number),
-    /// The corners of a face: the type of their number, and their own.
+    /// The corners of a face: the types of their count, and of their indices.
     Corners(Number, Number),
-    /// A number that is not needed.
+    /// An unused number.
     Number(Number),
-    /// A list that is not needed: the type of its length, and of its numbers.
+    /// An unused list: the types of its length, and of its values.
     List(Number, Number),
 }
 
-/// The elements of a name, as the header describes them.
+/// The elements with one name, as the header describes them.
 #[derive(Debug)]
 pub(super) struct Section {
     name: String,
@@ -125,21 +125,21 @@ pub(super) struct Section {
     pub kind: Kind,
     /// The number of vertices in the file.
     pub vertices: usize,
-    /// What is read beside triangles.
+    /// The wanted contents beside triangles.
     wanted: Wanted,
 }
 
-/// The elements that are read; others are skipped.
+/// The kinds of elements that are read. Others are skipped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Kind {
     Vertex,
     Face,
-    /// Strips of triangles: each corner makes one with the two before it. A negative number ends a strip.
+    /// Strips of triangles. Each corner forms a triangle with the two before it, and a negative number ends a strip.
     Strips,
     Other,
 }
 
-/// A header, and what comes after it.
+/// A header, and the rest of the file.
 pub(super) struct Header<'h> {
     pub encoding: Encoding,
     pub sections: Vec<Section>,
@@ -163,10 +163,11 @@ pub(super) fn uv(vertex: &Vertex) -> [f32; 2] {
     [0, 1].map(|axis| vertex[UV.start + axis] as f32)
 }
 
-/// Reads the header. Lines that begin with words unknown to PLY count as comments; some programs write such lines.
+/// Reads the header. Lines that begin with words unknown to PLY, which some programs write, count as comments.
 pub(super) fn header(bytes: &[u8], wanted: Wanted) -> Result<Header<'_>, ReadError> {
     let first = &bytes[..bytes.len().min(LONGEST_HEADER)];
-    // Lines end as the first one does: with a carriage return alone only if that does, since bytes may follow.
+    // All lines end like the first one. Only if that has a single carriage return, a carriage return ends a line,
+    // because bytes may follow.
     let end = match first.iter().position(|byte| matches!(byte, b'\r' | b'\n')) {
         Some(at) if first[at] == b'\r' && first.get(at + 1) != Some(&b'\n') => b'\r',
         _ => b'\n',
@@ -236,7 +237,7 @@ impl Section {
         Self { name: name.to_owned(), count, fields: Vec::new(), kind, vertices: 0, wanted }
     }
 
-    /// Reads what a property is; `None` where words are missing.
+    /// Reads the definition of a property, or returns `None` if words are missing.
     fn field(&self, words: &[&[u8]]) -> Option<Result<Field, String>> {
         let is_corners = |name: &[u8]| {
             matches!(self.kind, Kind::Face | Kind::Strips)
@@ -294,7 +295,7 @@ impl Section {
         [NORMAL, COLOUR, UV].map(|numbers| self.has(numbers))
     }
 
-    /// Returns the colour of a vertex. Whole numbers are levels of an image, and other numbers are light.
+    /// Returns the colour of a vertex. Integers are levels of an image, and other numbers are light.
     pub fn colour(&self, vertex: &Vertex) -> [f32; 3] {
         let number = self.fields.iter().find_map(|field| match field {
             Field::Vertex(place, number) if *place == COLOUR.start => Some(*number),
@@ -316,7 +317,7 @@ impl Section {
         })
     }
 
-    /// Adds a vertex, with what is read of it.
+    /// Adds a vertex, with the attributes that are read.
     pub fn put(&self, vertex: &Vertex, vertices: &mut Vec<DVec3>, attributes: &mut Attributes) {
         let [has_normals, has_colours, has_uv] = self.reads();
         vertices.push(coordinates(vertex));
@@ -325,7 +326,7 @@ impl Section {
         attributes.uv.values.extend(has_uv.then(|| uv(vertex)));
     }
 
-    /// Adds the triangles of a face, or of strips, of this index; `corners` is room for its corners.
+    /// Adds the triangles of a face, or of strips, with this index. `corners` is scratch space.
     pub fn add(
         &self,
         index: usize,
@@ -349,7 +350,7 @@ impl Section {
             }
             for (at, three) in corners.windows(3).enumerate() {
                 let [a, b, c] = [three[at % 2], three[1 - at % 2], three[2]];
-                // A corner that is repeated joins strips.
+                // A repeated corner joins strips.
                 if a != b && b != c && a != c {
                     faces.push([a, b, c]);
                 }
@@ -359,7 +360,7 @@ impl Section {
     }
 }
 
-/// Refuses a header that promises more than the file can hold: each element takes at least a byte.
+/// Refuses a header with more elements than the file can hold: each takes at least a byte.
 fn may_fit(sections: &[Section], size: usize) -> Result<(), String> {
     let mut left = size;
     if sections.iter().filter(|section| section.kind == Kind::Vertex).count() > 1 {
@@ -390,7 +391,7 @@ fn may_fit(sections: &[Section], size: usize) -> Result<(), String> {
     Ok(())
 }
 
-/// Says that a text is not what the header makes expect.
+/// Returns an error for a text that contradicts the header.
 pub(super) fn unexpected(text: &[u8], is_header: bool) -> String {
     let wrong = words(text).find_map(|word| coordinate(word).err());
     wrong.filter(|_| !is_header).unwrap_or_else(|| {

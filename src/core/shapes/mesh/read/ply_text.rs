@@ -1,4 +1,4 @@
-//! The elements of a PLY in text: each has a line, but words may be laid out in any way.
+//! The elements of a PLY as text. Each has a line, but other layouts are accepted.
 
 use super::at_corners::Attributes;
 use super::blocks::{self, Words, is_blank, never, words};
@@ -8,7 +8,7 @@ use super::polygons::Polygons;
 use glam::DVec3;
 use memchr::memchr_iter;
 
-/// What a block of a text holds.
+/// The contents of a block of a text.
 #[derive(Default)]
 struct Part {
     vertices: Vec<DVec3>,
@@ -16,14 +16,14 @@ struct Part {
     polygons: Polygons,
     attributes: Attributes,
     lines: usize,
-    /// The first fault, with its line.
+    /// The first error, with its line.
     fault: Option<(usize, String)>,
     given: Vec<i64>,
     corners: Vec<u32>,
 }
 
-/// Reads what follows the header, which ends before this line: as lines, on all cores, and word by word where lines are
-/// not elements.
+/// Reads the text after the header, which ends before this line. If each element has a line, all cores read lines, and
+/// otherwise the text is read word by word.
 pub(super) fn read(
     rest: &[u8],
     line: usize,
@@ -75,7 +75,7 @@ fn by_words(
     Ok((model, polygons))
 }
 
-/// Adds what a part holds that begins after this line.
+/// Adds the contents of a part that begins after this line.
 fn add(
     part: Part,
     model: &mut Model,
@@ -105,10 +105,10 @@ fn count(text: &[u8]) -> usize {
     blocks::lines(text).filter(|line| !is_empty(line)).count()
 }
 
-/// Returns where so many lines end that are not empty.
+/// Returns the end of the first `count` lines that are not empty.
 fn end_of(text: &[u8], count: usize) -> Result<usize, ReadError> {
     let (mut start, mut left) = (0, count);
-    // The last line of a file may have no end.
+    // The last line of a file may have no newline.
     for end in memchr_iter(b'\n', text).map(|end| end + 1).chain([text.len()]) {
         if left == 0 {
             return Ok(start);
@@ -120,7 +120,7 @@ fn end_of(text: &[u8], count: usize) -> Result<usize, ReadError> {
 }
 
 impl Part {
-    /// Reads a block of lines up to the first fault; its first element has this index.
+    /// Reads a block of lines up to the first error. Its first element has the index `first`.
     fn read(block: &[u8], first: usize, section: &Section, budget: &MemoryBudget) -> Self {
         let (mut part, mut index) = (Self::default(), first);
         for line in blocks::lines(block) {
@@ -167,7 +167,7 @@ impl Part {
         Ok(())
     }
 
-    /// Reads the properties of an element; `None` where the words are others.
+    /// Reads the properties of an element, or returns `None` if the words do not fit them.
     fn fields(
         &mut self,
         words: &mut Words,
@@ -189,7 +189,8 @@ impl Part {
                     self.given.clear();
                     for _ in 0..word.parse::<usize>().ok()? {
                         self.given.push(whole(str::from_utf8(words.next()?).ok()?, number)?);
-                        // A polygon may be as long as the file: what does not fit is refused with its faces.
+                        // A polygon may be as long as the file. If it does not fit in memory, its faces are refused
+                        // later.
                         if self.given.len().is_multiple_of(1 << 16)
                             && budget.holds(0, self.given.len()).is_err()
                         {
@@ -212,7 +213,7 @@ fn scalar(word: &str, number: Number) -> Option<f64> {
     }
 }
 
-/// Reads a whole number of a type.
+/// Reads an integer of a type.
 fn whole(word: &str, number: Number) -> Option<i64> {
     let range = match number {
         Number::Signed(size) => i64::MIN >> (64 - 8 * size)..=i64::MAX >> (64 - 8 * size),

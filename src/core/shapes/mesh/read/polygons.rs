@@ -1,4 +1,4 @@
-//! Polygons of a file, cut into triangles.
+//! Polygons of a file, and their division into triangles.
 
 use super::model::{Model, Remark};
 use crate::parallel;
@@ -6,36 +6,35 @@ use crate::text;
 use earcut::Earcut;
 use glam::{DVec2, DVec3};
 
-/// The distance of a polygon's corners from its plane above which a warning is given, as a fraction of its size.
+/// The distance of a polygon's corners from its plane, as a fraction of its size, above which a warning is given.
 /// Polygons of round shapes are hardly ever flat.
 const FLAT: f64 = 0.1;
 
-/// How far an edge may turn to the wrong side for rounding, as a fraction of the product of two edges.
+/// The tolerance for an edge that turns to the wrong side, as a fraction of the product of two edges.
 const STRAIGHT: f64 = 1e-9;
 
-/// The most pairs of corners of polygons with dents in a file: cutting these takes up to ten seconds.
+/// The maximum number of pairs of corners of concave polygons in a file. Cutting these takes up to ten seconds.
 const MOST_PAIRS: u64 = 1 << 32;
 
-/// The faces of a file that are no triangles.
+/// The faces of a file that are not triangles.
 #[derive(Default)]
 pub(super) struct Polygons {
-    /// For each polygon the index of its first triangle, and the number of triangles that it is cut into from its first
-    /// corner.
+    /// For each polygon, the index of its first triangle, and the number of triangles in the fan from its first corner.
     fans: Vec<[u32; 2]>,
-    /// The number of faces of less than three corners, which are left out.
+    /// The number of skipped faces with fewer than three corners.
     short: usize,
 }
 
-/// What is special about a polygon.
+/// The properties of an unusual polygon.
 struct Found {
     polygon: usize,
     is_bent: bool,
-    /// Its corners in its plane where they have a dent.
+    /// The corners of a concave polygon in its plane.
     dented: Option<Vec<[f64; 2]>>,
 }
 
 impl Polygons {
-    /// Adds a face of any number of corners to triangles.
+    /// Adds a face with any number of corners to triangles.
     pub fn add(&mut self, corners: &[u32], faces: &mut Vec<[u32; 3]>) {
         let [first, rest @ ..] = corners else {
             self.short += 1;
@@ -49,20 +48,20 @@ impl Polygons {
         faces.extend(rest.windows(2).map(|pair| [*first, pair[0], pair[1]]));
     }
 
-    /// Adds what the corners of a face have to a list for triangles.
+    /// Adds the values of a face's corners to a list for triangles.
     pub fn add_values(values: &[u32], list: &mut Vec<[u32; 3]>) {
         if let [first, rest @ ..] = values {
             list.extend(rest.windows(2).map(|pair| [*first, pair[0], pair[1]]));
         }
     }
 
-    /// Adds the polygons of triangles that follow so many others.
+    /// Appends the polygons of further triangles, which follow `before` others.
     pub fn append(&mut self, other: Self, before: usize) {
         self.fans.extend(other.fans.into_iter().map(|[first, count]| [first + before as u32, count]));
         self.short += other.short;
     }
 
-    /// Cuts again the polygons of a whole file that have dents, and reports what is odd about others.
+    /// Cuts the concave polygons of a whole file again, and reports anomalies of others.
     pub fn cut(self, model: &mut Model) {
         let find = |polygon: usize| {
             let corners = corners(model, self.fans[polygon]);
@@ -119,10 +118,10 @@ impl Polygons {
     }
 }
 
-/// A polygon that was cut from its first corner, and how it is cut instead: for each triangle, which of its corners.
+/// A polygon that was cut into a fan, and its new triangles, as indices of its corners.
 type Cut = ([u32; 2], Vec<[u32; 3]>);
 
-/// Returns a list for triangles in which `add` replaces those of polygons.
+/// Returns a list for triangles in which `add` replaces the entries of polygons.
 fn pieced<T: Copy>(cuts: &[Cut], list: &[T], add: impl Fn([u32; 2], &[[u32; 3]], &mut Vec<T>)) -> Vec<T> {
     let (mut all, mut next) = (Vec::with_capacity(list.len()), 0);
     for (fan, anew) in cuts {
@@ -134,20 +133,20 @@ fn pieced<T: Copy>(cuts: &[Cut], list: &[T], add: impl Fn([u32; 2], &[[u32; 3]],
     all
 }
 
-/// Returns the corners of a polygon that was cut from its first corner.
+/// Returns the corners of a polygon that was cut into a fan.
 fn indices(faces: &[[u32; 3]], [first, count]: [u32; 2]) -> impl Iterator<Item = u32> {
     let fan = &faces[first as usize..][..count as usize];
     fan.iter().take(1).flat_map(|face| [face[0], face[1]]).chain(fan.iter().map(|face| face[2]))
 }
 
-/// Returns the corners of a polygon as seen from its first one.
+/// Returns the corners of a polygon relative to the first one.
 fn corners(model: &Model, fan: [u32; 2]) -> Vec<DVec3> {
     let at = |corner: u32| model.vertices[corner as usize];
     let origin = at(model.faces[fan[0] as usize][0]);
     indices(&model.faces, fan).map(|corner| at(corner) - origin).collect()
 }
 
-/// Returns the corners of a polygon in its plane if it has a dent, and tells whether it is not flat.
+/// Returns the corners of a polygon in its plane if it is concave, and tells whether the polygon is bent.
 fn examine(corners: &[DVec3]) -> (Option<Vec<[f64; 2]>>, bool) {
     let count = corners.len();
     let normal: DVec3 = corners.windows(2).map(|pair| pair[0].cross(pair[1])).sum();
@@ -155,7 +154,7 @@ fn examine(corners: &[DVec3]) -> (Option<Vec<[f64; 2]>>, bool) {
     let size = corners.iter().map(|at| at.length()).fold(0.0, f64::max);
     let heights = corners.iter().map(|at| at.dot(upright));
     let (low, high) = heights.fold((0.0_f64, 0.0_f64), |(low, high), at| (low.min(at), high.max(at)));
-    // Seen along an axis, from the side from which the corners run counterclockwise.
+    // This is the view along an axis, from the side on which the corners run counterclockwise.
     let axis = normal.abs().max_position();
     let (mut across, mut up) = ((axis + 1) % 3, (axis + 2) % 3);
     if normal[axis] < 0.0 {
@@ -174,7 +173,7 @@ fn examine(corners: &[DVec3]) -> (Option<Vec<[f64; 2]>>, bool) {
     (is_dented.then(|| flat.iter().map(DVec2::to_array).collect()), high - low > FLAT * size)
 }
 
-/// Cuts a polygon whose corners run counterclockwise into triangles whose corners do, too.
+/// Cuts a polygon with counterclockwise corners into counterclockwise triangles.
 fn cut(flat: &[[f64; 2]]) -> Vec<[u32; 3]> {
     let mut triangles: Vec<u32> = Vec::new();
     Earcut::new().earcut(flat.iter().copied(), &[], &mut triangles);

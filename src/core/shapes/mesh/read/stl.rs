@@ -1,4 +1,4 @@
-//! STL, in text and in bytes.
+//! STL, as text and as bytes.
 
 use super::blocks::{self, Words, never, words};
 use super::model::{MAX_VERTICES, MemoryBudget, Model, ReadError, Remark, coordinate, shown};
@@ -7,17 +7,18 @@ use crate::text;
 use glam::DVec3;
 use std::cmp::Ordering;
 
-/// The bytes before the first triangle: a title, and the number of triangles.
+/// The number of bytes before the first triangle: a title, and the number of triangles.
 const HEADER: usize = 84;
-/// The bytes of a triangle: a normal, three corners and two bytes more.
+/// The number of bytes of a triangle: a normal, three corners and two more bytes.
 const TRIANGLE: usize = 50;
 
-/// Tells whether a file has as many bytes as its number of triangles takes.
+/// Tells whether the length of a file fits its number of triangles.
 pub fn is_whole(bytes: &[u8]) -> bool {
     bytes.get(80..HEADER).is_some_and(|count| bytes.len() - HEADER == TRIANGLE * word(count) as usize)
 }
 
-/// Tells whether a file is a text. Titles of binary files may begin with `solid`, too, but some of their bytes are 0.
+/// Tells whether a file is a text. The titles of binary files may also begin with `solid`, but some of their bytes are
+/// 0.
 pub fn is_text(bytes: &[u8]) -> bool {
     let begins = words(bytes).next().is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
     begins && !is_whole(bytes) && !bytes[..bytes.len().min(4 * HEADER)].contains(&0)
@@ -46,7 +47,7 @@ pub fn read(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
     parallel::fill(&mut vertices, at);
     let (mut remarks, found) = (Vec::new(), count);
     if let Some(corner) = parallel::find_first(vertices.len(), |corner| !vertices[corner].is_finite()) {
-        // What follows the triangles that were announced may be something else.
+        // The bytes after the announced triangles may be something else.
         if announced == 0 || corner / 3 < announced {
             let message = format!("a corner of triangle {} is not finite", corner / 3 + 1);
             return Err(ReadError::byte(byte(corner), message));
@@ -69,17 +70,17 @@ pub fn read(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
     finish(vertices, remarks)
 }
 
-/// Reads a number from four bytes, the lowest first.
+/// Reads a little-endian number from four bytes.
 fn word(bytes: &[u8]) -> u32 {
     bytes.iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte))
 }
 
-/// The words that begin what a text says.
+/// The keywords of a text.
 #[derive(Clone, Copy)]
 enum Keyword {
     Vertex,
     EndLoop,
-    /// A name follows these two.
+    /// A name follows `solid` and `endsolid`.
     Solid,
     EndSolid,
     Facet,
@@ -88,7 +89,7 @@ enum Keyword {
 }
 
 impl Keyword {
-    /// Returns the next keyword among words, and passes by others.
+    /// Returns the next keyword among words, and skips other words.
     fn next(words: &mut Words) -> Option<Self> {
         while let Some(word) = words.next() {
             if let Some(keyword) = Self::of(word, words) {
@@ -98,7 +99,7 @@ impl Keyword {
         None
     }
 
-    /// Returns the keyword that a word is, or is with the next word of the `rest`: `end loop` is `endloop`.
+    /// Returns the keyword that a word is, alone or with the next word of the `rest`: `end loop` is `endloop`.
     fn of(word: &[u8], rest: &mut Words) -> Option<Self> {
         if word.eq_ignore_ascii_case(b"end") {
             let mut ahead = rest.clone();
@@ -123,7 +124,7 @@ impl Keyword {
     }
 }
 
-/// What a block of a text holds.
+/// The contents of a block of a text.
 #[derive(Default)]
 struct Part {
     vertices: Vec<DVec3>,
@@ -132,9 +133,9 @@ struct Part {
     first: Option<(usize, usize)>,
     /// The number of vertices before the last `endloop`.
     last: usize,
-    /// Whether the block ends within a facet, if it says where one begins or ends.
+    /// Whether the block ends within a facet, if a facet begins or ends in it.
     is_in_facet: Option<bool>,
-    /// The first fault apart from that of the first `endloop`, with its line.
+    /// The first error except that of the first `endloop`, with its line.
     fault: Option<(usize, String)>,
 }
 
@@ -165,14 +166,14 @@ fn in_text(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
     finish(vertices, Vec::new())
 }
 
-/// Refuses a facet without three vertices.
+/// Refuses a facet that does not have three vertices.
 fn three(count: usize) -> Result<(), String> {
     let message = || format!("a facet has three vertices, and this one has {count}");
     if count == 3 { Ok(()) } else { Err(message()) }
 }
 
 impl Part {
-    /// Reads a block up to the first fault.
+    /// Reads a block up to the first error.
     fn read(block: &[u8], budget: &MemoryBudget) -> Self {
         let mut part = Self::default();
         for line in blocks::lines(block) {
@@ -185,7 +186,7 @@ impl Part {
         part
     }
 
-    /// Reads a line, which may say several things. What follows a keyword and is of no use here is skipped.
+    /// Reads a line, which may have several keywords. Unused words after a keyword are skipped.
     fn line(&mut self, line: &[u8], budget: &MemoryBudget) -> Result<(), String> {
         let mut words = words(line);
         let Some(first) = words.next() else { return Ok(()) };
@@ -211,7 +212,7 @@ impl Part {
                     }
                     self.last = self.vertices.len();
                 }
-                // A name may be any words; the first facet of a file in one line follows it.
+                // A name may consist of any words. In a file of one line, the first facet follows it.
                 Keyword::Solid | Keyword::EndSolid => {
                     let normal = words
                         .by_ref()
@@ -231,7 +232,7 @@ impl Part {
     }
 }
 
-/// Makes a face of every three vertices.
+/// Makes a face from each three vertices.
 fn finish(vertices: Vec<DVec3>, remarks: Vec<Remark>) -> Result<Model, ReadError> {
     if vertices.len() > MAX_VERTICES {
         return Err(ReadError::file("it has more than 2^31 corners"));

@@ -1,4 +1,4 @@
-//! What readers make of files, sound and broken.
+//! Results of the readers for valid and broken files.
 
 mod attributes;
 mod gltf;
@@ -12,7 +12,7 @@ use std::path::Path;
 
 macro_rules! readers {
     ($($format:ident($($folder:expr),*))*) => {$(
-        /// Reads a file of this format, with room enough.
+        /// Reads a file of this format, with enough memory.
         mod $format {
             use super::{ReadError, Model, budget};
 
@@ -25,7 +25,7 @@ macro_rules! readers {
 }
 readers!(obj(std::path::Path::new("")) ply() stl());
 
-/// Makes a budget for a file of this length, of which only the triangles are wanted.
+/// Makes a budget for a file of this length, with only triangles wanted.
 fn budget(memory: u64, file: u64) -> Result<MemoryBudget, String> {
     MemoryBudget::new(memory, file, Wanted::default())
 }
@@ -261,7 +261,7 @@ fn lines_of_an_obj_may_be_continued() {
         let text = obj_text()
             .replace("v 1 ", &format!("v\\{end}1 \\{end}  "))
             .replace(" 3\n", &format!(" \\{end}3\n"));
-        // A comment is not continued.
+        // A comment does not continue.
         format!("# in C:\\a\\{end}{text}")
     };
     assert_eq!(obj::read(folded("\n").as_bytes()), Ok(tetrahedron()));
@@ -281,14 +281,14 @@ fn an_stl_may_be_in_capitals_and_in_one_line() {
     for stl in [text.to_uppercase(), text.replace('\n', " "), text.to_uppercase().replace('\n', "\t")] {
         assert_eq!(corners(&stl::read(stl.as_bytes()).expect("a model")), faces, "{stl}");
     }
-    // A name may be any words.
+    // A name may consist of any words.
     for name in ["my facet", "vertex endloop", "a facet normal map"] {
         let stl = text.replace("tetrahedron", name);
         assert_eq!(corners(&stl::read(stl.as_bytes()).expect("a model")), faces, "{stl}");
     }
 }
 
-/// Reads a file whose name has this ending.
+/// Reads a file with this extension.
 fn named(ending: &str, bytes: impl AsRef<[u8]>) -> Result<Model, ReadError> {
     let budget = budget(1 << 30, 0).map_err(ReadError::file)?;
     super::model(bytes.as_ref().to_vec(), ending, Path::new(""), &budget)
@@ -321,7 +321,7 @@ fn a_long_text_is_read_as_a_short_one_is() {
     let model = obj::read(named.as_bytes()).expect("a model");
     let count = |slot| model.slots.iter().filter(|of| **of == slot).count();
     assert_eq!([count(0), count(1), count(2)], [TIMES, TIMES, 1]);
-    // The first of several faults is told, wherever blocks begin.
+    // The first of several errors is reported, wherever blocks begin.
     let lines = 5 * TIMES;
     for line in [1, 7, lines / 3, lines / 2, lines] {
         let mut text: Vec<_> = long.lines().collect();

@@ -1,4 +1,4 @@
-//! The images that the materials of a file name.
+//! Images that the materials of a file name.
 
 use super::model::{MemoryBudget, Model, Remark};
 use crate::text;
@@ -7,19 +7,19 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The most images that a message names.
+/// The maximum number of images in a message.
 const FEW: usize = 5;
 
 /// Images, each read once.
 pub struct Textures<'f> {
-    /// Names of files are relative to this, or to that of the model.
+    /// The folder for names of files, tried before the folder of the model.
     pub folder: PathBuf,
     of_model: &'f Path,
     budget: &'f MemoryBudget,
-    /// The memory that is left, in bytes.
+    /// The memory left, in bytes.
     memory: u64,
     known: BTreeMap<PathBuf, Option<Arc<Texture>>>,
-    /// Which cannot be read, and why.
+    /// The unreadable images, each with the reason.
     broken: Vec<String>,
 }
 
@@ -36,8 +36,9 @@ impl<'f> Textures<'f> {
         }
     }
 
-    /// Reads the image in a file of this name, which comes from that place. Folders may be separated by `\`. Where a name leads
-    /// nowhere, as that of another machine, the file itself is looked for there.
+    /// Reads the image in the file with this name. `place` says where the name comes from. Folders may be separated by
+    /// `\`. If there is no such path, as with paths of another machine, the file name alone is tried in the same
+    /// folders.
     pub fn named(&mut self, name: &str, place: &str) -> Option<Arc<Texture>> {
         let name = name.replace('\\', "/");
         let last = Path::new(&name).file_name().unwrap_or_default();
@@ -52,7 +53,7 @@ impl<'f> Textures<'f> {
         texture
     }
 
-    /// Reads the image whose file has these bytes.
+    /// Reads an image from the bytes of its file.
     pub fn within(&mut self, bytes: &[u8], name: &str, place: &str) -> Option<Arc<Texture>> {
         self.read(Texture::of_model(PathBuf::from(name), Some(bytes.to_vec())), name, place)
     }
@@ -68,7 +69,7 @@ impl<'f> Textures<'f> {
         None
     }
 
-    /// Adds their files to those that a model names, and tells of images that cannot be read, if there are any.
+    /// Adds the images' files to those that a model names, and a remark if images are unreadable.
     pub fn finish(self, model: &mut Model) {
         model.files.extend(self.known.into_keys());
         if !self.broken.is_empty() {
@@ -80,7 +81,7 @@ impl<'f> Textures<'f> {
     }
 }
 
-/// Lists the first few.
+/// Lists the first few strings.
 pub(super) fn first_of(all: &[String]) -> String {
     let few = all[..all.len().min(FEW)].join(", ");
     if all.len() > FEW { format!("{few} and {} more", all.len() - FEW) } else { few }

@@ -1,4 +1,4 @@
-//! The numbers of glTF: buffers, views of buffers, and accessors, which give the types of the numbers in a view.
+//! Numbers of glTF: buffers, buffer views, and accessors, which give the types of the numbers in a view.
 
 use super::json::{self, Gltf};
 use crate::files::held::SceneFile;
@@ -17,7 +17,7 @@ pub struct Buffers<'f> {
     json: &'f Gltf,
 }
 
-/// A number as bytes.
+/// A component type of numbers.
 #[derive(Clone, Copy)]
 enum Kind {
     I8,
@@ -49,7 +49,8 @@ impl Kind {
         }
     }
 
-    /// Reads a number that begins a slice, and returns what counts as 1 where numbers are normalized.
+    /// Reads the number at the start of a slice, and returns it with the number that stands for 1 in normalized
+    /// accessors.
     fn read(self, bytes: &[u8]) -> (f64, f64) {
         match (self, bytes) {
             (Self::I8, [a, ..]) => (f64::from(*a as i8), 127.0),
@@ -70,15 +71,15 @@ pub struct Elements<'b> {
     pub count: usize,
     kind: Kind,
     is_normalized: bool,
-    /// The bytes from the first element on; all numbers are 0 where there are none.
+    /// The bytes from the first element on. Missing bytes stand for numbers that are 0.
     bytes: &'b [u8],
     stride: usize,
-    /// The bytes of elements that are given one by one.
+    /// The bytes of sparse elements, by index.
     others: BTreeMap<usize, &'b [u8]>,
 }
 
 impl Elements<'_> {
-    /// Returns the first numbers of an element.
+    /// Returns the first `N` numbers of an element.
     pub fn get<const N: usize>(&self, index: usize) -> [f64; N] {
         let all = self.bytes.get(index * self.stride..).unwrap_or_default();
         let bytes = self.others.get(&index).copied().unwrap_or(all);
@@ -90,7 +91,7 @@ impl Elements<'_> {
 }
 
 impl<'f> Buffers<'f> {
-    /// Reads the buffers of a file in a folder, whose own bytes are these.
+    /// Reads the buffers of a file in a folder. `own` is the binary chunk of the file itself.
     pub fn read(
         json: &'f Gltf,
         own: Option<&'f [u8]>,
@@ -128,7 +129,7 @@ impl<'f> Buffers<'f> {
         bytes.ok_or_else(|| format!("buffer view {index} reaches beyond the end of buffer {}", view.buffer))
     }
 
-    /// Returns the elements of an accessor. The number of numbers in each element must be one of those given.
+    /// Returns the elements of an accessor. The number of components in each element must be one of `widths`.
     pub fn elements(
         &self,
         index: usize,
@@ -188,7 +189,7 @@ impl<'f> Buffers<'f> {
     }
 }
 
-/// Returns the bytes to which a URI leads: the bytes in the URI itself, or the contents of a file.
+/// Returns the bytes of a URI: the data in the URI itself, or the contents of a file.
 pub fn contents(uri: &str, folder: &Path, most: u64) -> Result<Vec<u8>, String> {
     if let Some(bytes) = data(uri) {
         return bytes;
@@ -209,13 +210,13 @@ pub fn contents(uri: &str, folder: &Path, most: u64) -> Result<Vec<u8>, String> 
     Ok(bytes)
 }
 
-/// Returns the files of the buffers that a model in a folder names.
+/// Returns the buffer files that a model in a folder names.
 pub fn files(json: &Gltf, folder: &Path) -> Vec<PathBuf> {
     let uris = json.buffers.iter().filter_map(|buffer| buffer.uri.as_deref());
     uris.filter(|uri| data(uri).is_none()).map(|uri| folder.join(&*unescaped(uri))).collect()
 }
 
-/// Returns the bytes that a URI holds itself, if it does.
+/// Returns the bytes in a data URI, or `None` for any other URI.
 pub fn data(uri: &str) -> Option<Result<Vec<u8>, String>> {
     let (kind, data) = uri.strip_prefix("data:")?.split_once(',')?;
     Some(if kind.ends_with(";base64") {
@@ -225,7 +226,7 @@ pub fn data(uri: &str) -> Option<Result<Vec<u8>, String>> {
     })
 }
 
-/// Returns a URI with its escapes, `%20`, replaced.
+/// Returns a URI with its percent escapes decoded, such as `%20`.
 pub fn unescaped(uri: &str) -> Cow<'_, str> {
     if !uri.contains('%') {
         return Cow::Borrowed(uri);

@@ -1,4 +1,4 @@
-//! The part of glTF's JSON that is read. The names of fields are those of the specification.
+//! The supported part of glTF's JSON. The names of fields are those of the specification.
 
 use serde::Deserialize;
 use serde::de::IgnoredAny;

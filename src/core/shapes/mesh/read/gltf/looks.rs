@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The material extensions that are shown, or change nothing that is.
+/// The material extensions that are rendered, or do not change what is rendered.
 const SHOWN: [&str; 4] = [
     "KHR_materials_emissive_strength",
     "KHR_materials_transmission",
@@ -21,7 +21,7 @@ const SHOWN: [&str; 4] = [
     "KHR_materials_specular",
 ];
 
-/// Gives the model's materials their names and, where that is wanted, their looks.
+/// Sets the names of the model's materials and, if wanted, their appearances.
 pub fn furnish(
     model: &mut Model,
     json: &Gltf,
@@ -67,9 +67,9 @@ struct Looks<'f> {
     json: &'f Gltf,
     buffers: &'f Buffers<'f>,
     textures: Textures<'f>,
-    /// What is not shown.
+    /// The names of properties that are not rendered.
     unseen: BTreeSet<String>,
-    /// The images that were read, and those that cannot be.
+    /// The images that were read, or `None` inside for those that cannot be.
     images: Vec<Option<Option<Arc<Texture>>>>,
 }
 
@@ -125,7 +125,7 @@ impl Looks<'_> {
         Ok(finish)
     }
 
-    /// Returns an image as a material shows it; `None` where there is none, or it cannot be read.
+    /// Returns an image as a material uses it, or `None` if it is missing or cannot be read.
     fn map(&mut self, info: Option<&json::TextureInfo>) -> Result<Option<Map>, String> {
         let Some(info) = info else { return Ok(None) };
         let missing = |what: &str, index: usize| format!("there is no {what} {index}");
@@ -175,7 +175,7 @@ impl Looks<'_> {
     }
 }
 
-/// Returns the mean of the numbers of an image.
+/// Returns the mean of an image's texels.
 fn mean(texture: &Texture) -> DVec3 {
     let [width, height] = texture.size();
     let texels = (0..height).flat_map(|row| (0..width).map(move |column| texture.numbers(column, row)));

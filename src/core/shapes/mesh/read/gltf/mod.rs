@@ -1,5 +1,5 @@
-//! glTF 2.0, as JSON and in the binary container GLB: the triangles of the scene that a file shows first, where its nodes
-//! place them, and its materials. Skins, morph targets, animations, cameras and lights are not read.
+//! glTF 2.0, as JSON and in the binary container GLB. Read are the triangles of the file's default scene, where its
+//! nodes place them, and the materials. Skins, morph targets, animations, cameras and lights are not read.
 
 mod buffers;
 mod json;
@@ -15,10 +15,10 @@ use memchr::memchr_iter;
 use std::path::Path;
 use std::sync::Arc;
 
-/// What begins a GLB.
+/// The first bytes of a GLB.
 pub const MAGIC: &[u8] = b"glTF";
 
-/// The extensions that a file may require and that are read.
+/// The supported extensions among those that a file may require.
 const EXTENSIONS: [&str; 8] = [
     "KHR_texture_transform",
     "KHR_mesh_quantization",
@@ -30,10 +30,10 @@ const EXTENSIONS: [&str; 8] = [
     "KHR_lights_punctual",
 ];
 
-/// The memory that an object of the JSON takes at most, in bytes.
+/// The maximum memory of an object of the JSON, in bytes.
 const OBJECT: u64 = 512;
 
-/// Reads a file in a folder.
+/// Reads the bytes of a file in a folder.
 pub fn read(bytes: &[u8], folder: &Path, budget: &MemoryBudget) -> Result<Model, ReadError> {
     let (text, own) = if bytes.starts_with(MAGIC) { chunks(bytes)? } else { (bytes, None) };
     let is_text = own.is_none();
@@ -51,7 +51,7 @@ pub fn read(bytes: &[u8], folder: &Path, budget: &MemoryBudget) -> Result<Model,
     model(&json, own, folder, budget).map_err(ReadError::file)
 }
 
-/// Returns the JSON of a GLB and the bytes beside it.
+/// Returns the JSON of a GLB and its binary chunk.
 fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ReadError> {
     let word = |at: usize| Some(u32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
     let early = || ReadError::byte(bytes.len(), "the file ends early");
@@ -116,14 +116,14 @@ fn model(json: &Gltf, own: Option<&[u8]>, folder: &Path, budget: &MemoryBudget) 
     Ok(model)
 }
 
-/// Returns the nodes of the scene that is shown, each with its matrix to the world.
+/// Returns the nodes of the default scene, each with its matrix to world space.
 fn placed(json: &Gltf) -> Result<Vec<(&Node, DMat4)>, String> {
     let roots = match json.scenes.get(json.scene.unwrap_or(0)) {
         Some(scene) => scene.nodes.clone(),
         None if json.scene.is_some() => {
             return Err("there is no scene of the index that `scene` gives".to_owned());
         }
-        // Without a scene, all that is there is shown.
+        // Without scenes, all nodes are used.
         None => {
             let mut is_child = vec![false; json.nodes.len()];
             let children = json.nodes.iter().flat_map(|node| &node.children);
@@ -146,7 +146,7 @@ fn placed(json: &Gltf) -> Result<Vec<(&Node, DMat4)>, String> {
     Ok(found)
 }
 
-/// Returns the matrix of a node to the node above.
+/// Returns the matrix from a node to its parent.
 fn own(node: &Node) -> DMat4 {
     if let Some(matrix) = &node.matrix {
         return DMat4::from_cols_array(matrix);
@@ -159,7 +159,7 @@ fn own(node: &Node) -> DMat4 {
     DMat4::from_translation(translation) * DMat4::from_quat(rotation) * DMat4::from_scale(scale)
 }
 
-/// What a model is made of.
+/// The sources of a model.
 #[derive(Clone, Copy)]
 struct Source<'f> {
     json: &'f Gltf,
@@ -188,13 +188,13 @@ impl<'f> Source<'f> {
     }
 }
 
-/// A model that is put together.
+/// A model in construction.
 struct Reading<'f> {
     source: Source<'f>,
     model: Model,
-    /// The number of primitives that are lines or points.
+    /// The number of skipped primitives: lines or points.
     left_out: usize,
-    /// The number of meshes that other programs show in a pose.
+    /// The number of meshes that other programs show in another pose.
     posed: usize,
 }
 
@@ -273,7 +273,7 @@ impl Reading<'_> {
             (upright * DVec3::from(normal)).normalize_or_zero().to_array().map(|part| part as f32)
         };
         add(&mut attributes.normals, wanted.normals, &faces, normals, normal);
-        // The first row of texels is the upper one.
+        // In glTF, v counts from the upper row of texels.
         add(&mut attributes.uv, wanted.materials.is_some(), &faces, uv, |[u, v]: [f64; 2]| {
             [u as f32, (1.0 - v) as f32]
         });
@@ -295,7 +295,8 @@ impl Reading<'_> {
     }
 }
 
-/// Adds the attributes of the vertices of faces to the values at corners, or notes that there are none.
+/// Adds the attributes of the vertices of faces to the values at corners. Without `elements`, the corners have no
+/// value.
 fn add<const N: usize, T: Copy>(
     to: &mut AtCorners<T>,
     is_wanted: bool,

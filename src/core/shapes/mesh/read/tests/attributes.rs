@@ -1,4 +1,4 @@
-//! What the corners of faces have, in each format.
+//! Attributes of the corners of faces in each format.
 
 use super::super::model::MemoryBudget;
 use super::super::{Model, NO_VALUE, ReadError, Wanted};
@@ -6,7 +6,7 @@ use crate::world::sensor::Sensor;
 use glam::DVec3;
 use std::path::Path;
 
-/// Reads a file of which everything is wanted.
+/// Reads a file with all contents wanted.
 pub(super) fn whole(ending: &str, bytes: impl AsRef<[u8]>) -> Result<Model, ReadError> {
     let wanted = Wanted { normals: true, materials: Some(Sensor::default().display()) };
     let budget = MemoryBudget::new(1 << 30, 0, wanted).map_err(ReadError::file)?;
@@ -15,7 +15,7 @@ pub(super) fn whole(ending: &str, bytes: impl AsRef<[u8]>) -> Result<Model, Read
 
 #[test]
 fn corners_keep_what_they_have_where_polygons_are_cut() {
-    // A dart and a crown, whose texture coordinates and normals are their places.
+    // A dart and a crown. Their texture coordinates and normals equal their positions.
     let places = [[0, 0], [4, 0], [4, 4], [2, 1], [0, 4], [9, 9]];
     let vertices: String = places.iter().map(|[x, y]| format!("v {x} {y} 0\n")).collect();
     let of_texture: String = places.iter().rev().map(|[x, y]| format!("vt {x} {y} 0.5\n")).collect();
@@ -51,7 +51,7 @@ fn numbers_of_what_there_is_not_are_told() {
         assert_eq!(whole("obj", &text), Err(ReadError::line(7, said)));
         assert!(super::named("obj", &text).is_ok(), "what is not wanted is not read");
     }
-    // A file without any is not broken.
+    // A file without any of them is valid.
     let model = whole("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1/1 2/2/2 3/3/3\n").expect("a model");
     assert!(model.attributes.is_empty());
 }
@@ -95,7 +95,7 @@ fn vertices_of_a_ply_have_normals_colours_and_texture_coordinates() {
         assert!(lists.iter().all(|list| **list == faces));
         assert_eq!(attributes.normals.values[2], [2.0, 0.0, 0.0]);
         assert!(attributes.normals.values[1][2].is_nan());
-        // As the notes decode bytes.
+        // Bytes are decoded as in the notes.
         assert_eq!(attributes.colours.values[0], [255.0 / 256.0, 0.0, 0.25]);
         assert_eq!(attributes.uv.values, [[0.0, 0.0], [1.0, 0.0], [0.5, 1.0]]);
     }

@@ -1,4 +1,4 @@
-//! Files of glTF, sound and broken.
+//! Valid and broken glTF files.
 
 use super::super::{Model, ReadError};
 use super::attributes::whole;
@@ -8,13 +8,13 @@ use base64::engine::general_purpose::STANDARD;
 use glam::DVec3;
 use proptest::prelude::*;
 
-/// Returns a list of 16-bit numbers in bytes, as a URI.
+/// Returns bytes as a data URI.
 fn uri(bytes: &[u8]) -> String {
     format!("data:application/octet-stream;base64,{}", STANDARD.encode(bytes))
 }
 
-/// Returns the text of a file whose buffer has four corners of a square as floats, and then the indices 0 to 3 as bytes, as
-/// 16 and as 32 bits, from the bytes 48, 52 and 60 on.
+/// Returns the text of a file with a buffer: four corners of a square as floats, and the indices 0 to 3 as bytes, as
+/// 16-bit and as 32-bit numbers, from the bytes 48, 52 and 60 on.
 fn text(nodes: &str, primitives: &str) -> String {
     let mut bytes = Vec::new();
     for number in [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0] {
@@ -59,7 +59,7 @@ fn strips_and_fans_of_all_kinds_of_indices_are_triangles() {
             assert_eq!(corners(&model), faces, "{mode} {indices}");
         }
     }
-    // A sparse accessor without a view is 0 but for one.
+    // A sparse accessor without a view is 0, except for one element.
     let model = named("gltf", text(r#"[{"mesh":0}]"#, r#"[{"attributes":{"POSITION":4},"mode":6}]"#))
         .expect("a model");
     assert_eq!(model.vertices, [DVec3::ZERO, DVec3::ZERO, DVec3::ZERO, DVec3::X]);
@@ -74,7 +74,7 @@ fn nodes_place_what_they_have() {
     let primitives = primitives.replace(r#","TEXCOORD_0":0"#, "");
     let model = whole("glb", text(nodes, &primitives)).expect("a model");
     let found = corners(&model);
-    // Turned by 90 degrees around z, after it was mirrored; so are its faces.
+    // The mesh is mirrored, and then turned by 90 degrees around z. Its faces are mirrored, too.
     let right = [[10.0, 0.0, 0.0], [9.0, -2.0, 0.0], [10.0, -2.0, 0.0]].map(DVec3::from);
     assert!(found[0].into_iter().zip(right).all(|(one, other)| (one - other).length() < 1e-12), "{found:?}");
     assert_eq!(found[1], [[10.0, 0.0, 5.0], [11.0, 0.0, 5.0], [11.0, 1.0, 5.0]].map(DVec3::from));
@@ -162,7 +162,7 @@ fn files_that_are_no_gltf_or_broken_are_told() {
     );
 }
 
-/// Returns a GLB of a JSON and of the bytes beside it.
+/// Returns a GLB with a JSON chunk and a binary chunk.
 fn glb(json: &str, own: &[u8]) -> Vec<u8> {
     let mut bytes = b"glTF\x02\0\0\0\0\0\0\0".to_vec();
     for (kind, chunk) in [(b"JSON", json.as_bytes()), (b"BIN\0", own)] {

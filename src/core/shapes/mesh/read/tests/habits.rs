@@ -1,4 +1,4 @@
-//! What programs write beside the letter of a format.
+//! Common deviations of programs from the formats.
 
 use super::*;
 
@@ -45,7 +45,7 @@ fn elements_of_a_ply_in_text_may_be_laid_out_in_any_way() {
     for other in [body.replace(' ', "\n"), body.replace('\n', " "), body.replace("0 255", "0\n255")] {
         assert_eq!(named("ply", format!("{header}end_header\n{other}")), Ok(tetrahedron()), "{other}");
     }
-    // What is wrong is told with its line.
+    // An error is reported with its line.
     let wrong = format!("{header}end_header\n{}", body.replace(' ', "\n").replace("0.25", "x"));
     let message = "`x` is not a number".to_owned();
     assert_eq!(named("ply", wrong), Err(ReadError { at: Some(FilePosition::Line(20)), message }));
@@ -77,7 +77,7 @@ fn strips_of_a_ply_are_triangles() {
                 element tristrips 1\nproperty list int int vertex_indices\nend_header\n\
                 0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n12 0 1 2 3 3 4 -1 0 1 4 -1 2\n";
     let model = named("ply", text).expect("strips");
-    // Each second one is turned, and one of two corners joins strips.
+    // Every second triangle is reversed, and one with only two corners joins strips.
     assert_eq!(model.faces, [[0, 1, 2], [2, 1, 3], [0, 1, 4]]);
     let error = named("ply", text.replace("1 4 -1", "1 5 -1")).expect_err("no vertex");
     assert_eq!(error.message, "strip 0 refers to vertex 5, and there are 5, from 0");
@@ -138,7 +138,7 @@ fn the_triangles_of_an_stl_are_those_that_it_holds() {
         assert_eq!(corners(&model), corners(&tetrahedron()), "{announced}");
         assert_eq!(model.remarks.first().map(|remark| &remark.message[..]), message);
     }
-    // What follows is no triangle.
+    // The bytes that follow are not a triangle.
     let bytes = [whole, vec![255; 50]].concat();
     assert_eq!(named("stl", bytes).expect("a model").faces.len(), 4);
     let text = stl_text();
@@ -178,7 +178,7 @@ fn files_of_other_kinds_are_named() {
     );
 }
 
-/// Returns an OBJ of one polygon in a plane.
+/// Returns an OBJ with one flat polygon.
 fn polygon(corners: &[[f64; 2]]) -> String {
     let vertices: String = corners.iter().map(|[x, y]| format!("v {x} {y} {}\n", x - 2.0 * y)).collect();
     format!("{vertices}f{}\n", (1..=corners.len()).map(|corner| format!(" {corner}")).collect::<String>())
@@ -213,7 +213,7 @@ fn polygons_with_dents_are_cut_into_triangles_that_fill_them() {
             }
         }
     }
-    // A convex polygon is cut from its first corner, as ever.
+    // A convex polygon is cut into a fan.
     let model = named("obj", polygon(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]))
         .expect("a polygon");
     assert_eq!(model.faces, [[0, 1, 2], [0, 2, 3], [0, 3, 4]]);
